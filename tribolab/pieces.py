@@ -10,6 +10,7 @@ import numpy as np
 from tribolab.room import let_go, room
 
 PIECE = 1 << 17  # samples
+_GIVEN_BACK = 1 << 21  # samples, of which the memory is given back at once: each time takes a while
 _Part = TypeVar("_Part")
 
 
@@ -18,7 +19,7 @@ def pieces(
 ) -> Iterator[tuple[int, int]]:
     """Cut a stretch of samples, or of blocks of them, into pieces.
 
-    The memory of each is given back behind it.
+    The memory that they took is given back behind some of them, and behind the last.
 
     Parameters
     ----------
@@ -40,9 +41,13 @@ def pieces(
     [(2, 5), (5, 8), (8, 9)]
     """
     length = length or max(1, PIECE // block)
+    looked_at = 0
     for first in range(start, stop, length):
         yield first, min(first + length, stop)
-        let_go()
+        looked_at += length * block
+        if looked_at >= _GIVEN_BACK or first + length >= stop:
+            let_go()
+            looked_at = 0
 
 
 def whole_blocks(edges: np.ndarray) -> Iterator[tuple[int, int]]:

@@ -2,12 +2,14 @@
 
 FILES = ("tribolab.app.checks", "tribolab.qc.scan.sets", "tribolab.draft.scans")
 
-SIMULATION = ("tribolab.rig.campaign",)
+SIMULATION = ("tribolab.rig.campaign", "scipy.signal")
 
-# the stages themselves, then what they import only where it is needed, in this order
+# the stages themselves, then what they import only where it is needed, in this order; xarray looks
+# for pint, and pint for Dask, when it first makes an index
 ANALYSIS = (
     "tribolab.campaign.pipeline",
     "netCDF4",
+    "pint",
     "tribolab.draft.on_the_fly",
     "tribolab.friction.coefficient.static",
     "tribolab.friction.coefficient.repeatability",

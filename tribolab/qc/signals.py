@@ -6,12 +6,16 @@ changes a sample. All are passes of whole-array operations, over long records pi
 
 from __future__ import annotations
 
+from collections import Counter
+from typing import NamedTuple
+
 import numpy as np
 
 from tribolab.friction.oscillation.noise import quantisation_step
+from tribolab.medians import medians
 from tribolab.pieces import anywhere, pieces
 from tribolab.qc.flags import GOOD, MISSING, NOT_EVALUATED, SUSPECT, uniform
-from tribolab.room import filled, let_go, room
+from tribolab.room import filled
 
 
 def missing(values: np.ndarray) -> np.ndarray:
@@ -90,24 +94,51 @@ def _noise_levels(values: np.ndarray, block: int = 512) -> tuple[np.ndarray, int
         ends = {"prepend": values[:1]} if start == 0 else {}
         ends |= {"append": values[-1:]} if stop == values.size else {}
         second = np.nan_to_num(np.abs(np.diff(part, 2, **ends)))
-        levels[first:last] = np.median(second.reshape(-1, length), axis=1)
+        levels[first:last] = medians(second.reshape(-1, length))
     return np.maximum(levels, np.quantile(levels, 0.25)) / (0.6745 * np.sqrt(6.0)), length
 
 
-def _runs_of_equal(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """First index and length of every stretch of identical values."""
-    kind = np.int32 if values.size < 2**31 else np.int64
-    starts = room(values.size + 1, kind)
-    starts[0], count = 0, 1
+class _Equal(NamedTuple):
+    """Stretches of identical values: lengths, increasing, how often each comes, and the long ones.
+
+    `long` holds the first sample of each, and that behind its last (stretch, 2).
+    """
+
+    lengths: np.ndarray
+    counts: np.ndarray
+    long: np.ndarray
+
+
+def _runs_of_equal(values: np.ndarray, long: int) -> _Equal:
+    """Count the stretches of identical values, and list those of `long` samples or more."""
+    often: Counter[int] = Counter()
+    listed = [np.zeros((0, 2), int)]
+    begun = 0  # first sample of the stretch that the next piece goes on with
     for first, last in pieces(1, values.size):
-        change = np.flatnonzero(values[first:last] != values[first - 1 : last - 1])
-        np.add(change, first, out=starts[count : count + change.size], casting="same_kind")
-        count += change.size
-    starts[count] = values.size
-    length = room(count, kind)
-    for first, last in pieces(0, count):
-        np.subtract(starts[first + 1 : last + 1], starts[first:last], out=length[first:last])
-    return starts[:count], length
+        change = np.flatnonzero(values[first:last] != values[first - 1 : last - 1]) + first
+        if last == values.size:
+            change = np.append(change, last)
+        length = np.diff(change, prepend=begun)
+        if not length.size:
+            continue
+        kinds, counts = np.unique(length, return_counts=True)
+        often.update(dict(zip(kinds.tolist(), counts.tolist(), strict=True)))
+        some = length >= long
+        listed.append(np.stack([change[some] - length[some], change[some]], axis=1))
+        begun = int(change[-1])
+    lengths = np.array(sorted(often))
+    return _Equal(lengths, np.array([often[k] for k in lengths.tolist()]), np.concatenate(listed))
+
+
+def _quantile(values: np.ndarray, counts: np.ndarray, share: float) -> float:
+    """Quantile of increasing values that come so often, as `numpy.quantile` of all of them."""
+    behind = np.cumsum(counts)
+    place = share * (int(behind[-1]) - 1)
+    below, above = (
+        float(values[np.searchsorted(behind, rank, "right")])
+        for rank in (np.floor(place), np.ceil(place))
+    )
+    return below + (place - np.floor(place)) * (above - below)
 
 
 def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.ndarray:
@@ -135,23 +166,22 @@ def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.nda
     """
     if values.size < 4 * shortest:
         return uniform(values.size, NOT_EVALUATED)
-    first, length = _runs_of_equal(values)
-    longest = int(length.max())
+    equal = _runs_of_equal(values, shortest)
+    longest, runs = int(equal.lengths[-1]), int(equal.counts.sum())
     others = max(values.size - longest, 1)
-    if length.size == 1:
+    if runs == 1:
         return uniform(values.size, SUSPECT)  # one value from start to end
     # a signal quantised more coarsely than its noise repeats values in health, too: what most
     # stretches do sets what is usual
-    usual = float(np.quantile(length, 0.99))
-    let_go()
-    repeat = max((others - (length.size - 1)) / others, 1.0 / values.size, 1.0 - 1.0 / usual)
+    usual = _quantile(equal.lengths, equal.counts, 0.99)
+    repeat = max((others - (runs - 1)) / others, 1.0 / values.size, 1.0 - 1.0 / usual)
     allowed = 1.0 + np.log(chance / values.size) / np.log(min(repeat, 1.0 - 1e-9))
-    bad = np.flatnonzero(length >= max(shortest, allowed))
+    bad = equal.long[equal.long[:, 1] - equal.long[:, 0] >= allowed]
     if not bad.size:
         return uniform(values.size, GOOD)
     flags = filled(values.size, GOOD, np.int8)
-    for index in bad:  # a loop over stuck stretches, few by their definition
-        flags[first[index] : first[index] + length[index]] = SUSPECT
+    for start, stop in bad:  # a loop over stuck stretches, few by their definition
+        flags[start:stop] = SUSPECT
     return flags
 
 
@@ -175,21 +205,32 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
     ndarray
         suspect at saturated samples, good elsewhere.
     """
-    known = values.size - int(np.isnan(values).sum())
+    known = sum(np.count_nonzero(values[a:b] == values[a:b]) for a, b in pieces(0, values.size))
     if known < 32 or np.nanmin(values) == np.nanmax(values):
         return uniform(values.size, NOT_EVALUATED)
     step = 1.5 * quantisation_step(values)
-    cut = np.zeros(values.size, bool)
+    bad = []
     for end, sign in ((np.nanmax(values), 1.0), (np.nanmin(values), -1.0)):
-        at_end = values == end
-        count, below = int(at_end.sum()), 0
-        for start, stop in pieces(0, values.size):
-            depth = sign * (end - values[start:stop])
-            below += int(((depth > 0) & (depth <= step)).sum())
-        in_a_row = bool((at_end[1:] & at_end[:-1]).any())
+        count, below, in_a_row = _at_end(values, end, sign, step)
         enough = max(fewest, excess * below + 5 * np.sqrt(below))
         if count >= enough and (in_a_row or step == 0):
-            cut |= at_end
-    if not cut.any():
+            bad.append(end)
+    if not bad:
         return uniform(values.size, GOOD)
-    return np.where(cut, np.int8(SUSPECT), np.int8(GOOD))
+    flags = filled(values.size, GOOD, np.int8)
+    for start, stop in pieces(0, values.size):
+        flags[start:stop][np.isin(values[start:stop], bad)] = SUSPECT
+    return flags
+
+
+def _at_end(values: np.ndarray, end: float, sign: float, step: float) -> tuple[int, int, bool]:
+    """How many samples lie at an end of the range, how many within a step, and whether in a row."""
+    count, below, in_a_row, before = 0, 0, False, False
+    for start, stop in pieces(0, values.size):
+        depth = sign * (end - values[start:stop])
+        at_end = values[start:stop] == end
+        count += int(np.count_nonzero(at_end))
+        below += int(np.count_nonzero((depth > 0) & (depth <= step)))
+        in_a_row |= bool((before and at_end[0]) or (at_end[1:] & at_end[:-1]).any())
+        before = bool(at_end[-1])
+    return count, below, in_a_row

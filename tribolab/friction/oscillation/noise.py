@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribolab.pieces import pieces
+from tribolab.medians import median_in_pieces
 
 _LARGEST_SAMPLE = 200_000  # values that suffice to find the quantisation step
 
@@ -41,10 +41,11 @@ def noise_level(values: np.ndarray) -> float:
     values = _known(values)
     if values.size < 5:
         return 0.0
-    second = np.empty(values.size - 2)  # sorted as a whole: no piece of it at a time
-    for start, stop in pieces(0, second.size):
-        np.abs(np.diff(values[start : stop + 2], 2), out=second[start:stop])
-    return float(np.median(second, overwrite_input=True) / (0.6745 * np.sqrt(6.0)))
+
+    def second(start: int, stop: int) -> np.ndarray:
+        return np.abs(np.diff(values[start : stop + 2], 2))
+
+    return float(median_in_pieces(second, values.size - 2) / (0.6745 * np.sqrt(6.0)))
 
 
 def _known(values: np.ndarray) -> np.ndarray:

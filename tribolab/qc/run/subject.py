@@ -13,7 +13,8 @@ from tribolab.friction.oscillation.lines import Line, segment_lines
 from tribolab.friction.oscillation.noise import noise_level
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.friction.segments.find import find_segments, why_no_segment
-from tribolab.pieces import one_by_one, pieces, stretches
+from tribolab.medians import median_in_pieces
+from tribolab.pieces import one_by_one, stretches
 from tribolab.qc.flags import NOT_EVALUATED
 from tribolab.qc.register import Skip
 from tribolab.room import filled
@@ -140,13 +141,11 @@ class RunSubject:
         """Return the median magnitude of a signal within the segments, else of all of it."""
         values = self.signals[name]
         inside = self.in_segments if self.in_segments.any() else np.ones(values.size, dtype=bool)
-        sizes = np.empty(int(np.count_nonzero(inside)))
-        end = 0
-        for first, last in pieces(0, values.size):
-            some = values[first:last][inside[first:last]]
-            begin, end = end, end + some.size
-            np.abs(some, out=sizes[begin:end])
-        return float(np.nanmedian(sizes, overwrite_input=True))
+
+        def sizes(first: int, last: int) -> np.ndarray:
+            return np.abs(values[first:last][inside[first:last]])
+
+        return float(median_in_pieces(sizes, values.size))
 
     def on_samples(self, flags: np.ndarray) -> np.ndarray:
         """Return one flag for each segment as flags of its samples (time)."""

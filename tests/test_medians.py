@@ -1,0 +1,57 @@
+"""Medians by sorting are those of numpy, and those of a long record are those of all of it."""
+
+import numpy as np
+import pytest
+
+from tribolab import medians
+from tribolab.medians import median, median_in_pieces, median_of_known
+
+
+def _numbers(size: int, digits: int | None, gaps: float) -> np.ndarray:
+    rng = np.random.default_rng(size)
+    numbers = rng.normal(np.linspace(0, 9, size), 1 + np.arange(size) / size)
+    if digits is not None:
+        numbers = np.round(numbers, digits)
+    numbers[rng.random(size) < gaps] = np.nan
+    return numbers
+
+
+@pytest.mark.parametrize("size", [1, 2, 7, 300, 4001])
+def test_the_median_is_that_of_numpy(size):
+    numbers = _numbers(size, 1, 0.0)
+    assert median(numbers) == np.median(numbers)
+    rows = numbers[: size // 7 * 7].reshape(-1, 7)
+    np.testing.assert_array_equal(medians.medians(rows), np.median(rows, axis=1))
+    np.testing.assert_array_equal(medians.medians(rows[:, :4]), np.median(rows[:, :4], axis=1))
+
+
+def test_of_nothing_and_of_gaps_there_is_no_median():
+    assert np.isnan(median(np.zeros(0))) and np.isnan(median_of_known(np.full(3, np.nan)))
+    assert np.isnan(median(np.array([1.0, np.nan, 2.0])))
+    assert median_of_known(np.array([1.0, np.nan, 2.0])) == 1.5
+
+
+@pytest.mark.parametrize("digits", [None, 1, 0], ids=["smooth", "quantised", "coarse"])
+@pytest.mark.parametrize("gaps", [0.0, 0.3])
+def test_the_median_of_a_long_record_is_found_by_what_lies_about_it(monkeypatch, digits, gaps):
+    numbers = _numbers(300_001, digits, gaps)
+    whole = np.nanmedian(numbers)
+    monkeypatch.setattr(medians, "_MANY", 1000)
+    kept = []
+
+    def part(first: int, last: int) -> np.ndarray:
+        kept.append(last - first)
+        return numbers[first:last]
+
+    assert median_in_pieces(part, numbers.size) == whole
+    # seen once to look about, and once or twice to find it
+    assert sum(kept) < 2.5 * numbers.size
+
+
+def test_a_record_whose_short_stretches_deceive_is_sorted_as_a_whole(monkeypatch):
+    monkeypatch.setattr(medians, "_MANY", 1000)
+    # all that is tried is small, all that lies between is large
+    numbers = np.full(300_000, 5.0) + np.arange(300_000) * 1e-9
+    for start in np.linspace(0, numbers.size - medians._SHORT, medians._STRETCHES).astype(int):
+        numbers[start : start + medians._SHORT] = 0.0
+    assert median_in_pieces(lambda a, b: numbers[a:b], numbers.size) == np.median(numbers)
