@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tribolab import medians
-from tribolab.medians import median, median_in_pieces, median_of_known
+from tribolab.medians import median, median_in_pieces, median_of_known, medians_of_rows
 
 
 def _numbers(size: int, digits: int | None, gaps: float) -> np.ndarray:
@@ -21,8 +21,8 @@ def test_the_median_is_that_of_numpy(size):
     numbers = _numbers(size, 1, 0.0)
     assert median(numbers) == np.median(numbers)
     rows = numbers[: size // 7 * 7].reshape(-1, 7)
-    np.testing.assert_array_equal(medians.medians(rows), np.median(rows, axis=1))
-    np.testing.assert_array_equal(medians.medians(rows[:, :4]), np.median(rows[:, :4], axis=1))
+    np.testing.assert_array_equal(medians_of_rows(rows), np.median(rows, axis=1))
+    np.testing.assert_array_equal(medians_of_rows(rows[:, :4]), np.median(rows[:, :4], axis=1))
 
 
 def test_of_nothing_and_of_gaps_there_is_no_median():

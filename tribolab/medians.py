@@ -42,19 +42,18 @@ def median_of_known(values: np.ndarray) -> np.float64:
     return _of_ordered(np.sort(np.asarray(values, float), axis=None))
 
 
-def medians(rows: np.ndarray) -> np.ndarray:
-    """Return the median of each row (row, column), without NaN in it.
+def medians_of_rows(rows: np.ndarray) -> np.ndarray:
+    """Return the median of each row (row, column); NaN where there is one in it.
 
     Examples
     --------
-    >>> medians(np.array([[3.0, 1.0, 2.0, 9.0], [0.0, 0.0, 5.0, 1.0]]))
-    array([2.5, 0.5])
+    >>> medians_of_rows(np.array([[3.0, 1.0, 2.0, 9.0], [0.0, 0.0, 5.0, np.nan]]))
+    array([2.5, nan])
     """
     ordered = np.sort(rows, axis=1)
-    half = rows.shape[1] // 2
-    if rows.shape[1] % 2:
-        return ordered[:, half]
-    return (ordered[:, half - 1] + ordered[:, half]) / 2
+    half, odd = divmod(rows.shape[1], 2)
+    middle = ordered[:, half] if odd else (ordered[:, half - 1] + ordered[:, half]) / 2
+    return np.where(np.isnan(ordered[:, -1]), np.nan, middle)
 
 
 def median_in_pieces(part: Callable[[int, int], np.ndarray], count: int) -> np.float64:

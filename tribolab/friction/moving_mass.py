@@ -11,6 +11,7 @@ from tribolab.errors import AnalysisError
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.segments.strokes import find_strokes
 from tribolab.io.inertia import acceleration, take_inertia
+from tribolab.medians import median
 from tribolab.units import positive
 
 _FAST = 0.4  # of the highest speed: below it friction still turns over
@@ -78,7 +79,7 @@ def moving_mass(run: xr.Dataset) -> MovingMass | None:
     time, force = run["time"].values, run["friction_force"].values
     signals = {n: run[n].values for n in ("sliding_velocity", "position") if n in run}
     # a parabola through a sixth of a stroke loses a hundredth of a sine's acceleration
-    widest = max(int(np.median(np.diff(strokes.first)) / 12), 2)
+    widest = max(int(median(np.diff(strokes.first)) / 12), 2)
     known = acceleration(signals, time, 0.0, widest)
     if known is None:
         return None
@@ -97,7 +98,7 @@ def moving_mass(run: xr.Dataset) -> MovingMass | None:
     if len(fitted) < _FEWEST:
         return None
     friction = float(np.mean(fitted[:, 1] + 0.8 * fitted[:, 2]))
-    period = 2 * float(np.median(np.diff(strokes.first)))
+    period = 2 * float(median(np.diff(strokes.first)))
     kept = known.gain(period) * spread / (spread - known.error**2)
     masses = fitted[:, 3] * np.sign(friction) * kept
     mass, error = float(masses.mean()), float(masses.std(ddof=1) / np.sqrt(masses.size))
@@ -164,7 +165,7 @@ def _is_steady(acceleration: np.ndarray) -> bool:
     acceleration the median size is half of the highest or more, of ramps' it is far less.
     """
     size = np.abs(acceleration)
-    return bool(np.median(size) < _EVEN * np.quantile(size, 0.98))
+    return bool(median(size) < _EVEN * np.quantile(size, 0.98))
 
 
 def _fits(pair: np.ndarray, terms: list[np.ndarray], force: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.joined import Label, grouped, joined_curves
 from tribolab.friction.statistics import student_widening
 from tribolab.friction.zero.of_run import PAIRED
+from tribolab.medians import median
 from tribolab.provenance import joined_sources, made
 from tribolab.stamping import stamp
 
@@ -221,7 +222,7 @@ def _random_effects(
         return float(y[0]), float(s[0]), known_of[0]
     known = s[np.isfinite(s) & (s > 0)]
     # an error that is unknown or zero is as large as the usual one; weights stay finite
-    usual = float(np.median(known)) if known.size else 1e-12 + float(np.std(y))
+    usual = float(median(known)) if known.size else 1e-12 + float(np.std(y))
     w = 1 / np.where(np.isfinite(s) & (s > 0), s, usual) ** 2
     mean = (w @ y) / w.sum()
     excess = w @ (y - mean) ** 2 - (y.size - 1)

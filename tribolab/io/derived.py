@@ -11,6 +11,7 @@ from tribolab.io.content.read import measurable
 from tribolab.io.dialects.formula import Operand, evaluate, in_base_units, names_in, parse_formula
 from tribolab.io.dialects.model import Derived, Dialect
 from tribolab.io.dialects.value_rule import Value
+from tribolab.medians import median
 from tribolab.pieces import lowered
 from tribolab.quantities import QUANTITIES, quantity
 from tribolab.untyped import Json
@@ -118,8 +119,8 @@ def _without_contact(normal: np.ndarray) -> np.ndarray:
     light = np.abs(normal) < _LIGHT * usual
     if np.count_nonzero(light) < _FEWEST:
         return np.zeros(normal.size, dtype=bool)
-    level = np.median(normal[light])
-    scatter = np.median(np.abs(normal[light] - level)) / 0.6745
+    level = median(normal[light])
+    scatter = median(np.abs(normal[light] - level)) / 0.6745
     free = light & (np.abs(normal - level) <= 5 * max(scatter, 1e-4 * usual))
     return free if np.abs(level) < _UNLOADED * usual else np.zeros(normal.size, dtype=bool)
 

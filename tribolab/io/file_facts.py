@@ -10,6 +10,7 @@ import xarray as xr
 from tribolab.io.dialects.find import Instrument, known_dialects, load_dialect
 from tribolab.io.logs import PathLike
 from tribolab.io.row_counts import ROW_ATTRIBUTES, rows_in_words
+from tribolab.medians import median
 
 
 class ColumnFacts(TypedDict):
@@ -83,7 +84,7 @@ def file_facts(run: xr.Dataset, path: PathLike, instrument: Instrument | None = 
         "not_used": unused.split("; ") if unused else [],
         "rows": len(time),
         "duration_s": float(time[-1]) if len(time) else 0.0,
-        "interval_s": float(np.median(gaps)) if len(gaps) else None,
+        "interval_s": float(median(gaps)) if len(gaps) else None,
         "longest_interval_s": float(gaps.max()) if len(gaps) else None,
         "steps": int(np.unique(run["step"]).size) if "step" in run else None,
         "left_out": rows_in_words(run.attrs),

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.medians import median
+
 _LARGEST = 10.0  # soft rubber on glass reaches some 4, gels and gecko feet at light loads more
 _SMALLEST = 2e-4  # superlubric contacts come to 1e-3 and a little below
 _LOADED = 0.5  # of the largest load
@@ -33,7 +35,7 @@ def doubt_about(friction: np.ndarray, normal: np.ndarray) -> str:
     if loaded.sum() < _FEW:
         return ""
     # a drive to and fro passes through zero: not the middle of its forces is their size
-    ratio = float(np.percentile(friction[loaded], 75) / np.median(normal[loaded]))
+    ratio = float(np.percentile(friction[loaded], 75) / median(normal[loaded]))
     if ratio == 0 or _SMALLEST <= ratio <= _LARGEST:
         return ""
     told = f"the friction force is {ratio:.3g} times the normal force"

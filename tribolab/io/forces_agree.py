@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.medians import median
 from tribolab.untyped import Json
 
 _APART = 0.02  # relative; both are computed of the same readings, and written with three digits
@@ -36,7 +37,7 @@ def keep_forces_that_agree(columns: dict[str, np.ndarray], attrs: Json) -> None:
     sound &= (stated > 0) & (load > _LOADED * np.nanmax(load, initial=0.0))
     if np.count_nonzero(sound) < _FEW:
         return
-    ratio = float(np.median(friction[sound] / stated[sound]))
+    ratio = float(median(friction[sound] / stated[sound]))
     attrs["ratio_to_stated_coefficient"] = ratio
     if abs(ratio - 1) <= _APART:
         return

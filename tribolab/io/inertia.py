@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import Cure, ReadError
+from tribolab.medians import median
 from tribolab.stamping import stamp
 
 _MOTION = ("sliding_velocity", "position")
@@ -79,7 +80,7 @@ def acceleration(
     if not usable:
         return None
     values, order = usable[0]
-    step = float(np.median(np.diff(time)))
+    step = float(median(np.diff(time)))
     noise = _noise(values)
     # variance of the slope, and of the second derivative, of a parabola through 2 k + 1 points
     half = np.arange(2, max(min(widest, (time.size - 1) // 2), 2) + 1)
@@ -97,7 +98,7 @@ def acceleration(
 def _noise(values: np.ndarray) -> float:
     """Noise of single samples: third differences take out what is smooth."""
     rough = np.abs(np.diff(values, 3))
-    return float(np.median(rough) / _MAD / np.sqrt(20))
+    return float(median(rough) / _MAD / np.sqrt(20))
 
 
 def _derivative(time: np.ndarray, values: np.ndarray, order: int, half: int) -> np.ndarray:

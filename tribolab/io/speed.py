@@ -9,6 +9,7 @@ import numpy as np
 from tribolab.errors import ReadError
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.stroke_speed import velocity_of_strokes
+from tribolab.medians import median
 from tribolab.units import to_si
 from tribolab.untyped import Json
 
@@ -81,7 +82,7 @@ def keep_settings(
             continue
         values = columns[name]
         values = values[np.isfinite(values) & (values > 0)]
-        middle = float(np.median(values)) if values.size else np.nan
+        middle = float(median(values)) if values.size else np.nan
         if values.size and np.any(np.abs(values / middle - 1) > _VARIES):
             raise ReadError(
                 f"column '{name}' holds {values.min():.4g} to {values.max():.4g}; a speed that "

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.io.dialects.column_rule import FRICTION
+from tribolab.medians import median
 from tribolab.pieces import chosen, pieces
 from tribolab.untyped import Json
 
@@ -99,7 +100,7 @@ def _rows(values: np.ndarray) -> np.ndarray | None:
         return None
     rows = np.flatnonzero(np.isfinite(values))
     steps = np.diff(rows)
-    usual = float(np.median(steps))
+    usual = float(median(steps))
     even = usual >= 2 and float(np.quantile(steps, 0.95)) <= _EVEN * usual
     return rows if even else None
 
@@ -109,10 +110,10 @@ def _interpolated(time: np.ndarray, values: np.ndarray, rows: np.ndarray) -> np.
     known = time[rows]
     between = np.interp(time, known, values[rows], left=np.nan, right=np.nan)
     after = np.clip(np.searchsorted(known, time), 1, known.size - 1)
-    lost = known[after] - known[after - 1] > _GAP * np.median(np.diff(known))
+    lost = known[after] - known[after - 1] > _GAP * median(np.diff(known))
     return np.where(lost & ~np.isfinite(values), np.nan, between)
 
 
 def _ordinal(rows: np.ndarray) -> str:
-    number = round(float(np.median(np.diff(rows))))
+    number = round(float(median(np.diff(rows))))
     return {2: "2nd", 3: "3rd"}.get(number, f"{number}th")

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.friction.oscillation.noise import quantisation_step
-from tribolab.medians import medians
+from tribolab.medians import medians_of_rows
 from tribolab.pieces import anywhere, pieces
 from tribolab.qc.flags import GOOD, MISSING, NOT_EVALUATED, SUSPECT, uniform
 from tribolab.room import filled
@@ -94,7 +94,7 @@ def _noise_levels(values: np.ndarray, block: int = 512) -> tuple[np.ndarray, int
         ends = {"prepend": values[:1]} if start == 0 else {}
         ends |= {"append": values[-1:]} if stop == values.size else {}
         second = np.nan_to_num(np.abs(np.diff(part, 2, **ends)))
-        levels[first:last] = medians(second.reshape(-1, length))
+        levels[first:last] = medians_of_rows(second.reshape(-1, length))
     return np.maximum(levels, np.quantile(levels, 0.25)) / (0.6745 * np.sqrt(6.0)), length
 
 

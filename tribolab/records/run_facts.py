@@ -11,6 +11,7 @@ import numpy as np
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.oscillation.waveform import NOT_EVALUATED, UNDECIDED, oscillating
 from tribolab.friction.zero.of_run import PAIRED
+from tribolab.medians import median
 from tribolab.records.decision_rows import decision_rows
 from tribolab.records.frames import friction_columns, plain_rows
 from tribolab.records.judgement import SURE, not_decided
@@ -138,7 +139,7 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
         sliding_speed_max_m_s=plain_value(np.nanmax(speed, initial=-np.inf)),
         value_min=plain_value(value[finite].min()) if finite.any() else None,
         value_max=plain_value(value[finite].max()) if finite.any() else None,
-        relative_scatter=float(np.median(scatter)) if scatter.size else None,
+        relative_scatter=float(median(scatter)) if scatter.size else None,
         relative_drift=plain_value(drift_of(friction, value)),
         unsteady_segments=int((values_of(friction, "steady", value.size) == 0).sum()),
         highlights=tuple(_highlights(speed, value, std, sem, alone)),

@@ -17,6 +17,7 @@ from tribolab.friction.statistics import Estimate, estimates_of, student_remark
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import Reference
 from tribolab.friction.zero.rests import unloaded_rests
+from tribolab.medians import median
 from tribolab.pieces import one_by_one
 from tribolab.several import of_runs, over_dims
 from tribolab.stamping import stamp
@@ -210,7 +211,7 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
         normal = run["normal_force"].values
         loads = estimates_of((time[s], normal[s]) for s in one_by_one(parts))
         pressed = _column(loads, "mean")
-        load = float(np.median(pressed[pressed > 0])) if (pressed > 0).any() else np.nan
+        load = float(median(pressed[pressed > 0])) if (pressed > 0).any() else np.nan
     rests, normal_rests = unloaded_rests(run, segments, load)
     n0, n0_error = np.zeros(means.size), np.zeros(means.size)
     middle = _middles(time, parts, segments)

@@ -9,6 +9,7 @@ from tribolab.errors import AnalysisError, Cure
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.segments.strokes import Strokes, find_strokes
 from tribolab.friction.statistics import estimate_of
+from tribolab.medians import median_of_known
 from tribolab.several import of_runs
 from tribolab.stamping import stamp
 from tribolab.units import to_si
@@ -202,7 +203,7 @@ def _coefficient(
             raise AnalysisError("the normal force is not known", where=name_of(run))
         return np.abs(there - turned * back) / 2, (there + turned * back) / 2
     n_there, n_back = load[forward], load[backward]
-    usual = float(np.nanmedian(np.abs(load)))
+    usual = float(median_of_known(np.abs(load)))
     pressed = (n_there > _NO_CONTACT * usual) & (n_back > _NO_CONTACT * usual)
     with np.errstate(invalid="ignore", divide="ignore"):
         mu = np.abs(there - turned * back) / (n_there + n_back)

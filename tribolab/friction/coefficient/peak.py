@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.medians import median
+
 CLEAR = 3.0  # standard errors of the peak above sliding from which it is one
 FEWEST = 5  # readings that a parabola is fitted to
 _NOISE = 1.4826 / np.sqrt(2)  # median of the steps between samples -> standard deviation
@@ -32,7 +34,7 @@ def noise_between(values: np.ndarray) -> float:
         Readings (time); infinite where there are too few.
     """
     steps = np.abs(np.diff(values[np.isfinite(values)]))
-    return _NOISE * float(np.median(steps)) if steps.size >= FEWEST else np.inf
+    return _NOISE * float(median(steps)) if steps.size >= FEWEST else np.inf
 
 
 def peak_of_start(

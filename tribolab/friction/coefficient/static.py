@@ -15,6 +15,7 @@ from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import belong, friction_coefficient
 from tribolab.friction.coefficient.peak import FEWEST, noise_between, peak_of_start
 from tribolab.friction.segments.stretches import name_of
+from tribolab.medians import median_of_known
 from tribolab.several import of_runs
 from tribolab.stamping import stamp
 from tribolab.units import to_si
@@ -180,7 +181,7 @@ def _rested(run: xr.Dataset, begin: np.ndarray, end: np.ndarray, rest: int) -> f
     if "normal_force" not in run or last <= first:
         return float(end[rest] - begin[rest])
     load = run.variables["normal_force"].values[first:last]
-    level = float(np.nanmedian(load[-max(load.size // 10, 1) :]))
+    level = float(median_of_known(load[-max(load.size // 10, 1) :]))
     light = np.flatnonzero(load < 0.5 * level)
     since = time[first + light[-1]] if light.size and level > 0 else begin[rest]
     return float(end[rest] - since)
@@ -200,7 +201,7 @@ def _measured(run: xr.Dataset, friction: xr.Dataset, signal: str, start: _Start)
     noise = min(noise_between(ratio), noise_between(ratio[start.last - start.first :]))
     taken = _taken(ratio, start.last - start.first)
     moment, height, error, stands = peak_of_start(time[:taken], ratio[:taken], sliding, sem, noise)
-    pressed = float(np.nanmedian(load)) if load is not None else np.nan
+    pressed = float(median_of_known(load)) if load is not None else np.nan
     return _Peak(
         number=int(friction["segment"].values[i]),
         static_friction_coefficient=height,

@@ -22,6 +22,7 @@ from tribolab.friction.oscillation.waveform import (
     describe_waveform,
     features,
 )
+from tribolab.medians import median
 
 PER_PERIOD = 36  # samples in a period that events are sought in, at least; more is averaged ...
 COARSE = 12  # the same, where noise splits drops
@@ -203,7 +204,7 @@ def _view(
             hysteresis = typical
             events = find_events(part.time, part.values, hysteresis)
     fall, whole = events.stop - events.peak, events.stop - events.start
-    if events.drop.size and np.median(fall / whole) > SLOW_FALL:  # what is sharp tells the periods
+    if events.drop.size and median(fall / whole) > SLOW_FALL:  # what is sharp tells the periods
         turned = part._replace(values=-part.values)
         seen = regularity(turned, find_events(turned.time, turned.values, hysteresis))
     else:

@@ -8,6 +8,7 @@ import numpy as np
 
 from tribolab.friction.oscillation.lines import LONGEST, amplitude_spectrum
 from tribolab.friction.oscillation.spectra import Record
+from tribolab.medians import median
 
 _SAMPLED = 130.0  # Hz; a record that is to show 50 and 60 Hz has to be sampled faster
 _GRID = 0.10  # Hz; mains keeps this close to 50 Hz nearly always
@@ -45,7 +46,7 @@ def find_mains(record: Record) -> tuple[Mains, ...]:
         if true > 0.45 * rate or near.size == 0 or around.sum() < 4 * near.size:
             continue
         at = near[np.argmax(amplitude[near])]
-        usual = np.median(amplitude[around] ** 2) / np.log(2)
+        usual = median(amplitude[around] ** 2) / np.log(2)
         if near.size * np.exp(-(amplitude[at] ** 2) / max(usual, 1e-300)) < _MAINS_CHANCE:
             harmonics.append(Mains(float(frequency[at]), float(amplitude[at]), f"{true:g} Hz"))
     # among hundreds of segments noise passes for one or the other: a harmonic needs its fundamental

@@ -8,6 +8,7 @@ import numpy as np
 
 from tribolab.friction.oscillation.events import Events
 from tribolab.friction.oscillation.spectra import Record
+from tribolab.medians import median
 
 KINDS = ("regular", "irregular", "intermittent")
 IRREGULAR = 0.18  # scatter of the periods above which they are irregular
@@ -67,7 +68,7 @@ def regularity(record: Record, events: Events) -> Regularity:
     between = np.diff(events.middle)
     if between.size < 2:
         return Regularity("", np.nan, between)
-    usual = float(np.median(between))
+    usual = float(median(between))
     drop = float(np.mean(events.drop))
     ends = np.array([record.time[0], record.time[-1]])
     first, last = events.middle[0], events.middle[-1]

@@ -15,6 +15,7 @@ from tribolab.friction.joined import Label, grouped, joined_curves
 from tribolab.friction.oscillation.rig_waves import REPEATS
 from tribolab.friction.oscillation.slip_table import ringing
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_EVALUATED, UNDECIDED, oscillating
+from tribolab.medians import median_of_known
 from tribolab.stamping import stamp
 
 STEADY = CLASSES[0]
@@ -141,7 +142,7 @@ def stick_slip_curve(
         scaling_exponent=scaling.exponent, scaling_error=scaling.error, scaling=scaling.text
     )
     if rings.any():
-        result.attrs["resonance_frequency_Hz"] = float(np.nanmedian(own[rings]))
+        result.attrs["resonance_frequency_Hz"] = float(median_of_known(own[rings]))
     return result
 
 

@@ -12,6 +12,7 @@ from tribolab.friction.oscillation.examine import Examined
 from tribolab.friction.oscillation.regularity import scatter
 from tribolab.friction.oscillation.survey import PER_DECADE
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_EVALUATED, UNDECIDED
+from tribolab.medians import median
 
 # what is said of a segment in which nothing oscillates
 _OF_NOISE = (
@@ -137,7 +138,7 @@ def _row(e: Examined, speed: float, load: float) -> Row:
     frequency, error = e.verdict.frequency, e.verdict.frequency_error
     slope = np.nan
     if speed > 0 and stick.size:
-        slope = float(np.median(events.rise / np.maximum(stick, 1e-300))) / speed
+        slope = float(median(events.rise / np.maximum(stick, 1e-300))) / speed
     mains = max(o.mains, key=lambda line: line.amplitude, default=None)
     return Row(
         dominant_frequency=frequency,

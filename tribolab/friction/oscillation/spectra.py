@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy import fft
 
+from tribolab.medians import median
+
 SHORT = 1 << 16  # samples of one transform over the whole record; longer ones are averaged
 WINDOW = 1 << 13  # samples of the stretches whose spectra are averaged, at least
 STRETCHES = 384  # that are averaged at most, evenly spread: a spectrum good to 5 %
@@ -136,7 +138,7 @@ def _transform(record: Record) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.n
     else:
         steps = np.diff(record.time)
         share = np.minimum(np.append(steps, steps[-1]), np.append(steps[0], steps))
-        weights = window * np.minimum(share, 4 * np.median(steps))
+        weights = window * np.minimum(share, 4 * median(steps))
         from tribolab.friction.oscillation.uneven import lomb_scargle
 
         # a sine of amplitude a holds a^2/2, spread over one and a half bins by the window

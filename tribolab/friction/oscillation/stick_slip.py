@@ -28,6 +28,7 @@ from tribolab.friction.oscillation.slip_table import (
 from tribolab.friction.oscillation.waveform import CLASSES, DOUBT, UNDECIDED
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.zero.rests import unloaded_rests
+from tribolab.medians import median_of_known
 from tribolab.pieces import one_by_one
 from tribolab.several import of_runs
 from tribolab.stamping import stamp
@@ -220,7 +221,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
         if normal is not None and "omitted_reason" in segments and len(parts):
             first = np.concatenate([normal[s][:1000] for s in parts])
             if np.isfinite(first).any():
-                rests = unloaded_rests(run, segments, float(np.nanmedian(first)))[1]
+                rests = unloaded_rests(run, segments, float(median_of_known(first)))[1]
                 zero = float(rests.value.mean()) if rests else 0.0
         for part, sign in one_by_one(zip(parts, direction, strict=True)):
             raw = force[part]

@@ -10,6 +10,7 @@ from scipy import special
 from tribolab.friction.oscillation.background import false_alarm, red_noise
 from tribolab.friction.oscillation.mains import Mains, find_mains
 from tribolab.friction.oscillation.spectra import Record, Spectrum, bands, spectrum
+from tribolab.medians import median
 
 PER_DECADE = 24  # bands of the spectrum: a tenth wide, as stick-slip lines are
 _RISE = 1e-2  # chance of a spectrum without a peak to stand so far above its slower part
@@ -144,5 +145,5 @@ def _without(spectrum: Spectrum, mains: tuple[Mains, ...]) -> Spectrum:
     for line in mains:
         at = int(np.argmin(np.abs(spectrum.frequency - line.frequency)))
         near = power[max(at - 30, 0) : at + 31]
-        power[max(at - 3, 0) : at + 4] = np.median(near) / np.log(2)
+        power[max(at - 3, 0) : at + 4] = median(near) / np.log(2)
     return spectrum._replace(power=power)

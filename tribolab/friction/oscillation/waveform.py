@@ -15,6 +15,7 @@ from scipy import special
 from tribolab.friction.oscillation.events import Events
 from tribolab.friction.oscillation.oscillation import Oscillation
 from tribolab.friction.oscillation.regularity import scatter
+from tribolab.medians import median
 
 
 class Waveform(NamedTuple):
@@ -71,7 +72,7 @@ def describe_waveform(values: np.ndarray, lag: int, events: Events, period: np.n
         tail = float(special.bdtr(min(longer, shorter), longer + shorter, 0.5))
         p_value = min(1.0, 2 * tail)
     return Waveform(
-        fall_share=float(np.median(fall / (rise + fall))),
+        fall_share=float(median(fall / (rise + fall))),
         asymmetry_p_value=p_value,
         derivative_skewness=skewness,
         period_scatter=scatter(period),

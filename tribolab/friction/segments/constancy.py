@@ -19,6 +19,7 @@ import numpy as np
 
 from tribolab.friction.segments.plateaus import running_median
 from tribolab.friction.segments.proof import Readings, surely_changes
+from tribolab.medians import median, median_of_known
 from tribolab.pieces import running_total
 
 INSIDE = 16  # bins within a piece
@@ -76,7 +77,7 @@ class MeanVelocities:
         at = np.searchsorted(self.time, edges)
         count = np.diff(at)
         with np.errstate(divide="ignore", invalid="ignore"):
-            if count.size and np.median(count) >= 16:
+            if count.size and median(count) >= 16:
                 fine = at[:-1, None] + (count[:, None] * np.arange(8) / 8).astype(int)
                 fine = np.append(fine.ravel(), at[-1])
                 parts = np.diff(self._total[fine]) / np.diff(fine)
@@ -105,7 +106,7 @@ def _scatter(values: np.ndarray) -> float:
     """Return the standard deviation of bins from bin to bin, which no slow change adds to."""
     if values.size < 4:
         return 0.0
-    return float(np.median(np.abs(np.diff(values, 2))) / (0.6745 * np.sqrt(6)))
+    return float(median(np.abs(np.diff(values, 2))) / (0.6745 * np.sqrt(6)))
 
 
 def _smoothed(values: np.ndarray) -> np.ndarray:
@@ -138,7 +139,7 @@ def held_part(data: MeanVelocities, first: int, last: int, drift: float) -> tupl
         middle = values[count // 4 : count - count // 4]
         if not np.isfinite(middle).any():
             break
-        level = float(np.nanmedian(middle))
+        level = float(median_of_known(middle))
         # few bins tell their scatter poorly: no less than the finer ones'
         noise = max(_scatter(middle), noise)
         limit = max(drift / 2 * abs(level), 4 * noise)

@@ -21,6 +21,7 @@ from tribolab.friction.segments.stretches import (
     velocity_source,
 )
 from tribolab.friction.segments.strokes import middle_parts
+from tribolab.medians import median
 from tribolab.pieces import one_by_one
 from tribolab.several import of_runs, one, over_dims
 from tribolab.stamping import stamp
@@ -334,9 +335,9 @@ def _mean_velocity(
         part = part[np.isfinite(part)]
         if part.size == 0:
             continue
-        rest = np.abs(part - np.median(part))
+        rest = np.abs(part - median(part))
         # quantised readings have no median deviation: their mean deviation stands in
-        keep = rest <= 6 * max(np.median(rest) / 0.6745, np.mean(rest))
+        keep = rest <= 6 * max(median(rest) / 0.6745, np.mean(rest))
         result[i] = part[keep].mean()
     return result
 
@@ -373,5 +374,5 @@ def _label(values: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarra
         part = values[first[i] : last[i]]
         part = part[np.isfinite(part)]
         if part.size:
-            result[i] = np.median(part)
+            result[i] = median(part)
     return result

@@ -7,6 +7,7 @@ import xarray as xr
 
 from tribolab.friction.segments.locate import ConstancyLimits
 from tribolab.friction.segments.stretches import Stretch
+from tribolab.medians import median
 from tribolab.pieces import one_by_one
 
 NO_LOAD = "no load"
@@ -41,12 +42,12 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], limits: ConstancyLimits) -
     time, force = run["time"].values, np.asarray(run["normal_force"].values, float)
     middles = {k: _median(time, force, stretches, k) for k in ("constant", "at rest")}
     sliding = middles["constant"]
-    usual = float(np.median(sliding[sliding > 0])) if (sliding > 0).any() else 0.0
+    usual = float(median(sliding[sliding > 0])) if (sliding > 0).any() else 0.0
     if not usual > 0:
         return stretches
     rests = middles["at rest"]
     rests = rests[np.abs(rests) < UNLOADED * usual]
-    zero = float(np.median(rests)) if rests.size else 0.0
+    zero = float(median(rests)) if rests.size else 0.0
     least = NO_CONTACT * (usual - zero)
     result: list[Stretch] = []
     for stretch in one_by_one(stretches):
@@ -65,7 +66,7 @@ def _median(time: np.ndarray, force: np.ndarray, stretches: list[Stretch], kind:
             part = force[first:last][:: max(1, (last - first) // 4096)]
             part = part[np.isfinite(part)]
             if part.size:
-                levels.append(float(np.median(part)))
+                levels.append(float(median(part)))
     return np.array(levels)
 
 
@@ -90,7 +91,7 @@ def _cut(
         return [stretch]
     if bare.all():
         return [stretch._replace(kind=NO_LOAD)]
-    away = _grown(bare, mean < LOADED * float(np.median(mean[~bare])))
+    away = _grown(bare, mean < LOADED * float(median(mean[~bare])))
     edges = np.flatnonzero(np.diff(away)) + 1
     if edges.size > 2 * MOST_CUTS:
         return [stretch]

@@ -23,6 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.medians import median
 from tribolab.pieces import pieces
 from tribolab.room import room
 
@@ -130,7 +131,7 @@ def is_commanded(velocity: np.ndarray, step: float) -> bool:
     if not step > 0 or jumps.size * _HELD > velocity.size:
         return False
     size = np.unique(np.round(np.abs(velocity) / step))
-    return size[size > 0].size == 1 or float(np.median(jumps)) >= _LEAP * step
+    return size[size > 0].size == 1 or float(median(jumps)) >= _LEAP * step
 
 
 def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
@@ -156,9 +157,9 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
                 _spread(near[inside]), min(_spread(difference[inside]), _spread(bend[inside]))
             )
             share = np.count_nonzero(inside) / middle.size
-            levels.append((np.median(middle[inside]), spread, share))
+            levels.append((median(middle[inside]), spread, share))
     if not levels:
-        usual = max(np.median(near), min(np.median(difference), np.median(bend)))
+        usual = max(median(near), min(median(difference), median(bend)))
         floor = max(float(usual / 0.6745), least)
         return Noise(floor, nothing, nothing)
     speed, spread, share = np.array(levels).T
@@ -196,7 +197,7 @@ def _spread(deviation: np.ndarray) -> float:
     largest tenth stands in.
     """
     most = np.sort(deviation)[: max(1, deviation.size * 9 // 10)]
-    return float(max(np.median(deviation) / 0.6745, np.mean(most)))
+    return float(max(median(deviation) / 0.6745, np.mean(most)))
 
 
 def find_breaks(
@@ -230,8 +231,8 @@ def find_breaks(
                 bends = [_bends(total, noise, width, far * width, at) for far in (1, FAR)]
                 if min(usual.size, *(bend.size for bend in bends)) > 16:
                     # a ramp spreads the means as well, but it does not bend
-                    bent = max(float(np.median(bend)) for bend in bends)
-                    spread = min(float(np.median(usual)), bent)
+                    bent = max(float(median(bend)) for bend in bends)
+                    spread = min(float(median(usual)), bent)
                     memory = max(memory, spread / 0.6745)
             hit = clear & (score > SIGNIFICANT * memory) & (jump > wanted)
             found_now = _peaks(k[hit], (jump[hit] / np.maximum(larger[hit], rest_speed)), width)

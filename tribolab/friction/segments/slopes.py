@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tribolab.friction.segments.plateaus import quantum
+from tribolab.medians import median
 from tribolab.pieces import pieces
 from tribolab.room import room
 
@@ -215,7 +216,7 @@ def velocity_blocks(
     size, error = least, 0.0
     while True:
         t, v = block_slopes(time, position, size)
-        spacing = np.median(np.diff(t)) / size if t.size > 1 else np.inf
+        spacing = median(np.diff(t)) / size if t.size > 1 else np.inf
         error = float(noise * np.sqrt(12 / size) / (size * spacing)) if spacing > 0 else 0.0
         if size * 64 > time.size or _fine(np.abs(v), error):
             return t, v, size, error
@@ -230,7 +231,7 @@ def _fine(speed: np.ndarray, error: float) -> bool:
     order = np.argsort(speed)
     share = np.cumsum(sure[order])
     usual = speed[order][np.searchsorted(share, 0.5 * share[-1])]
-    return bool(error <= WANTED_ERROR * np.median(speed[speed > 0.2 * usual]))
+    return bool(error <= WANTED_ERROR * median(speed[speed > 0.2 * usual]))
 
 
 def line(time: np.ndarray, position: np.ndarray) -> tuple[float, float]:
@@ -241,7 +242,7 @@ def line(time: np.ndarray, position: np.ndarray) -> tuple[float, float]:
     for _ in range(3):
         slope, offset = np.polyfit(time[keep] - t0, position[keep], 1)
         rest = np.abs(position - offset - slope * (time - t0))
-        limit = 4 * np.median(rest[keep]) / 0.6745
+        limit = 4 * median(rest[keep]) / 0.6745
         if limit == 0:
             break
         keep = rest <= limit

@@ -12,6 +12,7 @@ from tribolab.errors import AnalysisError
 from tribolab.friction.segments import slopes
 from tribolab.friction.segments.constancy import MeanVelocities
 from tribolab.friction.segments.locate import ConstancyLimits, VelocityPiece, held, locate, moving
+from tribolab.medians import median
 from tribolab.pieces import anywhere
 
 RESOLVED = 10.0  # errors of a block's velocity from which on its blocks are long enough
@@ -208,7 +209,7 @@ def _gaps(
     spans = np.diff(marks)
     longest = max_gap
     if longest is None:
-        usual = float(np.median(spans)) / step
+        usual = float(median(spans)) / step
         longest = max(20 * usual, share * float(inside[-1] - inside[0]))
     wide = np.flatnonzero(spans > longest)  # only there can such a pause hide
     parts = []
@@ -265,7 +266,7 @@ def _set_speed(run: xr.Dataset, first: int, last: int) -> float:
     if "set_speed" in run:
         values = np.asarray(run["set_speed"].values[first:last], dtype=float)
         values = values[np.isfinite(values)]
-        return float(np.median(values)) if values.size else np.nan
+        return float(median(values)) if values.size else np.nan
     return float(run.attrs.get("set_speed_m_s", np.nan))
 
 

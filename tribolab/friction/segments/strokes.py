@@ -9,6 +9,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, Cure
 from tribolab.friction.segments.stretches import finite, name_of
+from tribolab.medians import median
 
 HYSTERESIS = 0.25  # of the range: how far a position has to come back to be a turn
 LEAST_SPEED = 0.2  # of the usual speed: what is slower does not say which way it goes
@@ -86,7 +87,7 @@ def find_strokes(run: xr.Dataset) -> Strokes:
                 "segments.stroke_middle = 0.5 in their [[run]]",
             ),
         )
-    usual = length > SHORTEST * np.median(length)
+    usual = length > SHORTEST * median(length)
     return Strokes(first, way, length, place, usual)
 
 

@@ -16,6 +16,7 @@ from tribolab.friction.zero.reference import find_reference
 from tribolab.friction.zero.rests import UNLOADED, Zeros
 from tribolab.friction.zero.unequal import TOO_FAR
 from tribolab.friction.zero.words import of_fold
+from tribolab.medians import median, median_of_known
 from tribolab.quantities import quantity
 from tribolab.units import to_si
 
@@ -103,7 +104,7 @@ def zero_of_run(
     stated = _stated(run, name, settings.zero_uncertainty)
     fold = _fold(run, segments, name, parts, mean, error, direction, rests, settings)
     if (direction > 0).any() and (direction < 0).any() and _lost(fold):
-        unfold = sign * (1.0 if np.nanmedian(mean) >= 0 else -1.0)
+        unfold = sign * (1.0 if median_of_known(mean) >= 0 else -1.0)
     if fold.kind != "signed" and settings.offset != "zero load":
         rests = None  # they read the size of the zero
     pair = _pairs(segments, settings, rests, stated)
@@ -190,7 +191,7 @@ def _fold(
         return Fold("rectified", "") if stated else SIGNED
     if segments.attrs.get("velocity_source") not in ("recorded", "position"):
         return SIGNED  # the direction was taken from the force, or there is none
-    rest = float(np.median(rests.value)) if rests is not None else float("nan")
+    rest = float(median(rests.value)) if rests is not None else float("nan")
     normal = run["normal_force"].values if "normal_force" in run and parts else None
     pressed = Pressed(normal, parts, max(0.5, UNLOADED))
     return folded(ForceTrace(run[name].values, pressed, parts, mean, error, direction, rest))

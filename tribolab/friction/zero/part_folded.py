@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tribolab.friction.zero.parts import Doubt, Strokes, doubt
+from tribolab.medians import median
 
 _CLEAR = 5.0  # standard errors beyond which a level has a sign
 _CENTRED = (
@@ -37,7 +38,7 @@ def of_parts(strokes: Strokes) -> tuple[Doubt, ...]:
     one_sign = (np.prod(mean, axis=1) > 0) & clear & alike
     if not signed.any() or not one_sign.any():
         return ()
-    usual = float(np.median(half[signed]))
+    usual = float(median(half[signed]))
     one_sign &= (np.abs(middle) > usual / _LIKE) & (np.abs(middle) < usual * _LIKE)
     if not one_sign.any():
         return ()
@@ -45,7 +46,7 @@ def of_parts(strokes: Strokes) -> tuple[Doubt, ...]:
     text = (
         f"friction has one sign both ways in segments {named}, and changes it with the direction "
         f"in others: its sign was lost there, or its zero moved by about "
-        f"{np.median(np.abs(middle[one_sign])):.3g}{strokes.unit}"
+        f"{median(np.abs(middle[one_sign])):.3g}{strokes.unit}"
     )
     cure = (
         "Look at the trace: reject the part where the signal changed, or part the run there and "

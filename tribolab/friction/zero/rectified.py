@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.medians import median, median_of_known
 from tribolab.pieces import anywhere, one_by_one
 
 DIP = 0.5  # of the strokes' level, below which the force at a reversal is on its way through zero
@@ -145,7 +146,7 @@ def folded(trace: ForceTrace) -> Fold:
     known = np.isfinite(trace.mean)
     if known.sum() < 2 or not (known & (trace.sign > 0)).any():
         return SIGNED
-    turned = 1.0 if np.nanmedian(trace.mean) >= 0 else -1.0
+    turned = 1.0 if median_of_known(trace.mean) >= 0 else -1.0
     trace = trace._replace(turned=turned, mean=turned * trace.mean, rest=turned * trace.rest)
     # a stroke below zero, beyond its error or with all of its readings, has a sign
     if (trace.mean[known] < -3 * np.nan_to_num(trace.error[known])).any():
@@ -162,7 +163,7 @@ def _both_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
     forward, backward = (
         np.flatnonzero(known & (trace.sign * direction > 0)) for direction in (1, -1)
     )
-    levels = [float(np.median(trace.mean[which])) for which in (forward, backward)]
+    levels = [float(median(trace.mean[which])) for which in (forward, backward)]
     low, high = sorted(levels)
     one_sign = "the friction force has one sign in both directions of sliding"
     if np.isfinite(trace.rest):
@@ -222,7 +223,7 @@ def _one_way(trace: ForceTrace) -> Fold:
     """No direction is recorded: a force that touches zero at the stops and is never below it."""
     if len(trace.parts) < 2 or anywhere(lambda part: _negative(trace.turned * part), trace.force):
         return SIGNED
-    level = float(np.nanmedian(trace.mean))
+    level = float(median_of_known(trace.mean))
     if np.isfinite(trace.rest) and abs(trace.rest) > 0.02 * level:
         odd, even = np.nanmean(trace.mean[::2]), np.nanmean(trace.mean[1::2])
         error = np.sqrt(np.nanmean(np.nan_to_num(trace.error) ** 2))
@@ -256,5 +257,5 @@ def _touches(trace: ForceTrace, number: int) -> bool | None:
     # of four steps around it a V has three that are large, and a flat stop two at most
     steps = np.sort(np.abs(np.diff(turn[max(lowest - 2, 0) : lowest + 3])))
     # differences between neighbours: a wave in the stroke is no noise
-    noise = np.median(np.abs(np.diff(stroke))) / 0.954
+    noise = median(np.abs(np.diff(stroke))) / 0.954
     return bool(turn[lowest] < max(TOUCH * noise, steps[1]))

@@ -13,6 +13,7 @@ from tribolab.friction.zero.rectified import Fold
 from tribolab.friction.zero.rests import Zeros
 from tribolab.friction.zero.unequal import across_speeds
 from tribolab.friction.zero.words import of_speeds, words_of
+from tribolab.medians import median_of_known
 
 ASYMMETRY = 0.05  # share of friction by which a zero may miss the middle of the loop
 MISSED = 3.0  # standard errors of the same
@@ -100,7 +101,7 @@ def _turned(strokes: Strokes, rests: Zeros | None, loops: Middles) -> Middles:
         return loops
     force = strokes.mean - rests.at(strokes.time)[0]
     angle = np.arctan2(force, strokes.load)[loops.member].mean(axis=1)
-    tilt = float(np.nanmedian(angle))
+    tilt = float(median_of_known(angle))
     load = strokes.load * np.cos(tilt) + force * np.sin(tilt)
     turned = middles(strokes.mean, load, strokes.sign, strokes.pair, strokes.time)
     if turned is None:
@@ -244,10 +245,10 @@ def _ambiguous(strokes: Strokes, loops: Middles, loop: Reference) -> Reference:
     half = (strokes.mean[loops.member] * (0.5, -0.5)).sum(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.abs(loops.value / half)
-    share = float(np.nanmedian(share[np.isfinite(share)])) if np.isfinite(share).any() else 0.0
+    share = float(median_of_known(share[np.isfinite(share)])) if np.isfinite(share).any() else 0.0
     text = (
         "no rest without load: friction that depends on direction and an offset cannot be told "
-        f"apart. The offset that was removed, {np.nanmedian(loops.value):+.3g}{strokes.unit}, "
+        f"apart. The offset that was removed, {median_of_known(loops.value):+.3g}{strokes.unit}, "
     )
     if share < 1:
         text += f"would be {share:.1%} more friction one way and less the other; "

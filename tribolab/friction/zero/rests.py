@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.friction.statistics import estimates_of
+from tribolab.medians import median
 
 UNLOADED = 0.1  # share of the load by which the zero of the normal force may move between rests
 LIGHT = 0.4  # share of the load below which a rest may turn out to be one without contact
@@ -125,8 +126,8 @@ def _level(normal: np.ndarray, first: int, last: int, load: float) -> np.ndarray
     if light.size < FEWEST:
         return light
     # the load's ramp begins in the same rest: readings far from the usual one are left out
-    rest = np.abs(normal[light] - np.median(normal[light]))
-    return light[rest <= 5 * max(np.median(rest) / 0.6745, 1e-4 * load)]
+    rest = np.abs(normal[light] - median(normal[light]))
+    return light[rest <= 5 * max(median(rest) / 0.6745, 1e-4 * load)]
 
 
 def _zeros(rests: list[tuple[float, float, float]]) -> Zeros | None:

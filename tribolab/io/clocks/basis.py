@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribolab.io.clocks.motion import Motion
+from tribolab.medians import median
 
 Array = NDArray[np.float64]
 Ways = Array | NDArray[np.int64]  # -1 backward, 0 at rest, 1 forward
@@ -106,7 +107,7 @@ class Basis:
             slid[part] = moved[part] - moved[start - 1]
             slid[first:start] = 0.0
             held[part] = last[first]
-        usual = float(np.median(rested[np.minimum(ends, len(way)) - 1]))
+        usual = float(median(rested[np.minimum(ends, len(way)) - 1]))
         for tau in _TIMES:
             for length in _BACK:
                 back = np.exp(-slid / (self.longest * length))

@@ -20,6 +20,8 @@ import numpy as np
 from numpy.fft import irfft, rfft
 from numpy.typing import NDArray
 
+from tribolab.medians import median
+
 Array = NDArray[np.float64]
 
 _GRID = 1 << 14  # cells of the coarse grid over the longer log
@@ -101,7 +103,7 @@ def coarse_shift(
 
     shifts = lags * cell + force_time[0] - motion_time[0]
     best = explained.max()
-    usual = np.median(explained[enough])
+    usual = median(explained[enough])
     if best < _LEAST_EXPLAINED or best - usual < _LEAST_CONTRAST * min(1.0, 1.0 - usual):
         return None
     peak = (explained >= np.roll(explained, 1)) & (explained >= np.roll(explained, -1))

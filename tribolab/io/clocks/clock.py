@@ -23,6 +23,7 @@ from tribolab.io.content.model import Content, Piece
 from tribolab.io.content.sampling import stated_interval
 from tribolab.io.dialects.dates import date_of, has_day, has_zone
 from tribolab.io.dialects.model import Dialect
+from tribolab.medians import median
 from tribolab.pieces import pieces
 from tribolab.room import room
 from tribolab.units import to_si
@@ -189,7 +190,7 @@ def _resolution(stamp: dt.datetime, dialect: Dialect) -> float:
 
 
 def _interval(time: np.ndarray) -> float:
-    return float(np.median(np.diff(time))) if len(time) > 1 else 1.0
+    return float(median(np.diff(time))) if len(time) > 1 else 1.0
 
 
 def mended_time(time: np.ndarray, where: str, dialect: Dialect) -> Mended:
@@ -231,7 +232,7 @@ def _interpolated(time: np.ndarray, good: np.ndarray) -> np.ndarray:
     if rows.size < 2:
         return time[rows[0]] + np.arange(len(time)) - rows[0]
     result = np.interp(np.arange(len(time)), rows, time[rows])
-    step = float(np.median(np.diff(time[rows]) / np.diff(rows)))
+    step = float(median(np.diff(time[rows]) / np.diff(rows)))
     first, last = rows[0], rows[-1]
     result[:first] = time[first] - step * np.arange(first, 0, -1)
     result[last + 1 :] = time[last] + step * np.arange(1, len(time) - last)

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.medians import median
 from tribolab.pieces import chosen, pieces
 from tribolab.room import room
 
@@ -230,7 +231,7 @@ class _Search:
         """Usual interval of the rows before a fall."""
         before = self.steps[max(self.first, row - 10) : row - 1]
         before = before[before > 0]
-        return float(np.median(before)) if before.size else self.usual
+        return float(median(before)) if before.size else self.usual
 
     def _settle_wraps(self) -> None:
         """Let a clock either wrap or start anew.

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribolab.io.clocks.basis import SLACKS, Basis
+from tribolab.medians import median
 
 Array = NDArray[np.float64]
 
@@ -118,7 +119,7 @@ def _interval(time: Array, basis: Basis, shift: float) -> float:
     """Tell the sampling interval [s] after the starts of the motion."""
     at = np.searchsorted(time, basis.time[basis.begins] + shift)
     at = np.clip(at[:, None] + np.arange(1, 12), 0, len(time) - 1)
-    return float(np.median(np.diff(time[at], axis=1)))
+    return float(median(np.diff(time[at], axis=1)))
 
 
 def fit_jointly(

@@ -18,6 +18,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tribolab.medians import median
+
 Array = NDArray[np.float64]
 
 _PART = 0.05  # of a stroke's length is looked at, and as long before it
@@ -118,7 +120,7 @@ def _onsets(
         return [], 0.0
     rested = motion_time[firsts - 1] - motion_time[np.concatenate([[0], lasts[:-1]])]
     lasted = motion_time[lasts - 1] - motion_time[firsts]
-    half_width = _REACH * float(np.median(np.minimum(rested, lasted)[fast]))
+    half_width = _REACH * float(median(np.minimum(rested, lasted)[fast]))
     onsets = []
     for first, last, rest in zip(firsts[fast], lasts[fast], rested[fast], strict=True):
         distance = way[first - 1 : last] - way[first - 1]

@@ -30,6 +30,7 @@ from tribolab.io.clocks.motion import Motion, clean_motion
 from tribolab.io.clocks.onset import refine_by_onsets
 from tribolab.io.clocks.rivals import APART, Candidate, candidates, likeliest
 from tribolab.io.clocks.starts import QUARTZ, Logs, changes, shift_from_starts
+from tribolab.medians import median
 
 Array = NDArray[np.float64]
 
@@ -170,7 +171,7 @@ def _estimated(
     weak = significance < _LEAST_SIGNIFICANCE
     ways = {"classes": Told(shift, uncertainty)}
     # late by up to a rest, as the force stays on
-    span = max(8.0 * coarse.half, 1.25 * float(np.median(np.diff(motion_time[changes(way)]))))
+    span = max(8.0 * coarse.half, 1.25 * float(median(np.diff(motion_time[changes(way)]))))
     logs = Logs(force_time, force, motion_time, motion.velocity, way)
     ratio = fit.ratio(shift)
     unexplained = min(_WORSE * (1.0 - ratio) + _ALMOST_NOTHING, 1.0 - _STILL_EXPLAINED * ratio)
@@ -193,7 +194,7 @@ def _estimated(
         ways["starts"] = Told(estimate.shift, estimate.uncertainty)
     middle = 0.5 * (motion_time[0] + motion_time[-1])
     durations = np.diff(motion_time[changes(way)])
-    stroke = float(np.median(durations[durations > 0.1 * durations.max()]))  # or rest
+    stroke = float(median(durations[durations > 0.1 * durations.max()]))  # or rest
     ends = durations[[0, -1]]
     least = 5.0 * estimate.uncertainty
     near = min(span, max(least, min(0.4 * stroke, 0.8 * float(ends.min()))))

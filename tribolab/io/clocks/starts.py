@@ -19,6 +19,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tribolab.medians import median
+
 Array = NDArray[np.float64]
 
 QUARTZ = 10e-6  # usual relative difference of two quartz clocks: standard deviation
@@ -148,13 +150,13 @@ def _starts(logs: Logs, shift: float) -> list[_Start]:
         ahead = np.diff(logs.force_time[max(at - 12, 0) : max(at - 1, 0)])
         if len(after) < 20 or len(ahead) < 5:
             continue
-        interval = float(np.median(after))
-        moved = float(np.median(np.diff(logs.motion_time[first : first + 16])))
+        interval = float(median(after))
+        moved = float(median(np.diff(logs.motion_time[first : first + 16])))
         rest, stroke = begin - logs.motion_time[before], logs.motion_time[last] - begin
         starts.append(
             _Start(
                 begin,
-                min(0.6 * rest, max(_REACH * interval, 12.0 * float(np.median(ahead)))),
+                min(0.6 * rest, max(_REACH * interval, 12.0 * float(median(ahead)))),
                 min(0.5 * stroke, max(_REACH * interval, 12.0 * moved)),
                 _FIRST * interval,
                 0.5 * float(np.hypot(interval, moved)),

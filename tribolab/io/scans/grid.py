@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError
+from tribolab.medians import median
 
 _JITTER = 0.01  # largest deviation from an even grid, in pitches, that changes nothing
 _LARGEST = 1e4  # m
@@ -107,7 +108,7 @@ def gridded(where: str, x: np.ndarray, y: np.ndarray, height: np.ndarray) -> xr.
         levels = np.unique(values)
         if levels.size < 2:
             raise ReadError(f"{where}: all points have the same {name}, this is no map")
-        pitch = float(np.median(np.diff(levels)))
+        pitch = float(median(np.diff(levels)))
         steps = float(np.ptp(levels)) / pitch
         if not steps < 2 * x.size:
             raise ReadError(

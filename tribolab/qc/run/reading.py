@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from tribolab.medians import median
 from tribolab.qc.register import Check, Limit, Result, Skip
 from tribolab.qc.run.subject import RunSubject
 from tribolab.words import Count
@@ -42,7 +43,7 @@ def _not_covered(subject: RunSubject, limits: Mapping[str, float]) -> list[Resul
     if not alone:
         return []
     share = alone / (alone + subject.time.size)
-    seconds = alone * float(np.median(np.diff(subject.time)))
+    seconds = alone * float(median(np.diff(subject.time)))
     odd = share > limits["suspect"] and seconds > limits["not_covered"]
     text = f"{Count(alone):row|rows} ({share:.2%}, some {seconds:.3g} s) at the ends are left out, "
     text += "which the companion log does not cover"

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from tribolab.medians import median, median_of_known
 from tribolab.pieces import one_by_one
 from tribolab.qc.register import Check, Limit, Result, Skip
 from tribolab.qc.run.per_segment import by_segment, status_of
@@ -16,7 +17,7 @@ def _zero_offset(subject: RunSubject, limits: Mapping[str, float]) -> list[Resul
     offsets = subject.unloaded_levels("friction_force")
     if not offsets:
         raise Skip("the zero of the force was not measured: no rest without load")
-    share = float(np.median(offsets)) / subject.typical_friction
+    share = float(median(np.array(offsets))) / subject.typical_friction
     text = f"the force cell's zero lies {share:+.2%} of the friction force off"
     return [Result(status_of(share, limits), "friction_force", text, share)]
 
@@ -77,7 +78,7 @@ def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list
     if not np.isfinite(slopes).any():
         raise Skip("no position within the segments")
     # readings that repeat one value do not scatter, and yet are no more exact than the others
-    errors = np.fmax(scatter, np.nanmedian(scatter)) / spread
+    errors = np.fmax(scatter, median_of_known(scatter)) / spread
     # the slope is a mean over the segment: compare it with the mean of the signed velocity
     velocity = subject.segment_means("sliding_velocity")
     velocity = np.where(velocity == 0, np.nan, velocity)

@@ -13,7 +13,7 @@ from tribolab.friction.oscillation.lines import Line, segment_lines
 from tribolab.friction.oscillation.noise import noise_level
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.friction.segments.find import find_segments, why_no_segment
-from tribolab.medians import median_in_pieces
+from tribolab.medians import median_in_pieces, median_of_known
 from tribolab.pieces import one_by_one, stretches
 from tribolab.qc.flags import NOT_EVALUATED
 from tribolab.qc.register import Skip
@@ -228,7 +228,7 @@ class RunSubject:
         inside = self.in_segments
         rests = stretches(lambda a, b: (np.abs(force[a:b]) < light) & ~inside[a:b], force.size)
         parts = [self.signals[name][a:b] for a, b in rests if b - a >= 20]
-        return [float(np.nanmedian(part)) for part in parts if np.isfinite(part).any()]
+        return [float(median_of_known(part)) for part in parts if np.isfinite(part).any()]
 
     def speed_of(self, number: int) -> float:
         """Sliding speed of a segment [m/s]."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.medians import median, medians_of_rows
 from tribolab.pieces import pieces
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
 from tribolab.room import filled
@@ -147,7 +148,7 @@ def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
         start = edges[first]
         odd = _odd(time[start : edges[last - 1] + length + 2])
         whole = np.lib.stride_tricks.sliding_window_view(odd, length)[edges[first:last] - start]
-        scatter[first:last] = np.median(whole, axis=1)
+        scatter[first:last] = medians_of_rows(whole)
     bad = scatter / (0.6745 * np.sqrt(2)) > suspect
     if not bad.any():
         return uniform(time.size, GOOD)
@@ -188,7 +189,7 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
     if parts < 2 or 0 < interval.max() <= factor * interval.min():
         return None
     edges = np.linspace(0, interval.size, parts + 1).astype(int)
-    medians = np.array([np.median(interval[a:b]) for a, b in zip(edges, edges[1:], strict=False)])
+    medians = np.array([median(interval[a:b]) for a, b in zip(edges, edges[1:], strict=False)])
     if not medians.max() > factor * medians.min() or medians.min() <= 0:
         return None
     # the cut that parts the logarithms best into two levels
@@ -223,7 +224,7 @@ def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np
     level = np.empty(blocks)
     for begin, end in pieces(0, blocks, block=stretch):
         interval = np.diff(time[begin * stretch : end * stretch + 1])
-        level[begin:end] = np.median(interval.reshape(-1, stretch), axis=1)
+        level[begin:end] = medians_of_rows(interval.reshape(-1, stretch))
     level = np.log(np.maximum(level, np.finfo(float).tiny))
     # the block that holds the change may have any median: compare across it
     jump = np.abs(level[2:] - level[:-2]) > np.log(factor)

@@ -10,6 +10,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.friction.oscillation.noise import quantisation_step
+from tribolab.medians import median, median_of_known
 from tribolab.qc import signals
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, SUSPECT
 from tribolab.surface.roughness import roughness_parameters
@@ -82,7 +83,7 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
         return flags
     number = max(1, jumps.size // _BLOCK)
     blocks = np.array_split(np.where(known, jumps, np.nan), number)
-    middles = np.array([np.nanmedian(b) if np.isfinite(b).any() else 0.0 for b in blocks])
+    middles = np.array([median_of_known(b) if np.isfinite(b).any() else 0.0 for b in blocks])
     spread = np.array([_spread(b, m) for b, m in zip(blocks, middles, strict=True)])
     least = np.quantile(spread, 0.25)
     digit = quantisation_step(height)
@@ -115,10 +116,10 @@ def _spread(values: np.ndarray, middle: float) -> float:
     away = np.abs(values[np.isfinite(values)] - middle)
     if not away.size:
         return 0.0
-    usual = float(np.median(away))
+    usual = float(median(away))
     if usual == 0.0:
         moved = away[away > 0]
-        usual = float(np.median(moved)) if moved.size >= _MOVED * away.size else 0.0
+        usual = float(median(moved)) if moved.size >= _MOVED * away.size else 0.0
     return usual / 0.6745
 
 
