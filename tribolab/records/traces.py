@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 _MOTION = {"sliding_velocity": "velocity", "set_speed": "set speed", "position": "position"}
 _LABELS = {**_MOTION, "inertial_force": "inertia"}
 _MOST_SPANS = 400
-_FINE_CHARACTERS = 2.0  # of a point, compressed: less than that no noisy signal takes
+_FINE_CHARACTERS = 4.0  # of a point of two noisy signals, compressed, or somewhat more
+_FEWER = 1.3  # power of the share of points that fits: fewer of them compress worse
 _FINEST = 24_000  # points of a signal that the page zooms into
 _POINT_BYTES = 8.0  # of a point of two signals, compressed and as text
 _BYTES, _FEW = 1.25e6, 32  # of all traces together, of so many runs or fewer
@@ -169,7 +170,7 @@ def finer_trace(
         text = script_json(_signals(run, segments, shared, finer))
         if len(text) <= size:
             return text
-        finer = int(0.95 * finer * size / len(text))
+        finer = int(finer * (size / len(text)) ** _FEWER)
     return ""
 
 
