@@ -33,6 +33,7 @@ def run_demo(
         if isinstance(pool, LastingPool):
             pool.prepare()
         # only now, what is needed last among them: workers import the same, at the same time
+        from tribolab.app import plain  # noqa: F401
         from tribolab.app.run import run_campaign
         from tribolab.app.truth.known import compare_with_known, paper_of, write_comparison
         from tribolab.campaign import pipeline  # noqa: F401

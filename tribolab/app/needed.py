@@ -1,15 +1,19 @@
 """What the workers of commands import, by name: a pool has it imported once for all of them."""
 
-FILES = ("tribolab.app.checks", "tribolab.qc.scan.sets", "tribolab.draft.scans")
+FILES = (
+    "tribolab.app.plain",
+    "tribolab.app.checks",
+    "tribolab.qc.scan.sets",
+    "tribolab.draft.scans",
+)
 
-SIMULATION = ("tribolab.rig.campaign", "scipy.signal")
+SIMULATION = ("tribolab.app.plain", "tribolab.rig.campaign", "scipy.signal")
 
-# the stages themselves, then what they import only where it is needed, in this order; xarray looks
-# for pint, and pint for Dask, when it first makes an index
+# the stages themselves, then what they import only where it is needed, in this order
 ANALYSIS = (
+    "tribolab.app.plain",
     "tribolab.campaign.pipeline",
     "netCDF4",
-    "pint",
     "tribolab.draft.on_the_fly",
     "tribolab.friction.coefficient.static",
     "tribolab.friction.coefficient.repeatability",
