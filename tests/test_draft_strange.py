@@ -1,9 +1,12 @@
 """Files as a stranger's laboratory writes them: what could be taken wrongly is right, or asked."""
 
+import time
+
 import numpy as np
 import pytest
 
 import tribolab as tl
+from tribolab.io.dialects.thousands import find_thousands
 
 N = 600
 T = np.arange(N) / 20
@@ -493,3 +496,9 @@ def test_what_is_said_before_each_step_is_that_of_the_step(tmp_path):
     (tmp_path / "a.toml").write_text(toml)
     with pytest.raises(tl.TribolabError, match=r"is 10 before the first table and 20 before a"):
         tl.read(file, tmp_path / "a.toml")
+
+
+def test_a_long_row_of_empty_cells_is_gone_through_once_for_marks_of_thousands():
+    began = time.process_time()
+    assert find_thousands(["\t" * 30_000, "1.234,5\t2"]) == "."
+    assert time.process_time() - began < 1.0

@@ -26,7 +26,7 @@ def find_blocks(lines: tuple[str, ...], grammar: Grammar) -> list[Block]:
         if not line.strip():
             continue
         cells = grammar.width(line)
-        if cells and rows and grammar.is_footer(line) and not grammar.is_footer(lines[rows[0]]):
+        if cells and rows and _is_footer(line, lines[rows[0]], grammar):
             cells = 0
         if not cells and rows and grammar.goes_on(line, width):
             cells = width
@@ -37,6 +37,13 @@ def find_blocks(lines: tuple[str, ...], grammar: Grammar) -> list[Block]:
             rows.append(index)
     close()
     return blocks
+
+
+def _is_footer(line: str, first: str, grammar: Grammar) -> bool:
+    """Whether a word begins a line of numbers, and none the first row above it."""
+    if grammar.is_plain(line):
+        return False
+    return grammar.is_footer(line) and not grammar.is_footer(first)
 
 
 def main_blocks(blocks: list[Block]) -> tuple[list[Block], int]:

@@ -60,11 +60,15 @@ class Grammar:
         is_row = numbers > 0 and 2 * (len(filled) - text) > len(filled)
         return len(cells), max(numbers - text, 1) if is_row else 0
 
+    def is_plain(self, line: str) -> bool:
+        """Whether a line holds numbers and empty cells, and nothing else."""
+        stripped = line.strip() if self.delimiter == "whitespace" else line
+        return bool(self._plain.fullmatch(stripped)) and any(map(str.isdigit, stripped))
+
     def width(self, line: str) -> int:
         """Return the number of cells of a row of numbers; 0 for any other line."""
-        stripped = line.strip() if self.delimiter == "whitespace" else line
-        if self._plain.fullmatch(stripped) and any(map(str.isdigit, stripped)):
-            return len(self.cells(line))
+        if self.is_plain(line):
+            return len(line.split(None if self.delimiter == "whitespace" else self.delimiter))
         width, merit = self.merit(line)
         return width if merit else 0
 
@@ -128,7 +132,12 @@ def find_grammar(lines: Sequence[str]) -> Grammar | None:
     filled = [line for line in lines if line.strip()]
     voters = filled[:_VOTERS] + filled[max(_VOTERS, len(filled) - _VOTERS) :]
     best, highest = None, 0
+    alone = False  # what stands in no line leaves each whole, and so does the next that does
     for delimiter in DELIMITERS:
+        if delimiter != "whitespace" and not any(delimiter in line for line in voters):
+            if alone:
+                continue
+            alone = delimiter != ","
         for decimal in (".", ","):
             if delimiter == decimal:
                 continue

@@ -12,6 +12,12 @@ MARKS: tuple[Mark, ...] = (".", ",", "'", " ", "\u00a0", "\u202f")
 _ROWS = 4000  # lines that are looked at
 _NUMBER = re.compile(r"\s*[+-]?\d[\d.,]*\s*")
 _APART = "\t;"  # delimiters that part numbers whatever marks stand in them
+_BLANK = r"[^\S\t\n]"  # of a cell: a search goes through a row of empty cells but once
+# what every number with both marks has; what every cell of a whole number with one has
+_BOTH = re.compile(rf"\d[{''.join(MARKS)}]\d{{3}}[.,]\d")
+_WHOLE = re.compile(
+    rf"(?m)(?:^|[\t;])(?:{_BLANK}|[+-])*[1-9]\d{{0,2}}(?:[.,]\d{{3}})+{_BLANK}*(?:$|[\t;])"
+)
 
 
 def find_thousands(lines: Sequence[str]) -> Mark:
@@ -30,16 +36,18 @@ def find_thousands(lines: Sequence[str]) -> Mark:
     >>> find_thousands(['"1,234.5",2']), find_thousands(["0,25;1.234", "0,26;987"])
     (',', '.')
     """
-    for line in lines[:_ROWS]:
+    lines = lines[:_ROWS]
+    text = "\n".join(lines)
+    for line in lines if _BOTH.search(text) else ():
         apart = any(mark in line for mark in _APART)
         if not apart and '"' not in line:
             continue
         for mark in MARKS:
             decimal = "," if mark == "." else r"\." if mark == "," else "[.,]"
             number = rf"\d{{1,3}}(?:{re.escape(mark)}\d{{3}})+{decimal}\d+"
-            if re.search(rf'(?:^|[\t;"])\s*[+-]?{number}\s*(?:$|[\t;"])', line):
+            if re.search(rf'(?:^|[\t;"]){_BLANK}*[+-]?{number}{_BLANK}*(?:$|[\t;"])', line):
                 return mark
-    return _beside_decimals(lines[:_ROWS])
+    return _beside_decimals(lines) if _WHOLE.search(text) else ""
 
 
 def _beside_decimals(lines: Sequence[str]) -> Mark:
