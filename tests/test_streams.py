@@ -70,6 +70,15 @@ except Terminated as stop:
 """
 
 
+@pytest.fixture
+def heard():
+    """What is started hears SIGHUP, though the tests themselves may run under nohup."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)
+
+
+@pytest.mark.usefixtures("heard")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_being_stopped_tidies_up(tmp_path, number):
     began = time.monotonic()
@@ -100,6 +109,7 @@ except KeyboardInterrupt as stop:
 """
 
 
+@pytest.mark.usefixtures("heard")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_that_comes_where_exceptions_are_swallowed_still_stops(number):
     command = [*SAY, SWALLOWED, str(int(number))]
