@@ -18,6 +18,7 @@ from campaigns import RUNS, copied, fingerprint, simulated
 
 import tribolab
 import tribolab as tl
+from tribolab.app.needed import ANALYSIS
 from tribolab.campaign.engine.executor import workers
 from tribolab.campaign.engine.pool import WorkerDied
 from tribolab.campaign.pipeline import process
@@ -308,7 +309,7 @@ def test_processes_give_what_this_process_gives_even_if_one_is_killed(original, 
             victim.kill()
             killed.append(victim.pid)
 
-    with workers(2) as pool:
+    with workers(2, modules=ANALYSIS) as pool:  # as the commands do
         outcome = process(load_campaign(original), tmp_path, executor=pool, progress=progress)
     assert len(killed) == 1
     same_results(outcome, done)
