@@ -47,11 +47,12 @@ _ROWS = [
     ("film_thickness", "h", "m", "film thickness"),
     ("height_displacement", "z", "m", "displacement normal to the contact"),
     ("electrical_contact_resistance", "ECR", "1", "electrical contact resistance, relative"),
+    ("contact_resistance", "R_c", "ohm", "electrical contact resistance"),
     ("voltage", "U", "V", "raw sensor voltage"),
     ("viscosity", "\\eta", "Pa s", "viscosity"),
     ("shear_rate", "\\dot\\gamma", "1/s", "shear rate", "nothing"),
     ("step", "", "1", "number of the instrument's step"),
-    ("cycle", "", "1", "number of the cycle"),
+    ("cycle", "", "1", "number of the cycle", "cycles"),
     # segments
     ("segment", "", "1", "number of the segment"),
     ("start", "t_0", "s", "start of the segment"),

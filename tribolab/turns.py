@@ -94,6 +94,17 @@ def _of(count: str, per: str) -> Reciprocal | None:
     return None
 
 
+def counts_turns(unit: str) -> bool:
+    """Whether a unit is a name of turns or cycles alone.
+
+    Examples
+    --------
+    >>> counts_turns("cycles"), counts_turns("Umdr."), counts_turns("rad")
+    (True, True, False)
+    """
+    return unit.strip().rstrip(".").lower() in _CYCLES
+
+
 def usual_reading(si_unit: str) -> Counted:
     """Say what a bare reciprocal means where no quantity tells: asked for where two readings are.
 

@@ -8,7 +8,15 @@ import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from tribolab.errors import AnalysisError, UnitError, shown
-from tribolab.turns import Counted, holds_an_angle, reciprocal, scale_of_reciprocal, usual_reading
+from tribolab.turns import (
+    Counted,
+    counts_turns,
+    holds_an_angle,
+    reciprocal,
+    scale_of_reciprocal,
+    usual_reading,
+)
+from tribolab.unit_names import plain_unit
 from tribolab.unit_text import parse_unit
 
 if TYPE_CHECKING:
@@ -157,6 +165,12 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
         return prefix, 0.0
     if (unit, si_unit) in _USUAL:
         return _USUAL[unit, si_unit]
+    if (unit, si_unit) == ("mS", "s"):  # nobody times in siemens
+        return 1e-3, 0.0
+    if (spelt := plain_unit(unit)) != unit.strip() and len(unit) < _LONGEST:
+        return conversion(spelt, si_unit, bare)
+    if si_unit == "1" and bare == "cycles" and counts_turns(unit):
+        return 1.0, 0.0
     turning = scale_of_reciprocal(unit, si_unit, bare or usual_reading(si_unit))
     if turning is not None:
         return float(f"{turning:.15g}"), 0.0

@@ -182,6 +182,14 @@ RUN_WORDS = (
             "film 接触电阻 接触抵抗"
         ),
     ),
+    Word(
+        "contact_resistance",
+        ("rc",),
+        _words(
+            "contactresistance uebergangswiderstand kontaktwiderstand resistancedecontact "
+            "resistenciadecontacto resistenzadicontatto ecr 接触电阻 接触抵抗"
+        ),
+    ),
     Word("voltage", ("u",), _words("voltage spannung tension tensione voltaje 电压 電圧")),
     Word(
         "step",

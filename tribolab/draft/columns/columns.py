@@ -14,7 +14,7 @@ from tribolab.draft.columns.lengths import find_pitch, find_point_density
 from tribolab.draft.columns.ratio import disagreement
 from tribolab.draft.columns.values import find_factors, find_sampling
 from tribolab.draft.columns.words import COUNTS, Match, is_count, matches, split_unit
-from tribolab.draft.file.header import converts, is_unit
+from tribolab.draft.file.header import converts, measures_something
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.lvm import units_above
 from tribolab.draft.model import NO_NUMBERS, DraftColumn, Kind, Understood, other_units
@@ -197,7 +197,7 @@ def _labelled(layout: Layout) -> list[DraftColumn]:
     seen: dict[str, int] = {}
     for place, cell in enumerate(cells, start=1):
         name, unit = split_name(cell)
-        if unit in _PURE or not (unit is None or is_unit(unit) or is_count(unit)):
+        if unit in _PURE or not (unit is None or measures_something(unit) or is_count(unit)):
             unit = None  # brackets around something else
         if heading and heading.units is not None:
             name, unit = cell, row[place - 1].strip("[]() ") or None

@@ -28,6 +28,11 @@ DIMENSIONS = (
 )
 _STEMS = frozenset(stem for word in RUN_WORDS for stem in word.stems)
 _SYMBOLS = frozenset(symbol for word in RUN_WORDS for symbol in word.symbols)
+# what else files hold and no quantity of ours is: areas, volumes, wear rates, power, charges
+_FURTHER = (
+    *("ohm", "m**2", "m**3", "m**2/s", "m**3/s", "m**2/N", "W", "W/m**2", "A", "A s", "S"),
+    *("farad", "kg", "kg/m**3", "S/m", "1/K", "T"),
+)
 _UNITS = {"g", "kg"}  # weights for forces: what they mean depends on the quantity
 
 
@@ -100,6 +105,18 @@ def is_unit(text: str) -> bool:
     (True, True, False, False)
     """
     return text in _UNITS or any(converts(text, dimension) for dimension in DIMENSIONS)
+
+
+def measures_something(text: str) -> bool:
+    """Whether a text in brackets is a unit, of whatever: then the column is in nothing else.
+
+    >>> measures_something("mm³"), measures_something("N"), measures_something("left")
+    (True, True, False)
+    """
+    if is_unit(text):
+        return True
+    letter = len(text) == 1 and text.isascii()  # of a channel rather than of amperes
+    return not letter and any(converts(text, dimension) for dimension in _FURTHER)
 
 
 @functools.lru_cache(maxsize=4096)  # a failed conversion is not remembered elsewhere
