@@ -12,7 +12,8 @@ from tribolab.draft.columns.either import told_by_load
 from tribolab.draft.columns.fill_in import Bare
 from tribolab.draft.columns.lengths import find_pitch, find_point_density
 from tribolab.draft.columns.ratio import disagreement
-from tribolab.draft.columns.values import find_factors, find_sampling
+from tribolab.draft.columns.sampling import find_sampling
+from tribolab.draft.columns.values import find_factors
 from tribolab.draft.columns.words import COUNTS, Match, is_count, matches, split_unit
 from tribolab.draft.file.header import converts, measures_something
 from tribolab.draft.file.layout import Layout
@@ -99,7 +100,7 @@ def understand(layout: Layout) -> Understood:
         return result
     guesses += [sampling.guess] if sampling.guess else []
     return result._replace(
-        rate_pattern=sampling.value.pattern, rate_unit=sampling.unit, guesses=tuple(guesses)
+        rate_pattern=sampling.pattern, rate_unit=sampling.unit, guesses=tuple(guesses)
     )
 
 

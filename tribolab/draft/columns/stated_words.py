@@ -5,8 +5,17 @@ from __future__ import annotations
 import re
 
 # a sample rate by its name; "Frequency" alone may be that of the strokes
+_TAKEN = (
+    r"(?:sampl|abtast|acqui|adquis|aquisi|scan|log|data|daten|daq|mess|meet|record|captur|update"
+    r"|aufzeich|aufnahme|echantillon|muestre|campion|amostrag|bemonster|probkow|vzork|mintavetel"
+    r"|выбор|дискрет|опрос|采集|采样|取样|収録)"
+)
+_OFTEN = (
+    r"(?:rate|rata|freq|frek|frecuen|cadenc|taux|tasa|taxa|vitess|veloc|geschwind|hastighet"
+    r"|частот|czestotl|częstotl|率|周波数|レート|速度)"
+)
 RATE = re.compile(
-    r"^(?:rate|fs|daqrate)$|(?:sampl|abtast|acquisition|scan|log|data|mess).*(?:rate|freq)"
+    rf"^(?:rate|fs|daqrate)$|{_TAKEN}.*{_OFTEN}|{_OFTEN}.*{_TAKEN}"
     r"|abtastrate|cadence|echantillonnage|muestreo|campionamento|采样|サンプリング"
     r"|^(?:sampled|logged|recorded|acquired|abgetastet|aufgezeichnet)$"
 )
@@ -15,6 +24,7 @@ INTERVAL = re.compile(
     r"^(?:dt|deltat|timestep|timeinterval|zeitschritt|tsample|ts)$"
     r"|^(?:sampl|scan|log|mess|abtast|record|acquisition|data|zeit)\w*"
     r"(?:interval|period|time|intervall|periode|schritt|spacing)$"
+    r"|pasdetemps|pasodetiempo|passotemporale|passodetempo|tijdstap|tidssteg|periododemuestreo"
     r"|intervallodicampionamento|perioded?echantillonnage|采样间隔|采样周期|サンプリング(?:間隔|周期)"
 )
 FACTOR = re.compile(

@@ -147,40 +147,6 @@ def _keep(values: dict[str, DraftValue], value: DraftValue) -> None:
     values.setdefault(name, value._replace(name=name))
 
 
-class Sampling(NamedTuple):
-    """What the text before the table says of the distance of samples, and what of it is guessed.
-
-    `unit` is one of frequency, or of time where it is an interval.
-    """
-
-    value: DraftValue
-    unit: str
-    guess: str = ""
-
-
-def find_sampling(layout: Layout) -> Sampling | None:
-    """Return the sample rate, or the interval of samples, before the table; None if there is none.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.draft.file.layout.find_layout`.
-    """
-    for value in find_values(layout):
-        if value.source != "preamble":
-            continue
-        key, unit = value.key, value.unit or value.own_unit
-        interval = INTERVAL.search(key) is not None
-        if not interval and not RATE.search(key):
-            continue
-        if unit and any(converts(unit, si_unit) for si_unit in ("Hz", "s")):
-            return Sampling(value, unit)
-        if unit is None:
-            kind, si_unit = ("interval of samples", "s") if interval else ("sample rate", "Hz")
-            return Sampling(value, si_unit, f"'{value.text}' is the {kind} in {si_unit}")
-    return None
-
-
 def find_factors(layout: Layout) -> list[DraftValue]:
     """Return what signals may still have to be multiplied by: levers, gains, scales; but not one.
 

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 from tribolab.errors import ReadError, shown
 from tribolab.io.content.model import Content
 from tribolab.io.content.steps import last_match
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.time_rule import sampling_interval
+
+_THOUSANDS = re.compile(r"[1-9]\d{0,2}(?:[ \u00a0\u202f',]\d{3})+")  # "1 000"
+_COMMA = re.compile(r"\d+,\d+(?:[eE][-+]?\d+)?")
 
 
 def stated_interval(content: Content, dialect: Dialect) -> float:
@@ -35,6 +40,8 @@ def stated_interval(content: Content, dialect: Dialect) -> float:
             f"{content.path}: no sample rate matches '{shown(rule.rate_pattern)}' "
             f"(instrument '{dialect.name}', time.rate_pattern)"
         )
-    if dialect.text.decimal == ",":
+    if _THOUSANDS.fullmatch(number) and not (dialect.text.decimal == "," and "," in number):
+        number = re.sub(r"\D", "", number)
+    elif dialect.text.decimal == "," or _COMMA.fullmatch(number):
         number = number.replace(",", ".")
     return sampling_interval(f"{number} {rule.rate_unit}", str(content.path))
