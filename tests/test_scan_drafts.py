@@ -19,6 +19,11 @@ DRAFTED = {
     "pitch before the heights": f"Point spacing: 0.25 um\nPoints: 200\nZ [um]\n{COLUMN}\n",
     "decimal comma": f"Messpunktabstand: 0,25 µm\nHöhe [µm]\n{GERMAN}\n",
     "units in a line of their own": f"Profile export\nX,Z\nmm,um\n{ROWS}\n",
+    "length and number of points": f"Scan length\t50.000 um\nNumber of points\t200\n"
+    f"Height unit\tum\nHeight\n{COLUMN}\n",
+    "longueur": f"Unité de hauteur : µm\nLongueur de palpage = 0,05 mm\nNombre de points = 200\n"
+    f"{GERMAN}\n",
+    "in inches": f"Traverse length: 0.001968503937 inch\nPoints: 200\nZ [um]\n{COLUMN}\n",
     "a table of results above": f"Name,Value,Unit\nRa,0.5,um\nRz,1.2,um\n\nX [mm],Z [um]\n{ROWS}\n",
 }
 
@@ -46,6 +51,9 @@ def test_a_header_that_says_all_is_enough(tmp_path, kind):
 def test_what_would_be_guessed_is_told_instead(tmp_path):
     path = written(tmp_path, f"Sampling interval = 0.25 um\nPoints = 200\n{COLUMN}\n")
     with pytest.raises(ReadError, match=r"column 1.*it is the height in um.*or: mm, m"):
+        read_scans(path)
+    path = written(tmp_path, f"Evaluation length = 4 mm\nZ [um]\n{COLUMN}\n")
+    with pytest.raises(ReadError, match="the heights lie evenly over 'Evaluation length = 4 mm'"):
         read_scans(path)
     with pytest.raises(ReadError, match="x is in mm"):
         read_scans(written(tmp_path, f"X,Z\n{ROWS}\n"))
@@ -136,10 +144,12 @@ def test_a_pitch_in_the_dialect_stands_for_positions(tmp_path):
 @pytest.mark.parametrize(
     ("lines", "value", "words"),
     [
-        (['pitch = "0.5 um"', 'pitch_value = "step"'], VALUE, "not both"),
+        (['pitch = "0.5 um"', 'pitch_value = "step"'], VALUE, "not all of them"),
+        (['pitch_value = "step"', 'length_value = "step"'], VALUE, "not all of them"),
         (['pitch = "-1 um"'], "", "pitch"),
         (['pitch = "1 s"'], "", "pitch"),
         (['pitch_value = "step"'], "", "there is no value 'step'"),
+        (['length_value = "step"'], "", "there is no value 'step'"),
         (['pitch = "1 um"'], '[[column]]\nquantity="x"\nposition=2\nunit="mm"\n', "without one"),
     ],
 )

@@ -55,8 +55,8 @@ class Understood(NamedTuple):
     `radius` and `load` (with their units) and `drive` are what a person said of a track, of what
     presses, and of what drives it.
     Where no column is time, `rate_pattern` finds the sample rate before the table, if it is there;
-    where no column is a position, `pitch_pattern` the distance of a profile's points, or `pitch` is
-    what is known of it.
+    where no column is a position, `pitch_pattern` the distance of a profile's points,
+    `length_pattern` its length, or `pitch` is what is known of the distance.
     """
 
     kind: Kind
@@ -73,7 +73,13 @@ class Understood(NamedTuple):
     load: str = ""
     drive: str = ""
     pitch_pattern: str = ""
+    length_pattern: str = ""
     pitch: str = ""
+
+    @property
+    def pitched(self) -> bool:
+        """Whether it is known how far heights without positions lie apart."""
+        return bool(self.pitch_pattern or self.length_pattern or self.pitch)
 
 
 _UNITS = {

@@ -162,8 +162,7 @@ def _drafted(file: Path, error: ReadError) -> Dialect | None:
     if draft.kind != "scan":
         return None
     understood = draft.understood
-    pitched = understood is not None and (understood.pitch_pattern or understood.pitch)
-    if not draft.named and not pitched:
+    if not draft.named and not (understood is not None and understood.pitched):
         return None
     if asked := questions(draft):
         raise GuessedError(file, asked, cures.SURFACE) from error

@@ -10,7 +10,12 @@ import pandas as pd
 from tribolab.draft.columns.assign import SIGNALS, assigned
 from tribolab.draft.columns.either import told_by_load
 from tribolab.draft.columns.fill_in import Bare
-from tribolab.draft.columns.lengths import find_pitch, find_point_density
+from tribolab.draft.columns.lengths import (
+    find_height_unit,
+    find_pitch,
+    find_point_density,
+    find_profile_length,
+)
 from tribolab.draft.columns.ratio import disagreement
 from tribolab.draft.columns.sampling import find_sampling
 from tribolab.draft.columns.values import find_factors
@@ -39,17 +44,20 @@ def understand(layout: Layout) -> Understood:
         From `tribolab.draft.file.layout.find_layout`.
     """
     numbers, text, missing = _numbers(layout)
-    columns = _labelled(layout)
+    unit = find_height_unit(layout)
+    columns = _in_stated_unit(_labelled(layout), unit)
     pitch = find_pitch(layout)
     density = "" if pitch is not None else find_point_density(layout)
+    length = None if pitch is not None or density else find_profile_length(layout)
+    apart = pitch is not None or bool(density) or length is not None
     guesses = [
         f"signals are read as they stand, not times '{shown(value.text, 40)}'"
         for value in find_factors(layout)
     ]
     if _say_something(columns):
-        kind, columns = _by_name(columns, numbers, placed=pitch is not None or bool(density))
-    elif (pitch is not None or density) and layout.width == 1:
-        kind, columns = "scan", [_heights(columns[0])]
+        kind, columns = _by_name(columns, numbers, placed=apart)
+    elif apart and layout.width == 1:
+        kind, columns = "scan", [_heights(columns[0], stated=bool(unit))]
     else:
         from tribolab.draft.columns.behaviour import by_behaviour
 
@@ -76,7 +84,8 @@ def understand(layout: Layout) -> Understood:
     used = [column.place - 1 for column in columns if column.used]
     words = tuple(dict.fromkeys(word for index in used for word in missing[index]))
     placed = any(c.used and c.quantity == "x" for c in columns)
-    if kind == "scan" and (pitch is not None or density) and not placed:
+    if kind == "scan" and apart and not placed:
+        guesses += [length.guess] if length is not None and length.guess else []
         return Understood(
             kind,
             tuple(columns),
@@ -86,6 +95,7 @@ def understand(layout: Layout) -> Understood:
             False,
             tuple(guesses),
             pitch_pattern=pitch.pattern if pitch is not None else "",
+            length_pattern=length.pattern if length is not None else "",
             pitch=density,
         )
     if kind != "table" and not [c for c in columns if c.used and (c.quantity != "time")]:
@@ -234,21 +244,41 @@ def _bare(column: DraftColumn) -> Bare:
     return name, unit, unit is not None
 
 
+def _in_stated_unit(columns: list[DraftColumn], unit: str) -> list[DraftColumn]:
+    """Give the heights without a unit the one that the text before the table states."""
+    if not unit:
+        return columns
+    return [
+        column._replace(unit=unit)
+        if _bare(column)[1] is None and _may_be_heights(column)
+        else column
+        for column in columns
+    ]
+
+
+def _may_be_heights(column: DraftColumn) -> bool:
+    if not column.label:
+        return True
+    options = matches(_bare(column)[0], None, scan=True)
+    return bool(options) and options[0].quantity == "height"
+
+
 def _say_something(columns: list[DraftColumn]) -> bool:
     """Whether the header says more than 'Channel 1, Channel 2'."""
     bare = [_bare(column)[:2] for column in columns if column.label]
     return any(unit is not None or matches(name, unit) for name, unit in bare)
 
 
-def _heights(column: DraftColumn) -> DraftColumn:
+def _heights(column: DraftColumn, *, stated: bool) -> DraftColumn:
     """Take a column without a known name for heights: what a pitch before it is of."""
     unit = column.file_unit or column.unit
     guess = "it is the height" + ("" if unit else " in um")
+    guessed = () if stated and column.unit else (guess,)
     return column._replace(
         quantity="height",
         unit=column.unit if unit else "um",
         used=True,
-        guessed=(guess,),
+        guessed=guessed,
         options=() if unit else other_units("m", "um"),
     )
 

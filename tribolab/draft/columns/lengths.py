@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Sequence
 
 from tribolab.draft.columns.sentences import points_per_length
@@ -9,13 +11,17 @@ from tribolab.draft.columns.stated_words import (
     ACROSS,
     ARM,
     DIAMETER,
+    HEIGHT_UNIT,
     ON_TRACK,
     OTHER_RADIUS,
     PITCH,
+    POINTS,
+    PROFILE_LENGTH,
     RADIUS,
     TURNING,
 )
-from tribolab.draft.columns.values import DraftValue, find_values
+from tribolab.draft.columns.values import DraftValue, find_values, words_said
+from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 
@@ -32,6 +38,43 @@ def find_pitch(layout: Layout) -> DraftValue | None:
         if value.source == "preamble" and PITCH.search(value.key) and _is_length(value):
             return value._replace(name="pitch", to="m")
     return None
+
+
+def find_profile_length(layout: Layout) -> DraftValue | None:
+    """Return the length of a whole profile that the text before the heights states, or None.
+
+    Where the text also says how many points the profile has, and as many follow, nothing is
+    guessed: they lie evenly over that length.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    """
+    values = [value for value in find_values(layout, bare=True) if value.source == "preamble"]
+    lengths = [v for v in values if PROFILE_LENGTH.search(v.key) and _is_length(v)]
+    if len(lengths) != 1:
+        return None
+    points = len(layout.rows())
+    counts = [_number(v) for v in values if v.unit is None and POINTS.search(v.key)]
+    said = lengths[0]._replace(name="profile_length", to="m")
+    if any(abs(count - points) <= 1 for count in counts):
+        return said
+    return said._replace(guess=f"the heights lie evenly over '{said.text}'")
+
+
+def find_height_unit(layout: Layout) -> str:
+    """Return the unit of heights that the text before them states in a line of its own, or "".
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    """
+    for key, text in words_said(layout, bare=True):
+        if HEIGHT_UNIT.search(squeezed(key)) and converts(text.strip(" []()."), "m"):
+            return text.strip(" []().")
+    return ""
 
 
 def find_point_density(layout: Layout) -> str:
@@ -94,3 +137,11 @@ def find_arm(values: Sequence[DraftValue]) -> DraftValue | None:
 
 def _is_length(value: DraftValue) -> bool:
     return bool(value.unit and converts(value.unit, "m"))
+
+
+def _number(value: DraftValue) -> float:
+    match = re.search(value.pattern, value.text)
+    try:
+        return float(match[1].replace(",", ".")) if match else math.nan
+    except ValueError:
+        return math.nan

@@ -52,6 +52,34 @@ PITCH = re.compile(
     r"(?:punt\w+|points?|punkten?|muestreo|d?echantillonnage|campionamento)$"
     r"|(?:pitch|spacing|increment|interval)(?:x|between\w*)?$"
 )
+# the length of a whole profile, over which its points lie: no cut-off, no length of a part
+PROFILE_LENGTH = re.compile(
+    r"^(?:total|full|x|line)?(?:scan|trace|tracing|travers\w*|profile?|evaluation|assessment|record"
+    r"|measur\w+|mess|taster?|abtast|gesamt|lateral)?(?:ed|ing)?"
+    r"(?:length|laenge|strecke|range|weg|lengte)(?:x|lt|ln)?$"
+    r"|^(?:longueur|longitud|lunghezza|comprimento)"
+    r"(?:de|del|di|du|dela|della|da)?(?:mesure|mesuree|palpage|exploration|profil\w*|balayage"
+    r"|medida|medicion|recorrido|exploracion|evaluacion|trazado|barrido|misura\w*|esplorazione"
+    r"|scansione|traccia|valutazione|medicao|varredura|avaliacao|perfil)?$"
+    r"|^(?:测量|扫描|轮廓|取样)?长度$|^(?:測定|走査)?長さ$"
+)
+# how many points a profile has
+POINTS = re.compile(
+    r"^(?:number|numbers|no|nr|n|num|total|count)?(?:of|de)?(?:data|measured?|measuring|profile)?"
+    r"(?:points?|pts?|samples?|values?|heights?|pixels?)(?:number|count|total)?$"
+    r"|^(?:anzahl|zahl)(?:der)?(?:mess|daten|profil)?(?:punkte|werte|hoehen)$"
+    r"|^(?:mess|daten|profil)?punkt(?:e|anzahl|zahl|eanzahl)$|^(?:count|npts|npoints|nx|anzahl)$"
+    r"|^(?:nombre|nb|numero|num|no|n)(?:de|dei|di|des|dos)?"
+    r"(?:points?|puntos?|punti|pontos?|mesures|valores|valori|echantillons|muestras)$"
+    r"|^(?:点数|采样点数|数据点数|データ点数|測定点数)$"
+)
+HEIGHT_UNIT = re.compile(
+    r"^(?:z|height|hoehe?n?|profile?|amplitude|hauteur|altura|altezza|hoogte|ordinate|data|value)s?"
+    r"(?:axis|achse|values?|werte?|data)?(?:unit|units|einheit|unite|unidad|unita|unidade|eenheid|in)$"
+    r"|^(?:unit|units|einheit|unite|unidad|unita|unidade|eenheid)(?:of|der|de|des|dela|di|delle|das?)?"
+    r"(?:the)?(?:z|heights?|hoehen?|hauteurs?|alturas?|altezze?|profile?|amplitude)$"
+    r"|^高度单位$|^高さ単位$"
+)
 RADIUS = re.compile("radius|rayon|radio(?!m)|raggio|straal|半径")
 ARM = re.compile(
     r"lever|hebelarm|arm(?:length|laenge)|torquearm|levier|palanca|braccio|力臂|アーム"

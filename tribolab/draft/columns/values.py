@@ -164,15 +164,18 @@ def find_factors(layout: Layout) -> list[DraftValue]:
     return factors
 
 
-def words_said(layout: Layout) -> list[tuple[str, str]]:
+def words_said(layout: Layout, *, bare: bool = False) -> list[tuple[str, str]]:
     """Return what the text before the table says in words: "Drive: crank" as ("Drive", "crank").
 
     Parameters
     ----------
     layout
         From `tribolab.draft.file.layout.find_layout`.
+    bare
+        Whether to look above a table without a header, too.
     """
-    stop = layout.heading.names if layout.heading else 0
+    above = layout.blocks[0].start if bare and layout.blocks else 0
+    stop = layout.heading.names if layout.heading else above
     said = (_WORDS.match(line.strip()) for line in layout.lines[:stop])
     return [(match["key"], match["text"]) for match in said if match]
 

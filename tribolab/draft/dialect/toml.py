@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tribolab.draft.columns.follows import SAYS_FRICTION, SAYS_LOAD, Follows, what_follows
-from tribolab.draft.columns.lengths import find_pitch
+from tribolab.draft.columns.lengths import find_pitch, find_profile_length
 from tribolab.draft.columns.turning import torque_of
 from tribolab.draft.columns.values import find_values
 from tribolab.draft.dialect.tables import (
@@ -58,7 +58,9 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
     rest = [c for c in columns if not c.used and not c.fill_in and c.place not in taken]
     parts.append(unused_columns(rest, numbers))
     values, taken_over = find_values(layout), follows.values
-    if understood.pitch_pattern and (pitch := find_pitch(layout)) is not None:
+    pitch = find_pitch(layout) if understood.pitch_pattern else None
+    pitch = find_profile_length(layout) if understood.length_pattern else pitch
+    if pitch is not None:
         values = [pitch, *(value for value in values if value.text != pitch.text)]
         taken_over = (*taken_over, pitch)
     parts.append(value_tables(values, taken_over))
@@ -109,12 +111,14 @@ def _head(name: str, layout: Layout, understood: Understood) -> str:
     ]
     if understood.pitch:
         lines.append(f"pitch = {quoted(understood.pitch)}")
-    elif understood.kind == "scan" and not understood.pitch_pattern:
+    elif understood.kind == "scan" and not understood.pitched:
         if not any(column.quantity == "x" for column in understood.columns):
             lines.append(f"# {FILL_IN}: the distance of neighbouring heights, {_REMOVE}")
             lines.append('# pitch = "? um"')
     if understood.pitch_pattern:
         lines.append('pitch_value = "pitch"    # its heights have no positions')
+    if understood.length_pattern:
+        lines.append('length_value = "profile_length"    # its heights have no positions')
     if layout.others:
         lines.append(f"# {layout.others} more tables stand in the file; they are not read")
     return "\n".join(lines) + "\n"

@@ -65,6 +65,11 @@ class Dialect(Strict):
         None, description="distance of neighbouring heights of a profile without x, e.g. '0.25 um'"
     )
     pitch_value: str | None = Field(None, description="the [[value]] (in m) that holds the pitch")
+    length_value: str | None = Field(
+        None,
+        description="the [[value]] (in m) that holds the length of a profile without x, over which "
+        "its heights lie evenly",
+    )
     pair: Pair | None = None
     marks: Marks | None = None
     binary: Binary | None = None
@@ -106,7 +111,7 @@ class Dialect(Strict):
                         f"column '{column.key}': in a file without a header it needs "
                         "position and unit"
                     )
-        check_pitch(self.pitch, self.pitch_value, self.value, names)
+        check_pitch(self.pitch, self.pitch_value, self.length_value, self.value, names)
         for key, value in self.speed.values_named.items():
             if value not in {v.name for v in self.value} | {c.symbol for c in self.column}:
                 raise ValueError(

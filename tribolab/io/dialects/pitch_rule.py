@@ -10,14 +10,20 @@ from tribolab.units import positive
 
 
 def check_pitch(
-    pitch: str | None, held_by: str | None, values: Sequence[Value], columns: Sequence[str]
+    pitch: str | None,
+    pitch_value: str | None,
+    length_value: str | None,
+    values: Sequence[Value],
+    columns: Sequence[str],
 ) -> None:
     """Refuse a pitch that stands for no positions.
 
     Parameters
     ----------
-    pitch, held_by
-        The distance of neighbouring points, or the name of the value that holds it.
+    pitch
+        The distance of neighbouring points.
+    pitch_value, length_value
+        Names of the values that hold it, or the length of the whole profile.
     values
         The dialect's values.
     columns
@@ -26,17 +32,18 @@ def check_pitch(
     Raises
     ------
     ValueError
-        If both are given, there are positions already, or no heights, or no such value.
+        If several are given, there are positions already, or no heights, or no such value.
     """
-    if pitch is None and held_by is None:
+    keys = {"pitch": pitch, "pitch_value": pitch_value, "length_value": length_value}
+    given = {key: text for key, text in keys.items() if text is not None}
+    if not given:
         return
-    if pitch is not None and held_by is not None:
-        raise ValueError("give either pitch or pitch_value, not both")
+    if len(given) > 1:
+        raise ValueError(f"give either {' or '.join(given)}, not all of them")
     if "height" not in columns or "x" in columns or "y" in columns:
         raise ValueError("pitch is for a column of 'height' without one of 'x'")
-    if pitch is not None:
-        positive(pitch, "m", "pitch")
-    elif not any(v.name == held_by and v.unit is not None and v.si_unit == "m" for v in values):
-        raise ValueError(
-            f"pitch_value: there is no value '{shown(str(held_by))}' with a unit and to = 'm'"
-        )
+    [(key, text)] = given.items()
+    if key == "pitch":
+        positive(text, "m", "pitch")
+    elif not any(v.name == text and v.unit is not None and v.si_unit == "m" for v in values):
+        raise ValueError(f"{key}: there is no value '{shown(text)}' with a unit and to = 'm'")

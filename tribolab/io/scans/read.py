@@ -182,9 +182,10 @@ def _scan(
         scan = gridded(str(path), columns["x"], columns["y"], columns["height"])
         return scan.assign_attrs(attrs)
     if "x" not in columns:
-        pitch, height = _stated_pitch(path, dialect, attrs), columns["height"]
+        height = columns["height"]
         if height.size < 2:
             raise ReadError(f"{path}: a profile needs at least two points, it has {height.size}")
+        pitch = _stated_pitch(path, dialect, attrs, height.size)
         x = pitch * np.arange(height.size, dtype=float)
         return xr.Dataset({"height": ("x", height)}, {"x": x}, attrs)
     pitch, height, evened = even(str(path), columns["x"], columns["height"])
@@ -192,23 +193,31 @@ def _scan(
     return xr.Dataset({"height": ("x", height)}, {"x": x}, {**attrs, **evened})
 
 
-def _stated_pitch(path: Path, dialect: Dialect, attrs: Mapping[str, str | float]) -> float:
-    """Distance of neighbouring points [m] that the dialect, or the file's header, says."""
+def _stated_pitch(
+    path: Path, dialect: Dialect, attrs: Mapping[str, str | float], points: int
+) -> float:
+    """Distance of neighbouring points [m] that the dialect, or the file's header, says.
+
+    A length is parted among the points, each with its share; whether it ends at the last point or
+    a share behind it is seldom said, and changes the distance by less than one part of them.
+    """
     if dialect.pitch is not None:
         return positive(dialect.pitch, "m", "pitch")
-    if dialect.pitch_value is None:
+    held_by = dialect.pitch_value or dialect.length_value
+    if held_by is None:
         raise ReadError(
             f"{path}: heights without positions: put the distance of neighbouring heights into the "
             f"dialect '{dialect.name}', pitch = \"0.25 um\" in its first lines"
         )
-    [value] = [value for value in dialect.value if value.name == dialect.pitch_value]
+    [value] = [value for value in dialect.value if value.name == held_by]
     said = attrs.get(value.attribute)
     if said is None or not float(said) > 0:
+        what = "distance of its points" if dialect.pitch_value else "length of the profile"
         raise ReadError(
-            f"{path}: the distance of its points does not stand in the file as the dialect "
+            f"{path}: the {what} does not stand in the file as the dialect "
             f"'{dialect.name}' expects it ([[value]] '{shown(value.name)}')"
         )
-    return float(said)
+    return float(said) / (1 if dialect.pitch_value else points)
 
 
 def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:
