@@ -48,7 +48,7 @@ def line(what: str, measured: str, wanted: str) -> None:
 def demo(folder: Path) -> None:
     """Time the demo, simulation included."""
     wall, cpu = timed("demo", folder / "demo")
-    line("tribolab demo, 30 runs", f"{wall:.0f} s, {cpu:.0f} s CPU", "40 s, 80 s CPU")
+    line("tribolab demo, 30 runs", f"{wall:.1f} s, {cpu:.1f} s CPU", "25 s, 50 s CPU")
     share = size(folder / "demo/results") / size(folder / "demo/raw")
     line("results folder over raw folder, demo", f"{share:.2f}", "1.2")
 

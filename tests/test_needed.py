@@ -1,0 +1,31 @@
+"""What workers import beforehand is there under its name, and loads no arrays of others."""
+
+import subprocess
+import sys
+from importlib.util import find_spec
+
+import pytest
+
+from tribolab.app.needed import ANALYSIS, FILES, SIMULATION
+
+_WORKER = """
+import importlib, sys
+from tribolab.app.needed import ANALYSIS, SIMULATION
+for name in SIMULATION + ANALYSIS:
+    importlib.import_module(name)
+import xarray as xr
+xr.Dataset({"force": ("time", [1.0, 2.0])}, {"time": [0.0, 0.1]}).force.to_numpy()
+print(sorted({"dask", "pint"} & set(sys.modules)))
+"""
+
+
+@pytest.mark.parametrize("name", sorted({*FILES, *SIMULATION, *ANALYSIS}))
+def test_a_module_that_workers_import_is_there(name):
+    # a name that is not there is passed over, and only the time would tell
+    assert find_spec(name) is not None
+
+
+@pytest.mark.slow
+def test_the_workers_of_a_campaign_load_no_arrays_but_numpys():
+    done = subprocess.run([sys.executable, "-c", _WORKER], capture_output=True, text=True)
+    assert done.stdout.strip() == "[]", done.stderr
