@@ -164,3 +164,41 @@ def test_a_pitch_that_the_file_does_not_say_is_missed(tmp_path):
     assert good.attrs["pitch_m"] == pytest.approx(0.5e-6) and good.attrs["step_m"] == 0.5e-6
     with pytest.raises(ReadError, match="distance of its points does not stand in the file"):
         read_scans(written(tmp_path, f"none\n{COLUMN}\n"), own)
+
+
+@pytest.mark.parametrize(
+    ("above", "pitch"),
+    [
+        ("Traverse length: 0.2 mm\nNumber of points: 400", 0.5e-6),
+        ("Traverse length: 0.1995 mm\nNumber of points: 400", 0.5e-6),
+        ("Scan Length,0.2,mm\nData points,400", 0.5e-6),
+        ("Taststrecke [mm]: 0,2\nPunkte: 400", 0.5e-6),
+        ("Longueur de palpage = 0,1596 mm\nNombre de points = 400", 0.4e-6),
+        ("Lunghezza di scansione: 0,12 mm\nNumero di punti: 400", 0.3e-6),
+        ("測定長さ: 0.2 mm\nデータ点数: 400", 0.5e-6),
+    ],
+)
+def test_the_length_of_a_traverse_and_its_points_are_a_pitch(tmp_path, above, pitch):
+    heights = "".join(f"{1000 * z:.1f}\n" for z in np.sin(np.arange(400) / 9))
+    path = tmp_path / "line.txt"
+    path.write_bytes(f"{above}\nHeight [nm]\n{heights}".encode())
+    scan = read_scans(path)
+    assert scan.sizes["x"] == 400
+    assert scan.attrs["pitch_m"] == pytest.approx(pitch, rel=1e-9)
+
+
+def test_a_traverse_with_other_points_than_it_has_gives_no_pitch(tmp_path):
+    heights = "".join(f"{z:.1f}\n" for z in range(400))
+    above = "Traverse length: 0.2 mm\nNumber of points: 500\nHeight [nm]\n"
+    with pytest.raises(ReadError, match="how far they lie apart"):
+        read_scans(written(tmp_path, above + heights))
+
+
+def test_a_total_profile_is_heights_and_of_total_and_raw_one_is_asked_for(tmp_path):
+    lines = [f"{n * 0.5:.1f},{n % 7}.0,{n % 5}.5\n" for n in range(60)]
+    one = "".join(",".join(line.split(",")[:2]) + "\n" for line in lines)
+    scan = read_scans(written(tmp_path, "Lateral (um),Total Profile (nm)\n" + one))
+    assert scan.attrs["pitch_m"] == pytest.approx(0.5e-6)
+    both = "Lateral (um),Total Profile (nm),Raw Profile (nm)\n" + "".join(lines)
+    with pytest.raises(ReadError, match="of several columns for height"):
+        read_scans(written(tmp_path, both, "both.csv"))

@@ -76,6 +76,8 @@ def texts() -> Iterable[Kind]:
         ),
         "heights alone, pitch and count before them": "Spacing: 0.25 um\nPoints: 240\n"
         f"Z [um]\n{column(LINE)}",
+        "heights alone, length of the traverse and count": "Traverse length: 0.06 mm\nNumber of "
+        f"points: 240\nZ [um]\n{column(LINE)}",
         "heights with decimal commas, German names": "Messpunktabstand: 0,25 µm\nHöhe [µm]\n"
         + column(LINE).replace(".", ","),
     }
@@ -93,6 +95,25 @@ def texts() -> Iterable[Kind]:
     values = " ".join(f"{1e6 * z:.4f}" for z in LINE)
     xml = f'<?xml version="1.0"?><g><dx unit="um">0.25</dx><z unit="um">{values}</z></g>'
     yield Kind("XML with a list of values", "a.xml", xml.encode(), LINE, 1e-10)
+
+
+def matrices() -> Iterable[Kind]:
+    """Maps as text, as microscopes export them."""
+    holes = AREA.copy()
+    holes[2, 5] = holes[4, 8] = np.nan
+    cells = [[f"{1e6 * z:.4f}" for z in row] for row in AREA]
+    rows = "\n".join(",".join(row) for row in cells) + "\n"
+    keyence = '"Model","VK-X"\n"Horizontal","12"\n"Vertical","7"\n"XY Calibration","250.0","nm"\n'
+    text = f'{keyence}"Unit","um"\n\n"Height"\n{rows}'
+    yield Kind("matrix below lines of names and values (Keyence)", "a.csv", text.encode(), AREA)
+    cells = [[f"{1e6 * z:.4f}" if np.isfinite(z) else "NaN" for z in row] for row in holes]
+    rows = "\n".join("\t".join(row) for row in cells) + "\n"
+    text = f"Pixel Size X: 0.25 µm\nPixel Size Y: 0.25 µm\nZ unit: µm\n{rows}"
+    yield Kind("matrix with missing heights (Alicona)", "a.txt", text.encode("latin-1"), holes)
+    cells = [[f"{1e9 * z:.1f}" if np.isfinite(z) else "Bad" for z in row] for row in holes]
+    rows = "\n".join(" ".join(row) for row in cells) + "\n"
+    text = f"Field of view: 3.0 um x 1.75 um\nPixels: 12 x 7\nHeight unit: nm\n{rows}"
+    yield Kind("matrix below its field of view (Bruker)", "a.txt", text.encode(), holes)
 
 
 def described(
@@ -351,7 +372,7 @@ def rows() -> list[Row]:
         for word, packed in (("plain", False), ("packed", True))
     )
     with tempfile.TemporaryDirectory() as folder:
-        done = [judge(kind, Path(folder)) for kind in (*texts(), *archives(), *surfs)]
+        done = [judge(kind, Path(folder)) for kind in (*texts(), *matrices(), *archives(), *surfs)]
     return done + [of_measured(known) for known in MEASURED if (SHARED / known.file).is_file()]
 
 
@@ -375,7 +396,7 @@ Heights and pitch of the measured profiles are those that a few plain lines take
 Formats of some forty profilometers are read by SurfaceTopography (1.27.1 was the newest release).
 Where it reads in part or not at all, tribolab reads itself: x3p whose `main.xml` lies in a folder,
 of another revision, of profiles, with positions for each point or heights as a list; Surf files
-that are packed or have a UTF-8 micro sign; XML, SMD and PRF text. No sample files ship inside its
+that are packed or have a UTF-8 micro sign; XML, SMD and PRF text; matrices of heights as text. No sample files ship inside its
 packages, nor inside surfalize's. Written by surfalize 0.19 and read back, AL3D, SDF (text and
 binary) and x3p agree to the last digit, Surf files but for the constant that surfalize adds; TMD
 files differ by the factor 1000 by which that writer takes the format's millimetres for micrometres.

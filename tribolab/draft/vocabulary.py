@@ -212,7 +212,8 @@ SCAN_WORDS = (
         "height",
         _words("z h"),
         _words(
-            "height hoehe profile profil amplitude topography depth tiefe raw hauteur altura "
+            "height hoehe profile profil totalprofile rawprofile amplitude topography depth tiefe "
+            "raw hauteur altura "
             "elevation relief ordinate hoogte "
             "altezza vyska wysokosc hojd hoyde hojde korkeus magassag visina yukseklik 高度 高さ"
         ),

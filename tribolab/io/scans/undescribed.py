@@ -7,8 +7,9 @@ from pathlib import Path
 import xarray as xr
 
 from tribolab.errors import ReadError
-from tribolab.io.scans.formats import read_foreign
+from tribolab.io.scans.formats import NotSaidError, read_foreign
 from tribolab.io.scans.gauges import is_gauge, read_gauge
+from tribolab.io.scans.matrix import read_matrix
 from tribolab.io.scans.sur import is_sur, plain_sur
 from tribolab.io.scans.x3p import is_iso_xml, main_of, read_iso_xml, read_x3p
 from tribolab.io.scans.xml_values import is_xml, read_xml_values
@@ -42,7 +43,8 @@ def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) ->
     Notes
     -----
     Ours are those that SurfaceTopography 1.27 reads in part or not at all: x3p and its bare XML,
-    lists of values in XML, SMD and PRF text of soft gauges, and packed Surf files.
+    lists of values in XML, SMD and PRF text of soft gauges, packed Surf files, and matrices of
+    heights below lines that say their size.
     """
     with path.open("rb") as file:
         head = file.read(_HEAD)
@@ -60,4 +62,20 @@ def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) ->
         return read_xml_values(path, x_unit, height_unit)
     if is_gauge(head):
         return read_gauge(path)
+    if b"\0" not in head or head.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return _of_text(path, x_unit, height_unit)
     return read_foreign(plain_sur(path) if is_sur(head) else path, x_unit, height_unit)
+
+
+def _of_text(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
+    """Read a matrix whose lines above say all, else what SurfaceTopography reads."""
+    try:
+        scan = read_matrix(path)
+    except NotSaidError as lacking:
+        try:
+            return read_foreign(path, x_unit, height_unit)
+        except NotSaidError:
+            raise
+        except ReadError as error:
+            raise lacking from error
+    return read_foreign(path, x_unit, height_unit) if scan is None else scan

@@ -1,0 +1,120 @@
+"""Maps as text, as microscopes export them: a matrix below lines that say how large it is."""
+
+import numpy as np
+import pytest
+
+from tribolab.draft.scans import read_scans
+from tribolab.errors import ReadError
+from tribolab.io.scans.matrix_header import header_of
+
+ROWS, COLUMNS = 9, 14
+HEIGHTS = np.round(np.random.default_rng(11).normal(0, 1e-6, (ROWS, COLUMNS)), 9)
+HOLES = np.where((np.arange(HEIGHTS.size) % 41 == 7).reshape(HEIGHTS.shape), np.nan, HEIGHTS)
+
+
+def rows(heights=HEIGHTS, mark=",", scale=1e6, decimal=".", hole="", end=""):
+    lines = [
+        mark.join(
+            hole if np.isnan(z) else f"{scale * z:.9g}".replace(".", decimal) for z in row
+        ) + end
+        for row in heights
+    ]  # fmt: skip
+    return "\n".join(lines) + "\n"
+
+
+KEYENCE = (
+    '"Date and time","2024/05/06 07:08:09"\n"Model","VK-X200 Series"\n"Horizontal","14"\n'
+    '"Vertical","9"\n"XY Calibration","277.5","nm"\n"Output image data","Height"\n"Unit","um"\n\n'
+    '"Height"\n'
+)
+FILES = {
+    "Keyence": (KEYENCE + rows(), 277.5e-9, HEIGHTS),
+    "Keyence, Japanese": (
+        "機種,VK-X200\n横,14\n縦,9\nXYキャリブレーション,277.5,nm\n単位,µm\n高さ\n"
+        + rows(end=","),
+        277.5e-9,
+        HEIGHTS,
+    ),
+    "Alicona": (
+        "Pixel Size X: 0.4384 µm\nPixel Size Y: 0.4384 µm\nColumns: 14\nZ unit: mm\n"
+        + rows(HOLES, "\t", 1e3, hole="NaN"),
+        0.4384e-6,
+        HOLES,
+    ),
+    "Bruker": (
+        "Field of view: 28.0 um x 18.0 um\nPixels: 14 x 9\nHeight unit: nm\n"
+        + rows(HOLES, " ", 1e9, hole="Bad"),
+        2e-6,
+        HOLES,
+    ),
+    "German": (
+        "Messfeld: 7,0 x 4,5 mm\nEinheit Höhe: µm\n" + rows(mark=";", decimal=","),
+        0.5e-3,
+        HEIGHTS,
+    ),
+    "French": ("Taille de pixel: 1,25 µm\nUnité Z: µm\n" + rows(mark="\t", decimal=","), 1.25e-6,
+               HEIGHTS),
+    "Spanish": ("Tamaño de píxel (um)\t0.8\nAltura [um]\n" + rows(mark="\t"), 0.8e-6, HEIGHTS),
+    "Italian": ("Dimensione pixel = 0.8 um\nAltezze in nm\n" + rows(mark="\t", scale=1e9), 0.8e-6,
+                HEIGHTS),
+    "Chinese": ("像素尺寸,0.65,微米\n单位,um\n" + rows(HOLES, hole="***"), 0.65e-6, HOLES),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "own"])
+@pytest.mark.parametrize("maker", FILES)
+def test_a_matrix_whose_header_says_all_is_read(tmp_path, maker, encoding):
+    text, pitch, heights = FILES[maker]
+    own = {"Keyence, Japanese": "cp932", "Chinese": "gb18030"}.get(maker, "latin-1")
+    if encoding == "own" and own == "cp932":
+        text = text.replace("µ", "u")  # which that encoding has not
+    path = tmp_path / "map.csv"
+    path.write_bytes(text.encode(own if encoding == "own" else encoding))
+    scan = read_scans(path)
+    np.testing.assert_allclose(scan.height.values, heights, rtol=1e-9, atol=0)
+    for dim, number in (("x", COLUMNS), ("y", ROWS)):
+        np.testing.assert_allclose(scan[dim].values, pitch * np.arange(number), rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("above", "words"),
+    [
+        ("Unit: um\n", "does not say how far its points lie apart"),
+        ("Pixel size: 1 um\n", "in which unit its heights are"),
+        ("Pixel size: 1 um\nPixel size: 2 um\nUnit: um\n", "how far its points lie apart"),
+        ("Field of view: 20 um\nUnit: um\n", "how far its points lie apart"),  # along which side?
+        ("Pixel size: 1 um\nZ scale: 0.5\nUnit: um\n", "in which unit its heights are"),
+        ("Pixel size: 1 um\nXY unit: um\n", "in which unit its heights are"),
+        ("Pixel size: 1 um\nRows: 12\nUnit: um\n", "12 rows of 14; is it whole?"),
+    ],
+)
+def test_what_a_matrix_does_not_say_is_told(tmp_path, above, words):
+    path = tmp_path / "map.csv"
+    path.write_text(above + rows())
+    with pytest.raises(ReadError, match=words):
+        read_scans(path)
+
+
+def test_what_may_be_no_matrix_of_heights_is_not_taken_for_one(tmp_path):
+    said = "Pixel size: 1 um\nUnit: um\n"
+    two = tmp_path / "two.csv"
+    two.write_text(said + rows() + "\nIntensity\n" + rows())
+    with pytest.raises(ReadError, match="several matrices"):
+        read_scans(two)
+    names = ",".join(f"Channel {n}" for n in range(COLUMNS)) + "\n"
+    places = "X/Y," + ",".join(f"{n}.0" for n in range(COLUMNS)) + "\n"
+    beside = "\n".join(f"{n}.0,{line}" for n, line in enumerate(rows().splitlines())) + "\n"
+    for text in (names + rows(), places + beside, ",".join(places.split(",")[1:]) + beside):
+        path = tmp_path / "other.csv"
+        path.write_text(said + text)
+        with pytest.raises(ReadError):
+            read_scans(path)
+
+
+def test_a_pitch_goes_before_the_extent_and_counts_are_no_lengths():
+    lines = ["Scan size X: 10 um", "Scan size Y: 5 um", "Pixel size: 0.99 um", "X size: 10"]
+    said = header_of(lines, (10, 10), ".")
+    assert (said.dx, said.dy) == pytest.approx((0.99e-6, 0.99e-6))
+    assert (said.columns, said.rows, said.height) == (10, None, None)
+    narrow = header_of(lines[:2], (10, 10), ".")
+    assert (narrow.dx, narrow.dy) == pytest.approx((1e-6, 0.5e-6))
