@@ -396,10 +396,11 @@ Heights and pitch of the measured profiles are those that a few plain lines take
 Formats of some forty profilometers are read by SurfaceTopography (1.27.1 was the newest release).
 Where it reads in part or not at all, tribolab reads itself: x3p whose `main.xml` lies in a folder,
 of another revision, of profiles, with positions for each point or heights as a list; Surf files
-that are packed or have a UTF-8 micro sign; XML, SMD and PRF text; matrices of heights as text. No sample files ship inside its
-packages, nor inside surfalize's. Written by surfalize 0.19 and read back, AL3D, SDF (text and
-binary) and x3p agree to the last digit, Surf files but for the constant that surfalize adds; TMD
-files differ by the factor 1000 by which that writer takes the format's millimetres for micrometres.
+that are packed or have a UTF-8 micro sign; XML, SMD and PRF text; matrices of heights as text. No
+sample files ship inside its packages, nor inside surfalize's. Written by surfalize 0.19 and read
+back, AL3D, SDF (text and binary) and x3p agree to the last digit, Surf files but for the constant
+that surfalize adds; TMD files differ by the factor 1000 by which that writer takes the format's
+millimetres for micrometres.
 
 Not seen: files of national laboratories in SMD, PRF and XML (their layouts are from published
 descriptions and examples), x3p of makers other than through the two libraries named.
