@@ -172,7 +172,7 @@ def test_a_pitch_that_the_file_does_not_say_is_missed(tmp_path):
         ("Traverse length: 0.2 mm\nNumber of points: 400", 0.5e-6),
         ("Traverse length: 0.1995 mm\nNumber of points: 400", 0.5e-6),
         ("Scan Length,0.2,mm\nData points,400", 0.5e-6),
-        ("Taststrecke [mm]: 0,2\nPunkte: 400", 0.5e-6),
+        ("Taststrecke: 0,2 mm\nPunkte: 400", 0.5e-6),
         ("Longueur de palpage = 0,1596 mm\nNombre de points = 400", 0.4e-6),
         ("Lunghezza di scansione: 0,12 mm\nNumero di punti: 400", 0.3e-6),
         ("測定長さ: 0.2 mm\nデータ点数: 400", 0.5e-6),
@@ -187,10 +187,10 @@ def test_the_length_of_a_traverse_and_its_points_are_a_pitch(tmp_path, above, pi
     assert scan.attrs["pitch_m"] == pytest.approx(pitch, rel=1e-9)
 
 
-def test_a_traverse_with_other_points_than_it_has_gives_no_pitch(tmp_path):
+def test_a_traverse_with_other_points_than_it_has_is_asked_about(tmp_path):
     heights = "".join(f"{z:.1f}\n" for z in range(400))
     above = "Traverse length: 0.2 mm\nNumber of points: 500\nHeight [nm]\n"
-    with pytest.raises(ReadError, match="how far they lie apart"):
+    with pytest.raises(ReadError, match="the heights lie evenly over 'Traverse length"):
         read_scans(written(tmp_path, above + heights))
 
 

@@ -55,7 +55,7 @@ PITCH = re.compile(
 # the length of a whole profile, over which its points lie: no cut-off, no length of a part
 PROFILE_LENGTH = re.compile(
     r"^(?:total|full|x|line)?(?:scan|trace|tracing|travers\w*|profile?|evaluation|assessment|record"
-    r"|measur\w+|mess|taster?|abtast|gesamt|lateral)?(?:ed|ing)?"
+    r"|measur\w+|mess|tast(?:er?)?|abtast|gesamt|lateral)?(?:ed|ing)?"
     r"(?:length|laenge|strecke|range|weg|lengte)(?:x|lt|ln)?$"
     r"|^(?:longueur|longitud|lunghezza|comprimento)"
     r"(?:de|del|di|du|dela|della|da)?(?:mesure|mesuree|palpage|exploration|profil\w*|balayage"

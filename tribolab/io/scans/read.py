@@ -217,7 +217,17 @@ def _stated_pitch(
             f"{path}: the {what} does not stand in the file as the dialect "
             f"'{dialect.name}' expects it ([[value]] '{shown(value.name)}')"
         )
-    return float(said) / (1 if dialect.pitch_value else points)
+    return float(said) if dialect.pitch_value else _rounder(float(said), points)
+
+
+def _rounder(length: float, points: int) -> float:
+    """Return the distance of points over a length, whose last one is its end or one step before.
+
+    >>> _rounder(2e-4, 400), _rounder(1.995e-4, 400)
+    (5e-07, 5e-07)
+    """
+    pitches = [length / parts for parts in (points, max(points - 1, 1))]
+    return min(pitches, key=lambda pitch: len(f"{pitch:.7g}"))
 
 
 def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:
