@@ -9,6 +9,7 @@ import pandas as pd
 
 from tribolab.draft.columns.assign import SIGNALS, assigned
 from tribolab.draft.columns.either import told_by_load
+from tribolab.draft.columns.factors import missing_factors
 from tribolab.draft.columns.fill_in import Bare
 from tribolab.draft.columns.lengths import (
     find_height_unit,
@@ -18,7 +19,6 @@ from tribolab.draft.columns.lengths import (
 )
 from tribolab.draft.columns.ratio import disagreement
 from tribolab.draft.columns.sampling import find_sampling
-from tribolab.draft.columns.values import find_factors
 from tribolab.draft.columns.words import COUNTS, Match, is_count, matches, split_unit
 from tribolab.draft.file.header import converts, measures_something
 from tribolab.draft.file.layout import Layout
@@ -50,10 +50,7 @@ def understand(layout: Layout) -> Understood:
     density = "" if pitch is not None else find_point_density(layout)
     length = None if pitch is not None or density else find_profile_length(layout)
     apart = pitch is not None or bool(density) or length is not None
-    guesses = [
-        f"signals are read as they stand, not times '{shown(value.text, 40)}'"
-        for value in find_factors(layout)
-    ]
+    guesses = missing_factors(layout)
     if _say_something(columns):
         kind, columns = _by_name(columns, numbers, placed=apart)
     elif apart and layout.width == 1:

@@ -27,11 +27,6 @@ INTERVAL = re.compile(
     r"|pasdetemps|pasodetiempo|passotemporale|passodetempo|tijdstap|tidssteg|periododemuestreo"
     r"|intervallodicampionamento|perioded?echantillonnage|采样间隔|采样周期|サンプリング(?:間隔|周期)"
 )
-FACTOR = re.compile(
-    r"lever|hebel|arm\w*ratio|ratio\w*arm|levier|palanca|leva(?!l)|mechanicaladvantage"
-    r"|scal(?:e|ing)(?:factor)?(?!d)|gain|multiplier|amplification|calibrationfactor|calfactor"
-    r"|verstaerkung|skalierung|kalibrierfaktor|倍率|增益"
-)
 LOAD = re.compile(
     r"^(?:normal|applied|dead|sled|schlitten|test|axial|static|set)?"
     r"(?:load(?:ed|set)?|force|weight|mass|gewicht|masse|kraft|last)+$"

@@ -9,7 +9,6 @@ from tribolab.draft.columns.sentences import Phrase, phrases
 from tribolab.draft.columns.stated_words import (
     ARM,
     DIAMETER,
-    FACTOR,
     INTERVAL,
     LOAD,
     PITCH,
@@ -145,23 +144,6 @@ def _keep(values: dict[str, DraftValue], value: DraftValue) -> None:
         number += 1
         name = f"{value.name}_{number}"
     values.setdefault(name, value._replace(name=name))
-
-
-def find_factors(layout: Layout) -> list[DraftValue]:
-    """Return what signals may still have to be multiplied by: levers, gains, scales; but not one.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.draft.file.layout.find_layout`.
-    """
-    factors = []
-    for value in find_values(layout):
-        said = _said(value.text)
-        if said and value.unit is None and FACTOR.search(value.key):
-            number = float(said["number"].replace(",", "."))
-            factors += [value] if number != 1 else []
-    return factors
 
 
 def words_said(layout: Layout, *, bare: bool = False) -> list[tuple[str, str]]:

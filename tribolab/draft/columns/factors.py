@@ -1,0 +1,84 @@
+"""What the text above a table states of levers, gains and contacts: a factor signals may miss."""
+
+from __future__ import annotations
+
+import re
+
+from tribolab.draft.columns.words import squeezed
+from tribolab.draft.file.layout import Layout
+from tribolab.errors import shown
+
+_LONGEST = 200  # characters of a line that are looked at
+_MOST_CONTACTS = 12
+_FACTOR = re.compile(
+    r"lever|hebel|arm\w*ratio|ratio\w*arm|levier|palanca|leva(?!l)|mechanicaladvantage"
+    r"|scal(?:e|ing)(?:factor)?(?!d)|gain|multiplier|amplification|calibrationfactor|calfactor"
+    r"|verstaerkung|skalierung|kalibrierfaktor|倍率|增益"
+)
+_RATIO = re.compile(r"ratio|transmission|uebersetzung|untersetzung|rapport|relacion|rapporto|比")
+_NUMBER = r"\d+(?:[.,]\d+)?"
+_ONE_TO = re.compile(rf"(?<![\d:.,])(?P<one>{_NUMBER})\s?:\s?(?P<other>{_NUMBER})(?![\d:])")
+_PLAIN = re.compile(
+    rf"\W*(?P<key>[^\W\d][^:=\t;,\d]{{0,60}}?)\s*[:=\t;, ]\s*[x×]?\s?(?P<number>{_NUMBER}"
+    r"(?:[eE][-+]?\d+)?)\s?[x×]?\W*$",
+    re.IGNORECASE,
+)
+_BODIES = (
+    r"(?:contacts?|contact (?:points|pairs|spots)|pins|shoes|rollers|pads|balls|blocks|sliders"
+    r"|kontakte?|kontaktstellen|stifte|kugeln|kl[öo]tze|pions|billes|patins|contactos|bolas"
+    r"|patines|contatti|perni|sfere|pattini|接触点|销)"
+)
+_OF = r"(?:of|de|der|des|di|dei|delle)?"
+_COUNT = rf"(?:numbers?|no|nr|n|n°|nº|num|#|anzahl|zahl|nombre|nb|n[úu]mero)\.?\s?{_OF}\s?(?:the )?"
+_CONTACTS = re.compile(
+    rf"(?:{_COUNT}{_BODIES}|^\W*{_BODIES})\s*[:=\t;, ]\s*(?P<after>\d{{1,2}})\W*$"
+    rf"|(?<![\d.,])(?P<before>\d{{1,2}})\s{_BODIES}\b",
+    re.IGNORECASE,
+)
+
+
+def missing_factors(layout: Layout) -> list[str]:
+    """Say what signals may still have to be multiplied by: levers, gains, scales, contacts.
+
+    A factor of one, and a single contact, are not spoken of.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+
+    Returns
+    -------
+    list of str
+        A sentence for each line that states one.
+    """
+    stop = layout.heading.names if layout.heading else 0
+    said = (_missing(line[:_LONGEST].strip()) for line in layout.lines[:stop])
+    return [sentence for sentence in said if sentence]
+
+
+def _missing(line: str) -> str:
+    """Say what a line states that the signals may not hold yet; "" if nothing.
+
+    >>> _missing("Lever 1:5"), _missing("Gain: 1"), _missing("Time 1:05")
+    ("signals are read as they stand, not times 'Lever 1:5'", '', '')
+    >>> _missing("Number of contacts: 2")
+    "friction and load are both of all contacts, or both of one: 'Number of contacts: 2'"
+    """
+    contacts = _CONTACTS.search(line)
+    if contacts and 1 < int(contacts["after"] or contacts["before"]) <= _MOST_CONTACTS:
+        return f"friction and load are both of all contacts, or both of one: '{shown(line, 40)}'"
+    for ratio in _ONE_TO.finditer(line):
+        key = squeezed(line[: ratio.start()])
+        if _number(ratio["one"]) != _number(ratio["other"]) and (
+            _FACTOR.search(key) or _RATIO.search(key)
+        ):
+            return f"signals are read as they stand, not times '{shown(line, 40)}'"
+    plain = _PLAIN.match(line)
+    if plain and _FACTOR.search(squeezed(plain["key"])) and _number(plain["number"]) != 1:
+        return f"signals are read as they stand, not times '{shown(line, 40)}'"
+    return ""
+
+
+def _number(text: str) -> float:
+    return float(text.replace(",", "."))
