@@ -397,6 +397,38 @@ def test_a_lever_above_the_table_is_asked_about(tmp_path):
     assert "not times" in asked(written(tmp_path / "c.csv", head, T, FRICTION, LOAD, SPEED))
 
 
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("Number of contacts: 2", "both of one"),
+        ("No. of pins = 3", "both of one"),
+        ("Anzahl Kontakte: 2", "both of one"),
+        ("Specimens: 2 shoes", "both of one"),
+        ("Lever 1:5", "not times"),
+        ("Transmission ratio 1 : 10", "not times"),
+        ("Amplifier gain 10", "not times"),
+    ],
+)
+def test_contacts_ratios_and_gains_above_the_table_are_asked_about(line, words, tmp_path):
+    head = f"{line}\nTime [s],Friction [mN],Load [mN],Speed [mm/s]"
+    told = asked(written(tmp_path / "a.csv", head, T, FRICTION, LOAD, SPEED))
+    assert words in told
+    assert line in told
+
+
+@pytest.mark.parametrize("line", ["Number of contacts: 1", "Ratio 1:1", "Start 12:30", "Gain 1.0"])
+def test_one_contact_and_factors_of_one_are_no_question(line, tmp_path):
+    head = f"{line}\nTime [s],Friction [mN],Load [mN],Speed [mm/s]"
+    tl.read(written(tmp_path / "a.csv", head, T, FRICTION, LOAD, SPEED))
+
+
+@pytest.mark.parametrize(("weight", "newton"), [("0.44 lb", 1.95722), ("7 oz", 1.94610)])
+def test_a_sled_weighs_in_pounds_and_ounces(weight, newton, tmp_path):
+    head = f"Sled weight: {weight}\nTime [s],Friction [mN],Speed [mm/s]"
+    run = tl.read(written(tmp_path / "a.csv", head, T, FRICTION, SPEED))
+    np.testing.assert_allclose(run.normal_force, newton, rtol=1e-5)
+
+
 def test_the_mean_goes_before_the_extremes_and_these_alone_are_asked_about(tmp_path):
     head = "Time [s],Max friction coefficient,Mean friction coefficient,Load [mN],Speed [mm/s]"
     run = tl.read(written(tmp_path / "a.csv", head, T, 0.9, 0.25, LOAD, SPEED))

@@ -203,6 +203,9 @@ RUN_WORDS = (
     ),
 )
 
+# weights for forces: what they mean depends on the quantity
+WEIGHTS = {"g": "gf", "kg": "kgf", "lb": "lbf", "lbs": "lbf", "oz": "ozf"}
+
 SCAN_WORDS = (
     Word(
         "x", ("x",), _words("lateral position distance messweg weg strecke laenge length abstand")

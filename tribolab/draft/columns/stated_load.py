@@ -7,9 +7,8 @@ from collections.abc import Sequence
 from tribolab.draft.columns.stated_words import LOAD
 from tribolab.draft.columns.values import DraftValue
 from tribolab.draft.file.header import converts
+from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.io.dialects.patterns import guarded
-
-_WEIGHT = {"g": "gf", "kg": "kgf"}
 
 
 def find_load(values: Sequence[DraftValue]) -> DraftValue | None:
@@ -24,7 +23,7 @@ def find_load(values: Sequence[DraftValue]) -> DraftValue | None:
     for value in values:
         if value.source == "file name" or not LOAD.search(value.key):
             continue
-        unit = _WEIGHT.get(value.own_unit or "", value.own_unit or "")
+        unit = WEIGHTS.get(value.own_unit or "", value.own_unit or "")
         if converts(unit, "N"):
             fitting.append(value._replace(name="set_normal_force", unit=unit, to=None))
     return fitting[0] if len(fitting) == 1 else None

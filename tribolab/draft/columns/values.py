@@ -20,6 +20,7 @@ from tribolab.draft.columns.strokes import FREQUENCY, HALF_STROKE, STROKE
 from tribolab.draft.columns.words import matches, squeezed
 from tribolab.draft.file.header import DIMENSIONS, converts, escaped, is_unit
 from tribolab.draft.file.layout import Layout
+from tribolab.draft.vocabulary import WEIGHTS
 
 _MOST = 12  # a long preamble is not repeated in the dialect
 # "# rate: 10 Hz", "Set Force = -200", "Disc track radius used (mm)<tab>21.232"
@@ -190,7 +191,7 @@ def _value(said: re.Match[str]) -> DraftValue:
 def _of_phrase(phrase: Phrase) -> DraftValue | None:
     """Return what a sentence states, if it is one of the things that a run or profile needs."""
     dimension = next((d for d in DIMENSIONS if converts(phrase.unit, d)), None)
-    weight = phrase.unit in ("g", "kg")
+    weight = phrase.unit in WEIGHTS
     wanted = _WANTED.get("N" if weight else dimension or "", ())
     if not any(words.search(phrase.key) for words in wanted):
         return None

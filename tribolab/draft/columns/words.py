@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from tribolab.draft.columns.roles import role_of, without_role
 from tribolab.draft.file.header import converts, is_unit
-from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS, Word
+from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS, WEIGHTS, Word
 from tribolab.quantities import quantity
 
 _SPELT = {"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "ø": "oe", "µ": "mu", "μ": "mu"}
@@ -25,7 +25,7 @@ _LONGEST = 1000  # characters of a name that are looked at: searches take their 
 _AXIS = re.compile(r"stage|axis|achse|carriage|table|tisch|slider|schlitten|motor|gantry|platine")
 _WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［］【】]+)[）］】]$")
 # what a unit means for a quantity in this SI unit: weights for forces
-_MEANT = {"N": {"g": "gf", "kg": "kgf"}}
+_MEANT = {"N": WEIGHTS}
 # units as words of languages that the library of units does not know
 _UNIT_WORDS = {
     **dict.fromkeys(("sekunden", "sekunde", "sek", "secondes", "segundos", "secondi"), "s"),

@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from tribolab.draft.vocabulary import RUN_WORDS
+from tribolab.draft.vocabulary import RUN_WORDS, WEIGHTS
 from tribolab.errors import TribolabError
 from tribolab.turns import Counted
 from tribolab.units import conversion
@@ -33,7 +33,6 @@ _FURTHER = (
     *("ohm", "m**2", "m**3", "m**2/s", "m**3/s", "m**2/N", "W", "W/m**2", "A", "A s", "S"),
     *("farad", "kg", "kg/m**3", "S/m", "1/K", "T"),
 )
-_UNITS = {"g", "kg"}  # weights for forces: what they mean depends on the quantity
 
 
 class Heading(NamedTuple):
@@ -104,7 +103,7 @@ def is_unit(text: str) -> bool:
     >>> is_unit("mm/sec"), is_unit("°C"), is_unit("Fx"), is_unit("3")
     (True, True, False, False)
     """
-    return text in _UNITS or any(converts(text, dimension) for dimension in DIMENSIONS)
+    return text in WEIGHTS or any(converts(text, dimension) for dimension in DIMENSIONS)
 
 
 def measures_something(text: str) -> bool:
