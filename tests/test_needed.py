@@ -1,5 +1,6 @@
 """What workers import beforehand is there under its name, and loads no arrays of others."""
 
+import gc
 import subprocess
 import sys
 from importlib.util import find_spec
@@ -7,6 +8,7 @@ from importlib.util import find_spec
 import pytest
 
 from tribolab.app.needed import ANALYSIS, FILES, SIMULATION
+from tribolab.campaign.engine.pool import LastingPool
 
 _WORKER = """
 import importlib, sys
@@ -29,3 +31,9 @@ def test_a_module_that_workers_import_is_there(name):
 def test_the_workers_of_a_campaign_load_no_arrays_but_numpys():
     done = subprocess.run([sys.executable, "-c", _WORKER], capture_output=True, text=True)
     assert done.stdout.strip() == "[]", done.stderr
+
+
+def test_a_worker_looks_for_garbage_though_not_in_what_was_imported():
+    with LastingPool(1, ["numpy"]) as pool:
+        looks, left_alone = pool.submit(gc.isenabled), pool.submit(gc.get_freeze_count)
+        assert looks.result() and left_alone.result() > 10_000

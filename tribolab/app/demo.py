@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribolab.app.needed import ANALYSIS, SIMULATION
+from tribolab.app.quick import importing
 from tribolab.campaign.engine.executor import workers
 from tribolab.campaign.engine.pool import LastingPool
 
@@ -33,13 +34,14 @@ def run_demo(
         if isinstance(pool, LastingPool):
             pool.prepare()
         # only now, what is needed last among them: workers import the same, at the same time
-        from tribolab.app import plain  # noqa: F401
-        from tribolab.app.run import run_campaign
-        from tribolab.app.truth.known import compare_with_known, paper_of, write_comparison
-        from tribolab.campaign import pipeline  # noqa: F401
-        from tribolab.report import results  # noqa: F401
-        from tribolab.rig.campaign import simulate_campaign
-        from tribolab.studies.comparison import compare_with_paper
+        with importing():
+            from tribolab.app import plain  # noqa: F401
+            from tribolab.app.run import run_campaign
+            from tribolab.app.truth.known import compare_with_known, paper_of, write_comparison
+            from tribolab.campaign import pipeline  # noqa: F401
+            from tribolab.report import results  # noqa: F401
+            from tribolab.rig.campaign import simulate_campaign
+            from tribolab.studies.comparison import compare_with_paper
 
         campaign = folder / "campaign.toml"
         if not (campaign.is_file() and (folder / "truth" / "truth.json").is_file()):

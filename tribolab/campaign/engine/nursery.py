@@ -23,6 +23,9 @@ from tribolab.campaign.engine.processes import ONE_THREAD, Fresh, with_environme
 _NO_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}
 
 
+_FIRST = "tribolab.campaign.engine.imports"
+
+
 class Nursery(ForkServer):
     """The process that the workers of a pool are copies of; it ends with the pool.
 
@@ -40,7 +43,7 @@ class Nursery(ForkServer):
         # refuses to begin in a worker that still imports a script without its guard: at once, as
         # what such a worker leaves half begun nobody tidies up
         spawn.get_preparation_data("nursery")
-        self.set_forkserver_preload(list(modules))
+        self.set_forkserver_preload([_FIRST, *modules])
 
     def ensure_running(self) -> None:
         """Start it, unless it runs, with our own search path, and BLAS on one thread."""

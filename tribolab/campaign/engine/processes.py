@@ -94,6 +94,7 @@ def begin_worker(variables: Mapping[str, str]) -> None:
     # what arithmetic does with damaged numbers is found by checks, and told in words
     warnings.filterwarnings("ignore", category=RuntimeWarning)
     gc.freeze()  # what is imported stays: no use in looking through it for garbage
+    gc.enable()  # a nursery looks for none
     parent = multiprocessing.parent_process()
 
     def follow() -> None:
