@@ -252,3 +252,36 @@ def test_a_surf_file_of_one_line_is_a_profile(tmp_path):
     path = tmp_path / "profile.sur"
     path.write_bytes(surf(True, b"um", ny=1))
     assert dict(read_scans(path).sizes) == {"scan": 1, "x": 12}
+
+
+@pytest.mark.parametrize("mark", ["ISO", "BCR"])
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_sdf_of_the_standard_and_of_its_draft(tmp_path, mark, end):
+    counts = np.rint(HEIGHTS / 1e-10).astype(int)
+    head = {
+        "ManufacID": "MAKER", "CreateDate": "010220231200", "ModDate": "010220231200",
+        "NumPoints": 12, "NumProfiles": 7, "Xscale": "1e-6", "Yscale": "1e-6", "Zscale": "1e-10",
+        "Zresolution": -1, "Compression": 0, "DataType": 6, "CheckType": 0,
+    }  # fmt: skip
+    said = "".join(f"{key} = {value}\n" for key, value in head.items())
+    rows = "\n".join(" ".join(map(str, row)) for row in counts)
+    text = tmp_path / "text.sdf"
+    text.write_bytes(f"a{mark}-1.0\n{said}*\n{rows}\n*\n".replace("\n", end).encode())
+    packed = tmp_path / "packed.sdf"
+    packed.write_bytes(
+        f"b{mark}-1.0".encode()
+        + struct.pack("<10s12s12sHH4d3B", b"M", b"1", b"2", 12, 7, 1e-6, 1e-6, 1e-10, -1, 0, 6, 0)
+        + counts.astype("<i4").tobytes()
+    )
+    for path in (text, packed):
+        scan = read_scans(path)
+        np.testing.assert_allclose(scan.height.values, counts * 1e-10, atol=1e-18)
+        assert scan.attrs["pitch_m"] == pytest.approx(1e-6)
+
+
+def test_an_sdf_draft_that_is_cut_short_is_told_by_its_own_name(tmp_path):
+    path = tmp_path / "cut.sdf"
+    path.write_bytes(b"bBCR-1.0" + b"M" * 30)
+    with pytest.raises(ReadError) as told:
+        read_scans(path)
+    assert str(path) in str(told.value)

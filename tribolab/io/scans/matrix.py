@@ -23,7 +23,22 @@ _HEAD_LINES = 200  # above a matrix
 _FEWEST = 8  # columns of a matrix; fewer may be a table
 _ROWS = 4  # of one width tell a matrix
 _MARKS = frozenset(
-    ("", "bad", "nan", "-nan", "n/a", "na", "inf", "-inf", "null", "none", "invalid", "void")
+    (
+        "",
+        "bad",
+        "nan",
+        "-nan",
+        "n/a",
+        "na",
+        "inf",
+        "-inf",
+        "null",
+        "none",
+        "invalid",
+        "void",
+        "no data",
+        "nodata",
+    )
 )
 _SIGNS = frozenset("*-#?")
 _ENCODINGS = ("utf-8-sig", "cp932", "gb18030", "latin-1")

@@ -10,6 +10,7 @@ from tribolab.errors import ReadError
 from tribolab.io.scans.formats import NotSaidError, read_foreign
 from tribolab.io.scans.gauges import is_gauge, read_gauge
 from tribolab.io.scans.matrix import read_matrix
+from tribolab.io.scans.sdf import as_standard, is_sdf_draft
 from tribolab.io.scans.sur import is_sur, plain_sur
 from tribolab.io.scans.x3p import is_iso_xml, main_of, read_iso_xml, read_x3p
 from tribolab.io.scans.xml_values import is_xml, read_xml_values
@@ -43,12 +44,12 @@ def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) ->
     Notes
     -----
     Ours are those that SurfaceTopography 1.27 reads in part or not at all: x3p and its bare XML,
-    lists of values in XML, SMD and PRF text of soft gauges, packed Surf files, and matrices of
-    heights below lines that say their size.
+    lists of values in XML, SMD and PRF text of soft gauges, packed Surf files, SDF of the
+    standard's draft, and matrices of heights below lines that say their size.
     """
     with path.open("rb") as file:
         head = file.read(_HEAD)
-    inside = unpacked(path, head)
+    inside = as_standard(path) if is_sdf_draft(head) else unpacked(path, head)
     if inside != path:
         try:
             return read_undescribed(inside, x_unit, height_unit)

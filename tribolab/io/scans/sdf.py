@@ -1,0 +1,40 @@
+"""SDF files whose first bytes name the draft of the standard: ``aBCR-1.0``, ``bBCR-1.0``.
+
+Their layout is that of ``aISO-1.0`` and ``bISO-1.0``, which alone SurfaceTopography (1.27) knows.
+"""
+
+from __future__ import annotations
+
+import atexit
+import functools
+import shutil
+import tempfile
+from pathlib import Path
+
+_DRAFTS = {b"aBCR-1.0": b"aISO-1.0", b"bBCR-1.0": b"bISO-1.0"}
+_MARK = 8  # bytes
+
+
+def is_sdf_draft(head: bytes) -> bool:
+    """Whether a file's first bytes are those of the draft.
+
+    >>> is_sdf_draft(b"aBCR-1.0"), is_sdf_draft(b"aISO-1.0")
+    (True, False)
+    """
+    return head[:_MARK] in _DRAFTS
+
+
+def as_standard(path: Path) -> Path:
+    """Return a copy of such a file that bears the mark of the standard."""
+    state = path.stat()
+    return _copied(path.resolve(), state.st_size, state.st_mtime_ns)
+
+
+@functools.lru_cache(maxsize=8)
+def _copied(path: Path, size: int, modified: int) -> Path:
+    content = path.read_bytes()
+    folder = Path(tempfile.mkdtemp(prefix="tribolab-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    copy = folder / path.name
+    copy.write_bytes(_DRAFTS[content[:_MARK]] + content[_MARK:])
+    return copy
