@@ -119,7 +119,8 @@ MADE = {
 def written(folder, columns, spoil=None, time=""):
     """A raw file and its dialect as a planned run."""
     rows = np.column_stack(list(columns.values()))
-    lines = [",".join("" if np.isnan(v) else f"{v:.9g}" for v in row) for row in rows]
+    form = ",".join(["%.9g"] * len(columns))
+    lines = [(form % tuple(row)).replace("nan", "") for row in rows.tolist()]
     if spoil:
         spoil(lines)
     (folder / "long.csv").write_text("\n".join([",".join(columns), *lines]) + "\n")
