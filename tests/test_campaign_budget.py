@@ -105,6 +105,7 @@ def misses(friction, true):
     return (friction.friction_coefficient - np.abs(rows)).to_numpy()
 
 
+@pytest.mark.slow
 def test_half_loops_are_rid_of_two_degrees_and_say_so(tilted):
     results, true = tilted
     friction = table(results, "friction")
@@ -118,6 +119,7 @@ def test_half_loops_are_rid_of_two_degrees_and_say_so(tilted):
     )
 
 
+@pytest.mark.slow
 def test_one_direction_is_off_by_the_tilt_and_its_u95_holds_that(one_way, tilted):
     friction = table(one_way, "friction")
     miss, mu = misses(friction, tilted[1]), friction.friction_coefficient
@@ -127,6 +129,7 @@ def test_one_direction_is_off_by_the_tilt_and_its_u95_holds_that(one_way, tilted
     assert (friction.friction_coefficient_u > TILT * (1 + 0.8 * mu**2)).all()
 
 
+@pytest.mark.slow
 def test_every_file_of_the_results_says_what_its_uncertainty_holds(tilted):
     results, _ = tilted
     for file in sorted((results / "data").glob("*sb-s*.nc")):
@@ -143,6 +146,7 @@ def test_every_file_of_the_results_says_what_its_uncertainty_holds(tilted):
     assert "Nothing is stated of the calibration" not in page
 
 
+@pytest.mark.slow
 def test_the_fit_knows_load_and_radius_and_the_liquid_its_temperature(tilted):
     results, _ = tilted
     (file,) = (results / "data").glob("model_*.nc")
@@ -158,6 +162,7 @@ def test_the_fit_knows_load_and_radius_and_the_liquid_its_temperature(tilted):
     assert fit.attrs["shear_stress_total_error_Pa"] > 0.01 * fit.attrs["shear_stress_Pa"]
 
 
+@pytest.mark.slow
 def test_what_the_runs_state_of_load_and_radius_reaches_the_models_without_the_campaign_file(
     tilted, tmp_path
 ):

@@ -183,6 +183,7 @@ def test_a_matrix_of_heights_is_left_to_those_who_read_it(file, points, shared_d
     assert len(draft.cells[0]) == points[1]
 
 
+@pytest.mark.slow
 def test_every_text_file_of_the_collection_is_accounted_for(shared_data):
     """Prose has no table; any other text file is drafted or answered, and none is forgotten."""
     seen = {"run": 0, "scan": 0, "table": 0, "prose": 0}

@@ -296,6 +296,7 @@ print(sum(sizes))
 """
 
 
+@pytest.mark.slow
 def test_threads_read_one_after_the_other_as_the_library_stands_no_two(tmp_path):
     values = {f"signal_{k}": ("time", np.arange(100.0)) for k in range(20)}
     files = [write_groups({None: xr.Dataset(), "run": xr.Dataset(values)}, tmp_path / f"{k}.nc")

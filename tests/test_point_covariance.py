@@ -190,6 +190,7 @@ def test_inputs_that_are_not_known_are_said(errors, words):
         model_inputs(*GIVEN, COARSE, errors)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [0.06, 0.095, 0.105, 0.14])
 def test_a_verdict_on_a_misfit_near_the_limit_is_wrong_by_chance_alone(truth, size):
     """A model that misses by more is called sufficient, one that misses by less not, below 5 %."""

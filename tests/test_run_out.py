@@ -31,6 +31,7 @@ def held_and_width(estimates):
     return np.mean(np.abs(off) < 1.96 * sem), sem.mean() / np.sqrt(np.mean(off**2))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turns", [1.2, 3.3, 10.7])
 @pytest.mark.parametrize("memory", [0.0, 0.8])
 def test_the_error_holds_the_truth_and_is_no_wider_than_the_unfinished_turn(turns, memory):
