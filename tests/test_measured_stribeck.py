@@ -218,3 +218,27 @@ def test_the_entrainment_speed_may_be_the_abscissa():
     assert set(both["friction_coefficient"].dims) == {"medium", "rolling_speed"}
     with pytest.raises(AnalysisError, match="no 'temperature'"):
         measured_stribeck_curve([friction], over="temperature")
+
+
+def test_no_interval_is_shorter_than_the_standard_error_beside_it():
+    """Few observations may agree by chance far better than each of them is known."""
+    rng = np.random.default_rng(11)
+    held = 0
+    for _ in range(300):
+        runs = [
+            xr.Dataset(
+                {
+                    "sliding_speed": ("segment", [1e-3]),
+                    "friction_coefficient": ("segment", [0.3 + 0.01 * rng.standard_normal()]),
+                    "friction_coefficient_std": ("segment", [0.05]),
+                    "friction_coefficient_sem": ("segment", [0.01]),
+                }
+            )
+            for _ in range(3)
+        ]
+        curve = measured_stribeck_curve(runs).isel(sliding_speed=0)
+        dof = float(curve.friction_coefficient_dof)
+        wide = stats.t.ppf(0.975, dof) * float(curve.friction_coefficient_u)
+        assert wide >= float(curve.friction_coefficient_sem)
+        held += abs(float(curve.friction_coefficient) - 0.3) < wide
+    assert held >= 0.93 * 300

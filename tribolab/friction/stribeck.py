@@ -93,7 +93,9 @@ def measured_stribeck_curve(
     of freedom, but no fewer than 3: for two or three runs that disagree the error is a lower
     bound, so look at ``runs``. ``_u`` is that of Hartung and Knapp alone, with k - 1 degrees of
     freedom: t_0.975(k - 1) of it make a 95 % interval, and the standard error, which has such a
-    factor in it already, is for weights. With one run the spread between runs is unknown, and the
+    factor in it already, is for weights. Where observations agree better than their own errors
+    let them, which a few do by chance, that interval would be too short: ``_u`` is then
+    1/sqrt(sum w_i) with all degrees of freedom, if its interval is the wider one [3]_. With one run the spread between runs is unknown, and the
     error is that run's own.
 
     References
@@ -101,6 +103,8 @@ def measured_stribeck_curve(
     .. [1] DerSimonian and Laird (1986), Control. Clin. Trials 7, 177-188.
        doi:10.1016/0197-2456(86)90046-2
     .. [2] Hartung and Knapp (2001), Stat. Med. 20, 3875-3889. doi:10.1002/sim.1009
+    .. [3] Röver, Knapp and Friede (2015), BMC Med. Res. Methodol. 15, 99, on intervals that are
+       counterintuitively short. doi:10.1186/s12874-015-0091-1
 
     Examples
     --------
@@ -232,9 +236,11 @@ def _random_effects(
     spread = w @ (y - mean) ** 2 / ((y.size - 1) * w.sum())
     student = special.stdtrit(max(y.size - 1, FREEDOM), 0.995) / 3
     error = float(np.sqrt(max(1 / w.sum(), max(student, 1.0) ** 2 * spread)))
-    if not spread > 0:  # they agree to the last digit: nothing but their own errors is known
-        return float(mean), error, _Known(float(np.sqrt(1 / w.sum())), np.inf)
-    return float(mean), error, _Known(float(np.sqrt(spread)), y.size - 1.0)
+    own, scatter = np.sqrt([1 / w.sum(), spread])
+    # few that agree by chance are known no better than each of them is
+    if special.stdtrit(y.size - 1, 0.975) * scatter < special.ndtri(0.975) * own:
+        return float(mean), error, _Known(float(own), np.inf)
+    return float(mean), error, _Known(float(scatter), y.size - 1.0)
 
 
 def _combined(values: list[_Value]) -> tuple[float, ...]:
