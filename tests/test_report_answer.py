@@ -1,7 +1,12 @@
 """The answer that the page begins with: what was found, and what is missing and why."""
 
+from types import SimpleNamespace
+
 import pytest
 
+from tribolab.records.parts import CurveOutcome
+from tribolab.report.document.document import verdict
+from tribolab.report.live.curves import curve_label
 from tribolab.report.page.answer import cards
 from tribolab.report.page.in_short import in_short
 
@@ -130,3 +135,28 @@ def test_in_short_it_is_said_which_surface_lifts_off_last_and_where_the_model_fa
     (said,) = in_short({"curves": [curves[0], slow]})
     assert "highest speed" not in said
     assert in_short({"curves": [third, slow], "models": []}) == []
+
+
+def test_the_headline_does_not_mix_instruments():
+    def measured(instrument, low, high):
+        said = {"instrument": instrument, "value_min": low, "value_max": high}
+        counts = {"segments_found": 3, "segments_rejected": 0, "quantity": "friction_coefficient"}
+        counts["reused"] = False
+        return run(instrument, 31.0) | said | counts
+
+    runs = [measured("disc", 0.08, 0.15), measured("disc", 0.1, 0.2), measured("sled", 0.4, 0.5)]
+    assert verdict(runs).text.endswith("µ from 0.08 to 0.2 (disc) and 0.4 to 0.5 (sled)")
+    assert verdict(runs[:2]).text.endswith("µ from 0.08 to 0.2")
+    many = [measured(f"rig {k}", 0.1, 0.1 + 0.1 * k) for k in range(1, 6)]
+    assert verdict(many).text.endswith("µ from 0.1 to 0.6, of 5 instruments together")
+
+
+def test_curves_that_no_choice_of_load_parts_are_named_in_the_legend():
+    known = [
+        SimpleNamespace(outcome=CurveOutcome(name, "a", "oil", load, "", (name,), load_from=told))
+        for name, load, told in (("m", None, "varies"), ("s", 15.0, "stated"), ("t", 30.0, ""))
+    ]
+    several, stated, other = (curve.outcome for curve in known)
+    assert curve_label(several, known) == "measured, several loads"
+    assert curve_label(stated, known) == "measured, 15 N"
+    assert curve_label(stated, known[1:]) == curve_label(other, known[1:]) == "measured"

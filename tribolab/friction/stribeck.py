@@ -95,8 +95,8 @@ def measured_stribeck_curve(
     freedom: t_0.975(k - 1) of it make a 95 % interval, and the standard error, which has such a
     factor in it already, is for weights. Where observations agree better than their own errors
     let them, which a few do by chance, that interval would be too short: ``_u`` is then
-    1/sqrt(sum w_i) with all degrees of freedom, if its interval is the wider one [3]_. With one run the spread between runs is unknown, and the
-    error is that run's own.
+    1/sqrt(sum w_i) with all degrees of freedom, if its interval is the wider one [3]_. With one run
+    the spread between runs is unknown, and the error is that run's own.
 
     References
     ----------

@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
 BY_HAND = ("rejected", "accepted")  # what a person may decide on a run
 _HEAD = TypeAdapter(ReportHead)
+_INSTRUMENTS = 3  # whose ranges are told apart in the headline
 _LIBRARIES = ["numpy", "scipy", "pandas", "xarray", "netCDF4", "matplotlib"]
 
 
@@ -168,10 +169,10 @@ def verdict(
     for name in ("friction_coefficient", "half_loop", "friction_force"):
         if name in quantities:
             mine = [run for run in sound if run["quantity"] == name]
-            bounds = [run[key] for run in mine for key in ("value_min", "value_max")]
-            known = [b for b in bounds if b is not None]
+            known = _bounds(mine)
             ranges[name] = Extent(min(known), max(known))
-            parts.append(f"{SYMBOLS[name]} from {span(known, UNITS[name])}")
+            told = _ranges(mine, UNITS[name])
+            parts.append(f"{SYMBOLS[name]} {'from ' if ' to ' in told else ''}{told}")
     return CampaignVerdict(
         status=status,
         text="; ".join(parts),
@@ -190,6 +191,25 @@ def verdict(
 
 
 _BAD = ("fail", "error")
+
+
+def _bounds(runs: Iterable[Mapping[str, Any]]) -> list[float]:
+    bounds = [run[key] for run in runs for key in ("value_min", "value_max")]
+    return [bound for bound in bounds if bound is not None]
+
+
+def _ranges(runs: Sequence[Mapping[str, Any]], unit: str) -> str:
+    """Return what was measured, lowest to highest; of several instruments each for itself."""
+    apart: dict[str, list[Mapping[str, Any]]] = {}
+    for run in runs:
+        if run["value_min"] is not None:
+            apart.setdefault(str(run.get("instrument", "")), []).append(run)
+    if len(apart) == 1:
+        return span(_bounds(runs), unit)
+    if len(apart) > _INSTRUMENTS or not all(apart):
+        return f"{span(_bounds(runs), unit)}, of {many(len(apart), 'instrument')} together"
+    own = [f"{span(_bounds(mine), unit)} ({name})" for name, mine in apart.items()]
+    return f"{', '.join(own[:-1])} and {own[-1]}"
 
 
 def brief_run(run: Mapping[str, Any]) -> Json:

@@ -18,7 +18,7 @@ from tribolab.report.live.curves import (
 from tribolab.report.live.figure import Axis, Labels, LiveFigure, Panel, Series, places
 from tribolab.report.live.points import RunPoint
 from tribolab.report.plain import plain_speed
-from tribolab.words import force_text, many, number, span
+from tribolab.words import force_text, load_text, many, number, span
 
 _SHARE = Axis("µ over its highest value")
 _HALF = 0.5
@@ -33,14 +33,19 @@ def comparisons(known: Friction) -> list[LiveFigure]:
     return [*_falling(known, colours), _every_run(known, colours)]
 
 
+def _load(curve: CurveRecord) -> str:
+    force = curve.outcome.normal_force
+    return load_text(None, curve.outcome.load_from) if force is None else force_text(force)
+
+
 def _falling(known: Friction, colours: Mapping[str, int]) -> list[LiveFigure]:
     """Return at which speed each curve leaves its highest friction; of one alone nothing."""
     alone = len(systems(known)) == 1  # then loads are compared, and have the colours
-    loads = places(force_text(curve.outcome.normal_force) for curve in known.curves)
+    loads = places(map(_load, known.curves))
     series = []
     for curve in known.curves:
         outcome = curve.outcome
-        load = force_text(outcome.normal_force)
+        load = _load(curve)
         name = load if alone else system_name(outcome.surface, outcome.medium, outcome.run_names)
         drawn = _shares(curve, name, loads[load] if alone else colours[outcome.surface])
         series += [drawn] if drawn else []

@@ -15,7 +15,7 @@ from tribolab.report.live.figure import Axis, Labels, LiveFigure, Panel, Series,
 from tribolab.report.live.points import RunPoint, at_speed, point_error, told_point
 from tribolab.report.live.record import Band, Missed
 from tribolab.report.plain import listed, plain_speed
-from tribolab.words import is_dry, many, number, span, speeds
+from tribolab.words import is_dry, load_text, many, number, span, speeds
 
 if TYPE_CHECKING:
     from tribolab.records.parts import Row
@@ -91,7 +91,7 @@ def _card(
         model = known.models.get(curve.outcome.name)
         if model is not None and _has_stress(model):
             series += _modelled(known, model, curve, number_, "model")
-        series.append(_measured(known, curve, number_, "measured"))
+        series.append(_measured(known, curve, number_, curve_label(curve.outcome, curves)))
         series += _as_found(curve)
     name = system_name(surface, medium, curves[0].outcome.run_names)
     rows = [row for curve in curves for row in curve.points]
@@ -109,6 +109,16 @@ def _card(
         width="card",
         height=230,
     )
+
+
+def curve_label(curve: CurveOutcome, curves: Sequence[CurveRecord]) -> str:
+    """Return what a legend calls a curve: which it is where no choice of load parts them."""
+    loads = [other.outcome.normal_force for other in curves]
+    if len(curves) == 1 or (None not in loads and len(set(loads)) == len(loads)):
+        return "measured"
+    if not (curve.surface or curve.medium):
+        return ", ".join(curve.run_names[:3])
+    return f"measured, {load_text(curve.normal_force, curve.load_from)}"
 
 
 def labels_of(curve: CurveOutcome) -> Labels:
