@@ -141,11 +141,20 @@ def _shape(scan: xr.Dataset) -> tuple[Any, ...]:
     return tuple(scan.sizes.items()), extent
 
 
+def _said_of(label: str, message: str) -> str:
+    """Return a message without the file's name, which the label before it ends with."""
+    name, colon, rest = message.partition(": ")
+    return rest if colon and label.endswith(name) else message
+
+
 def _objections(label: str, said: Findings) -> list[Finding]:
     return [
         Finding(
             "note" if row["status"] == "pass" else row["status"],
-            f"scan {label}: {row['check']}: {row['message']}. {row['cure']}".strip(". ") + ".",
+            f"scan {label}: {row['check']}: {_said_of(label, row['message'])}. {row['cure']}".strip(
+                ". "
+            )
+            + ".",
             row["check"],
         )
         for row in said.rows
