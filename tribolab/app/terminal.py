@@ -17,7 +17,7 @@ from tribolab.errors import harmless
 from tribolab.records.part_records import CurveRecord, SurfaceRecord
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome, number_of
 from tribolab.records.run_record import RunRecord
-from tribolab.words import Count, load_text
+from tribolab.words import LOAD_MEASURED, LOAD_VARIES, Count, load_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -67,8 +67,10 @@ def outcome_table(outcome: Outcome) -> Table:
     for heading in (*_COUNTS, "speeds", "friction coefficient", "standard error"):
         table.add_column(heading, justify="right")
     for curve in done:
-        nothing = curve.normal_force is None and not curve.load_from
-        load = _NONE if nothing else load_text(curve.normal_force, curve.load_from)
+        load = load_text(None, curve.load_from) if curve.load_from == LOAD_VARIES else _NONE
+        if curve.normal_force is not None:
+            measured = " measured" if curve.load_from == LOAD_MEASURED else ""
+            load = f"{curve.normal_force:g} N{measured}"
         known = (curve.surface or _NONE, curve.medium or _NONE, load)
         run = curve.run_names[0] if len(curve.run_names) == 1 else _NONE
         first = (run,) if nameless else ()
