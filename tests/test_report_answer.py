@@ -26,7 +26,7 @@ def report(runs, findings=(), **fit):
     """A report with a curve at 31 N, a plateau of 1.1 that falls to 0.2."""
     points = [
         {"sliding_speed_m_s": v, "friction_coefficient": mu} | SEM
-        for v, mu in ((0.999e-6, 1.1), (1e-4, 1.05), (1e-2, 0.2))
+        for v, mu in ((0.999e-6, 1.1), (1e-4, 1.07), (1e-2, 0.2))
     ]
     labels = {"surface": "Sb-R", "medium": "glycerol", "nominal_normal_force_N": 31.0}
     labels["load_from"] = "stated"
@@ -60,15 +60,23 @@ def test_a_card_says_shape_stress_mode_and_what_the_model_misses():
     words = "the model describes the curve within the errors; largest at 1 mm/s"
     (card,) = cards(report([], **stress, shear_stress_high_Pa=0.95e6, judgement=words))
     (found,) = card.found
-    # half of 1.1 lies between the last two points: 100 um/s * 100^((1.05 - 0.55) / 0.85)
+    # half of 1.1 lies between the last two points: 100 um/s * 100^((1.07 - 0.55) / 0.87)
     assert found.sentences == (
-        "Plateau of µ = 1.100 ± 0.010 up to 100 µm/s; half of it at 1.5 mm/s; lowest "
+        "Plateau of µ = 1.100 ± 0.010 up to 100 µm/s; half of it at 1.6 mm/s; lowest "
         "0.200 ± 0.010 at 10 mm/s, the fastest speed (± between runs).",
         "Steady sliding, no stick-slip at any speed.",
         "Shear stress 0.880 MPa (95 %: 0.800 to 0.950 MPa).",
         "The model describes the curve within the errors.",
     )
     assert card.missing == ()
+
+
+def test_a_plateau_is_of_points_that_agree_within_their_errors():
+    one = report([])
+    for row in one["curves"][0]["points"]:
+        row["friction_coefficient_sem"] = 0.002
+    (card,) = cards(one)
+    assert card.found[0].sentences[0].startswith("Highest µ = 1.100 ± 0.002 at 1 µm/s; half")
 
 
 @pytest.mark.parametrize(

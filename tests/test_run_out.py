@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 import tribolab as tl
-from tribolab.friction.run_out import hidden_by_part, turned
+from tribolab.friction.run_out import hidden_by_part, in_step, turned
 from tribolab.friction.statistics import estimates_of
 
 SAMPLES, MU = 600, 0.2
@@ -39,6 +39,20 @@ def test_the_error_holds_the_truth_and_is_no_wider_than_the_unfinished_turn(turn
     _, bare = held_and_width(told(turns, 0.0, [42, int(10 * turns)], memory=memory))
     assert held >= 0.93
     assert width < max(1.5, 1.15 * bare)  # what the memory of the noise costs, the wave does not
+
+
+@pytest.mark.parametrize("turns", [24.0, 48.0, 96.6])
+def test_many_turns_do_not_hide_slow_noise(turns):
+    """Whole turns in few stretches each look like a line, beside which an error was too small."""
+    held, width = held_and_width(told(turns, 0.04, [45, int(turns)], memory=0.9))
+    _, bare = held_and_width(told(turns, 0.0, [45, int(turns)], memory=0.9))
+    assert held >= 0.93
+    assert width < 1.15 * bare
+
+
+def test_a_speed_that_is_recorded_a_little_wrong_is_mended():
+    angle = 2 * np.pi * 48 * PLACE
+    assert in_step(np.sin(1.004 * angle), angle)[-1] == pytest.approx(1.004 * angle[-1], rel=2e-3)
 
 
 @pytest.mark.parametrize("amplitude", [0.01, 0.05])

@@ -9,6 +9,12 @@ the error of the mean is that of the rest, and beside it what a wave of this siz
 leaves in the mean over an unfinished turn, ``A abs(sin(pi k) / (pi k)) / sqrt(2)`` after k turns.
 A wave is believed where it stands far above the spectrum of what is left.
 
+Of more than a sixth as many turns as a record has stretches, the stretches do not show the wave's
+course, and what they keep of it looks like a line beside which slow noise is overlooked. There the
+waves are fitted to shorter stretches, `PER_TURN` of each turn, and taken out whether they stand out
+or not: they are far from what moves the mean. Whose speed was recorded up to `SPEED_OFF` wrong, the
+wave would run out of step over many turns; the angle is stretched to where the wave is largest.
+
 Less than a turn tells neither the size of the wave nor its middle: the error is widened to what
 the part that is seen may hide in the worst case, half a turn about a crest.
 
@@ -20,6 +26,7 @@ References
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -27,6 +34,9 @@ import numpy as np
 MOST = 40.0  # turns in a record: of more, each stretch of time holds half a turn
 TWICE = 2.0  # turns from which on a wave twice per turn is looked for, too
 LEAST = 0.25  # of a turn: less is taken for as much
+PER_TURN, LEAST_PER_TURN = 8, 4  # stretches of each of many turns
+FINEST = 6144  # stretches: of more turns, 16 and more are averaged in each of 96
+SPEED_OFF = 0.01  # a set speed that is given as the measured one is as good as this
 CLEAR = 12.0  # a wave so much above the spectrum beside it is no noise: chance e**-12
 
 
@@ -105,6 +115,40 @@ def fitted_waves(blocks: np.ndarray, angle: np.ndarray) -> list[Wave]:
         amplitude = float(np.hypot(*size[own]))
         waves.append(Wave(design[:, own] @ size[own], amplitude, order * turns))
     return waves
+
+
+def stretches_for_many_turns(turns: float, coarse: int, samples: int) -> int:
+    """Return how many stretches show the course of many turns, a multiple of the coarse ones.
+
+    Parameters
+    ----------
+    turns, coarse, samples
+        Of a record. 0 where the coarse ones show it, too, or the samples do not.
+
+    Examples
+    --------
+    >>> stretches_for_many_turns(48.0, 96, 1440), stretches_for_many_turns(10.0, 96, 1440)
+    (384, 0)
+    """
+    if not turns > coarse / 6:
+        return 0
+    finer = min(math.ceil(PER_TURN * turns / coarse), min(samples, FINEST) // coarse)
+    return finer * coarse if finer * coarse >= LEAST_PER_TURN * turns else 0
+
+
+def in_step(blocks: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Return the angle [rad], stretched by up to `SPEED_OFF` to where its wave is largest.
+
+    Parameters
+    ----------
+    blocks, angle
+        Means of the signal and of the angle over equal stretches of time (stretch).
+    """
+    steps = math.ceil(4 * SPEED_OFF * turns_of(angle))  # by a quarter of a turn each
+    stretched = 1 + np.linspace(-SPEED_OFF, SPEED_OFF, 2 * steps + 1)
+    size = np.abs(np.exp(1j * np.outer(stretched, angle)) @ (blocks - blocks.mean()))
+    best: np.ndarray = stretched[size.argmax()] * angle
+    return best
 
 
 def turns_of(angle: np.ndarray) -> float:

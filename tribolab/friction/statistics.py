@@ -37,7 +37,14 @@ import numpy as np
 from scipy import special
 
 from tribolab.friction.memory import errors_with_memory
-from tribolab.friction.run_out import MOST, fitted_waves, hidden_by_part, turns_of
+from tribolab.friction.run_out import (
+    MOST,
+    fitted_waves,
+    hidden_by_part,
+    in_step,
+    stretches_for_many_turns,
+    turns_of,
+)
 
 BLOCKS = 96  # stretches of a record; more resolve no slower memory
 ORDER = 20  # highest order: as long as one of five teeth of a saw
@@ -146,6 +153,8 @@ class _Record(NamedTuple):
     duration: float
     blocks: np.ndarray
     angle: np.ndarray  # of the rig's rotation over the same stretches [rad]; empty if unknown
+    beside: float  # standard deviation beside the waves of many turns
+    left: float = 0.0  # standard error that many turns leave in the mean
 
 
 def _described(
@@ -174,7 +183,23 @@ def _described(
         return Estimate(mean, std, std / np.sqrt(n), n, n, duration / (2 * n), 0.0, 0.0, 1.0)
     known = angle is not None and bool(np.isfinite(angle[-1]))
     turned = on_grid(time, angle, blocks.size) if angle is not None and known else np.empty(0)
-    return _Record(mean, std, n, duration, blocks, turned)
+    record = _Record(mean, std, n, duration, blocks, turned, std)
+    fine = stretches_for_many_turns(turns_of(turned), blocks.size, n)
+    if not fine or angle is None:
+        return record
+    return _without_many_turns(record, on_grid(time, values, fine), on_grid(time, angle, fine))
+
+
+def _without_many_turns(record: _Record, fine: np.ndarray, angle: np.ndarray) -> _Record:
+    """Take out of a record what repeats with each of many turns, seen in finer stretches."""
+    waves = fitted_waves(fine, in_step(fine, angle))
+    repeated = np.sum([wave.signal for wave in waves], axis=0)
+    variance = max(record.std**2 - float(repeated.var()), 1e-6 * record.std**2)
+    return record._replace(
+        blocks=(fine - repeated).reshape(record.blocks.size, -1).mean(axis=1),
+        beside=float(np.sqrt(variance)),
+        left=float(np.sqrt(sum(wave.left**2 for wave in waves))),
+    )
 
 
 def _with_errors(records: list[_Record]) -> list[Estimate]:
@@ -191,10 +216,10 @@ def _with_errors(records: list[_Record]) -> list[Estimate]:
     slow[calm] = errors_with_memory(calmed[calm])
     p_values = _p_values(lines, power[count:])
     out = []
-    for k, (mean, std, n, duration, own, angle) in enumerate(records):
+    for k, (mean, std, n, duration, own, angle, beside, _) in enumerate(records):
         # what turns leave aside, as many samples as that part of the scatter asks for
         share = min(float(calmed[k].std() / own.std()), 1.0)
-        effective = float(np.clip((std * share / plain[k]) ** 2, 1.0, n))
+        effective = float(np.clip((beside * share / plain[k]) ** 2, 1.0, n))
         error = max(float(sem[k]), float(plain[k]) * student_widening(effective), float(slow[k]))
         if left[k] > 0:
             error = float(np.hypot(error, left[k]))
@@ -219,7 +244,8 @@ def _with_errors(records: list[_Record]) -> list[Estimate]:
 
 def _without_turns(records: list[_Record]) -> tuple[np.ndarray, np.ndarray]:
     """Give the stretches without what repeats with each turn, and the error that it leaves."""
-    blocks, left = np.stack([record.blocks for record in records]), np.zeros(len(records))
+    blocks = np.stack([record.blocks for record in records])
+    left = np.array([record.left for record in records])
     turns = np.array([turns_of(record.angle) for record in records])
     looked = np.flatnonzero((turns > 0) & (turns <= min(MOST, blocks.shape[1] / 6)))
     if not looked.size or blocks.shape[1] < 2 * ORDER:

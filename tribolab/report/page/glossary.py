@@ -20,8 +20,9 @@ GLOSSARY: dict[str, str] = {
     "repeats and what is stated of the calibration. Without a calibration it is statistical only.",
     "Degrees of freedom": "How much an uncertainty rests on, by Welch and Satterthwaite: of few, "
     "Student's t widens U95; ∞ where it does not hang on few repeats.",
-    "Plateau": "Range of slow speeds in which friction stays within a tenth of its highest value: "
-    "the solids touch and the liquid carries nothing.",
+    "Plateau": "Range of slow speeds in which friction stays within a tenth of its highest value "
+    "and differs from it by no more than their errors allow: the solids touch and the liquid "
+    "carries nothing.",
     "Lift-off": "The liquid between the surfaces carries more and more of the load as they move "
     "faster, and friction falls. Told by the speed at which half of the highest friction is left.",
     "Segment": "A stretch of a run at constant speed in one direction: one stroke.",

@@ -98,13 +98,21 @@ def _mu(row: Mapping[str, Any]) -> str:
 
 
 def _plateau(known: Sequence[Mapping[str, Any]], high: Mapping[str, Any]) -> str:
-    top = high["friction_coefficient"]
     at = known.index(high)
-    near = [row for row in known[at:] if row["friction_coefficient"] >= _NEAR * top]
-    slow = all(row["friction_coefficient"] >= _NEAR * top for row in known[: at + 1])
+    near = list(itertools.takewhile(lambda row: _as_high(row, high), known[at:]))
+    slow = all(_as_high(row, high) for row in known[:at])
     if slow and len(near) + at > 1:
         return f"Plateau of µ = {_mu(high)} up to {plain_speed(near[-1]['sliding_speed_m_s'])}"
     return f"Highest µ = {_mu(high)} at {plain_speed(high['sliding_speed_m_s'])}"
+
+
+def _as_high(row: Mapping[str, Any], high: Mapping[str, Any]) -> bool:
+    """Whether a point belongs to the plateau of the highest: near it, and within their errors."""
+    lower = high["friction_coefficient"] - row["friction_coefficient"]
+    if lower > (1 - _NEAR) * high["friction_coefficient"]:
+        return False
+    errors = [point_error(each, ()).size for each in (row, high)]
+    return None in errors or lower <= _SURE * math.hypot(*(error or 0.0 for error in errors))
 
 
 def _half(known: Sequence[Mapping[str, Any]], high: Mapping[str, Any]) -> str:
