@@ -1,5 +1,6 @@
 """The house: imports point down only, nothing runs in circles, and importing tribolab is cheap."""
 
+import ast
 import subprocess
 import sys
 from pathlib import Path
@@ -50,6 +51,37 @@ def test_an_import_upwards_a_circle_and_one_of_the_public_face_are_found(tmp_pat
     assert "tribolab.campaign.settings is not allowed to import tribolab.campaign.runs" in said
     assert "No circles, in packages and between them BROKEN" in said
     assert "Nothing below the face imports the public names BROKEN" in said
+
+
+def unexplained(path: Path) -> list[str]:
+    """Imports within functions, the first of each block, without a word beside or above them."""
+    text = path.read_text("utf-8")
+    lines = text.splitlines()
+    late = []
+    for function in ast.walk(ast.parse(text)):
+        if not isinstance(function, ast.FunctionDef):
+            continue
+        bodies = (getattr(node, "body", None) for node in ast.walk(function))
+        for body in (body for body in bodies if isinstance(body, list)):
+            imports = [isinstance(statement, ast.Import | ast.ImportFrom) for statement in body]
+            late += [
+                statement.lineno
+                for statement, here, before in zip(body, imports, [False, *imports], strict=False)
+                if here and not before
+            ]
+    return [
+        f"{path.name} {number}: {lines[number - 1].strip()}"
+        for number in sorted(set(late))
+        if "#" not in lines[number - 1] and not lines[number - 2].strip().startswith("#")
+    ]
+
+
+def test_an_import_within_a_function_has_its_reason_above_it(tmp_path):
+    late = [text for path in (PROJECT / "tribolab").rglob("*.py") for text in unexplained(path)]
+    assert late == []
+    made = tmp_path / "made.py"
+    made.write_text("def f():\n    import this\n\n    f()\n    # late: long\n    import that\n")
+    assert unexplained(made) == ["made.py 2: import this"]
 
 
 def test_every_room_stands_in_the_plan():

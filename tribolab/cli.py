@@ -31,6 +31,7 @@ app = typer.Typer(
 
 def _version(asked: bool) -> None:
     if asked:
+        # late: looks the installed package up
         from tribolab.version import __version__
 
         say(f"tribolab {__version__}")

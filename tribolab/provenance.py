@@ -38,6 +38,7 @@ def as_text(path: str | Path) -> str:
 
 def history_line(action: str) -> str:
     """Return one line for the ``history`` attribute: time in UTC, version, what was done."""
+    # late: looks the installed package up
     from tribolab.version import __version__
 
     now = dt.datetime.now(dt.UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
@@ -68,6 +69,7 @@ def made(
     >>> sorted(made("contact of the reference system", source="Xu et al. (2026)"))
     ['Conventions', 'history', 'source', 'tribolab_version']
     """
+    # late: looks the installed package up
     from tribolab.version import __version__
 
     attrs = {

@@ -193,6 +193,7 @@ def _dims(value: Any) -> tuple[Hashable, ...]:
 
 def _along(function: Callable[..., Any], given: Arguments, dim: Hashable) -> Any:
     """Call a function for each place along a dim, and put the results together."""
+    # late: xarray takes long to load
     import xarray as xr
 
     having = {name: value for name, value in given.items() if dim in getattr(value, "dims", ())}
@@ -228,6 +229,7 @@ def _cut(value: Any) -> Any:
 
 
 def _array(result: Any, who: str) -> Any:
+    # late: xarray takes long to load
     import xarray as xr
 
     if np.ndim(result):

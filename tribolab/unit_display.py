@@ -23,6 +23,7 @@ def show_units() -> None:
     Without a notebook nothing happens. `import tribolab` does it. What others made is shown as
     xarray shows it.
     """
+    # late: IPython takes long to load
     from IPython.core.getipython import get_ipython
 
     shell = get_ipython()
@@ -67,6 +68,7 @@ def with_units(data: xr.Dataset | xr.DataArray) -> str:
 
 
 def _is_ours(data: xr.Dataset | xr.DataArray) -> bool:
+    # late: starting stays quick
     from tribolab.quantities import QUANTITIES
 
     own: Any = data.data_vars if hasattr(data, "data_vars") else {data.name: data}

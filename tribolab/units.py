@@ -86,6 +86,7 @@ _USUAL = {
 @functools.lru_cache(maxsize=1)
 def registry() -> pint.UnitRegistry[float]:
     """Return the one pint registry, made when first asked for."""
+    # late: pint takes long to load
     import pint
 
     return pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
@@ -182,6 +183,7 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
     if counted and si_unit != (plain := f"1/{counted.per}"):  # seldom written, as "mm/s/mm" is
         scale = conversion(unit, plain, "nothing")[0]
         return scale * conversion(plain, si_unit, bare)[0], 0.0
+    # late: pint takes long to load
     import pint
 
     ureg = registry()
@@ -207,6 +209,7 @@ def base_unit(unit: str) -> str:
     >>> base_unit("N mm")
     'kg*m**2/s**2'
     """
+    # late: pint takes long to load
     import pint
 
     try:

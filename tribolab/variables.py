@@ -37,6 +37,7 @@ def variables(data: xr.Dataset | xr.DataArray) -> pd.DataFrame:
     >>> variables(run).loc["sliding_velocity", ["meaning", "unit", "dims"]].tolist()
     ['sliding velocity, signed', 'm/s', 'time (1000)']
     """
+    # late: pandas takes long to load
     import pandas as pd
     import xarray as xr
 

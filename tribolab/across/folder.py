@@ -76,6 +76,7 @@ class Folder:
 
     def table(self, name: str) -> pd.DataFrame | None:
         """Return a table; None where the results have none of this name."""
+        # late: starting stays quick
         from tribolab.report import tables
 
         path = self.path / "tables" / f"{name}.csv"

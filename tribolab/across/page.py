@@ -37,6 +37,7 @@ class Picture:
     @property
     def address(self) -> str:
         """The figure as an address that holds it."""
+        # late: starting stays quick
         from tribolab.plot.look.style import svg
 
         return data_address(svg(self.figure))

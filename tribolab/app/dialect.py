@@ -208,6 +208,7 @@ def try_on(files: Sequence[Path], dialect: Path, kind: str) -> list[str]:
 
 
 def _run_said(file: Path, dialect: Path) -> str:
+    # late: starting stays quick
     from tribolab.friction.coefficient.coefficient import friction_coefficient
     from tribolab.friction.segments.find import find_segments
     from tribolab.io.runs import read_run
@@ -236,6 +237,7 @@ def _run_said(file: Path, dialect: Path) -> str:
 
 
 def _scan_said(file: Path, dialect: Path) -> str:
+    # late: starting stays quick
     from tribolab.draft.scans import read_scans
 
     height = read_scans(file, dialect)["height"]

@@ -96,6 +96,7 @@ class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]
 
 def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, Any]:
     """Read the traces of a scan; what turns out to be none is told about as a run would be."""
+    # late: starting stays quick
     from tribolab.draft.scans import read_traces
 
     try:
@@ -147,6 +148,7 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
 
 def _roughness_lines(scan: xr.Dataset) -> list[str]:
     """Say how rough it is: with the cut-off that instruments apply, and with none."""
+    # late: starting stays quick
     from tribolab.surface.form import remove_form
     from tribolab.surface.roughness import primary_roughness, roughness_parameters
 

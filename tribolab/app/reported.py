@@ -9,6 +9,7 @@ from typing import Annotated, NoReturn
 import typer
 
 from tribolab.app.streams import Terminated, say
+from tribolab.errors import ConfigError, TribolabError, UnitError
 
 USAGE, UNREADABLE, INTERRUPTED = 2, 3, 130
 
@@ -25,8 +26,6 @@ Jobs = Annotated[
 @contextlib.contextmanager
 def reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
     """Turn an error into one short message on stderr, for who reads it, and an exit code."""
-    from tribolab.errors import ConfigError, TribolabError, UnitError
-
     try:
         yield
     except (ConfigError, UnitError) as error:
@@ -41,6 +40,7 @@ def reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
     except typer.Abort:
         fail("stopped at a question without an answer: nothing is written", INTERRUPTED, debug)
     except Exception as error:  # a mistake of ours: said in one line, shown in full on demand
+        # late: starting stays quick
         from tribolab.words import explain
 
         fail(f"{explain(error)[0]} (--debug shows where)", UNREADABLE, debug)

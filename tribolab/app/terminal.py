@@ -230,6 +230,7 @@ def foreign_lines(outcome: Outcome) -> list[str]:
 
 def failure_lines(outcome: Outcome) -> list[str]:
     """Say which runs, surfaces, scans and models failed and why, and what the file may say."""
+    # late: starting stays quick
     from tribolab.records.mode_record import condition
 
     failed = list(outcome.lost_decisions)
@@ -246,6 +247,7 @@ def failure_lines(outcome: Outcome) -> list[str]:
 
 def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
     """Say how well truth and paper were found, where to look and what to do next."""
+    # late: starting stays quick
     from tribolab.studies.tally import tell_statuses
 
     c, folder, results = compared.runs, compared.folder, outcome.folder
@@ -287,6 +289,7 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
 
 def _not_described(results: Path) -> str:
     """Say in brackets how many curves of which surface the model does not describe."""
+    # late: starting stays quick
     from tribolab.records.model_words import is_described
     from tribolab.report import tables
 
@@ -310,6 +313,7 @@ def paper_lines(folder: Path, table: pd.DataFrame) -> list[str]:
     table
         Published numbers beside computed ones.
     """
+    # late: starting stays quick
     from tribolab.studies.tally import tell_statuses
     from tribolab.studies.verdict import DIFFERS
 

@@ -142,6 +142,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
     TribolabError
         If the runs make no curve.
     """
+    # late: starting stays quick
     from tribolab.friction.coefficient.repeatability import run_levels
     from tribolab.friction.oscillation.slip_curve import NEEDED, stick_slip_curve
     from tribolab.io.netcdf import read_groups
@@ -189,6 +190,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
 
 def _with_budget(frictions: list[xr.Dataset]) -> tuple[xr.Dataset, Mapping[str, Known]]:
     """Combine runs into a curve whose points have their whole uncertainty; and what is stated."""
+    # late: starting stays quick
     from tribolab.metrology.budget import uncertainty_budget
 
     budget = uncertainty_budget(frictions)
@@ -197,6 +199,7 @@ def _with_budget(frictions: list[xr.Dataset]) -> tuple[xr.Dataset, Mapping[str, 
 
 def _model_inputs(frictions: Sequence[xr.Dataset]) -> dict[str, float]:
     """Return what the runs state of what a model takes as given; of several, the largest."""
+    # late: starting stays quick
     from tribolab.metrology.budget import known_uncertainties
 
     stated = [known_uncertainties(friction) for friction in frictions]
@@ -209,6 +212,7 @@ def _model_inputs(frictions: Sequence[xr.Dataset]) -> dict[str, float]:
 
 def _as_found(task: CurveTask) -> xr.Dataset | None:
     """Return the curve as it would be without a person's decisions; None if nobody decided."""
+    # late: starting stays quick
     from tribolab.io.netcdf import read_groups
 
     if not task.found_files:

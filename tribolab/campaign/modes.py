@@ -130,6 +130,7 @@ def judge_mode(task: ModeTask) -> ModeRecord:
     TribolabError
         If a data file cannot be read.
     """
+    # late: starting stays quick
     from tribolab.friction.oscillation.waveform import oscillating
     from tribolab.mode.verdict import sliding_mode
 

@@ -89,6 +89,7 @@ def _bracketed(
     close: float,
 ) -> Root:
     """Find roots between two ends by Chandrupatla's method."""
+    # late: scipy takes long to load
     from scipy.optimize.elementwise import find_root
 
     root = find_root(

@@ -68,6 +68,7 @@ def holds_run(path: Path, *, by_name: bool = True) -> bool:
 
 def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     """Return the dialect that a file's own header makes; else say what it leaves open."""
+    # late: starting stays quick
     from tribolab.draft.dialect.draft import HEIGHTS
     from tribolab.draft.dialect.questions import GuessedError, lacks_friction, missing, questions
 
@@ -99,12 +100,14 @@ def draft_of(path: Path) -> Draft | None:
 
 @functools.lru_cache(maxsize=1)  # whether it is a run is asked just before it is read
 def _draft_as_it_was(path: Path, size: int, changed: int) -> Draft:
+    # late: starting stays quick
     from tribolab.draft.dialect.draft import draft_dialect
 
     return draft_dialect(path)
 
 
 def _told(path: Path) -> dict[str, str]:
+    # late: starting stays quick
     from tribolab.draft.dialect.questions import how_to_keep
 
     return {"instrument": DRAFTED, "to_keep_it": how_to_keep(path)}

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from scipy import stats
 
 from tribolab.errors import AnalysisError, Cure
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 UNITS = {"viscosity": "Pa s", "youngs_modulus": "Pa"}  # of what may be fitted besides
 
@@ -163,8 +160,6 @@ class ShearStressFit:
         of the spectrum is not known there is no such interval, and half the statistical one stands
         there instead.
         """
-        import pandas as pd
-
         half = self.statistical_half_interval
         if self.spectrum_scanned and self.spectrum_error is None:
             ends = [("statistical_half_interval", half, "Pa", "half of it, spectrum as given")]

@@ -164,6 +164,7 @@ def _speed_from(dialect: Dialect) -> str:
 
 def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> Json:
     """Provenance, and what else the run should know of its files."""
+    # late: looks the installed package up
     from tribolab.version import __version__
 
     labels = {name: label for content in contents for name, label in content.labels.items()}

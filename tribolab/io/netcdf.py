@@ -120,6 +120,7 @@ def write_groups(groups: Mapping[str | None, xr.Dataset], path: str | Path) -> P
 
 
 def _write(path: Path, groups: Mapping[str | None, xr.Dataset], mode: Literal["w", "a"]) -> Path:
+    # late: netCDF4 takes long to load
     import netCDF4
 
     try:
@@ -168,6 +169,7 @@ def opened(path: str | Path) -> Iterator[netCDF4.Dataset]:
     OSError
         If there is no such file, or it is no netCDF.
     """
+    # late: netCDF4 takes long to load
     import netCDF4
 
     with _LIBRARY, _plain_name(Path(path)) as plain, netCDF4.Dataset(plain) as file:

@@ -43,6 +43,7 @@ def read_own_run(path: Path, content: Path | None = None) -> xr.Dataset:
     ReadError
         If it cannot be read, has no time, or a quantity of a run is no number along time.
     """
+    # late: starting stays quick
     from tribolab.io.netcdf import read_netcdf
 
     run = read_netcdf(content or path, group="run?")

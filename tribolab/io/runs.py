@@ -61,6 +61,7 @@ def read_run(
     shift = None if clock_shift is None else to_si(clock_shift, "s", "clock_shift")
     other = instrument is not None and load_dialect(instrument).format in ("hdf5", "binary")
     if len(paths) == 1 and not other and (first := peek(paths[0])).format == "netcdf":
+        # late: starting stays quick
         from tribolab.io.own_run import read_own_run
 
         return read_own_run(paths[0], first.path)
@@ -105,6 +106,7 @@ def with_companion(run: xr.Dataset, path: Path, dialect: Dialect) -> xr.Dataset:
 
 
 def _joined(run: xr.Dataset, companions: Logs, shift: float | None) -> xr.Dataset:
+    # late: starting stays quick
     from tribolab.io.clocks.merge import merge
 
     motion = assemble(companions)
@@ -115,6 +117,7 @@ def _without_inertia(run: xr.Dataset, mass: str | float | None) -> xr.Dataset:
     """Take the inertia of a mass out, if one is stated."""
     if mass is None:
         return run
+    # late: starting stays quick
     from tribolab.io.inertia import take_inertia
 
     where = str(run.attrs["source"])

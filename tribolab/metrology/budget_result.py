@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.io.uncertainty import NAMES, Known
 from tribolab.metrology.budget_parts import coverage_factor, part_name, part_words
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,8 +63,6 @@ class UncertaintyBudget:
         AnalysisError
             If there is no such value.
         """
-        import pandas as pd
-
         place = self._place(at)
         parts = self.data["uncertainty_part"].values[:, place]
         dof = self.data["uncertainty_part_dof"].values[:, place]

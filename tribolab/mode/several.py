@@ -5,18 +5,16 @@ from __future__ import annotations
 import html
 from collections.abc import Hashable, Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from tribolab.conditions import Conditions, Labels, labels_along
 from tribolab.errors import AnalysisError, Cure
 from tribolab.mode.model import Mode
 from tribolab.mode.verdict import SlidingMode, sliding_mode
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _CURVES = ("friction_coefficient", "waveform", "friction_coefficient_low")
 
@@ -26,8 +24,6 @@ class SlidingModes(Conditions[SlidingMode]):
 
     def to_dataframe(self) -> pd.DataFrame:
         """Return a table with a row for each piece of evidence, and for what would decide."""
-        import pandas as pd
-
         rows = [
             {**labels, "verdict": mode.verdict, "side": side, "text": text}
             for labels, mode in self

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Never
 
 from tribolab.qc.register import Check
 from tribolab.qc.run.checks import RUN_CHECKS
@@ -30,7 +31,7 @@ def catalogue() -> str:
     return "\n".join(parts)
 
 
-def _chapter(checks: Mapping[str, Check]) -> list[str]:
+def _chapter(checks: Mapping[str, Check[Never]]) -> list[str]:
     lines = []
     for check in checks.values():
         lines += [f"### {check.name}\n", f"{check.question} {check.cure}\n"]

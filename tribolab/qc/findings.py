@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NotRequired, TypedDict
+from typing import TYPE_CHECKING, Any, Never, NotRequired, TypedDict
 
 import numpy as np
 
@@ -65,7 +65,7 @@ class Findings:
     """
 
     name: str
-    results: tuple[tuple[Check, Result], ...]
+    results: tuple[tuple[Check[Never], Result], ...]
     flagged: xr.Dataset | None = field(default=None, repr=False)
     limits: Mapping[str, Mapping[str, float]] = field(default_factory=dict, repr=False)
     verdict: str = ""
@@ -112,6 +112,7 @@ class Findings:
     @property
     def table(self) -> pd.DataFrame:
         """The rows as a table: one line per check and variable."""
+        # late: pandas takes long to load
         import pandas as pd
 
         columns = ["check", "status", "variable", "message", "value", "unit", "where", "cure"]
@@ -167,6 +168,7 @@ class Findings:
 
     def _repr_html_(self) -> str:
         """Objections and notes; everything that was asked, folded away."""
+        # late: starting stays quick
         import html
 
         objections = self.table["status"].isin(("suspect", "fail", "error"))

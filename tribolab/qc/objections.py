@@ -47,6 +47,7 @@ def objections(
     >>> table.columns.tolist()[:3], set(table.rig) <= {"old", "new"}
     (['rig', 'check', 'status'], True)
     """
+    # late: pandas takes long to load
     import pandas as pd
 
     every = [findings] if isinstance(findings, Findings) else list(findings)

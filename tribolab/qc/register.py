@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from tribolab.words import Count
 # From harmless to grave; the order decides what a summary shows.
 STATUSES = ("pass", "skipped", "suspect", "fail", "error")
 OBJECTIONS = ("suspect", "fail", "error")
+
+Subject = TypeVar("Subject", contravariant=True)  # a run, or scans
 
 
 class Skip(Exception):  # noqa: N818 - not an error: the check has nothing to look at
@@ -63,7 +65,7 @@ class Result:
 
 
 @dataclass(frozen=True)
-class Check:
+class Check(Generic[Subject]):
     """A check: its name, the bit it owns in the masks, what it looks for, and its limits.
 
     Attributes
@@ -87,11 +89,11 @@ class Check:
     question: str
     cure: str
     limits: Mapping[str, Limit]
-    examine: Callable[[Any, Mapping[str, float]], list[Result]] = field(repr=False)
+    examine: Callable[[Subject, Mapping[str, float]], list[Result]] = field(repr=False)
 
 
 def resolve_limits(
-    checks: Mapping[str, Check], settings: Mapping[str, Mapping[str, str | float]]
+    checks: Mapping[str, Check[Subject]], settings: Mapping[str, Mapping[str, str | float]]
 ) -> dict[str, dict[str, float]]:
     """Return the limits of every check: the defaults, with the user's settings over them.
 
@@ -125,8 +127,8 @@ def resolve_limits(
 
 
 def results_of_checks(
-    checks: Mapping[str, Check],
-    subject: Any,
+    checks: Mapping[str, Check[Subject]],
+    subject: Subject,
     limits: Mapping[str, Mapping[str, float]],
     skip: tuple[str, ...] = (),
 ) -> dict[str, list[Result]]:

@@ -106,6 +106,7 @@ class JointRecord(HasStatus):
 
 def parameter_rows(fit: JointFit) -> tuple[JointParameter, ...]:
     """Return what is known of each parameter of a fit."""
+    # late: starting stays quick
     from tribolab.fit.joint.result import in_words
 
     return tuple(

@@ -70,6 +70,7 @@ def model_rows(
     adhesion
         Adhesion of the surface at the loads (medium, load); None if it is not known.
     """
+    # late: starting stays quick
     from tribolab.fit.spectrum_error import shear_stress_shift
 
     curve = frame(groups["curve"], "sliding_speed").assign(cells=groups["curve"].attrs["cells"])

@@ -170,6 +170,7 @@ def stick_slip_of(slip: xr.Dataset) -> Waveform:
     slip
         From `tribolab.friction.oscillation.stick_slip.stick_slip`.
     """
+    # late: starting stays quick
     from tribolab.friction.oscillation.slip_curve import STEADY, stick_slip_curve
 
     curve = stick_slip_curve([slip])

@@ -63,6 +63,7 @@ class Results(Mapping[str, "pd.DataFrame"]):
         ReadError
             If there is no such data file.
         """
+        # late: starting stays quick
         from tribolab.io.netcdf import read_netcdf
 
         known = {path.stem: path for path in sorted((self.folder / "data").glob("*.nc"))}
@@ -104,6 +105,7 @@ class Results(Mapping[str, "pd.DataFrame"]):
         ReadError
             If there is no such group, or a file cannot be read.
         """
+        # late: starting stays quick
         from tribolab.report.compared import joined_runs
 
         if group not in _OVER_SEGMENTS:
@@ -138,6 +140,7 @@ class Results(Mapping[str, "pd.DataFrame"]):
         ReadError
             If a file cannot be read.
         """
+        # late: starting stays quick
         from tribolab.friction.joined import joined_curves
 
         files = {path.stem: path for path in (self.folder / "data").glob("*.nc")}
@@ -158,6 +161,7 @@ class Results(Mapping[str, "pd.DataFrame"]):
         )
 
     def _part(self, file: str, group: str | None) -> xr.Dataset:
+        # late: starting stays quick
         from tribolab.io.netcdf import read_netcdf
 
         return read_netcdf(self.folder / file, group=group)
@@ -198,6 +202,7 @@ def read_results(path: str | Path) -> Results | xr.Dataset:
     """
     path = Path(path)
     if not path.is_dir():
+        # late: starting stays quick
         from tribolab.io.scans.results import read_tester_results
 
         return read_tester_results(path)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import datetime as dt
 import json
+import multiprocessing
 import shutil
 import tempfile
 import zlib
@@ -15,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tribolab.contact.work_of_adhesion import PDMS_PMMA_GLYCEROL, work_of_adhesion_spread
 from tribolab.errors import ConfigError
 from tribolab.rig.faults import Fault
 from tribolab.rig.faulty_scans import fault_of_campaign, write_faulty_scans
@@ -214,8 +216,6 @@ def _date(made: int) -> dt.datetime:
 def _processes(jobs: int) -> contextlib.AbstractContextManager[Executor | None]:
     if jobs <= 1:
         return contextlib.nullcontext()
-    import multiprocessing
-
     # spawn: a forked child would inherit locks of the parent's threads
     return ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"))
 
@@ -284,6 +284,7 @@ def _generator(seed: int, name: str) -> np.random.Generator:
 def _write_facts(
     folder: Path, seed: int, rig: Rig, names: Sequence[str], facts: dict[str, Json]
 ) -> None:
+    # late: looks the installed package up
     from tribolab.version import __version__
 
     text = json.dumps(
@@ -340,8 +341,6 @@ def campaign_text(names: Sequence[str], conditions: Sequence[_Condition]) -> str
 
 def _range(medium: str) -> str:
     """Write the bounds that the literature's surface energies set to the work of adhesion."""
-    from tribolab.contact.work_of_adhesion import PDMS_PMMA_GLYCEROL, work_of_adhesion_spread
-
     spread = work_of_adhesion_spread(PDMS_PMMA_GLYCEROL, samples=2).sel(medium=medium)
     ends = (1e3 * float(spread[f"work_of_adhesion_{end}"]) for end in ("low", "high"))
     return "work_of_adhesion_range = [{}]\n".format(", ".join(f'"{x:.1f} mJ/m^2"' for x in ends))

@@ -88,6 +88,7 @@ def mixed_law(surface: str, normal_force: float) -> MixedLaw:
     >>> law.shear_stress, round(float(law(1e-6)), 2)
     (840000.0, 1.38)
     """
+    # late: starting stays quick
     from tribolab.lubrication.stribeck import stribeck_curve
 
     known = xu2026.surface(surface)

@@ -25,6 +25,7 @@ def slow_noise(
         The process at given moments: a first-order autoregression on knots an eighth of the
         correlation length apart, linear in between.
     """
+    # late: scipy takes long to load
     from scipy.signal import lfilter
 
     step = correlation / 8

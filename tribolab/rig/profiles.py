@@ -96,6 +96,7 @@ def scans(
 
 def touch(height: np.ndarray, pitch: float, tip_radius: float) -> np.ndarray:
     """Height at which a spherical tip rests on profiles [m] (..., x): dilation by the sphere."""
+    # late: scipy takes long to load
     from scipy.ndimage import grey_dilation
 
     half = int(tip_radius / pitch)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -11,8 +12,6 @@ __all__ = ["compare_with_paper", "xu2026"]
 
 
 def __getattr__(name: str) -> Any:
-    import importlib
-
     if name == "compare_with_paper":
         return importlib.import_module("tribolab.studies.comparison").compare_with_paper
     if name == "xu2026":

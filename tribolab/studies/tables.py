@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from tribolab.stamping import labelled, stamp
 from tribolab.studies import xu2026
 
 Groups = dict[str, xr.Dataset]
@@ -38,11 +39,11 @@ def dry_contact(name: str) -> Groups:
     >>> sorted(dry_contact("Sb-R"))
     ['adhesion', 'contact', 'effective_work', 'loads', 'psd', 'rubber', 'separation']
     """
+    # late: starting stays quick
     from tribolab.contact.persson import contact_area_ratio
     from tribolab.contact.separation import separation_table
     from tribolab.rubber.friction import viscoelastic_friction
     from tribolab.rubber.modulus import PDMS_STAND_IN
-    from tribolab.stamping import labelled, stamp
 
     psd, modulus = xu2026.psd(name), xu2026.contact.effective_modulus
     pressure = labelled(_PRESSURES, "pressure")
@@ -78,9 +79,9 @@ def dry_contact(name: str) -> Groups:
 
 def _adhesion(psd: xr.Dataset, modulus: float) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset]:
     """Solve at zero pressure, at the loads and over the grid at once."""
+    # late: starting stays quick
     from tribolab.contact.adhesion import adhesion
     from tribolab.contact.hertz import hertz_mean_pressure
-    from tribolab.stamping import stamp
 
     forces = np.array(xu2026.system.loads)
     at_loads = hertz_mean_pressure(forces / xu2026.contact.length, xu2026.contact)
@@ -104,8 +105,8 @@ def _adhesion(psd: xr.Dataset, modulus: float) -> tuple[xr.Dataset, xr.Dataset, 
 
 def modulus_table() -> xr.Dataset:
     """Storage and loss modulus of the stand-in for the paper's rubber over angular frequency."""
+    # late: starting stays quick
     from tribolab.rubber.modulus import PDMS_STAND_IN
-    from tribolab.stamping import stamp
 
     omega = np.geomspace(1e-2, 1e13, 226)
     value = PDMS_STAND_IN(omega)
@@ -130,6 +131,7 @@ def lubricated(name: str, forces: tuple[float, ...] = xu2026.system.loads) -> Gr
         ``curve_<force>N`` over the sliding speed, with the shear stress that the paper fitted
         at that force (Smooth: that of the lowest); ``profiles`` at the lowest force; ``factors``.
     """
+    # late: starting stays quick
     from tribolab.lubrication.factors import flow_factors
     from tribolab.lubrication.stribeck import stribeck_curve
 
@@ -151,8 +153,8 @@ def lubricated(name: str, forces: tuple[float, ...] = xu2026.system.loads) -> Gr
 
 
 def _profiles(psd: xr.Dataset, load: float) -> xr.Dataset:
+    # late: starting stays quick
     from tribolab.lubrication.film import film_profile
-    from tribolab.stamping import stamp
 
     profiles = [
         film_profile(xu2026.contact, psd, xu2026.system.viscosity, load, v)

@@ -197,6 +197,7 @@ def _tail(
     """M(q) from the power law beyond the last bin, and its derivative by the exponent."""
 
     def mean_square(s: float) -> np.ndarray:
+        # late: scipy takes long to load
         from scipy.special import beta, betainc
 
         a, ratio = 0.5 * (s - 1), np.maximum(at / end, 1e-4)  # below, M is flat to 1e-8

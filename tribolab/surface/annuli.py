@@ -21,6 +21,7 @@ def confidence_band(
     value: np.ndarray, independent: np.ndarray, confidence: float = CONFIDENCE
 ) -> tuple[np.ndarray, np.ndarray]:
     """Band of a mean power: that of a chi-square variable with two degrees of freedom a value."""
+    # late: scipy takes long to load
     from scipy.special import chdtri
 
     freedom = 2 * np.asarray(independent)
@@ -183,6 +184,7 @@ def _balanced(
 
     With factors ``exp(s error^2)``: the smallest change in units of the standard errors.
     """
+    # late: scipy takes long to load
     from scipy.optimize import brentq
 
     def excess(s: float) -> float:

@@ -61,6 +61,7 @@ def gaussian_filter(scans: xr.Dataset, cutoff: str | float) -> xr.Dataset:
     >>> round(float(abs(mean_line).max()), 4)
     0.5
     """
+    # late: scipy takes long to load
     from scipy.signal import fftconvolve
 
     cutoff = to_si(cutoff, "m", "cutoff")

@@ -62,6 +62,7 @@ def binned_power(
     Scans pass through in chunks, so the memory needed does not grow with their number. Real and
     imaginary parts are squared in place and summed as neighbours.
     """
+    # late: scipy takes long to load
     import scipy.fft
 
     scans, points = height.shape

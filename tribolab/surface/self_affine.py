@@ -88,6 +88,7 @@ def psd_1d(spectrum: SelfAffine, wavenumber: ArrayLike) -> np.ndarray:
     ``t = k^2/q^2``. Between 0 and `low` it is not zero: waves that run askew to the profile look
     longer along it than they are.
     """
+    # late: scipy takes long to load
     from scipy.special import beta, betainc
 
     k = np.abs(np.asarray(wavenumber, dtype=float))

@@ -54,6 +54,7 @@ def fitted_law(wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarra
     >>> round(law.hurst, 3), float(f"{law.rolloff:.3g}")
     (0.8, 30000.0)
     """
+    # late: scipy takes long to load
     from scipy.optimize import least_squares
 
     level, weights = _level(measured, relative), relative**-2.0

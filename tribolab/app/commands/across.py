@@ -9,6 +9,7 @@ import typer
 
 from tribolab.app.reported import Debug, reported
 from tribolab.app.streams import say
+from tribolab.errors import ConfigError
 
 
 def compare(
@@ -45,9 +46,9 @@ def compare(
         tribolab compare results --by surface --margin "5 %"
     """
     with reported(debug):
+        # late: starting stays quick
         from tribolab.across.compare import compare as compared_with
         from tribolab.across.compare_page import comparison_verdict, write_comparisons
-        from tribolab.errors import ConfigError
 
         if len(folders) == 1 and not by:
             raise ConfigError("one folder is compared with nothing: name another, or say --by")
@@ -95,6 +96,7 @@ def repeatability(
         tribolab repeatability campaign.toml --by mount,day,operator
     """
     with reported(debug, audience="campaign"):
+        # late: starting stays quick
         from tribolab.across.repeatability import repeatability as repeated
         from tribolab.across.repeatability import repeatability_verdict
         from tribolab.across.repeatability_page import write_repeatability
@@ -142,6 +144,7 @@ def history(
         tribolab history archive --rule EWMA --baseline 30
     """
     with reported(debug):
+        # late: starting stays quick
         from tribolab.across.history import history as followed
         from tribolab.across.history_page import history_verdict, write_history
         from tribolab.across.watched import results_below
@@ -191,9 +194,9 @@ def plan(
         tribolab plan results --half-interval 0.005 --assurance 0.95 --setup-time "20 min"
     """
     with reported(debug):
+        # late: starting stays quick
         from tribolab.across.planning import measuring_plan, plan_text
         from tribolab.across.planning_page import write_plan
-        from tribolab.errors import ConfigError
         from tribolab.units import to_si
 
         if (standard_error is None) == (half_interval is None):

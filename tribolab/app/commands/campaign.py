@@ -34,6 +34,7 @@ def demo(
         tribolab demo /tmp/look
     """
     with reported(debug):
+        # late: starting stays quick
         from tribolab.app.demo import run_demo
 
         with progress_bars(quiet) as progress:
@@ -65,6 +66,7 @@ def reproduce(
         tribolab reproduce --output /tmp/paper
     """
     with reported(debug):
+        # late: starting stays quick
         from tribolab.app.terminal import paper_lines
         from tribolab.paper.reproduce import reproduce as reproduce_paper
 
@@ -118,6 +120,7 @@ def run(
         tribolab run campaign.toml --output /tmp/results --jobs 4
     """
     with reported(debug, audience="campaign"):
+        # late: starting stays quick
         from tribolab.app.run import run_campaign
 
         with progress_bars(quiet) as progress:
@@ -166,6 +169,7 @@ def simulate(
         tribolab simulate faulty --small --fault spikes --fault sign
     """
     with reported(debug):
+        # late: starting stays quick
         from tribolab.app.needed import SIMULATION
         from tribolab.campaign.engine.executor import workers
         from tribolab.rig import simulate_campaign
@@ -186,6 +190,7 @@ def simulate(
 
 def show_outcome(outcome: Outcome, debug: bool) -> int:
     """Show what a campaign came to, with the tracebacks of crashes if `debug`; return exit code."""
+    # late: starting stays quick
     from tribolab.app import terminal
     from tribolab.qc.findings import exit_code
 

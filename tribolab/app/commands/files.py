@@ -59,10 +59,12 @@ def check(
         tribolab check raw/profiles/*.csv --json --fail-on suspect
     """
     with reported(debug):
+        # late: starting stays quick
         from tribolab.app.quick import importing, plain_arrays_only
 
         with importing():
             plain_arrays_only()
+            # late: starting stays quick
             from tribolab.app import checks
 
         code = checks.code_of([], fail_on)  # a wrong level is told before the work
@@ -92,10 +94,12 @@ def info(
     tribolab info odd.txt --instrument my_tribometer.toml
     """
     with reported(debug):
+        # late: starting stays quick
         from tribolab.app.quick import importing, plain_arrays_only
 
         with importing():
             plain_arrays_only()
+            # late: starting stays quick
             from tribolab.app.file_info import Descriptions
             from tribolab.campaign.engine.stage import perform
 
@@ -153,6 +157,7 @@ def dialect(
         tribolab dialect raw/*.csv --output instruments/my_tribometer.toml
     """
     with reported(debug):
+        # late: starting stays quick
         from tribolab.app.dialect import ask_about, try_on
         from tribolab.app.terminal import console
         from tribolab.draft.dialect.draft import (
@@ -193,6 +198,7 @@ def _pool(
     jobs: int | None, files: Sequence[Path]
 ) -> contextlib.AbstractContextManager[Executor | None]:
     """Return processes to look at files in; a few files are looked at here, which is sooner."""
+    # late: starting stays quick
     from tribolab.app.needed import FILES
     from tribolab.campaign.engine.executor import workers
 

@@ -43,6 +43,7 @@ def pack(
         tribolab pack deposit.zip
     """
     with reported(debug):
+        # late: starting stays quick
         from tribolab.deposit import pack as packing
 
         if results.is_file():

@@ -44,6 +44,7 @@ def dask_executor(scheduler: str) -> Iterator[Executor]:
         If Dask is not installed, no scheduler answers there, or it has no workers.
     """
     try:
+        # late: distributed takes long to load
         from distributed import Client
     except ImportError as error:
         raise ConfigError(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import gc
+import multiprocessing
 import os
 import signal
 import threading
@@ -85,8 +86,6 @@ def begin_worker(variables: Mapping[str, str]) -> None:
     variables
         The environment of the parent: that of a copied process is as old as what it is copied of.
     """
-    import multiprocessing
-
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if MASKS:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})

@@ -163,6 +163,7 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
     @staticmethod
     def work(task: JointTask) -> JointRecord:
         """Fit what belongs together in one liquid."""
+        # late: starting stays quick
         from tribolab.campaign.joint.work import fitted
 
         return fitted(task)

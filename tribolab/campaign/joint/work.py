@@ -10,7 +10,12 @@ import numpy as np
 
 from tribolab.campaign.joint.plan import JointDry, JointTask, Work
 from tribolab.campaign.store.data_files import read_data, write_data
-from tribolab.records.joint_record import JointRecord
+from tribolab.records.joint_record import (
+    JointRecord,
+    correlation_rows,
+    model_rows_of_comparison,
+    parameter_rows,
+)
 from tribolab.untyped import Arguments
 from tribolab.words import force_text
 
@@ -45,15 +50,11 @@ def fitted(task: JointTask) -> JointRecord:
     TribolabError
         If the curves cannot be fitted, or the file not be written.
     """
+    # late: xarray takes long to load
     import xarray as xr
 
     from tribolab.fit.joint.comparison import compared
     from tribolab.fit.joint.loads import fit_loads
-    from tribolab.records.joint_record import (
-        correlation_rows,
-        model_rows_of_comparison,
-        parameter_rows,
-    )
 
     dry = {of.surface: contacts for of in task.dry if (contacts := _dry_contacts(task, of))}
     given: Arguments = {
@@ -116,6 +117,7 @@ class DryContact(NamedTuple):
 
 def _dry_contacts(task: JointTask, dry: JointDry) -> list[DryContact]:
     """Return the dry contacts of a surface at the loads that were measured in the liquid, too."""
+    # late: starting stays quick
     from tribolab.contact.geometry import LineContact
     from tribolab.contact.hertz import hertz_mean_pressure
     from tribolab.lubrication.stribeck import stribeck_curve
@@ -162,6 +164,7 @@ class _Growth(NamedTuple):
 def _growth(
     pressure: np.ndarray, psd: xr.Dataset, contact: LineContact, area: AreaTheory, work: Work
 ) -> _Growth:
+    # late: starting stays quick
     from tribolab.contact.adhesion import adhesion_by_works
 
     works = [max(w, 0.0) for w in (work.value, work.low, work.high)]
@@ -178,6 +181,7 @@ def _curve_name(task: JointTask, surface: str, force: float) -> str:
 
 def _priors(task: JointTask) -> JointPriors:
     """Return the usual priors, the viscosity's from its range where that is stated."""
+    # late: starting stays quick
     from tribolab.fit.joint.priors import JointPriors
 
     if task.viscosity_range is None:
@@ -198,6 +202,7 @@ class _Beside(NamedTuple):
 
     def with_response(self, other_area: bool, friction_factors: bool) -> LoadCurve:
         """Return it as a joint fit takes it, under one of the models that are compared."""
+        # late: starting stays quick
         from tribolab.fit.joint.load_curve import LoadCurve
         from tribolab.fit.joint.response import response_of
 
@@ -211,6 +216,7 @@ class _Beside(NamedTuple):
 
 def _wet(task: JointTask) -> list[_Beside]:
     """Read the curves measured in the liquid, and what is computed beside them."""
+    # late: starting stays quick
     from tribolab.contact.geometry import LineContact
 
     contact = LineContact(**task.contact)
@@ -236,6 +242,7 @@ def other_area_name(task: JointTask) -> str:
 
 def _computed(task: JointTask, model: ModelOutcome) -> xr.Dataset:
     """Return the computed curve over the campaign's speeds and those that were measured."""
+    # late: xarray takes long to load
     import xarray as xr
 
     path = task.folder / model.data_file
@@ -261,6 +268,7 @@ Variant = tuple[Sequence["LoadCurve"], "JointPriors"]
 
 def _variants(task: JointTask, dry: Mapping[str, Sequence[DryContact]]) -> dict[str, Variant]:
     """Return the models that are compared: for each its curves and priors, the usual one first."""
+    # late: starting stays quick
     from tribolab.fit.joint.comparison import CONSTANT, POWER_LAW, WITHOUT_FACTORS
 
     priors = _priors(task)
@@ -294,6 +302,7 @@ def _dry(
     enlarged: bool = False,
 ) -> list[LoadCurve]:
     """Return the curves measured without the liquid."""
+    # late: starting stays quick
     from tribolab.fit.joint.load_curve import LoadCurve
     from tribolab.fit.joint.response import constant_response
 

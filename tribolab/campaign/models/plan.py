@@ -202,6 +202,7 @@ def _missing(curve: CurveOutcome, contact: Arguments, surface: SurfaceOutcome | 
 
 def _repeatability(curves: Sequence[CurveRecord]) -> tuple[float, int]:
     """Pool the run levels of all curves that were repeated."""
+    # late: starting stays quick
     from tribolab.friction.coefficient.repeatability import pooled_repeatability
 
     spread, freedom = pooled_repeatability([np.array(c.levels, float) for c in curves if c.levels])

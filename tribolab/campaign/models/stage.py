@@ -106,6 +106,7 @@ def process_model(task: ModelTask) -> ModelRecord:
     OutputError
         If the results cannot be written.
     """
+    # late: starting stays quick
     from tribolab.campaign.models.analysis import analyse_model
     from tribolab.records.model_rows import model_rows
 
@@ -160,6 +161,7 @@ def failed_model(
 
 
 def _root(model: PlannedModel) -> xr.Dataset:
+    # late: xarray takes long to load
     import xarray as xr
 
     curve = model.curve

@@ -73,6 +73,7 @@ def analyse_run(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
     TribolabError
         If it cannot be read or analysed, or a decision finds no segment.
     """
+    # late: starting stays quick
     from tribolab.friction.decisions.decide import decide, without_decisions
     from tribolab.friction.segments.find import find_segments
 
@@ -108,6 +109,7 @@ def run_labels(run: PlannedRun) -> dict[str, str]:
 def _examined(
     run: PlannedRun, signals: xr.Dataset, segments: xr.Dataset
 ) -> tuple[xr.Dataset, xr.Dataset, Findings]:
+    # late: starting stays quick
     from tribolab.friction.coefficient.coefficient import friction_coefficient
     from tribolab.friction.oscillation.stick_slip import stick_slip
     from tribolab.metrology.budget import known_uncertainties, with_uncertainty
@@ -131,6 +133,7 @@ def _stated(run: PlannedRun, signals: xr.Dataset) -> xr.Dataset:
 
 
 def _read(run: PlannedRun) -> xr.Dataset:
+    # late: starting stays quick
     from tribolab.draft.on_the_fly import read_run
     from tribolab.friction.moving_mass import without_inertia
 

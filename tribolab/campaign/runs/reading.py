@@ -93,6 +93,7 @@ def earlier_signals(earlier: Earlier) -> xr.Dataset | None:
     xarray.Dataset or None
         What reading the raw files would give (time).
     """
+    # late: starting stays quick
     from tribolab.io.netcdf import read_netcdf
 
     try:

@@ -6,7 +6,9 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import NamedTuple, Self
+
+import xarray as xr
 
 from tribolab.campaign.engine.stage import Stage
 from tribolab.campaign.runs.analysis import QUALITY, analyse_run, run_labels
@@ -18,6 +20,7 @@ from tribolab.campaign.settings.plan import PlannedRun
 from tribolab.campaign.store.catalogue import Entry, Store, fingerprint_of
 from tribolab.campaign.store.data_files import write_data
 from tribolab.errors import AnalysisError, OutputError, told
+from tribolab.friction.decisions.rejected import rejected
 from tribolab.provenance import made
 from tribolab.records.parts import Notice, PageTrace, Row, RunOutcome, RunZero, Source
 from tribolab.records.run_record import RunFacts, RunRecord
@@ -25,9 +28,6 @@ from tribolab.records.traces import page_trace, trace_size
 from tribolab.room import tidy_up
 from tribolab.untyped import Json
 from tribolab.words import LOAD_STATED, explain
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 KIND = "run"
 
@@ -199,7 +199,7 @@ def process_run(task: RunTask) -> RunAnswer:
     OutputError
         If the results cannot be written: that is no fault of the run.
     """
-    from tribolab.friction.decisions.rejected import rejected
+    # late: starting stays quick
     from tribolab.records.decision_rows import not_applied
     from tribolab.records.frames import plain_rows, stick_slip_columns
     from tribolab.records.notices import notices_of
@@ -256,6 +256,7 @@ def process_run(task: RunTask) -> RunAnswer:
 
 def _with_dead_weight(facts: RunFacts, run: PlannedRun, signals: xr.Dataset) -> RunFacts:
     """Add the gain that a dead weight tells, where it is put on or taken off in the record."""
+    # late: starting stays quick
     from tribolab.metrology.dead_weight import dead_weight_gain
 
     if run.dead_weight is None:
@@ -269,6 +270,7 @@ def _with_dead_weight(facts: RunFacts, run: PlannedRun, signals: xr.Dataset) -> 
 
 def _starts(signals: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset) -> tuple[Row, ...]:
     """Rows of static friction; none where no coefficient is known."""
+    # late: starting stays quick
     from tribolab.friction.coefficient.static import static_friction
     from tribolab.records.frames import plain_rows, static_friction_columns
 
@@ -305,8 +307,6 @@ def _trace(
 
 def _root(run: PlannedRun, attrs: Json) -> xr.Dataset:
     """Attributes of the whole file, for those who open it without naming a group."""
-    import xarray as xr
-
     origin = made(
         f"friction of {run.name}",
         source=attrs["source"],

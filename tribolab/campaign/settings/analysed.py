@@ -87,6 +87,7 @@ class Qc(Table):
         """Return limits and names to skip, as far as they are of checks on runs."""
         if self._by_default:
             return {"limits": {}, "skip": ()}
+        # late: starting stays quick
         from tribolab.qc.run.checks import RUN_CHECKS
 
         return self._of(RUN_CHECKS)
@@ -95,6 +96,7 @@ class Qc(Table):
         """Return limits and names to skip, as far as they are of checks on scans."""
         if self._by_default:
             return {"limits": {}, "skip": ()}
+        # late: starting stays quick
         from tribolab.qc.scan.checks import SCAN_CHECKS
 
         return self._of(SCAN_CHECKS)
@@ -109,6 +111,7 @@ class Qc(Table):
     def _names_are_known(self) -> Self:
         if self._by_default:
             return self
+        # late: starting stays quick
         from tribolab.qc.register import resolve_limits
         from tribolab.qc.run.checks import RUN_CHECKS
         from tribolab.qc.scan.checks import SCAN_CHECKS

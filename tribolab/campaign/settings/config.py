@@ -74,6 +74,7 @@ class Campaign(Table):
         options = self.qc.run_options()
         contact = self.contact.whole()
         if contact is not None and entry.normal_force is not None:
+            # late: starting stays quick
             from tribolab.contact.hertz import hertz_half_width
 
             load = contact.load(entry.normal_force)

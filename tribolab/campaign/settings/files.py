@@ -118,6 +118,7 @@ def _is_folder(path: Path) -> bool:
 
 def sha256_of_dialect(instrument: str) -> str:
     """Return the checksum of what describes an instrument."""
+    # late: starting stays quick
     from tribolab.io.dialects.find import known_dialects
 
     return sha256_of_file(known_dialects().get(instrument, instrument))

@@ -57,6 +57,7 @@ class Contact(Table):
 
     def whole(self) -> LineContact | None:
         """Return the line contact; None as long as something of it is not known."""
+        # late: starting stays quick
         from tribolab.contact.geometry import LineContact
 
         known = {name: value for name, value in self.line().items() if value is not None}

@@ -54,6 +54,7 @@ def medium_viscosity(
     AnalysisError
         If the liquid is not one at this temperature.
     """
+    # late: starting stays quick
     from tribolab.lubrication.viscosity import knows_liquid, liquid_viscosity
 
     computed = None

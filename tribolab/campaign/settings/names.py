@@ -126,6 +126,7 @@ def _toml_key(name: str) -> str:
 
 
 def _instrument(campaign: Campaign, name: str) -> str:
+    # late: starting stays quick
     from tribolab.io.dialects.find import load_dialect
 
     try:

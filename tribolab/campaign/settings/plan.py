@@ -190,6 +190,7 @@ def planned_runs(campaign: Campaign) -> tuple[PlannedRun, ...]:
 def _groups(campaign: Campaign, entry: RunEntry, files: list[Path]) -> list[list[Path]]:
     if entry.cycles:
         return [files]
+    # late: starting stays quick
     from tribolab.io.logs import group_files
 
     instrument = entry.instrument and instrument_of(campaign, entry.instrument)

@@ -43,6 +43,7 @@ Kept = TypeVar("Kept")
 
 def fingerprint_of(config_sha256: str) -> str:
     """Return the checksum of all that shapes a part, but of its files: settings and version."""
+    # late: looks the installed package up
     from tribolab.version import __version__
 
     return sha256_of([__version__, config_sha256])

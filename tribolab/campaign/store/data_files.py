@@ -41,6 +41,7 @@ def write_data(groups: Mapping[str | None, xr.Dataset], path: Path) -> None:
     OutputError
         If there is no room, or the folder is gone.
     """
+    # late: starting stays quick
     from tribolab.io.netcdf import write_groups
 
     part = path.with_name(f"{path.stem}.{uuid.uuid4().hex}{UNFINISHED}")
@@ -64,6 +65,7 @@ def write_data(groups: Mapping[str | None, xr.Dataset], path: Path) -> None:
 
 def read_data(path: Path, group: str | None = None) -> xr.Dataset:
     """Open a data file of a campaign, or one group of it."""
+    # late: starting stays quick
     from tribolab.io.kept import read_kept
 
     return read_kept(path, group)

@@ -23,6 +23,7 @@ GONE = "it is not there"
 
 def kept_text(path: Path, why: str) -> str:
     """Return since when a part is kept, as its data file knows it, and why."""
+    # late: starting stays quick
     from tribolab.io.netcdf import opened
 
     try:

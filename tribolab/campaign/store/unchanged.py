@@ -58,6 +58,7 @@ def fingerprint(
     campaign: Campaign, runs: Sequence[PlannedRun], options: Mapping[str, object]
 ) -> str:
     """Return the checksum of all that results are made from, but of the raw files' content."""
+    # late: looks the installed package up
     from tribolab.version import __version__
 
     review = campaign.file.parent / REVIEW_FILE

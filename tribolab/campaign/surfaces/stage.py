@@ -112,6 +112,7 @@ def process_surface(task: SurfaceTask) -> SurfaceRecord:
     OutputError
         If the results cannot be written: that is no fault of the surface.
     """
+    # late: starting stays quick
     from tribolab.records.surface_rows import surface_rows
 
     began = time.monotonic()
@@ -122,6 +123,7 @@ def process_surface(task: SurfaceTask) -> SurfaceRecord:
         return SurfaceRecord(
             SurfaceOutcome(name=surface.name, files=(), status="skipped", findings=(note,))
         )
+    # late: starting stays quick
     from tribolab.campaign.surfaces.scans import usable_scans
 
     sources = sources_of_surface(surface)
@@ -166,6 +168,7 @@ def analyse_surface(
     TribolabError
         If the scans have no spectrum.
     """
+    # late: starting stays quick
     from tribolab.campaign.surfaces.contact import contact_groups, lowest_wavenumber
     from tribolab.campaign.surfaces.scans import spectra_of_scans
 
@@ -208,6 +211,7 @@ def sources_of_surface(surface: PlannedSurface) -> tuple[Source, ...]:
 
 def _root(surface: PlannedSurface, sources: tuple[Source, ...], quality: str) -> xr.Dataset:
     """Attributes of the whole file; checksums also of what could not be used."""
+    # late: xarray takes long to load
     import xarray as xr
 
     what = f"spectrum and contact of {surface.name}"

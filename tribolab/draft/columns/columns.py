@@ -56,6 +56,7 @@ def understand(layout: Layout) -> Understood:
     elif apart and layout.width == 1:
         kind, columns = "scan", [_heights(columns[0], stated=bool(unit))]
     else:
+        # late: starting stays quick
         from tribolab.draft.columns.behaviour import by_behaviour
 
         kind, columns, behaving = by_behaviour(columns, numbers)
@@ -74,6 +75,7 @@ def understand(layout: Layout) -> Understood:
         else column
         for column in columns
     ]
+    # late: starting stays quick
     from tribolab.draft.columns.clock import find_clock, summed
 
     period = summed(columns, numbers)
@@ -118,6 +120,7 @@ def _dated(
     timed = [c for c in columns if c.quantity == "time" and c.used and not text[c.place - 1]]
     if timed or not any(text):
         return columns
+    # late: starting stays quick
     from tribolab.draft.columns.dates import find_form
 
     rows = [split_row(line, layout.delimiter) for line in layout.rows()]

@@ -98,6 +98,7 @@ def _understood(file: File) -> tuple[Layout, Understood]:
     if file.format == "text":
         layout = find_layout(file)
         return layout, understand(layout)
+    # late: starting stays quick
     from tribolab.draft.file.held import READERS, as_held, layout_of_columns
 
     if file.format not in READERS:
@@ -220,6 +221,7 @@ def as_profile(draft: Draft, pitch: str = "", unit: str | None = None) -> Draft:
 
 def _answer(file: File, understood: Understood) -> str:
     """Say what a table is that holds neither signals nor a profile."""
+    # late: starting stays quick
     from tribolab.io.scans.formats import read_foreign
 
     labels = [column.label for column in understood.columns if column.label]

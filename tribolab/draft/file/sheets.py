@@ -31,6 +31,7 @@ def read_sheet(path: Path) -> tuple[Held, list[HeldColumn]]:
     ReadError
         If no sheet holds such rows.
     """
+    # late: python_calamine takes long to load
     from python_calamine import CalamineWorkbook
 
     book = CalamineWorkbook.from_path(path)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from tribolab.contact.geometry import LineContact
@@ -16,9 +17,6 @@ from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.result import JointFit
 from tribolab.untyped import Arguments
 from tribolab.words import number
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _BARE, _STRONG = 1.0, 3.0  # of ln of odds: not worth a mention below, strong from here
 POWER_LAW = "power law of speed and load"
@@ -77,8 +75,6 @@ class ModelComparison:
 
     def table(self) -> pd.DataFrame:
         """Return a row for each model."""
-        import pandas as pd
-
         return pd.DataFrame([vars(model) for model in self.models]).set_index("name")
 
     def _repr_html_(self) -> str:

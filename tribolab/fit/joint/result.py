@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from tribolab.words import many, number, percent
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _UNTOLD, _LITTLE = 0.2, 0.5  # of the prior's standard deviation that the data take away
 _TOGETHER = 0.8  # correlation from which two parameters are hardly told apart
@@ -141,8 +138,6 @@ class JointFit:
 
     def table(self) -> pd.DataFrame:
         """Return a row for each parameter: median, 95 % interval, that of the prior, and words."""
-        import pandas as pd
-
         rows = [
             {
                 "parameter": marginal.name,
@@ -162,8 +157,6 @@ class JointFit:
 
     def correlations(self) -> pd.DataFrame:
         """Return the posterior correlation of every two parameters."""
-        import pandas as pd
-
         names = [marginal.words for marginal in self.marginals[: len(self.correlation)]]
         return pd.DataFrame(self.correlation, names, names)
 

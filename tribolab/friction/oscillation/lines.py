@@ -104,6 +104,7 @@ def find_lines(
     """
     if values.size < 128 or not np.isfinite(values).all() or np.ptp(values) == 0:
         return []
+    # late: scipy takes long to load
     from scipy import (
         ndimage,
     )  # not before there is a spectrum: it takes a tenth of a second to load

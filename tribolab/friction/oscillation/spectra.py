@@ -139,6 +139,7 @@ def _transform(record: Record) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.n
         steps = np.diff(record.time)
         share = np.minimum(np.append(steps, steps[-1]), np.append(steps[0], steps))
         weights = window * np.minimum(share, 4 * median(steps))
+        # late: starting stays quick
         from tribolab.friction.oscillation.uneven import lomb_scargle
 
         # a sine of amplitude a holds a^2/2, spread over one and a half bins by the window

@@ -54,14 +54,17 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
         )
     dialect = as_written(file, dialect)
     if dialect.format == "mat":
+        # late: starting stays quick
         from tribolab.io.content.mat import read_mat
 
         content = read_mat(file.path, dialect)
     elif dialect.format == "tdms":
+        # late: starting stays quick
         from tribolab.io.content.tdms import read_tdms
 
         content = read_tdms(file.path, dialect)
     elif dialect.format != "text":
+        # late: starting stays quick
         from tribolab.io.content.columnar import read_columnar
 
         content = read_columnar(file.path, dialect)
@@ -73,6 +76,7 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
 
 
 def _read_text(file: File, dialect: Dialect, size: int) -> Content:
+    # late: starting stays quick
     from tribolab.io.dialects.rows_outside import rows_outside
     from tribolab.io.dialects.text import Hasher, read_table
     from tribolab.io.dialects.text_tables import find_tables

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from tribolab.errors import ConfigError, ReadError, TribolabError, brief, nearest, shown
 from tribolab.io import cures
 from tribolab.io.dialects.model import Dialect
-from tribolab.io.dialects.signature import File, peek
+from tribolab.io.dialects.signature import File, is_results, peek
 from tribolab.io.schema_folder import schema_folder
 from tribolab.untyped import Json
 
@@ -93,8 +93,8 @@ def recognise(path: str | Path) -> Dialect:
         If no dialect fits, or more than one; the message names the candidates and how to say
         which.
     """
+    # late: starting stays quick
     from tribolab.io.dialects.recognise import mismatch
-    from tribolab.io.dialects.signature import is_results
 
     file = peek(path)
     named = file._replace(path=Path(path))  # what was unpacked lies elsewhere
@@ -199,6 +199,7 @@ def _explain(problem: Any) -> str:
 
 def _model_at(loc: tuple[str | int, ...]) -> list[str]:
     """Names of the keys that are allowed at a place of the dialect."""
+    # late: starting stays quick
     from tribolab.io.dialects import model as dialect_model
 
     name = next((str(part) for part in reversed(loc) if isinstance(part, str)), "dialect")

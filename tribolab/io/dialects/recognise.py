@@ -40,14 +40,17 @@ def mismatch(file: File, dialect: Dialect) -> str | None:
     if rules.file_name and not guarded(rules.file_name).search(file.path.name):
         return "its name does not fit"
     if dialect.format == "mat":
+        # late: starting stays quick
         from tribolab.io.tables.mat5 import variable_names
 
         return _names_missing(rules, variable_names(file.path))
     if dialect.format == "tdms":
+        # late: starting stays quick
         from tribolab.io.tables.tdms_file import channel_names
 
         return _names_missing(rules, channel_names(file.path))
     if dialect.format != "text":
+        # late: starting stays quick
         from tribolab.io.dialects.columnar import column_names
 
         return _names_missing(rules, column_names(file.path, dialect))

@@ -51,6 +51,7 @@ def read_foreign(
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ImportWarning)  # of optional parts that it goes without
+            # late: SurfaceTopography takes long to load
             from SurfaceTopography.IO import open_topography, readers
             from SurfaceTopography.IO.Reader import MagicMatch
     except ImportError as error:

@@ -11,6 +11,7 @@ import xarray as xr
 
 from tribolab.errors import Cure, ReadError, shown
 from tribolab.io import cures
+from tribolab.io.content.read import read_content
 from tribolab.io.dialects.find import (
     Dialect,
     Instrument,
@@ -126,6 +127,7 @@ def _finished(path: Path, scan: xr.Dataset, sha256: str) -> xr.Dataset:
 
 def _recognised(path: Path) -> Dialect | None:
     """Return the text dialect that a file is written in; None for other formats."""
+    # late: starting stays quick
     from tribolab.io.dialects.recognise import mismatch
 
     try:
@@ -158,7 +160,7 @@ def _recognised(path: Path) -> Dialect | None:
 
 
 def _by_dialect(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
-    from tribolab.io.content.read import read_content
+    # late: starting stays quick
     from tribolab.io.content.values import single_values
     from tribolab.io.scans.traces import traces_of
 

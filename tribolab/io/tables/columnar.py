@@ -67,6 +67,7 @@ def seconds_of(values: np.ndarray) -> np.ndarray:
 
 
 def _of_arrow(table: object) -> Columns:
+    # late: pyarrow takes long to load
     import pyarrow as pa
 
     assert isinstance(table, pa.Table)
@@ -80,18 +81,21 @@ def _of_arrow(table: object) -> Columns:
 
 
 def _parquet(path: Path, layout: Layout) -> Columns:
+    # late: pyarrow takes long to load
     import pyarrow.parquet as pq
 
     return _of_arrow(pq.read_table(path))
 
 
 def _feather(path: Path, layout: Layout) -> Columns:
+    # late: pyarrow takes long to load
     from pyarrow import feather
 
     return _of_arrow(feather.read_table(path))
 
 
 def _hdf5(path: Path, layout: Layout) -> Columns:
+    # late: h5py takes long to load
     import h5py
 
     names: list[str] = []
@@ -130,6 +134,7 @@ def _hdf5(path: Path, layout: Layout) -> Columns:
 
 def _labels_of_matrix(item: object) -> list[str]:
     """Return the names of a matrix' columns, where its attributes say them."""
+    # late: h5py takes long to load
     import h5py
 
     assert isinstance(item, h5py.Dataset)
@@ -143,6 +148,7 @@ def _labels_of_matrix(item: object) -> list[str]:
 
 
 def _excel(path: Path, layout: Layout) -> Columns:
+    # late: python_calamine takes long to load
     from python_calamine import CalamineWorkbook
 
     book = CalamineWorkbook.from_path(path)

@@ -90,6 +90,7 @@ def open_tdms(path: Path, how: str) -> Any:
         If the file is damaged, or nptdms is not installed.
     """
     try:
+        # late: nptdms takes long to load
         from nptdms import TdmsFile
     except ImportError as error:
         raise ReadError(

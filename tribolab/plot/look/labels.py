@@ -68,6 +68,7 @@ def column(name: str) -> str:
 
 @functools.lru_cache(maxsize=1)
 def _known_characters() -> frozenset[int]:
+    # late: matplotlib takes long to load
     from matplotlib.font_manager import findfont, get_font
 
     return frozenset(get_font(findfont("DejaVu Sans")).get_charmap())

@@ -8,7 +8,8 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import PathPatch
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 from matplotlib.ticker import FixedLocator, NullLocator
 from matplotlib.transforms import blended_transform_factory
@@ -333,9 +334,6 @@ def _means(
 
 
 def _key(axes: Axes, parts: list[Stroke], means: bool, *, joined: bool) -> None:
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
     words = {1: "forward", -1: "backward", 0: "direction unknown"}
     seen = sorted({int(np.sign(part.direction)) for part in parts}, reverse=True)
     handles: list[Artist] = [

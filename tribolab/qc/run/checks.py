@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, Never
 
 import numpy as np
 import xarray as xr
@@ -23,7 +23,7 @@ from tribolab.qc.run.zero import ZERO_CHECKS
 from tribolab.several import of_runs
 from tribolab.units import to_si
 
-RUN_CHECKS: dict[str, Check] = {
+RUN_CHECKS: dict[str, Check[RunSubject]] = {
     check.name: check
     for check in (*RECORD_CHECKS, *RIG_CHECKS, *SLIDING_CHECKS, *READING_CHECKS, *ZERO_CHECKS)
 }
@@ -43,7 +43,7 @@ def check_run(
     skip: Sequence[str] = (),
     normal_force: str | float | None = None,
     contact_width: str | float | None = None,
-    checks: Mapping[str, Check] = RUN_CHECKS,
+    checks: Mapping[str, Check[RunSubject]] = RUN_CHECKS,
 ) -> Findings:
     """Examine a run: what is wrong with it, where, how badly, and what to do.
 
@@ -134,8 +134,8 @@ def _looked_at(
 
 
 def _flags_on(
-    results: tuple[tuple[Check, Result], ...], variable: str
-) -> list[tuple[Check, np.ndarray]]:
+    results: tuple[tuple[Check[Never], Result], ...], variable: str
+) -> list[tuple[Check[Never], np.ndarray]]:
     return [(c, r.flags) for c, r in results if r.flags is not None and r.variable == variable]
 
 

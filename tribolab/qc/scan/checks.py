@@ -382,6 +382,6 @@ REPEAT_CHECKS = (
     ),
 )
 
-SCAN_CHECKS: dict[str, Check] = {
+SCAN_CHECKS: dict[str, Check[ScanSubject]] = {
     check.name: check for check in (*PROFILE_CHECKS, *INSTRUMENT_CHECKS, *REPEAT_CHECKS)
 }

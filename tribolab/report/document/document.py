@@ -235,6 +235,7 @@ def _campaign(campaign: Campaign) -> CampaignFile:
 
 def versions() -> dict[str, str]:
     """Return the versions of Python, of tribolab and of what computes for it."""
+    # late: looks the installed package up
     from tribolab.version import __version__
 
     known = {"tribolab": __version__, "python": platform.python_version()}

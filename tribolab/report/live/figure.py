@@ -84,7 +84,7 @@ class Series:
     surface: str = ""
     medium: str = ""
     load: float | None = None
-    error: Sequence[Any] = ()
+    error: Values = ()
     told: Sequence[str] = ()
     runs: Sequence[str] = ()
     goes_to: Sequence[str] = ()

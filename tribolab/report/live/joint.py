@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from tribolab.campaign.store.data_files import read_data
 from tribolab.records.joint_record import JointRecord
 from tribolab.report.live.curves import system_name
 from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, safe
@@ -30,8 +31,6 @@ def record_of_joint_fits(joints: Sequence[JointRecord], folder: Path) -> LiveRec
 
 
 def _figure(joint: JointRecord, folder: Path) -> LiveFigure:
-    from tribolab.campaign.store.data_files import read_data
-
     points, curves = (read_data(folder / joint.file, part) for part in ("points", "curves"))
     series: list[Series] = []
     for number, name in enumerate(curves["curve"].values.tolist()):

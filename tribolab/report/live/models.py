@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribolab.campaign.store.data_files import read_data
 from tribolab.records.model_words import stress_interval
 from tribolab.records.parts import number_of
 from tribolab.records.wording import with_error
@@ -80,8 +81,6 @@ def _of_curves(
 
 
 def _read(row: ModelRow, folder: Path, group: str) -> xr.Dataset:
-    from tribolab.campaign.store.data_files import read_data
-
     return read_data(folder / row.model.data_file, group=group)
 
 

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tribolab.plot.runs.reduce import envelope_index
+from tribolab.plot.runs.signals import LOOKED_AT, main_signal
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.parts import CurveOutcome
 from tribolab.report.live.curves import SPEED, labels_of, system_name
@@ -191,8 +193,8 @@ class _Open(NamedTuple):
 
 
 def _opened(contact: Judged, colours: Mapping[str, int], folder: Path) -> _Open:
+    # late: starting stays quick
     from tribolab.io.netcdf import read_groups
-    from tribolab.plot.runs.signals import LOOKED_AT
 
     assert contact.slow is not None
     wanted = ("run", "segments", "friction", "stick_slip")
@@ -212,9 +214,6 @@ def _trace(
     run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset, number: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return friction over sliding distance [um] of the middle of a segment."""
-    from tribolab.plot.runs.reduce import envelope_index
-    from tribolab.plot.runs.signals import main_signal
-
     time = np.asarray(run["time"], float)
     start, stop = (float(segments[f"trimmed_{end}"][number]) for end in ("start", "stop"))
     inside = np.flatnonzero((time >= start) & (time <= stop))

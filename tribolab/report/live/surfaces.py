@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tribolab.campaign.store.data_files import read_data
 from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, places, thinned
 from tribolab.report.live.record import LiveRecord
 from tribolab.report.live.shown import shown_figures
@@ -33,8 +34,6 @@ class _Surface(NamedTuple):
     label: str
 
     def read(self, group: str) -> xr.Dataset | None:
-        from tribolab.campaign.store.data_files import read_data
-
         return read_data(self.file, group=group) if group in self.parts else None
 
     def series(self, what: str, x: Any, y: Any, **more: Any) -> Series:

@@ -5,16 +5,13 @@ from __future__ import annotations
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from tribolab.rig.layouts.kinds import Kind, add_kind, there_and_back
 from tribolab.rig.layouts.record import Record
 from tribolab.rig.layouts.tables import Cells, friction_of, normal_of, position_of, time_of
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _RECORD = ("<f8", "<f4", "<f4", "<f4")
 _HEAD = b"RIG 7\0".ljust(128, b"\0")
@@ -25,8 +22,6 @@ def _columns(record: Record) -> list[Cells]:
 
 
 def _frame(record: Record) -> pd.DataFrame:
-    import pandas as pd
-
     return pd.DataFrame({f"{c.name} [{c.unit}]": c.values for c in _columns(record)})
 
 
@@ -49,8 +44,6 @@ def _zipped(record: Record, folder: Path) -> Path:
 
 
 def _workbook(record: Record, folder: Path) -> Path:
-    import pandas as pd
-
     path = folder / "run.xlsx"
     with pd.ExcelWriter(path) as book:
         about = {"Operator": ["A. Person"], "Test": ["friction"]}
@@ -60,6 +53,7 @@ def _workbook(record: Record, folder: Path) -> Path:
 
 
 def _hdf5(record: Record, folder: Path) -> Path:
+    # late: h5py takes long to load
     import h5py
 
     path = folder / "run.h5"
@@ -71,6 +65,7 @@ def _hdf5(record: Record, folder: Path) -> Path:
 
 
 def _tdms(record: Record, folder: Path) -> Path:
+    # late: nptdms takes long to load
     from nptdms import ChannelObject, TdmsWriter
 
     path = folder / "run.tdms"
