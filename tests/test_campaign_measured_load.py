@@ -6,6 +6,7 @@ from dialects import dialect_of
 
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
+from tribolab.io.netcdf import read_netcdf
 from tribolab.words import force_text, load_text
 
 DIALECT = dialect_of("plain", time="t", friction_force="F", normal_force="N", sliding_velocity="v")
@@ -31,10 +32,14 @@ normal_force = "15 N"
 """
 
 
-def rows_of(loads, seed):
+def by_load(load):
+    return 0.2 * (load / 20) ** -0.1
+
+
+def rows_of(loads, seed, mu=lambda load: 0.2):
     rng = np.random.default_rng(seed)
     steps = np.repeat(loads, 400)
-    force, load = np.outer([0.2, 1.0], steps) + 0.01 * rng.standard_normal((2, steps.size))
+    force, load = np.stack([mu(steps) * steps, steps]) + 0.01 * rng.standard_normal((2, steps.size))
     speed = np.repeat(np.arange(1, len(loads) + 1), 400)
     signals = zip(np.arange(steps.size) / 20, force, load, speed, strict=True)
     return "t [s],F [N],N [N],v [mm/s]\n" + "".join(
@@ -42,11 +47,11 @@ def rows_of(loads, seed):
     )
 
 
-def analysed(folder, campaign=CAMPAIGN, previous=None, **files):
+def analysed(folder, campaign=CAMPAIGN, previous=None, mu=lambda load: 0.2, **files):
     raw = folder / "raw"
     raw.mkdir(exist_ok=True, parents=True)
     for seed, (name, loads) in enumerate(files.items()):
-        (raw / f"{name}.csv").write_text(rows_of(loads, seed))
+        (raw / f"{name}.csv").write_text(rows_of(loads, seed, mu))
     (folder / "plain.toml").write_text(DIALECT)
     (folder / "campaign.toml").write_text(campaign)
     results = folder / f"results{len(list(folder.glob('results*')))}"
@@ -84,7 +89,32 @@ def test_a_measured_load_joins_that_which_a_repeat_states(tmp_path):
     assert (curve.normal_force, curve.load_from) == (15.0, "stated")
 
 
-def test_a_run_under_several_loads_has_none_of_its_own(tmp_path):
-    outcome = analysed(tmp_path, m1=[10.0, 20.0])
+def test_a_run_under_several_loads_is_part_of_a_curve_of_each(tmp_path):
+    """Friction falls with load: one curve of both would hold neither."""
+    two = [10.0, 10.05, 20.0, 20.1]
+    outcome = analysed(tmp_path, mu=by_load, m1=two, m2=[20.3, 20.3, 20.3, 20.3])
+    [(of_both, said), (heavy, _)] = loads(outcome).values()
+    assert (of_both, said) == (None, "varies")
+    light, other = outcome.curves
+    assert light.normal_force == pytest.approx(10.0, abs=0.05) and light.run_names == ("m1",)
+    assert other.normal_force == heavy and other.run_names == ("m1", "m2")
+    assert light.load_from == other.load_from == "measured"
+    for curve in (light, other):
+        measured = read_netcdf(outcome.folder / curve.data_file)["friction_coefficient"]
+        truth = by_load(curve.normal_force)
+        assert measured.values == pytest.approx(np.full(measured.size, truth), abs=0.002)
+        assert measured.size == (2 if curve is light else 4)
+    # taken over, and with a repeat more, which moves the label of one level
+    outcome.store.save()
+    (tmp_path / "raw" / "m3.csv").write_text(rows_of([20.9] * 4, 9, by_load))
+    more = analysed(tmp_path, previous=outcome.folder)
+    assert [run.reused for run in more.runs] == [True, True, False]
+    assert [len(curve.run_names) for curve in more.curves] == [1, 3]
+
+
+def test_a_load_that_rises_all_the_time_has_no_levels_and_says_so(tmp_path):
+    outcome = analysed(tmp_path, m1=[10.0, 10.8, 11.6, 12.4])
     assert loads(outcome) == {"m1": (None, "varies")}
+    [curve] = outcome.curves
+    assert (curve.normal_force, curve.load_from) == (None, "varies")
     assert load_text(*loads(outcome)["m1"]) == "several loads" != force_text(None)

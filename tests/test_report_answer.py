@@ -71,6 +71,14 @@ def test_a_card_says_shape_stress_mode_and_what_the_model_misses():
     assert card.missing == ()
 
 
+def test_a_run_under_several_loads_misses_no_curve_where_it_has_one():
+    several = run("a", None) | {"load_from": "varies"}
+    assert cards(report([several]))[0].missing == ()
+    alone = several | {"name": "b", "segments_found": []}
+    (card,) = cards(report([alone]))
+    assert card.missing and "no curve" in card.missing[0]
+
+
 def test_a_plateau_is_of_points_that_agree_within_their_errors():
     one = report([])
     for row in one["curves"][0]["points"]:

@@ -6,10 +6,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from traceback import format_exception
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
 
 from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.runs.analysis import AS_FOUND as FRICTION_AS_FOUND
+from tribolab.campaign.runs.loads import at_level
 from tribolab.campaign.runs.stage import RunCame
 from tribolab.campaign.settings.run_names import distinct, safe_name
 from tribolab.campaign.store.catalogue import Store
@@ -28,9 +31,25 @@ if TYPE_CHECKING:
 
     from tribolab.io.uncertainty import Known
 
+    Parts = dict[str | None, xr.Dataset]  # of a data file, by group
+
 SLIP = "stick_slip"  # group of the stick-slip over speed
 AS_FOUND = "as_found"  # group of the curve without a person's decisions
 Condition = tuple[str, str, float | None, str]
+
+
+class _Levels(NamedTuple):
+    """Measured loads [N] of a run under several, and which belong to a curve; none under one."""
+
+    measured: tuple[float, ...]
+    wanted: tuple[bool, ...]
+
+    def of(self, friction: xr.Dataset) -> np.ndarray | slice:
+        """Return which segments belong to the curve."""
+        if not self.measured:
+            return slice(None)
+        force = friction["normal_force"].values
+        return at_level(force, np.array(self.measured), np.array(self.wanted))
 
 
 @dataclass(frozen=True)
@@ -38,6 +57,7 @@ class CurveTask:
     """Data files of the runs that make one measured curve.
 
     `found_files` are those that would make it without a person's decisions; none if nobody decided.
+    Of each run `levels` (and `found_levels`) tell which of its loads are this curve's.
     """
 
     curve: CurveOutcome
@@ -45,6 +65,8 @@ class CurveTask:
     folder: Path
     fingerprint: str = ""
     found_files: tuple[str, ...] = ()
+    levels: tuple[_Levels, ...] = ()
+    found_levels: tuple[_Levels, ...] = ()
 
     @property
     def name(self) -> str:
@@ -76,7 +98,8 @@ class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
         groups: dict[Condition, list[RunCame]] = {}
         for came in self._runs:
             if came.outcome.in_curves or came.outcome.in_curves_as_found:
-                groups.setdefault(_condition(came.outcome), []).append(came)
+                for condition in _conditions(came.outcome):
+                    groups.setdefault(condition, []).append(came)
         # a curve whose runs are all rejected is none
         groups = {
             key: members
@@ -104,7 +127,10 @@ class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
             data_file=f"data/{name}.nc",
             run_names=tuple(came.outcome.name for came in used),
         )
+        levels = tuple(_levels(came.outcome, load) for came in used)
         contents = [came.content for came in used]
+        if any(own.measured for own in levels):
+            contents += [tuple(map(str, own.measured + own.wanted)) for own in levels]
         if undecided:
             contents += [("as found",), *(came.content for came in undecided)]
         return CurveTask(
@@ -113,6 +139,8 @@ class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
             self._store.folder,
             sha256_of(contents),
             tuple(came.outcome.data_file for came in undecided),
+            levels,
+            tuple(_levels(came.outcome, load) for came in undecided),
         )
 
     def taken(self, task: CurveTask, record: CurveRecord) -> CurveRecord | None:
@@ -151,6 +179,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
 
     files = [task.folder / name for name in task.data_files]
     parts = [read_groups(file, ("friction", SLIP), only={SLIP: NEEDED}) for file in files]
+    parts = [_at_load(part, own) for part, own in zip(parts, task.levels, strict=True)]
     frictions = [part["friction"] for part in parts]
     curve, known = _with_budget(frictions)
     levels: list[float | None] = []
@@ -219,20 +248,37 @@ def _as_found(task: CurveTask) -> xr.Dataset | None:
         return None
     wanted = ("friction", FRICTION_AS_FOUND)
     parts = [read_groups(task.folder / n, wanted, optional=True) for n in task.found_files]
-    return _with_budget([part.get(wanted[1], part[wanted[0]]) for part in parts])[0]
+    undecided = [part.get(wanted[1], part[wanted[0]]) for part in parts]
+    pairs = zip(undecided, task.found_levels, strict=True)
+    return _with_budget([friction.isel(segment=own.of(friction)) for friction, own in pairs])[0]
+
+
+def _at_load(part: Parts, own: _Levels) -> Parts:
+    """Return the segments of a run that were measured under a curve's load."""
+    segments = own.of(part["friction"])
+    return {name: data.isel(segment=segments) for name, data in part.items()}
 
 
 def _load_from(runs: Iterable[RunOutcome]) -> str:
     """Return where the load of a curve is from: stated of one run, it is that of all."""
-    known = {run.load_from for run in runs}
+    known = {LOAD_MEASURED if run.load_levels else run.load_from for run in runs}
     return next((s for s in (LOAD_STATED, LOAD_MEASURED, LOAD_VARIES) if s in known), "")
 
 
-def _condition(run: RunOutcome) -> Condition:
-    """Return what runs of one curve have in common; only what is stated to be the same."""
+def _conditions(run: RunOutcome) -> list[Condition]:
+    """Return what runs of one curve have in common: each load that a run was measured under."""
     alone = "" if run.surface or run.medium else run.name
-    load = run.normal_force and float(f"{run.normal_force:.4g}")
-    return run.surface, run.medium, load, alone
+    loads = dict.fromkeys(run.load_levels or (run.normal_force,))
+    return [(run.surface, run.medium, _label(load), alone) for load in loads]
+
+
+def _label(load: float | None) -> float | None:
+    return load and float(f"{load:.4g}")
+
+
+def _levels(run: RunOutcome, load: float | None) -> _Levels:
+    wanted = tuple(_label(level) == load for level in run.load_levels)
+    return _Levels(run.measured_levels, wanted)
 
 
 def _labels(curve: CurveOutcome) -> dict[str, str]:

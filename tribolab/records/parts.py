@@ -80,6 +80,9 @@ class RunOutcome(PartOutcome):
         loads, "" where nothing tells.
     measured_load
         Mean load [N] while the run slides, where none is stated.
+    measured_levels, load_levels
+        Where it slides under several loads, mean [N] of each and the load [N] it is filed under,
+        the same for repeats; none where the load rises or falls all the time.
     segments
         Number of segments found.
     quality
@@ -101,6 +104,8 @@ class RunOutcome(PartOutcome):
     quality_as_found: str = ""
     load_from: str = ""
     measured_load: float | None = None
+    measured_levels: tuple[float, ...] = ()
+    load_levels: tuple[float, ...] = ()
 
     @property
     def in_curves(self) -> bool:

@@ -92,6 +92,8 @@ def _kept_run(run: RunOutcome, entry: RunEntry, path: Path, why: str) -> RunOutc
         normal_force=run.normal_force if entry.normal_force is None else entry.normal_force,
         load_from=run.load_from if entry.normal_force is None else LOAD_STATED,
         measured_load=run.measured_load if entry.normal_force is None else None,
+        measured_levels=run.measured_levels if entry.normal_force is None else (),
+        load_levels=run.load_levels if entry.normal_force is None else (),
         reused=False,
         kept=kept_text(path, f"the raw file cannot be read now ({why})"),
     )

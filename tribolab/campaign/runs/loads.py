@@ -1,4 +1,12 @@
-"""The load that a run is known by: as stated, else as measured."""
+"""The load that a run is known by: as stated, else as measured, one or several levels of it.
+
+Notes
+-----
+Where none is stated, the load of a segment is its measured mean. Sorted, two neighbours that differ
+by more than a tenth belong to different levels: set loads differ by more, and what a load wanders
+by, or a disc that wobbles moves it, is less. Segments of one level that nevertheless spread by more
+than a tenth are a load that rises or falls all the time, which has no levels.
+"""
 
 from __future__ import annotations
 
@@ -11,15 +19,16 @@ from tribolab.words import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES
 if TYPE_CHECKING:
     import xarray as xr
 
-_VARIES = 1.1  # largest over smallest load of the segments of a run that has one load
+_VARIES = 1.1  # largest over smallest load of the segments of one level
 
 
 class RunLoad(NamedTuple):
-    """Load [N] of a run, where it is from, and what was measured while it slid."""
+    """Load [N] of a run, where it is from, what was measured while it slid, and its levels."""
 
     normal_force: float | None
     load_from: str
     measured_load: float | None
+    levels: tuple[float, ...] = ()
 
 
 def load_of(stated: float | None, signals: xr.Dataset, friction: xr.Dataset) -> RunLoad:
@@ -44,9 +53,59 @@ def load_of(stated: float | None, signals: xr.Dataset, friction: xr.Dataset) -> 
     if not good.any():
         return RunLoad(None, "", None)
     if force[good].max() > _VARIES * force[good].min():
-        return RunLoad(None, LOAD_VARIES, None)
+        return RunLoad(None, LOAD_VARIES, None, load_levels(force[good], lasts[good]))
     mean = float(np.average(force[good], weights=lasts[good]))
     return RunLoad(rounded_load(mean), LOAD_MEASURED, mean)
+
+
+def load_levels(force: np.ndarray, lasts: np.ndarray) -> tuple[float, ...]:
+    """Return the loads of a run whose segments were measured under several, the smallest first.
+
+    Parameters
+    ----------
+    force, lasts
+        Mean load [N] of each segment, above 0, and how long it lasts, its weight (segment).
+
+    Returns
+    -------
+    tuple
+        Mean load [N] of each level; none where the load rises or falls from segment to segment.
+
+    Examples
+    --------
+    >>> even = np.ones(4)
+    >>> load_levels(np.array([20.1, 40.2, 19.9, 40.0]), even)
+    (20.0, 40.1)
+    >>> load_levels(np.array([20.0, 21.5, 23.0, 24.5]), even)
+    ()
+    """
+    order = np.argsort(force)
+    edges = np.flatnonzero(force[order][1:] > _VARIES * force[order][:-1]) + 1
+    groups = np.split(order, edges)
+    if any(force[group[-1]] > _VARIES * force[group[0]] for group in groups):
+        return ()
+    return tuple(float(np.average(force[group], weights=lasts[group])) for group in groups)
+
+
+def at_level(force: np.ndarray, levels: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Return which segments were measured at the wanted ones of the levels of a run.
+
+    Parameters
+    ----------
+    force
+        Mean load [N] (segment); a segment without one is at none.
+    levels, wanted
+        Load [N] of each level and whether it is wanted (level).
+
+    Examples
+    --------
+    >>> at_level(np.array([19.8, 40.5, np.nan]), np.array([20.0, 40.0]), np.array([False, True]))
+    array([False,  True, False])
+    """
+    known = np.isfinite(force) & (force > 0)
+    off = np.abs(np.log(np.where(known, force, levels[0])[:, None] / levels))
+    chosen: np.ndarray = known & wanted[off.argmin(axis=1)]
+    return chosen
 
 
 def rounded_load(load: float) -> float:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from tribolab.campaign.store.catalogue import Store
     from tribolab.records.parts import RunOutcome
 
+_Own = tuple[str, float]  # name of a run, and a load that was measured in it [N]
 _ALIKE = 1.05  # largest over smallest of the loads of runs that are meant to be one
 
 
@@ -23,16 +24,18 @@ def with_loads_alike(store: Store, came: Sequence[RunCame]) -> list[RunCame]:
     systems: dict[tuple[str, str], list[RunOutcome]] = {}
     for run in came:
         systems.setdefault((run.outcome.surface, run.outcome.medium), []).append(run.outcome)
-    loads = {name: load for runs in systems.values() for name, load in _alike(runs)}
+    loads = {own: load for runs in systems.values() for own, load in _alike(runs)}
     return [_filed(store, run, place, loads) for place, run in enumerate(came)]
 
 
-def _filed(store: Store, run: RunCame, place: int, loads: dict[str, float]) -> RunCame:
+def _filed(store: Store, run: RunCame, place: int, loads: dict[_Own, float]) -> RunCame:
     """Write a run down under its load, if that is another."""
-    load = loads.get(run.outcome.name)
-    if load is None or load == run.outcome.normal_force:
+    name, measured = run.outcome.name, run.outcome.measured_load
+    load = run.outcome.normal_force if measured is None else loads[name, measured]
+    levels = tuple(loads[name, level] for level in run.outcome.measured_levels)
+    if (load, levels) == (run.outcome.normal_force, run.outcome.load_levels):
         return run
-    outcome = replace(run.outcome, normal_force=load)
+    outcome = replace(run.outcome, normal_force=load, load_levels=levels)
     if (entry := store.get("run", outcome.name, RunRecord)) is not None:
         trace = store.trace("run", outcome.name)
         record = replace(entry.record, outcome=outcome)
@@ -40,16 +43,16 @@ def _filed(store: Store, run: RunCame, place: int, loads: dict[str, float]) -> R
     return run._replace(outcome=outcome)
 
 
-def _alike(runs: Iterable[RunOutcome]) -> Iterable[tuple[str, float]]:
-    """Return the names of runs whose load was measured, each with the load it is filed under."""
+def _alike(runs: Iterable[RunOutcome]) -> Iterable[tuple[_Own, float]]:
+    """Return runs and their measured loads, each with the load that it is filed under."""
     stated = [run.normal_force for run in runs if run.load_from == LOAD_STATED]
     known = [load for load in stated if load is not None and load > 0]
-    measured = [(run.measured_load, run.name) for run in runs if run.measured_load is not None]
+    measured = [(load, run.name) for run in runs for load in _measured(run)]
     group: list[tuple[float, str]] = []
     for load, name in sorted(measured):
         near = [other for other in known if 1 / _ALIKE < load / other < _ALIKE]
         if near:
-            yield name, min(near, key=lambda other: abs(other - load))
+            yield (name, load), min(near, key=lambda other: abs(other - load))
             continue
         if group and load > _ALIKE * group[-1][0]:
             yield from _as_one(group)
@@ -58,6 +61,10 @@ def _alike(runs: Iterable[RunOutcome]) -> Iterable[tuple[str, float]]:
     yield from _as_one(group)
 
 
-def _as_one(group: Sequence[tuple[float, str]]) -> Iterable[tuple[str, float]]:
-    for _, name in group:
-        yield name, rounded_load(sum(load for load, _ in group) / len(group))
+def _measured(run: RunOutcome) -> tuple[float, ...]:
+    return run.measured_levels if run.measured_load is None else (run.measured_load,)
+
+
+def _as_one(group: Sequence[tuple[float, str]]) -> Iterable[tuple[_Own, float]]:
+    for own, name in group:
+        yield (name, own), rounded_load(sum(load for load, _ in group) / len(group))

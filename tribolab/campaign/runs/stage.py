@@ -12,7 +12,7 @@ import xarray as xr
 
 from tribolab.campaign.engine.stage import Stage
 from tribolab.campaign.runs.analysis import QUALITY, analyse_run, run_labels
-from tribolab.campaign.runs.loads import load_of
+from tribolab.campaign.runs.loads import load_of, rounded_load
 from tribolab.campaign.runs.reading import Earlier, mark_of
 from tribolab.campaign.runs.sources import source_of, sources_of_run
 from tribolab.campaign.runs.zeros import zero_of
@@ -240,6 +240,8 @@ def process_run(task: RunTask) -> RunAnswer:
         normal_force=load.normal_force,
         load_from=load.load_from,
         measured_load=load.measured_load,
+        measured_levels=load.levels,
+        load_levels=tuple(map(rounded_load, load.levels)),
         status="done",
         data_file=task.data_file,
         seconds=time.monotonic() - began,

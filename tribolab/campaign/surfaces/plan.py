@@ -95,9 +95,10 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
         What the runs came to: they tell the normal forces.
     """
     known = [
-        (run.surface, float(f"{run.normal_force:.4g}"))
+        (run.surface, float(f"{load:.4g}"))
         for run in runs
-        if run.normal_force is not None and run.normal_force > 0
+        for load in run.load_levels or (run.normal_force,)
+        if load is not None and load > 0
     ]
     stated = [float(f"{force:.4g}") for force in campaign.contact.normal_forces]
     every = [force for _, force in known] + stated

@@ -132,6 +132,8 @@ def _missing(
 ) -> Iterable[str]:
     """Say at which loads there are runs and no curve, and why."""
     there = {curve["nominal_normal_force_N"] for curve in curves}
+    parted = {name for curve in curves for name in curve["runs"]}  # a run may have several loads
+    runs = [r for r in runs if r["nominal_normal_force_N"] is not None or r["name"] not in parted]
     loads = dict.fromkeys(run["nominal_normal_force_N"] for run in runs)
     for load in sorted(loads, key=lambda force: force or 0.0):
         if load in there:
