@@ -7,6 +7,7 @@ import pytest
 from tribolab.records.parts import CurveOutcome
 from tribolab.report.document.document import verdict
 from tribolab.report.live.curves import curve_label
+from tribolab.report.live.points import of_curve, run_points
 from tribolab.report.page.answer import cards
 from tribolab.report.page.in_short import in_short
 
@@ -77,6 +78,16 @@ def test_a_run_under_several_loads_misses_no_curve_where_it_has_one():
     alone = several | {"name": "b", "segments_found": []}
     (card,) = cards(report([alone]))
     assert card.missing and "no curve" in card.missing[0]
+
+
+def test_a_point_of_a_run_holds_one_of_its_loads():
+    rows = [
+        {"sliding_speed_m_s": 1e-3, "normal_force_N": n, "friction_coefficient": mu} | SEM
+        for n, mu in ((20.1, 0.35), (40.2, 0.33))
+    ]
+    points = run_points("r", rows, filed={20.0: 20.2, 40.0: 40.0})
+    assert [(p.mu, p.load) for p in points] == [(0.35, 20.2), (0.33, 40.0)]
+    assert [p.mu for p in of_curve(points, 40.0)] == [0.33]
 
 
 def test_a_plateau_is_of_points_that_agree_within_their_errors():

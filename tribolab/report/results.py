@@ -187,7 +187,9 @@ def _runs(
         said += entry.record.notices
         name = entry.record.outcome.name
         facts = entry.record.facts
-        points[name] = run_points(name, facts.segments, facts.offset)
+        run = entry.record.outcome
+        filed = dict(zip(run.measured_levels, run.load_levels, strict=True))
+        points[name] = run_points(name, facts.segments, facts.offset, filed)
     return briefs, said, points
 
 

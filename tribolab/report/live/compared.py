@@ -16,7 +16,7 @@ from tribolab.report.live.curves import (
     systems,
 )
 from tribolab.report.live.figure import Axis, Labels, LiveFigure, Panel, Series, places
-from tribolab.report.live.points import RunPoint
+from tribolab.report.live.points import RunPoint, of_curve
 from tribolab.report.plain import plain_speed
 from tribolab.words import force_text, load_text, many, number, span
 
@@ -110,7 +110,7 @@ def _every_run(known: Friction, colours: Mapping[str, int]) -> LiveFigure:
             series += [
                 _run(
                     name,
-                    known.points[name],
+                    of_curve(known.points[name], outcome.normal_force),
                     label,
                     colours[outcome.surface],
                     labels_of(outcome),

@@ -12,7 +12,7 @@ from tribolab.records.wording import with_error
 from tribolab.report.document.models import ModelRow
 from tribolab.report.live.axes import comparable
 from tribolab.report.live.figure import Axis, Labels, LiveFigure, Panel, Series, Style, safe
-from tribolab.report.live.points import RunPoint, at_speed, point_error, told_point
+from tribolab.report.live.points import RunPoint, at_speed, of_curve, point_error, told_point
 from tribolab.report.live.record import Band, Missed
 from tribolab.report.plain import listed, plain_speed
 from tribolab.words import is_dry, load_text, many, number, span, speeds
@@ -133,7 +133,9 @@ def labels_of(curve: CurveOutcome) -> Labels:
 
 
 def _measured(known: Friction, curve: CurveRecord, colour: int, label: str) -> Series:
-    every = [p for name in curve.outcome.run_names for p in known.points.get(name, ())]
+    outcome = curve.outcome
+    of_runs = (p for name in outcome.run_names for p in known.points.get(name, ()))
+    every = of_curve(of_runs, outcome.normal_force)
     words, errors, targets = [], [], []
     for row in curve.points:
         points = at_speed(every, float(row["sliding_speed_m_s"] or 0.0))

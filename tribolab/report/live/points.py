@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from tribolab.friction.zero.of_run import PAIRED
@@ -26,6 +26,7 @@ class RunPoint(NamedTuple):
     within: float | None
     effective_samples: float
     segments: int
+    load: float | None = None  # [N] that it is filed under, of a run under several
 
 
 class PointError(NamedTuple):
@@ -37,7 +38,9 @@ class PointError(NamedTuple):
     scatter: float | None
 
 
-def run_points(name: str, segments: Sequence[Row], offset: str = "") -> list[RunPoint]:
+def run_points(
+    name: str, segments: Sequence[Row], offset: str = "", filed: Mapping[float, float] | None = None
+) -> list[RunPoint]:
     """Return mean friction over speed of one run.
 
     Parameters
@@ -48,6 +51,9 @@ def run_points(name: str, segments: Sequence[Row], offset: str = "") -> list[Run
         Rows of its segments, as in report.json.
     offset
         How the offset of the force was removed: by the half loop, two strokes are one observation.
+    filed
+        Of a run under several loads, the load [N] that each measured one [N] is filed under: a
+        point holds one of them.
 
     Examples
     --------
@@ -59,6 +65,16 @@ def run_points(name: str, segments: Sequence[Row], offset: str = "") -> list[Run
     >>> [round(p.within, 4) for p in run_points("r", rows, "half loop")]
     [0.01]
     """
+    if filed:
+        parts: dict[float, list[Row]] = {}
+        for row in segments:
+            if (load := number_of(row, "normal_force_N")) is not None:
+                parts.setdefault(filed[_nearest(filed, load)], []).append(row)
+        return [
+            point._replace(load=load)
+            for load, rows in parts.items()
+            for point in run_points(name, rows, offset)
+        ]
     known = []
     for row in segments:
         speed, mu = number_of(row, "sliding_speed_m_s"), number_of(row, "friction_coefficient")
@@ -85,6 +101,15 @@ def _point(name: str, group: list[tuple[float, float, Row]], paired: bool) -> Ru
     speed = sum(v for v, _, _ in group) / len(group)
     mu = sum(value for _, value, _ in group) / len(group)
     return RunPoint(name, speed, mu, within, samples, len(group))
+
+
+def _nearest(loads: Iterable[float], load: float) -> float:
+    return min(loads, key=lambda other: max(other, load) / max(min(other, load), 1e-9))
+
+
+def of_curve(points: Iterable[RunPoint], load: float | None) -> list[RunPoint]:
+    """Return the points of a run that belong to a curve under a load [N]."""
+    return [point for point in points if point.load in (None, load)]
 
 
 def at_speed(points: Sequence[RunPoint], speed: float) -> list[RunPoint]:
