@@ -35,6 +35,7 @@ def run_demo(
             pool.prepare()
         # only now, what is needed last among them: workers import the same, at the same time
         with importing():
+            # late: the workers have been sent off
             from tribolab.app import plain  # noqa: F401
             from tribolab.app.run import run_campaign
             from tribolab.app.truth.known import compare_with_known, paper_of, write_comparison
