@@ -28,6 +28,7 @@ from tribolab.stamping import stamp
 from tribolab.units import to_si
 
 _OF_STROKES = 5  # degree of the polynomial through the positions of a stroke
+MIDDLE = 0.5  # of each stroke that a crank drives: its speed changes there by an eighth
 LABELS = ("set_speed", "set_normal_force", "step", "cycle", "rolling_speed", "slide_roll_ratio")
 
 
@@ -78,7 +79,9 @@ def find_segments(
         For a slider that moves to and fro and never at constant speed, as a crank drives it: each
         stroke is a segment, and of it this share of its length about the middle counts ("40 %" of
         a sinusoidal stroke is within 9 % of its highest speed). Neither `trim` nor what concerns
-        constant speed applies then.
+        constant speed applies then. By default half of each stroke of a run that is never at
+        constant speed and whose speed follows from a stroke and a frequency (attribute
+        ``stroke_m``), unless a `position_range` is given.
 
     Returns
     -------
@@ -89,7 +92,7 @@ def find_segments(
         it has them. On dim ``omitted``: ``omitted_start``, ``omitted_stop`` [s] and
         ``omitted_reason``. Attributes ``trim`` and ``velocity_source`` (``"recorded"``,
         ``"position"``, ``"step"`` or ``"set speed"``); with a `position_range`,
-        ``position_low_m`` and ``position_high_m``.
+        ``position_low_m`` and ``position_high_m``; of middles of strokes ``stroke_middle``.
 
     Raises
     ------
@@ -148,7 +151,13 @@ def find_segments(
         for s in stretches
     ]
     stretches = loaded(run, stretches, limits)
-    return measured(run, stretches, source, share, position_range)
+    plateaus = measured(run, stretches, source, share, position_range)
+    if plateaus.sizes["segment"] or "stroke_m" not in run.attrs or position_range is not None:
+        return plateaus
+    try:  # what a crank drives is never at constant speed: each stroke has a middle
+        return _of_strokes(run, source, MIDDLE, min_samples)
+    except AnalysisError:  # it does not move to and fro: why no plateau was found says more
+        return plateaus
 
 
 def why_no_segment(segments: xr.Dataset) -> str:

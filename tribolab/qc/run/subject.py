@@ -23,7 +23,6 @@ from tribolab.words import speed_text
 
 _FORCES = ("friction_force", "normal_force", "friction_coefficient")
 _SIGNALS = (*_FORCES, "sliding_velocity", "position", "normal_stress", "temperature")
-_MIDDLE = 0.5  # of each stroke that a crank drives: its speed changes there by an eighth
 
 
 class RunSubject:
@@ -76,11 +75,7 @@ class RunSubject:
         if self._segments is not None:
             return self._segments
         try:
-            plateaus = find_segments(self.run)
-            # what a crank drives is never at constant speed: each stroke has a middle
-            if plateaus.sizes["segment"] or "stroke_m" not in self.run.attrs:
-                return plateaus
-            return find_segments(self.run, stroke_middle=_MIDDLE)
+            return find_segments(self.run)
         except AnalysisError as why:  # e.g. nothing tells the speed: the `schema` check says so
             return Skip(f"no segments: {why}")
 
