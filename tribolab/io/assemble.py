@@ -75,12 +75,12 @@ def assemble(logs: Logs, zero: str | None = None) -> xr.Dataset:
         return _blank(contents[0].path.parent / name, dialect)
 
     attrs |= take_zeros(columns, time, rules, blank, where)
-    keep_settings(columns, _symbols(contents, dialect), attrs, where, dialect)
+    of_steps = keep_settings(columns, _symbols(contents, dialect), attrs, where, dialect)
     assumed = add_assumed(attrs, dialect)
     add_derived(columns, _symbols(contents, dialect), attrs, time.size, where, dialect)
     tell_assumed(attrs, assumed, dialect)
     keep_forces_that_agree(columns, attrs)
-    add_speed(columns, attrs, time, where, dialect)
+    add_speed(columns, attrs, time, where, dialect, of_steps)
     _check_normal_force(columns, contents[0], where, dialect)
     attrs |= _attributes(contents, dialect, origin)
     attrs |= row_attributes(rows, contents, mended, dialect) | together

@@ -288,6 +288,5 @@ def _only(values: Sequence[DraftValue], key: re.Pattern[str], unit: str) -> Draf
         value
         for value in values
         if value.unit and converts(value.unit, unit) and key.search(value.key)
-        if value.source != "step"
     ]
     return fitting[0]._replace(to=unit) if len(fitting) == 1 else None

@@ -87,14 +87,32 @@ def find_strokes(run: xr.Dataset) -> Strokes:
                 "segments.stroke_middle = 0.5 in their [[run]]",
             ),
         )
-    usual = length > SHORTEST * median(length)
-    return Strokes(first, way, length, place, usual)
+    return Strokes(first, way, length, place, _usual(run, first, length))
+
+
+def _settings(run: xr.Dataset) -> np.ndarray | None:
+    """Return the number of each sample's step where a crank's steps have their own strokes."""
+    if "stroke_m_of_steps" not in run.attrs or "step" not in run:
+        return None
+    return np.asarray(run["step"].values)
+
+
+def _usual(run: xr.Dataset, first: np.ndarray, length: np.ndarray) -> np.ndarray:
+    """Whether a stroke is as long as those of its step are, and lies in one step (stroke)."""
+    step = _settings(run)
+    if step is None:
+        return length > SHORTEST * median(length)
+    own = step[first[:-1]]
+    usual = np.zeros(length.size, dtype=bool)
+    for each in np.unique(own):
+        usual[own == each] = length[own == each] > SHORTEST * median(length[own == each])
+    return usual & (own == step[first[1:] - 1])
 
 
 _Parts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
-def _held(values: np.ndarray, low: float, high: float) -> np.ndarray:
+def _held(values: np.ndarray, low: float | np.ndarray, high: float | np.ndarray) -> np.ndarray:
     """Whether a signal was last above `high` (+1) or below `low` (-1); 0 before either."""
     state = np.where(values > high, 1, np.where(values < low, -1, 0))
     place = np.where(state != 0, np.arange(state.size), 0)
@@ -138,7 +156,7 @@ def _by_position(run: xr.Dataset) -> _Parts:
 
 def _by_velocity(run: xr.Dataset) -> _Parts:
     time, velocity = run["time"].values, _filled(run, "sliding_velocity")
-    limit = LEAST_SPEED * float(np.percentile(np.abs(velocity), 90))
+    limit = _limit(run, velocity)
     state = _held(velocity, -limit, limit)
     change = np.flatnonzero(np.diff(state)) + 1
     change = change[state[change - 1] != 0]
@@ -158,6 +176,17 @@ def _by_velocity(run: xr.Dataset) -> _Parts:
     gone = np.abs(path[samples] - path[turn[number]])
     place[samples] = gone / np.where(length[number] > 0, length[number], np.inf)
     return turn, way, place, length
+
+
+def _limit(run: xr.Dataset, velocity: np.ndarray) -> float | np.ndarray:
+    """Return the speed below which a sample does not say which way it goes [m/s]."""
+    step = _settings(run)
+    if step is None:
+        return LEAST_SPEED * float(np.percentile(np.abs(velocity), 90))
+    limit = np.zeros(velocity.size)
+    for each in np.unique(step):
+        limit[step == each] = LEAST_SPEED * np.percentile(np.abs(velocity[step == each]), 90)
+    return limit
 
 
 def _nothing(size: int) -> _Parts:
