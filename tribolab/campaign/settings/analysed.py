@@ -24,7 +24,8 @@ class Segments(Table):
     """Only this part of the track is used."""
     stroke_middle: MiddleShare | None = None
     """Of a slider that moves to and fro without a constant speed: the share of each stroke's length
-    about its middle that is used, e.g. "40 %"."""
+    about its middle that is used, e.g. "40 %"; by default half where the instrument states stroke
+    and frequency."""
     resolution: Annotated[float, Field(gt=0, lt=1)] | None = None
     """Relative difference of speed that separates two neighbouring plateaus."""
     drift: Annotated[float, Field(gt=0)] | None = None
