@@ -48,19 +48,19 @@ def test_a_sentence_says_of_each_error_what_it_holds():
     for row, runs in zip(one["curves"][0]["points"], (2, 2, 1), strict=True):
         row["runs"] = runs
     (card,) = cards(one)
-    assert card.found[0].text == "31 N"
-    assert card.found[0].sentences[0].endswith(" (± between runs and within the run).")
+    assert card.at_loads[0].text == "31 N"
+    assert card.at_loads[0].sentences[0].endswith(" (± between runs and within the run).")
     for row in one["curves"][0]["points"]:
         row["runs"] = 1
     (card,) = cards(one)
-    assert card.found[0].sentences[0].endswith(", the fastest speed (± within the run).")
+    assert card.at_loads[0].sentences[0].endswith(", the fastest speed (± within the run).")
 
 
 def test_a_card_says_shape_stress_mode_and_what_the_model_misses():
     stress = {"shear_stress_Pa": 0.88e6, "shear_stress_low_Pa": 0.8e6}
     words = "the model describes the curve within the errors; largest at 1 mm/s"
     (card,) = cards(report([], **stress, shear_stress_high_Pa=0.95e6, judgement=words))
-    (found,) = card.found
+    (found,) = card.at_loads
     # half of 1.1 lies between the last two points: 100 um/s * 100^((1.07 - 0.55) / 0.87)
     assert found.sentences == (
         "Plateau of µ = 1.100 ± 0.010 up to 100 µm/s; half of it at 1.6 mm/s; lowest "
@@ -95,7 +95,7 @@ def test_a_plateau_is_of_points_that_agree_within_their_errors():
     for row in one["curves"][0]["points"]:
         row["friction_coefficient_sem"] = 0.002
     (card,) = cards(one)
-    assert card.found[0].sentences[0].startswith("Highest µ = 1.100 ± 0.002 at 1 µm/s; half")
+    assert card.at_loads[0].sentences[0].startswith("Highest µ = 1.100 ± 0.002 at 1 µm/s; half")
 
 
 @pytest.mark.parametrize(

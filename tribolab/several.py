@@ -132,7 +132,7 @@ def _called(
 
 def _of_datasets(value: Any) -> bool:
     # by name: whoever calls with lists has loaded xarray already
-    return isinstance(value, list) and all(type(one).__name__ == "Dataset" for one in value)
+    return isinstance(value, list) and all(type(item).__name__ == "Dataset" for item in value)
 
 
 def _name(function: Callable[..., Any], key: int | str) -> str:
@@ -214,7 +214,7 @@ def _along(function: Callable[..., Any], given: Arguments, dim: Hashable) -> Any
     return joined
 
 
-def one(value: str | float | xr.DataArray) -> str | float:
+def as_stated(value: str | float | xr.DataArray) -> str | float:
     """Return what was stated, or of an array without dims its number."""
     return float(value.item()) if hasattr(value, "item") else value
 

@@ -54,11 +54,11 @@ def with_units(data: xr.Dataset | xr.DataArray) -> str:
         return text
     own = getattr(data, "data_vars", {})
 
-    def beside(found: re.Match[str]) -> str:
-        name = html.unescape(found[2])
+    def beside(match: re.Match[str]) -> str:
+        name = html.unescape(match[2])
         holder: Any = data.coords if name in data.coords else own
         unit = holder[name].attrs.get("units") if name in holder else None
-        return f"{found[1]}{html.escape(str(unit))}, " if unit else found[1]
+        return f"{match[1]}{html.escape(str(unit))}, " if unit else match[1]
 
     text = _VARIABLE.sub(beside, text)
     unit = "" if hasattr(data, "data_vars") else data.attrs.get("units", "")

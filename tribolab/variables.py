@@ -41,8 +41,8 @@ def variables(data: xr.Dataset | xr.DataArray) -> pd.DataFrame:
     import pandas as pd
     import xarray as xr
 
-    one = isinstance(data, xr.DataArray)
-    whole = data.to_dataset(name=data.name or "value") if one else data
+    alone = isinstance(data, xr.DataArray)
+    whole = data.to_dataset(name=data.name or "value") if alone else data
     names = [*whole.coords, *whole.data_vars]
     rows = {str(name): _row(whole[name]) for name in names}
     table = pd.DataFrame.from_dict(rows, orient="index")

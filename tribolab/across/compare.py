@@ -178,11 +178,11 @@ def compare(
     )
 
 
-def _all_same(condition: Matched, one: Side, two: Side) -> bool:
+def _all_same(condition: Matched, first: Side, second: Side) -> bool:
     """Tell whether the runs of a condition are made of the same raw files in both."""
-    if one.folder is None or two.folder is None or one.folder is two.folder:
+    if first.folder is None or second.folder is None or first.folder is second.folder:
         return False
-    sums = [side.folder.checksums() if side.folder else {} for side in (one, two)]
+    sums = [side.folder.checksums() if side.folder else {} for side in (first, second)]
     files = [
         sorted(sums[place].get(run, ()) for run in runs)
         for place, runs in enumerate((condition.first_runs, condition.second_runs))

@@ -110,13 +110,13 @@ def _shear_stress(first: pd.DataFrame, second: pd.DataFrame, by: str) -> list[li
     rows = []
     load = "normal_force_N"
     keys = [key for key in ("surface", "medium", load) if key != by and key in first]
-    for one, two in _matched_rows(first, second, keys):
-        errors = [float(row["shear_stress_error_Pa"]) for row in (one, two)]
-        where = {key: one[key] for key in keys}
+    for former, latter in _matched_rows(first, second, keys):
+        errors = [float(row["shear_stress_error_Pa"]) for row in (former, latter)]
+        where = {key: former[key] for key in keys}
         text = condition_text(
             where.get("surface"), where.get("medium"), float(where.get(load, np.nan))
         )
-        values = float(one["shear_stress_Pa"]), float(two["shear_stress_Pa"])
+        values = float(former["shear_stress_Pa"]), float(latter["shear_stress_Pa"])
         error = math.hypot(*errors)
         rows.append(
             _row("shear_stress_Pa", text, values, error, np.inf, "statistical error of both fits")
@@ -127,15 +127,15 @@ def _shear_stress(first: pd.DataFrame, second: pd.DataFrame, by: str) -> list[li
 def _roughness(first: pd.DataFrame, second: pd.DataFrame, by: str) -> list[list[object]]:
     rows = []
     keys = [key for key in ("surface",) if key != by]
-    for one, two in _matched_rows(first, second, keys):
-        text = str(one["surface"]) if keys else f"{one['surface']} and {two['surface']}"
+    for former, latter in _matched_rows(first, second, keys):
+        text = str(former["surface"]) if keys else f"{former['surface']} and {latter['surface']}"
         for name, unit in _ROUGHNESS.items():
             spread = [
                 (float(row[f"{name}_high{unit}"]) - float(row[f"{name}_low{unit}"]))
                 / (2 * _TWO_SIDED)
-                for row in (one, two)
+                for row in (former, latter)
             ]
-            values = float(one[f"{name}{unit}"]), float(two[f"{name}{unit}"])
+            values = float(former[f"{name}{unit}"]), float(latter[f"{name}{unit}"])
             error = 0.0 if values[0] == values[1] else math.hypot(*spread)
             rows.append(_row(f"{name}{unit}", text, values, error, np.inf, "95 % bounds of both"))
     return rows

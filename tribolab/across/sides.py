@@ -49,8 +49,8 @@ def sides_of(
         If it is not said what they are, or a results folder has no runs.
     """
     if second is not None:
-        one, two = _side(first, "first"), _side(second, "second")
-        return (one, two) if one.name != two.name else _told_apart(one, two)
+        sides = _side(first, "first"), _side(second, "second")
+        return sides if sides[0].name != sides[1].name else _told_apart(sides)
     if not by:
         raise AnalysisError(
             "there is nothing to compare with: name a second folder, or say by which column two "
@@ -77,15 +77,15 @@ def sides_of(
     return halves[0], halves[1]
 
 
-def _told_apart(one: Side, two: Side) -> tuple[Side, Side]:
+def _told_apart(alike: tuple[Side, Side]) -> tuple[Side, Side]:
     """Return two folders of one name with what tells them apart."""
     names = [
         str(side.folder.path) if side.folder else f"{side.name} ({word})"
-        for side, word in ((one, "first"), (two, "second"))
+        for side, word in zip(alike, ("first", "second"), strict=True)
     ]
     sides = [
         Side(name, side.segments, side.folder, side.tables)
-        for name, side in zip(names, (one, two), strict=True)
+        for name, side in zip(names, alike, strict=True)
     ]
     return sides[0], sides[1]
 

@@ -18,7 +18,7 @@ from tribolab.contact.adhesion_balance import (
 )
 from tribolab.contact.area import AreaTheory
 from tribolab.errors import AnalysisError
-from tribolab.several import one, over_dims
+from tribolab.several import as_stated, over_dims
 from tribolab.stamping import labelled, stamp
 from tribolab.surface.moments import rms_slope
 from tribolab.validity import TINY, examine
@@ -117,7 +117,7 @@ def adhesion(
     """
     surface = rough_interface(psd, effective_modulus, kappa, c_a, nodes)
     over: xr.DataArray = finite_pressures(pressure)
-    work = work_value(one(work_of_adhesion))
+    work = work_value(as_stated(work_of_adhesion))
     return _adhesions(surface, over, psd, (work,), area, max_iterations)[0]
 
 

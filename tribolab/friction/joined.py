@@ -92,7 +92,7 @@ def joined_curves(curves: Sequence[tuple[xr.Dataset, Mapping[str, Label]]]) -> x
     foreign = {dim: axis for dim, axis in axes.items() if _is_foreign(dim, axis)}
     joined = stamp(
         xr.Dataset(
-            {name: (whole, one) for name, one in values.items()},
+            {name: (whole, value) for name, value in values.items()},
             {dim: axis for dim, axis in axes.items() if dim not in foreign}
             | {"sliding_speed": speeds},
         )

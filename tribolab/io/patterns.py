@@ -31,10 +31,10 @@ def matching(pattern: str | Path) -> list[Path]:
     path = Path(pattern)
     folder = next(parent for parent in path.parents if parent.is_dir())  # whatever its name is
     names = folder.glob(str(path.relative_to(folder)))
-    found = sorted(name for name in names if not name.name.startswith("."))
-    if not found:
+    files = sorted(name for name in names if not name.name.startswith("."))
+    if not files:
         raise ReadError(f"{pattern}: {why_missing(path)}")
-    return found
+    return files
 
 
 def why_missing(path: Path) -> str:

@@ -52,5 +52,5 @@ def relative_flow_factors(psd: xr.Dataset, over: ArrayLike, **options: Any) -> x
     table = flow_factors(psd, **options)
     relative = np.atleast_1d(np.asarray(over, float))
     separation = xr.DataArray(relative * table.rms_roughness, dims=OVER, coords={OVER: relative})
-    found = table.dataset(separation).reset_coords("separation")
-    return stamp(found, **{k: v for k, v in found.attrs.items() if not k.endswith("_m")})
+    factors = table.dataset(separation).reset_coords("separation")
+    return stamp(factors, **{k: v for k, v in factors.attrs.items() if not k.endswith("_m")})

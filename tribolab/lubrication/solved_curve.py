@@ -29,7 +29,7 @@ from tribolab.lubrication.system import (
     system_of,
     with_adhesion,
 )
-from tribolab.several import one
+from tribolab.several import as_stated
 from tribolab.stamping import stamp
 from tribolab.units import to_si
 
@@ -84,7 +84,7 @@ def solve_curve(
         system = system_of(
             contact,
             psd,
-            one(viscosity),
+            as_stated(viscosity),
             rough_body,
             factors,
             gamma,
@@ -93,7 +93,7 @@ def solve_curve(
             inlet_length,
             area,
         )
-    stress = to_si(one(shear_stress), "Pa", name="shear_stress")
+    stress = to_si(as_stated(shear_stress), "Pa", name="shear_stress")
     if not 0 <= stress < np.inf:
         raise AnalysisError(f"shear_stress: it must be finite and not negative; got {stress:g} Pa")
     loads, speeds = checked_loads(load), checked_speeds(speed, psd)

@@ -107,8 +107,8 @@ def _of_record(run: xr.Dataset, facts: RunFacts) -> RunFacts:
 
 def findings_of(run: xr.Dataset) -> list[FindingRow]:
     """Return what the checks said of a run, in plain rows."""
-    found: list[FindingRow] = run.attrs.get("findings", [])
-    return found
+    rows: list[FindingRow] = run.attrs.get("findings", [])
+    return rows
 
 
 _SHIFT = ("clock_shift_s", "clock_shift_uncertainty_s")

@@ -58,7 +58,7 @@ def plain_speeds(text: str) -> str:
     'from 1 µm/s to 100 µm/s, 2.2 mm/s'
     """
     factors = {prefix: factor for factor, prefix in _PREFIXES}
-    return _SPEED.sub(lambda found: plain_speed(float(found[1]) * factors[found[2]]), text)
+    return _SPEED.sub(lambda match: plain_speed(float(match[1]) * factors[match[2]]), text)
 
 
 _POWER = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)e([+-]?\d+)(?: (m/s)\b)?")

@@ -100,7 +100,7 @@ def _compared_file(name: str, true: pd.DataFrame, file: Path | None) -> pd.DataF
 
 
 def compare_run(
-    name: str, true: pd.DataFrame, found: xr.Dataset | None, time_origin: float
+    name: str, true: pd.DataFrame, friction: xr.Dataset | None, time_origin: float
 ) -> pd.DataFrame:
     """Match the segments of one run with the true ones.
 
@@ -111,7 +111,7 @@ def compare_run(
     true
         Columns ``start_s``, ``stop_s`` (force clock), ``sliding_speed_m_s``, ``direction`` and
         ``friction_coefficient``.
-    found
+    friction
         Friction (segment), or None for a run that failed.
     time_origin
         Raw time of the run's first sample [s].
@@ -122,9 +122,11 @@ def compare_run(
         One row per true segment (status found or missed), then the extra ones.
     """
     start, stop = true["start_s"].to_numpy(), true["stop_s"].to_numpy()
-    size = 0 if found is None else found.sizes["segment"]
+    size = 0 if friction is None else friction.sizes["segment"]
     values = {
-        column: np.full(size, np.nan) if found is None or key not in found else found[key].values
+        column: np.full(size, np.nan)
+        if friction is None or key not in friction
+        else friction[key].values
         for column, key in _READ.items()
     }
     values["start_s"] = values["start_s"] + time_origin

@@ -279,21 +279,25 @@ def _move_in(room: Path, output: Path) -> None:
         (new / name).rename(output / name)
 
 
-def exchange(one: Path, other: Path) -> bool:
+def exchange(former: Path, latter: Path) -> bool:
     """Exchange two paths in one step; False where the system cannot."""
     try:
         renameat2 = ctypes.CDLL(None, use_errno=True).renameat2
     except (AttributeError, OSError):
         return False
     failed = renameat2(
-        _AT_FDCWD, os.fsencode(one), _AT_FDCWD, os.fsencode(other), ctypes.c_uint(_RENAME_EXCHANGE)
+        _AT_FDCWD,
+        os.fsencode(former),
+        _AT_FDCWD,
+        os.fsencode(latter),
+        ctypes.c_uint(_RENAME_EXCHANGE),
     )
     if not failed:
         return True
     number = ctypes.get_errno()
     if number in (errno.EINVAL, errno.ENOSYS, errno.ENOTSUP):
         return False
-    raise OSError(number, os.strerror(number), str(other))
+    raise OSError(number, os.strerror(number), str(latter))
 
 
 def _is_about(error: OSError, room: Path, output: Path) -> bool:

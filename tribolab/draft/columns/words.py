@@ -185,7 +185,7 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
 def _kinds(unit: str) -> int:
     """Return the number of quantities of a run that are measured in a unit."""
     known = [quantity(word.quantity) for word in RUN_WORDS]
-    return sum(converts(unit, one.unit, one.bare) for one in known)
+    return sum(converts(unit, kind.unit, kind.bare) for kind in known)
 
 
 def _score(text: str, word: Word) -> float:

@@ -191,11 +191,11 @@ class Shared(NamedTuple):
     near: np.ndarray
 
 
-def shared_by_points(one: Points, other: Points, length: float) -> Shared:
+def shared_by_points(points: Points, other: Points, length: float) -> Shared:
     """Return correlations (point, other point) of unit levels and of unit correlated errors."""
-    same = one.curve[:, None] == other.curve
-    apart = np.abs(one.log_speed[:, None] - other.log_speed)
+    same = points.curve[:, None] == other.curve
+    apart = np.abs(points.log_speed[:, None] - other.log_speed)
     return Shared(
-        (one.level[:, None] == other.level).astype(float),
+        (points.level[:, None] == other.level).astype(float),
         np.where(same, np.exp(-apart / length), 0.0),
     )

@@ -155,17 +155,17 @@ def _refuse_contradictions(
     segments: xr.Dataset, made: tuple[Decision, ...], touched: list[list[int]]
 ) -> None:
     """Refuse to accept what is rejected, and to bound anew twice; a run may be accepted in part."""
-    for number, one in enumerate(made):
+    for number, decision in enumerate(made):
         for other, places in zip(made[:number], touched[:number], strict=True):
-            common = set(places) & set(touched[number]) or one.interval == other.interval
-            actions = {one.action, other.action}
-            first, second = sorted((other, one), key=lambda d: d.action)
+            common = set(places) & set(touched[number]) or decision.interval == other.interval
+            actions = {decision.action, other.action}
+            first, second = sorted((other, decision), key=lambda d: d.action)
             accepted_in_part = first.interval is None and second.interval is not None
             if not common or not (
-                one.action == other.action == BOUNDS
+                decision.action == other.action == BOUNDS
                 or (actions == {ACCEPT, REJECT} and not accepted_in_part)
             ):
                 continue
             cure = Cure(campaign="take one of them out of review.toml", notebook="take one out")
-            what = f"{other} and {one} contradict each other"
+            what = f"{other} and {decision} contradict each other"
             raise AnalysisError(what, where=segments.attrs.get("source", ""), cure=cure)

@@ -199,12 +199,12 @@ def _own_spacing(record: Record) -> float:
     return float(record.time[-1] - record.time[0]) / (record.time.size - 1)
 
 
-def bands(found: Spectrum, per_decade: int, first: int = 2) -> tuple[np.ndarray, ...]:
+def bands(spectrum: Spectrum, per_decade: int, first: int = 2) -> tuple[np.ndarray, ...]:
     """Average a spectrum over bands of equal relative width, each of one bin at least.
 
     Parameters
     ----------
-    found
+    spectrum
         Spectrum.
     per_decade
         Bands in a decade of frequency.
@@ -217,7 +217,7 @@ def bands(found: Spectrum, per_decade: int, first: int = 2) -> tuple[np.ndarray,
         Frequency [Hz], power density, width [Hz] and degrees of freedom of each band, and the
         first bin of each.
     """
-    f = found.frequency
+    f = spectrum.frequency
     if f.size <= first + 1:
         return (np.zeros(0),) * 4 + (np.zeros(0, int),)
     decades = np.log10(f[-1] / f[first])
@@ -225,9 +225,9 @@ def bands(found: Spectrum, per_decade: int, first: int = 2) -> tuple[np.ndarray,
     starts = np.unique(np.searchsorted(f, edges * (1 - 1e-9)))
     starts = starts[(starts >= first) & (starts < f.size)]
     count = np.diff(np.append(starts, f.size))
-    width = np.add.reduceat(found.width, starts)
-    power = np.add.reduceat(found.power * found.width, starts) / width
+    width = np.add.reduceat(spectrum.width, starts)
+    power = np.add.reduceat(spectrum.power * spectrum.width, starts) / width
     middle = np.add.reduceat(f, starts) / count
     # a Hann window ties neighbouring bins together: two thirds of them are independent
-    freedom = np.add.reduceat(found.freedom, starts) / np.where(count > 1, 1.5, 1.0)
+    freedom = np.add.reduceat(spectrum.freedom, starts) / np.where(count > 1, 1.5, 1.0)
     return middle, power, width, freedom, starts

@@ -123,14 +123,14 @@ COEFFICIENTS = {
 }
 
 
-def features(form: Waveform, found: Oscillation) -> dict[str, float]:
+def features(form: Waveform, oscillation: Oscillation) -> dict[str, float]:
     """Features of the class, each within its `LIMITS`."""
     raw = {
-        "prominence": np.log10(max(found.prominence, 1e-9)),
-        "significance": -np.log10(max(found.false_alarm, 1e-99)),
-        "strength": np.log10(max(found.swing, 1e-99) / max(found.noise, 1e-99)),
-        "share": found.share,
-        "harmonics": found.harmonic_content,
+        "prominence": np.log10(max(oscillation.prominence, 1e-9)),
+        "significance": -np.log10(max(oscillation.false_alarm, 1e-99)),
+        "strength": np.log10(max(oscillation.swing, 1e-99) / max(oscillation.noise, 1e-99)),
+        "share": oscillation.share,
+        "harmonics": oscillation.harmonic_content,
         "asymmetry": 0.5 - form.fall_share,
         "lean": abs(0.5 - form.fall_share),
         "reversal": -np.log10(max(form.asymmetry_p_value, 1e-99)),

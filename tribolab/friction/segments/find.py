@@ -23,7 +23,7 @@ from tribolab.friction.segments.stretches import (
 from tribolab.friction.segments.strokes import middle_parts
 from tribolab.medians import median
 from tribolab.pieces import one_by_one
-from tribolab.several import of_runs, one, over_dims
+from tribolab.several import as_stated, of_runs, over_dims
 from tribolab.stamping import stamp
 from tribolab.units import to_si
 
@@ -125,7 +125,7 @@ def find_segments(
     >>> found.direction.values.tolist(), found.omitted_reason.values.tolist()
     ([1, -1], ['at rest', 'at rest', 'at rest'])
     """
-    share = _share(one(trim))
+    share = _share(as_stated(trim))
     if "time" not in run.dims or run.sizes["time"] == 0:
         raise AnalysisError(f"{name_of(run)}: the run has no samples, so no segments can be found")
     shortest = to_si(min_duration, "s", name="min_duration")

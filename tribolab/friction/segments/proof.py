@@ -199,7 +199,7 @@ def _is_level(
         best = int(np.argmin([fit.variance for fit, _ in misfits]))
         turns, width = turns[best] + width * np.linspace(-1, 1, 11), width / 5
     # one count of readings for all: that of the motion that leaves least
-    count = min(levels + others, key=lambda one: one[0].variance)[0].samples
+    count = min(levels + others, key=lambda misfit: misfit[0].variance)[0].samples
 
     def schwarz(fits: list[tuple[Fit, int]]) -> float:
         price = np.log(time.size)

@@ -104,7 +104,7 @@ class StrokeSums(NamedTuple):
 
 
 def interpolated(
-    found: Middles, pair: np.ndarray, time: np.ndarray
+    middles: Middles, pair: np.ndarray, time: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, StrokeSums]:
     """Zero at each segment from the middles of the loops, its drift, and the rows of its error.
 
@@ -117,41 +117,43 @@ def interpolated(
         two loops the straight line between them.
     """
     count = time.size
-    known = np.flatnonzero(np.isfinite(found.value))
-    order = known[np.argsort(found.time[known])]
+    known = np.flatnonzero(np.isfinite(middles.value))
+    order = known[np.argsort(middles.time[known])]
     loop, weight = np.zeros((count, 3), dtype=int), np.zeros((count, 3))
     slope = np.zeros(count)
     for i in range(count):
         p = pair[i]
         if p < 0 and order.size:
-            after = int(np.searchsorted(found.time[order], time[i]))
+            after = int(np.searchsorted(middles.time[order], time[i]))
             if 0 < after < order.size:
                 a, b = order[after - 1], order[after]
-                u = (time[i] - found.time[a]) / (found.time[b] - found.time[a])
+                u = (time[i] - middles.time[a]) / (middles.time[b] - middles.time[a])
                 loop[i], weight[i] = (a, b, b), (1 - u, u, 0.0)
-                slope[i] = (found.value[b] - found.value[a]) / (found.time[b] - found.time[a])
+                slope[i] = (middles.value[b] - middles.value[a]) / (
+                    middles.time[b] - middles.time[a]
+                )
                 continue
             p = order[min(after, order.size - 1)]
-        a, b = found.ends[p]
-        apart = found.time[b] - found.time[a]
-        ahead = found.part[p] * (time[i] - found.time[p]) / apart if apart > 0 else 0.0
+        a, b = middles.ends[p]
+        apart = middles.time[b] - middles.time[a]
+        ahead = middles.part[p] * (time[i] - middles.time[p]) / apart if apart > 0 else 0.0
         loop[i], weight[i] = (p, a, b), (1.0, -ahead, ahead)
-        slope[i] = found.slope[p]
-    value = (weight * np.where(weight != 0, found.value[loop], 0.0)).sum(axis=1)
+        slope[i] = middles.slope[p]
+    value = (weight * np.where(weight != 0, middles.value[loop], 0.0)).sum(axis=1)
     own = np.arange(count)[:, None]
-    stroke = np.concatenate([own, found.member[loop].reshape(count, 6)], axis=1)
-    of_loops = -(weight[:, :, None] * found.share[loop]).reshape(count, 6)
+    stroke = np.concatenate([own, middles.member[loop].reshape(count, 6)], axis=1)
+    of_loops = -(weight[:, :, None] * middles.share[loop]).reshape(count, 6)
     return value, slope, StrokeSums(stroke, np.concatenate([np.ones((count, 1)), of_loops], axis=1))
 
 
 def error_of_rows(
-    rows: StrokeSums, found: Middles, own: np.ndarray, time: np.ndarray
+    rows: StrokeSums, middles: Middles, own: np.ndarray, time: np.ndarray
 ) -> np.ndarray:
     """Return the standard error of each segment's force without its zero.
 
     Parameters
     ----------
-    rows, found
+    rows, middles
         From `interpolated` and `middles`.
     own
         Standard error of the mean force of each stroke (segment).
@@ -165,7 +167,7 @@ def error_of_rows(
     shows them in its own error; and that of the zero's walk, <Z(t) Z(t')> = D min(t, t'). Both
     movements are what the middles show beyond their errors and beyond a common drift.
     """
-    error = np.sqrt(((found.share * own[found.member]) ** 2).sum(axis=1))
+    error = np.sqrt(((middles.share * own[middles.member]) ** 2).sum(axis=1))
     same = rows.stroke[:, :, None] == rows.stroke[:, None, :]
     product = rows.weight[:, :, None] * rows.weight[:, None, :]
     squares = np.nan_to_num(own)[rows.stroke] ** 2
@@ -179,7 +181,7 @@ def error_of_rows(
     # a common drift is taken out and need not be paid for; of few loops it takes what they tell
     moved = [
         np.maximum(variance, moves.fast * fast) + moves.rate * slow
-        for moves in _movements(found, error)
+        for moves in _movements(middles, error)
     ]
     return np.sqrt(np.minimum(*moved))
 

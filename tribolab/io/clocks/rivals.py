@@ -119,7 +119,7 @@ def _fitted(force_time: Array, force: Array, basis: Basis, shift: float) -> Cand
     return Candidate(shift, best.unexplained, best.freedom, changes)
 
 
-def likeliest(found: list[Candidate]) -> Candidate:
+def likeliest(candidates: list[Candidate]) -> Candidate:
     """Return the first, or the one that beats all others.
 
     >>> likeliest([Candidate(0.0, 0.2, 70.0, 8), Candidate(4.5, 0.003, 180.0, 8)]).shift
@@ -127,8 +127,8 @@ def likeliest(found: list[Candidate]) -> Candidate:
     >>> likeliest([Candidate(0.0, 0.011, 70.0, 8), Candidate(4.5, 0.01, 180.0, 8)]).shift
     0.0
     """
-    fitted = [candidate for candidate in found if not np.isnan(candidate.unexplained)]
-    if not fitted or np.isnan(found[0].unexplained):
-        return found[0]
+    fitted = [candidate for candidate in candidates if not np.isnan(candidate.unexplained)]
+    if not fitted or np.isnan(candidates[0].unexplained):
+        return candidates[0]
     best = min(fitted, key=lambda candidate: candidate.unexplained)
-    return best if best.beats(found[0]) else found[0]
+    return best if best.beats(candidates[0]) else candidates[0]

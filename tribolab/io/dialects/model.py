@@ -134,12 +134,12 @@ def _check_formulas(
     A quantity that a column surely holds has no formula; of an optional column it is the stand-in.
     """
     known = {*columns, *values}
-    for one in derived:
-        for name in sorted({*names_in(parse_formula(one.formula)), *one.beside} - known):
+    for rule in derived:
+        for name in sorted({*names_in(parse_formula(rule.formula)), *rule.beside} - known):
             raise ValueError(
-                f"formula of '{one.quantity}': there is no column, value with a unit or derived "
+                f"formula of '{rule.quantity}': there is no column, value with a unit or derived "
                 f"quantity before it called '{shown(name)}'{nearest(name, known)}"
             )
-        if one.quantity in sure:
-            raise ValueError(f"'{one.quantity}' is given by a column and by a formula")
-        known.add(one.quantity)
+        if rule.quantity in sure:
+            raise ValueError(f"'{rule.quantity}' is given by a column and by a formula")
+        known.add(rule.quantity)

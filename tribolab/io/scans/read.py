@@ -253,12 +253,12 @@ def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:
             drift = abs(float(np.ptp(scan[dim].values)) - length) if points > 1 else 0.0
             if scan.sizes[dim] == points and drift <= 0.5 * length / max(points - 1, 1):
                 continue
-            found, usual = (
+            own, usual = (
                 1e6 * float(np.ptp(pitch_of[dim].values)) / max(pitch_of.sizes[dim] - 1, 1)
                 for pitch_of in (scan, first)
             )
             raise ReadError(
-                f"{scan.sizes[dim]} points of {found:.6g} um, but {files[0].name} has {points} "
+                f"{scan.sizes[dim]} points of {own:.6g} um, but {files[0].name} has {points} "
                 f"points of {usual:.6g} um: scans of different pitch or length do not stack",
                 where=file,
                 cure=_ONE_BY_ONE,

@@ -41,7 +41,7 @@ class Card:
     surface: str
     medium: str
     figure: str
-    found: tuple[AtLoad, ...]
+    at_loads: tuple[AtLoad, ...]
     thin: tuple[tuple[str, str], ...]
     missing: tuple[str, ...]
     findings: tuple[tuple[str, str], ...]
@@ -87,7 +87,7 @@ def _card(
         surface=surface,
         medium=medium,
         figure=figure,
-        found=tuple(_at_load(document, curve) for curve in curves),
+        at_loads=tuple(_at_load(document, curve) for curve in curves),
         thin=thin,
         missing=tuple(_missing(system_name(surface, medium), curves, runs)),
         findings=tuple(_findings(document["findings"], names)),
