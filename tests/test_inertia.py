@@ -12,7 +12,7 @@ import tribolab as tl
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.errors import AnalysisError, ReadError
 from tribolab.io.inertia import acceleration
-from tribolab.records.traces import trace
+from tribolab.records.traces import decimated_trace
 from tribolab.rig import DryLaw
 from tribolab.rig.layouts.motion import Leg, carried_out, crank
 from tribolab.rig.layouts.record import Sensors, recorded
@@ -115,7 +115,7 @@ def test_a_campaign_states_a_mass_or_finds_it_and_says_so(tmp_path):
     assert again["inertial_force"].attrs["units"] == "N"
     report = json.loads((tmp_path / "results" / "report.json").read_text(encoding="utf-8"))
     assert "that of 2 kg (stated) is taken out" in report["runs"][1]["inertia"]
-    drawn = trace(again, tl.find_segments(again), None, 300)["signals"]
+    drawn = decimated_trace(again, tl.find_segments(again), None, 300)["signals"]
     assert [signal["label"] for signal in drawn][-1] == "inertia"
 
 

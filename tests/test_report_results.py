@@ -24,7 +24,7 @@ from tribolab.records.packed import clock_of, packed_points
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.run_facts import stick_slip_of
 from tribolab.records.run_record import RunRecord, Waveform
-from tribolab.records.traces import finer_trace, flagged_spans, script_json, trace
+from tribolab.records.traces import decimated_trace, finer_trace, flagged_spans, script_json
 from tribolab.records.wording import plain_value, with_error
 from tribolab.report.campaign_tables import TABLES
 from tribolab.report.results import write_report
@@ -466,9 +466,9 @@ def unpacked(signal, clock):
 
 def test_a_gap_in_the_motion_does_not_hide_it():
     run, segments, friction = made_run(samples=3000)
-    whole = [one["name"] for one in trace(run, segments, friction, 2000)["signals"]]
+    whole = [one["name"] for one in decimated_trace(run, segments, friction, 2000)["signals"]]
     run["sliding_velocity"][700] = np.nan
-    gaps = [one["name"] for one in trace(run, segments, friction, 2000)["signals"]]
+    gaps = [one["name"] for one in decimated_trace(run, segments, friction, 2000)["signals"]]
     assert gaps == whole and "sliding_velocity" in whole
 
 
@@ -476,7 +476,7 @@ def test_a_gap_in_the_motion_does_not_hide_it():
 def test_traces_for_the_page_are_the_signals_with_every_extreme(fine):
     run, segments, friction = made_run(samples=3000)
     run["friction_force"][7000] = 900.0
-    packed = trace(run, segments, friction, 2000)
+    packed = decimated_trace(run, segments, friction, 2000)
     clock = packed["clock"]
     assert len(clock[0]) < 40, "a knot where the rate of sampling changes"
     if fine:

@@ -11,7 +11,7 @@ from tribolab.errors import AnalysisError, TribolabError
 from tribolab.io.uncertainty import Known, StatedUncertainty, Uncertainty
 from tribolab.metrology.budget_parts import (
     BETWEEN,
-    Scatter,
+    ScatterPart,
     combined,
     coverage_factor,
     effective_dof,
@@ -190,7 +190,7 @@ def test_u95_of_few_runs_beside_a_calibration_holds_95_per_cent(runs, ratio):
     rng = np.random.default_rng([runs, int(100 * ratio)])
     drawn = rng.normal(0, 1, (20_000, runs))
     wide = ratio / np.sqrt(runs)
-    scatter = Scatter(drawn.std(axis=1, ddof=1) / np.sqrt(runs), np.array(runs - 1.0), BETWEEN)
+    scatter = ScatterPart(drawn.std(axis=1, ddof=1) / np.sqrt(runs), np.array(runs - 1.0), BETWEEN)
     known = {"friction_gain": Known(wide, np.inf, "calibration", "standard", "")}
     data = xr.Dataset({"friction_coefficient": ("segment", drawn.mean(axis=1))})
     parts = {"friction_gain": np.full(20_000, wide)}

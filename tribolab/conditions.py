@@ -11,12 +11,12 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 
-Result = TypeVar("Result")
-Labels = dict[Hashable, Any]
+Selected = TypeVar("Selected")
+ConditionLabels = dict[Hashable, Any]
 
 
 @dataclass(frozen=True, eq=False)
-class Conditions(Generic[Result]):
+class Conditions(Generic[Selected]):
     """A result for each condition.
 
     Parameters
@@ -34,7 +34,9 @@ class Conditions(Generic[Result]):
     results: xr.DataArray
 
     @classmethod
-    def of(cls, coords: Mapping[Hashable, Any], compute: Callable[[Labels], Result | None]) -> Self:
+    def of(
+        cls, coords: Mapping[Hashable, Any], compute: Callable[[ConditionLabels], Selected | None]
+    ) -> Self:
         """Compute a result for each condition.
 
         Parameters
@@ -50,7 +52,7 @@ class Conditions(Generic[Result]):
             results[place] = compute(labels)
         return cls(xr.DataArray(results, coords, tuple(coords)))
 
-    def sel(self, **labels: object) -> Result | Self:
+    def sel(self, **labels: object) -> Selected | Self:
         """Return what one condition has, or what some have, as `xarray.DataArray.sel` does.
 
         Raises
@@ -61,12 +63,12 @@ class Conditions(Generic[Result]):
         chosen = self.results.sel(labels, drop=True)
         if chosen.dims:
             return type(self)(chosen)
-        result: Result | None = chosen.item()
+        result: Selected | None = chosen.item()
         if result is None:
             raise AnalysisError(f"nothing was measured at {labels_text(labels)}")
         return result
 
-    def __iter__(self) -> Iterator[tuple[Labels, Result]]:
+    def __iter__(self) -> Iterator[tuple[ConditionLabels, Selected]]:
         """Give the labels of each condition that was measured, and what it has."""
         for place in np.ndindex(self.results.shape):
             part = self.results[place]

@@ -25,7 +25,7 @@ from tribolab.app.run import run_campaign  # noqa: E402 - as above
 from tribolab.io.netcdf import read_groups  # noqa: E402 - as above
 from tribolab.records.part_records import CurveRecord  # noqa: E402 - as above
 from tribolab.records.traces import page_trace, trace_size  # noqa: E402 - as above
-from tribolab.report.live.curves import Friction, card_figures  # noqa: E402 - as above
+from tribolab.report.live.curves import FrictionOverSpeed, card_figures  # noqa: E402 - as above
 from tribolab.report.live.shown import shown_figures  # noqa: E402 - as above
 from tribolab.report.page.page import write_page  # noqa: E402 - as above
 
@@ -77,7 +77,7 @@ def traces(document, outcome, count):
 def cards(outcome):
     """Return the figures of the answer's cards."""
     curves = [entry.record for entry in outcome.store.all("curve", CurveRecord)]
-    return shown_figures(card_figures(Friction(curves, {}, {}, {}, {}, ())))
+    return shown_figures(card_figures(FrictionOverSpeed(curves, {}, {}, {}, {}, ())))
 
 
 def measure(page_file, profile):

@@ -14,7 +14,7 @@ from tribolab.across.run_values import SPEED, TOLERANCE, Matched
 from tribolab.metrology.budget_curve import EACH_POINT
 from tribolab.metrology.budget_parts import BETWEEN, NOISE, part_words
 
-Runs = tuple[str, ...]
+RunNames = tuple[str, ...]
 
 NOT_STATED = (
     "no calibration is stated: the intervals hold the scatter of the runs only, and instruments "
@@ -108,7 +108,7 @@ def _rows(row: np.ndarray, size: int) -> np.ndarray:
     return row.reshape(-1, size)
 
 
-def _calibrations(folder: Folder, runs: Runs) -> frozenset[str]:
+def _calibrations(folder: Folder, runs: RunNames) -> frozenset[str]:
     """Return instrument and calibration of each of some runs."""
     stated = None if folder.campaign is None else folder.campaign.calibration
     which = "" if stated is None else f"{stated.date} {stated.serial} {stated.certificate}"
@@ -117,7 +117,7 @@ def _calibrations(folder: Folder, runs: Runs) -> frozenset[str]:
 
 
 def _of_side(
-    folder: Folder, runs: Runs, speeds: np.ndarray, together: bool
+    folder: Folder, runs: RunNames, speeds: np.ndarray, together: bool
 ) -> dict[_Part, np.ndarray]:
     """Return the inputs of one side: what one standard uncertainty of each moves (point)."""
     table = folder.table("uncertainty_budget")
@@ -144,7 +144,7 @@ def _of_side(
 _EACH_POINT = tuple(map(part_words, EACH_POINT))
 
 
-def _whose(folder: Folder, runs: Runs, together: bool) -> Mapping[str, str]:
+def _whose(folder: Folder, runs: RunNames, together: bool) -> Mapping[str, str]:
     """Return of what varies with calibration or mount, of which calibration or mount it is."""
     made = {}
     known = _calibrations(folder, runs)

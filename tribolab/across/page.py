@@ -44,7 +44,7 @@ class Picture:
 
 
 @dataclass(frozen=True)
-class Cell:
+class PageCell:
     """What stands in a table: its text, and the number that it is sorted by."""
 
     text: str
@@ -58,7 +58,7 @@ class Sheet:
     label: str
     file: str
     heads: Sequence[str]
-    rows: Sequence[Sequence[Cell]]
+    rows: Sequence[Sequence[PageCell]]
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ class Part:
     notes: Sequence[str] = ()
 
 
-def cells(row: Iterable[object], digits: int = 3) -> list[Cell]:
+def cells(row: Iterable[object], digits: int = 3) -> list[PageCell]:
     """Return the cells of a row: numbers with so many digits, words as they are.
 
     Examples
@@ -84,12 +84,12 @@ def cells(row: Iterable[object], digits: int = 3) -> list[Cell]:
     made = []
     for value in row:
         if isinstance(value, bool) or not isinstance(value, int | float):
-            made.append(Cell(str(value)))
+            made.append(PageCell(str(value)))
         elif isinstance(value, int):
-            made.append(Cell(str(value), value))
+            made.append(PageCell(str(value), value))
         else:
             known = math.isfinite(value)
-            made.append(Cell(aligned(value, digits), value if known else None))
+            made.append(PageCell(aligned(value, digits), value if known else None))
     return made
 
 

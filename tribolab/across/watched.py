@@ -34,7 +34,7 @@ _FRICTION = [
     "normal_force_offset_N",
     "tilt_found_rad",
 ]
-Columns = dict[str, np.ndarray]
+SeriesColumns = dict[str, np.ndarray]
 _ALONE = arrow_csv.ReadOptions(use_threads=False)  # small tables: threads cost more than they save
 _SLIP = ["run", "sample_noise", "mains_amplitude"]
 
@@ -106,7 +106,7 @@ def observations_of(path: str | Path) -> tuple[list[Observation], Folder]:
     return made, folder
 
 
-def _table(folder: Folder, name: str, columns: Sequence[str]) -> Columns | None:
+def _table(folder: Folder, name: str, columns: Sequence[str]) -> SeriesColumns | None:
     """Read some columns of a table, which is a tenth of the work for all of them."""
     path = folder.path / "tables" / f"{name}.csv"
     if not path.is_file():
@@ -124,7 +124,7 @@ def _table(folder: Folder, name: str, columns: Sequence[str]) -> Columns | None:
     return {name: column.to_numpy() for name, column in pairs}
 
 
-def _of_runs(table: Columns, names: Collection[str]) -> Columns:
+def _of_runs(table: SeriesColumns, names: Collection[str]) -> SeriesColumns:
     """Return the rows of some runs."""
     mine = np.array([run in names for run in table["run"]], dtype=bool)
     return {name: column[mine] for name, column in table.items()}
@@ -144,8 +144,8 @@ def _began(runs: Iterable[Json], otherwise: dt.datetime) -> dt.datetime:
 def _numbers(
     campaign: Campaign | None,
     runs: Sequence[Json],
-    friction: Columns,
-    slip: Columns | None,
+    friction: SeriesColumns,
+    slip: SeriesColumns | None,
 ) -> Iterable[tuple[str, str, float]]:
     """Yield quantity, unit and value."""
     column = friction
@@ -170,7 +170,7 @@ def _numbers(
         yield GAIN, "1", _gain(campaign, runs, friction)
 
 
-def _gain(campaign: Campaign, runs: Sequence[Json], friction: Columns) -> float:
+def _gain(campaign: Campaign, runs: Sequence[Json], friction: SeriesColumns) -> float:
     """Return the gain by a dead weight: as runs on the reference tell, else by their load."""
     mine = _reference_runs(campaign, runs)
     gains = [run.get("dead_weight_gain") for run in runs if run["name"] in mine]
@@ -193,7 +193,7 @@ def _reference_runs(campaign: Campaign, runs: Sequence[Json]) -> set[str]:
 
 
 def _of_reference(
-    campaign: Campaign | None, runs: Sequence[Json], friction: Columns
+    campaign: Campaign | None, runs: Sequence[Json], friction: SeriesColumns
 ) -> Iterable[tuple[float, float]]:
     """Yield mean friction on a reference sample and the speed, for each speed."""
     if campaign is None:

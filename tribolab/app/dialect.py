@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from tribolab.draft.columns.follows import lacking, what_follows
-from tribolab.draft.columns.stated_load import number_of
+from tribolab.draft.columns.stated_load import stated_number
 from tribolab.draft.dialect.answers import column_of, corrected, fits, written
 from tribolab.draft.dialect.draft import Draft, as_profile, holds_heights
 from tribolab.draft.file.header import converts, is_unit
@@ -86,7 +86,7 @@ def _ask_for_lengths(
     lacks = " ".join(lacking(understood, follows))
     guessed = [value for value in follows.values if value.guess]
     if guessed or "the radius of the track" in lacks:
-        guess = f"{number_of(guessed[0]):.6g} {guessed[0].unit}" if guessed else NONE
+        guess = f"{stated_number(guessed[0]):.6g} {guessed[0].unit}" if guessed else NONE
         question = "what is the radius of the track, with its unit?"
         radius = _ask_amount(question, "radius", "m", guess, ask, say)
         understood = understood._replace(radius=radius)

@@ -24,7 +24,7 @@ from tribolab.surface.moments import cumulative_at, rms_slope
 from tribolab.units import positive
 from tribolab.validity import examine
 
-Variant = Literal["flow", "plain"]
+GapVariant = Literal["flow", "plain"]
 _PER_DECADE = 20  # magnifications
 COMPLETE = 1e-2  # cut-offs of mean separation under which the contact is complete
 _FRONT = 0.01  # first part of the open area, where u1 = d(u A)/dA is nearly 0/0
@@ -47,7 +47,7 @@ def gap_distribution(
     pressure: str | ArrayLike | xr.DataArray,
     psd: xr.Dataset,
     effective_modulus: str | float,
-    variant: Variant = "flow",
+    variant: GapVariant = "flow",
     gamma: float = 0.45,
     cutoff: str | float = 1e-9,
 ) -> xr.Dataset:
@@ -118,7 +118,7 @@ def gap_distributions(
     pressure: str | ArrayLike | xr.DataArray,
     psd: xr.Dataset,
     effective_modulus: str | float,
-    variants: Sequence[Variant] = ("flow", "plain"),
+    variants: Sequence[GapVariant] = ("flow", "plain"),
     gamma: float = 0.45,
     cutoff: str | float = 1e-9,
     points: int = _POINTS,
@@ -166,7 +166,7 @@ def _distribution(
     mean: np.ndarray,
     openings: _Openings,
     area: np.ndarray,
-    variant: Variant,
+    variant: GapVariant,
     cutoff: float,
     points: int,
 ) -> xr.Dataset:

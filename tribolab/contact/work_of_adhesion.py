@@ -23,7 +23,7 @@ class BoundedValue(NamedTuple):
     high: float
 
 
-Stated = str | float | tuple[str | float, str | float, str | float] | BoundedValue
+StatedWork = str | float | tuple[str | float, str | float, str | float] | BoundedValue
 Works = TypeVar("Works", float, np.ndarray)
 
 
@@ -141,11 +141,11 @@ class SurfaceEnergies:
     51.1
     """
 
-    solid_1: Stated
-    solid_2: Stated
-    liquid: Stated
-    angle_1: Stated
-    angle_2: Stated
+    solid_1: StatedWork
+    solid_2: StatedWork
+    liquid: StatedWork
+    angle_1: StatedWork
+    angle_2: StatedWork
 
     def __post_init__(self) -> None:
         """Turn text into SI ranges and refuse bounds that do not hold the value."""

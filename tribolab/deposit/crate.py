@@ -23,7 +23,7 @@ _TYPES = {"i": "integer", "f": "number", "b": "boolean"}
 
 
 @dataclass(frozen=True)
-class Facts:
+class CrateFacts:
     """Size and SHA-256 of a file as it was packed."""
 
     size: int
@@ -43,7 +43,7 @@ def crate_metadata(
     report: Json,
     campaign: Campaign,
     items: Sequence[Item],
-    facts: Mapping[str, Facts],
+    facts: Mapping[str, CrateFacts],
     people: People,
 ) -> Json:
     """Return the RO-Crate metadata of a deposit, as JSON-LD.
@@ -108,7 +108,7 @@ def crate_metadata(
 
 
 def data_package(
-    report: Json, tables: Mapping[str, pd.DataFrame], facts: Mapping[str, Facts]
+    report: Json, tables: Mapping[str, pd.DataFrame], facts: Mapping[str, CrateFacts]
 ) -> Json:
     """Return the Frictionless description of the tables, by their names in the deposit."""
     return {
@@ -150,7 +150,7 @@ def _ref(entity: Mapping[str, Any]) -> Json:
     return {"@id": entity["@id"]}
 
 
-def _file(item: Item, known: Facts) -> Json:
+def _file(item: Item, known: CrateFacts) -> Json:
     return {
         "@id": address(item.name),
         "@type": "File",

@@ -16,7 +16,7 @@ from tribolab.deposit.contents import Item, campaign_of, items_of
 from tribolab.deposit.crate import (
     METADATA,
     PACKAGE,
-    Facts,
+    CrateFacts,
     People,
     crate_metadata,
     data_package,
@@ -164,7 +164,7 @@ def _dangling(graph: Sequence[Json]) -> list[str]:
     return [f"{name} is referred to and not described" for name in lost]
 
 
-def _add(archive: zipfile.ZipFile, item: Item) -> Facts:
+def _add(archive: zipfile.ZipFile, item: Item) -> CrateFacts:
     """Pack a file as it is at this moment, with its checksum."""
     digest, size = hashlib.sha256(), 0
     info = zipfile.ZipInfo.from_file(item.source, item.name, strict_timestamps=False)
@@ -174,13 +174,13 @@ def _add(archive: zipfile.ZipFile, item: Item) -> Facts:
             digest.update(block)
             size += len(block)
             packed.write(block)
-    return Facts(size, digest.hexdigest())
+    return CrateFacts(size, digest.hexdigest())
 
 
-def _add_text(archive: zipfile.ZipFile, name: str, content: Json) -> Facts:
+def _add_text(archive: zipfile.ZipFile, name: str, content: Json) -> CrateFacts:
     text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False).encode()
     now = dt.datetime.now(dt.UTC).timetuple()[:6]
     info = zipfile.ZipInfo(str(PurePosixPath(name)), now)
     info.compress_type = zipfile.ZIP_DEFLATED
     archive.writestr(info, text)
-    return Facts(len(text), hashlib.sha256(text).hexdigest())
+    return CrateFacts(len(text), hashlib.sha256(text).hexdigest())

@@ -70,7 +70,12 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     """Return the dialect that a file's own header makes; else say what it leaves open."""
     # late: starting stays quick
     from tribolab.draft.dialect.draft import HEIGHTS
-    from tribolab.draft.dialect.questions import GuessedError, lacks_friction, missing, questions
+    from tribolab.draft.dialect.questions import (
+        GuessedError,
+        lacks_friction,
+        missing_words,
+        questions,
+    )
 
     draft = draft_of(path)
     if draft is not None and draft.answer == HEIGHTS:
@@ -79,7 +84,7 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
         raise error
     asked = questions(draft)
     if asked or lacks_friction(draft):
-        raise GuessedError(path, asked, lacks=missing(draft)) from error
+        raise GuessedError(path, asked, lacks=missing_words(draft)) from error
     if draft.kind == "scan" and draft.layout and draft.layout.held:
         raise error
     if draft.kind == "scan":

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from tribolab.conditions import Conditions, Labels, labels_along, labels_text
+from tribolab.conditions import ConditionLabels, Conditions, labels_along, labels_text
 from tribolab.contact.geometry import LineContact
 from tribolab.errors import AnalysisError, Cure, shown
 from tribolab.fit.shear_stress import fit_shear_stress
@@ -134,7 +134,7 @@ def fit_shear_stresses(
             cure=Cure(notebook="fit it with fit_shear_stress"),
         )
 
-    def fitted(labels: Labels) -> ShearStressFit | None:
+    def fitted(labels: ConditionLabels) -> ShearStressFit | None:
         mine = {name: _cut(value, labels) for name, value in given.items()}
         if not bool(np.isfinite(mine["measured"]["friction_coefficient"]).any()):
             return None

@@ -9,7 +9,7 @@ from tribolab.fit.variation import Base, Changed, Skipped, Variation
 
 
 @dataclass(frozen=True)
-class Stated:
+class StatedRange:
     """An input of the model that is varied over the range that is stated of it.
 
     Parameters
@@ -44,35 +44,35 @@ class Stated:
         )
 
 
-VISCOSITY = Stated(
+VISCOSITY = StatedRange(
     "viscosity",
     "viscosity",
     "that of a liquid hangs on temperature and on the water it takes up",
     lambda value: f"{value:.3g} Pa s",
     lambda base, value: {"viscosity": value},
 )
-YOUNGS_MODULUS = Stated(
+YOUNGS_MODULUS = StatedRange(
     "Young's modulus",
     "youngs_modulus",
     "that of an elastomer hangs on batch, cure, age and frequency",
     lambda value: f"{value / 1e6:.3g} MPa",
     lambda base, value: {"contact": replace(base.contact, youngs_modulus=value)},
 )
-LOAD = Stated(
+LOAD = StatedRange(
     "load",
     "load",
     "it hangs on the force cell and on the length that carries it",
     lambda value: f"{value:.4g} N/m",
     lambda base, value: {"load": value},
 )
-RADIUS = Stated(
+RADIUS = StatedRange(
     "radius",
     "radius",
     "of a ground or cast cylinder it is that near the contact",
     lambda value: f"{1e3 * value:.4g} mm",
     lambda base, value: {"contact": replace(base.contact, radius=value)},
 )
-WORK_OF_ADHESION = Stated(
+WORK_OF_ADHESION = StatedRange(
     "work of adhesion",
     "work_of_adhesion",
     "it hangs on surface energies and contact angles, which differ between sources",

@@ -42,7 +42,7 @@ _NEGLIGIBLE = 1e-7  # chance of a model that no other figure of the answer knows
 BEYOND = 0.006  # chance of more than three standard errors, where a memory may be long
 
 
-class Models(NamedTuple):
+class MemoryModels(NamedTuple):
     """What does not depend on the record: axes (time), their variances and the level on them."""
 
     axes: np.ndarray  # (time, axis, stretch)
@@ -98,7 +98,7 @@ def wander_axes(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 @lru_cache(maxsize=16)
-def _models(count: int) -> Models:
+def _models(count: int) -> MemoryModels:
     own, axes = wander_axes(count)
     variance = own[:, None, :] + WHITE[None, :, None] + 1e-9
     prior = np.full((TIMES.size, WHITE.size), (1 - CALM) / (TIMES.size * WHITE.size))
@@ -108,7 +108,7 @@ def _models(count: int) -> Models:
     level, weight = axes.sum(axis=2), 1 / variance
     of_level = (weight * level[:, None, :] ** 2).sum(axis=2)
     fixed = np.log(prior) - 0.5 * (np.log(variance).sum(axis=2) + np.log(of_level))
-    return Models(axes, weight, level, of_level, fixed)
+    return MemoryModels(axes, weight, level, of_level, fixed)
 
 
 def errors_with_memory(records: np.ndarray) -> np.ndarray:

@@ -33,10 +33,10 @@ from tribolab.quantities import QUANTITIES
 from tribolab.stamping import stamp
 from tribolab.untyped import Json
 
-Logs = list[tuple[Path, Dialect]]
+LogDialects = list[tuple[Path, Dialect]]
 
 
-def assemble(logs: Logs, zero: str | None = None) -> xr.Dataset:
+def assemble(logs: LogDialects, zero: str | None = None) -> xr.Dataset:
     """Make one run of the files of one instrument."""
     logs = [(path, as_written(path, dialect)) for path, dialect in logs]
     dialect = logs[0][1]

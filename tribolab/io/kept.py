@@ -20,7 +20,7 @@ SHORT = 1 << 16  # values of a group that is kept
 _MOST = 1 << 22  # values of all that a process keeps
 
 
-class Kept:
+class KeptReading:
     """Short groups of the files that were asked for last."""
 
     def __init__(self) -> None:
@@ -47,7 +47,7 @@ def _size(groups: dict[str | None, xr.Dataset]) -> int:
     return sum(array.size for data in groups.values() for array in data.variables.values())
 
 
-_KEPT = Kept()
+_KEPT = KeptReading()
 
 
 def read_kept(path: str | Path, group: str | None = None) -> xr.Dataset:

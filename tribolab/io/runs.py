@@ -10,7 +10,7 @@ import xarray as xr
 
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
-from tribolab.io.assemble import Logs, assemble
+from tribolab.io.assemble import LogDialects, assemble
 from tribolab.io.dialects.find import Dialect, Instrument, is_scan, load_dialect, recognise
 from tribolab.io.dialects.signature import peek
 from tribolab.io.logs import PathLike, companion_name, companion_path
@@ -105,7 +105,7 @@ def with_companion(run: xr.Dataset, path: Path, dialect: Dialect) -> xr.Dataset:
     return _joined(run, [(path, load_dialect(dialect.pair.instrument))], None)
 
 
-def _joined(run: xr.Dataset, companions: Logs, shift: float | None) -> xr.Dataset:
+def _joined(run: xr.Dataset, companions: LogDialects, shift: float | None) -> xr.Dataset:
     # late: starting stays quick
     from tribolab.io.clocks.merge import merge
 
@@ -138,7 +138,7 @@ def _dialects(paths: list[Path], instrument: Instrument | None) -> list[Dialect]
     ]
 
 
-def _sorted_out(paths: list[Path], dialects: list[Dialect]) -> tuple[Logs, Logs]:
+def _sorted_out(paths: list[Path], dialects: list[Dialect]) -> tuple[LogDialects, LogDialects]:
     """Separate main logs from companions."""
     logs = list(zip(paths, dialects, strict=True))
     second = {dialect.pair.instrument for dialect in dialects if dialect.pair}
@@ -153,7 +153,7 @@ def _sorted_out(paths: list[Path], dialects: list[Dialect]) -> tuple[Logs, Logs]
     return main, companions
 
 
-def _companion(path: Path, dialect: Dialect) -> Logs:
+def _companion(path: Path, dialect: Dialect) -> LogDialects:
     """Return the companion log, if the instrument writes one and it lies beside the file."""
     other = companion_path(path, dialect)
     if other is None or dialect.pair is None or not other.is_file():

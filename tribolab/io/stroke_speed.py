@@ -13,7 +13,7 @@ _FEWEST = 3  # cycles
 _DENSEST = 8  # samples that a cycle has at least
 
 
-class Strokes(NamedTuple):
+class StrokeVelocity(NamedTuple):
     """Sliding velocity [m/s] (time), and the frequency that the friction has [Hz]."""
 
     velocity: np.ndarray
@@ -22,7 +22,7 @@ class Strokes(NamedTuple):
 
 def velocity_of_strokes(
     time: np.ndarray, friction: np.ndarray, stroke: float, frequency: float, drive: Drive
-) -> Strokes | None:
+) -> StrokeVelocity | None:
     """Return the sliding velocity of a contact that goes to and fro at a known frequency.
 
     Parameters
@@ -41,7 +41,7 @@ def velocity_of_strokes(
 
     Returns
     -------
-    Strokes or None
+    StrokeVelocity or None
         None where the friction does not tell the phase: it has no sign, less than 30 % of its
         variance is at the frequency, or there are fewer than 3 cycles of 8 samples.
 
@@ -97,4 +97,4 @@ def velocity_of_strokes(
         else 2 * own * stroke * np.sign(np.cos(angle))
     )
     moving = np.append(slides, slides[-1])[np.minimum(cycle, cycles)]
-    return Strokes(np.where(moving, pace, 0.0), float(own))
+    return StrokeVelocity(np.where(moving, pace, 0.0), float(own))

@@ -10,7 +10,7 @@ from tribolab.contact.area import AreaTheory
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.limits import line_limits
 from tribolab.lubrication.factors import FlowFactors, RoughBody
-from tribolab.lubrication.speeds import Point, System, solve_speeds
+from tribolab.lubrication.speeds import SolvedSpeed, System, solve_speeds
 from tribolab.lubrication.system import (
     CELLS,
     PROOF,
@@ -84,7 +84,7 @@ def film_profile(
     return _put_together(films) if np.ndim(speed) else films[0]
 
 
-def _profile(system: System, force: float, v: float, point: Point) -> xr.Dataset:
+def _profile(system: System, force: float, v: float, point: SolvedSpeed) -> xr.Dataset:
     """Say what was solved at one speed."""
     _, problem, solution = point
     fields = solution.fields

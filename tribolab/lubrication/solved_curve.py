@@ -17,7 +17,7 @@ from tribolab.errors import AnalysisError
 from tribolab.lubrication.factors import FlowFactors, RoughBody
 from tribolab.lubrication.friction import fluid_friction
 from tribolab.lubrication.parabolas import lowest, value_at
-from tribolab.lubrication.speeds import Point, System, solve_speeds
+from tribolab.lubrication.speeds import SolvedSpeed, System, solve_speeds
 from tribolab.lubrication.system import (
     CELLS,
     PROOF,
@@ -38,7 +38,7 @@ class SolvedCurve(NamedTuple):
     """A curve, and what it was made from: curves of like contacts may start there."""
 
     curve: xr.Dataset
-    points: list[list[Point]]  # of each load
+    points: list[list[SolvedSpeed]]  # of each load
 
 
 def solve_curve(
@@ -99,7 +99,7 @@ def solve_curve(
     loads, speeds = checked_loads(load), checked_speeds(speed, psd)
     system = with_adhesion(system, float(np.max(loads.values)), work_of_adhesion)
     forces = [float(force) for force in np.atleast_1d(loads.values)]
-    beside: Sequence[Sequence[Point]] = [()] * len(forces) if near is None else near.points
+    beside: Sequence[Sequence[SolvedSpeed]] = [()] * len(forces) if near is None else near.points
     magnitudes, back = np.unique(np.abs(speeds.values), return_inverse=True)
     with one_thread():
         points = [
@@ -142,7 +142,7 @@ def solve_curve(
 
 
 def _curve(
-    system: System, force: float, points: list[Point], friction_factors: bool
+    system: System, force: float, points: list[SolvedSpeed], friction_factors: bool
 ) -> dict[str, np.ndarray]:
     # all in one: the pressures of all meshes have one unit
     solid = np.stack([p.solution.fields.contact * p.problem.pressure for p in points])
@@ -163,7 +163,7 @@ def _curve(
 
 
 def _row(
-    point: Point, force: float, hertz: float, area: np.ndarray, friction_factors: bool
+    point: SolvedSpeed, force: float, hertz: float, area: np.ndarray, friction_factors: bool
 ) -> dict[str, float]:
     """All that a curve has of one speed, the relative contact area in its cells being known.
 

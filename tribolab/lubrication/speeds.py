@@ -60,7 +60,7 @@ class System(NamedTuple):
         )
 
 
-class Point(NamedTuple):
+class SolvedSpeed(NamedTuple):
     """A solved speed [m/s] and the problem, with its mesh, that it was solved on."""
 
     speed: float
@@ -69,8 +69,8 @@ class Point(NamedTuple):
 
 
 def solve_speeds(
-    system: System, force: float, speeds: np.ndarray, near: Sequence[Point] = ()
-) -> list[Point]:
+    system: System, force: float, speeds: np.ndarray, near: Sequence[SolvedSpeed] = ()
+) -> list[SolvedSpeed]:
     """Solve at each speed [m/s], not negative, in rising order and with none twice.
 
     Speeds whose films are alike share a mesh, and which one that is depends on the speed alone: so
@@ -89,7 +89,7 @@ def solve_speeds(
     AnalysisError
         If a speed cannot be solved; the message says what to change.
     """
-    points: list[Point] = []
+    points: list[SolvedSpeed] = []
     like = {(point.speed, id(point.problem.mesh)): point.solution.state for point in near}
     posed = ((float(v), system.problem(force, float(v))) for v in speeds)
     for _, group in groupby(posed, key=lambda pair: id(pair[1].mesh)):
@@ -104,12 +104,12 @@ def solve_speeds(
             solutions = _carried_on(system, force, problem, wanted, points[-1])
         if solutions is None:
             solutions = _afresh(system, force, problem, np.array(wanted))
-        points += [Point(v, problem, s) for v, s in zip(wanted, solutions, strict=True)]
+        points += [SolvedSpeed(v, problem, s) for v, s in zip(wanted, solutions, strict=True)]
     return points
 
 
 def _carried_on(
-    system: System, force: float, problem: Problem, speeds: list[float], last: Point
+    system: System, force: float, problem: Problem, speeds: list[float], last: SolvedSpeed
 ) -> list[Solution] | None:
     """Go on from the last speed on another mesh; None if that leads nowhere."""
     around = problem, system.contact, system.viscosity, force

@@ -15,17 +15,17 @@ from tribolab.friction.statistics import STUDENT
 from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.io.uncertainty import NAMES, Known, StatedUncertainty, Uncertainty
 from tribolab.metrology.budget_curve import with_curve_uncertainty
-from tribolab.metrology.budget_parts import NOISE, Scatter, combined
+from tribolab.metrology.budget_parts import NOISE, ScatterPart, combined
 from tribolab.metrology.budget_result import UncertaintyBudget
 from tribolab.metrology.sensitivity import contributions, readings_of
 
 OWN = ("friction_coefficient_u", "friction_coefficient_dof")  # of a curve's own scatter
-Stated = Mapping[str, StatedUncertainty | Mapping[str, Any]]
+StatedUncertainties = Mapping[str, StatedUncertainty | Mapping[str, Any]]
 
 
 def uncertainty_budget(
     friction: xr.Dataset | Sequence[xr.Dataset],
-    uncertainty: Stated | None = None,
+    uncertainty: StatedUncertainties | None = None,
     *,
     speed_tolerance: float = 0.1,
 ) -> UncertaintyBudget:
@@ -88,7 +88,9 @@ def uncertainty_budget(
     return UncertaintyBudget(*with_curve_uncertainty(curve, friction, stated))
 
 
-def known_uncertainties(friction: xr.Dataset, stated: Stated | None = None) -> dict[str, Known]:
+def known_uncertainties(
+    friction: xr.Dataset, stated: StatedUncertainties | None = None
+) -> dict[str, Known]:
     """Return the standard uncertainties by name: those of the instrument's file, and those stated.
 
     Parameters
@@ -154,7 +156,7 @@ def with_uncertainty(friction: xr.Dataset, known: Mapping[str, Known]) -> xr.Dat
     parts = contributions(readings_of(friction), alone.known)
     noise = alone.friction["friction_coefficient_sem"].values.astype(float)
     widening, dof = _freedom(friction)
-    scatter = [Scatter(noise / widening, dof, NOISE)]
+    scatter = [ScatterPart(noise / widening, dof, NOISE)]
     return combined(friction, "segment", scatter, parts, known)
 
 

@@ -10,7 +10,7 @@ import xarray as xr
 
 from tribolab.friction.decisions.rejected import kept
 from tribolab.io.uncertainty import Known
-from tribolab.metrology.budget_parts import BETWEEN, NOISE, Scatter, combined, part_name
+from tribolab.metrology.budget_parts import BETWEEN, NOISE, ScatterPart, combined, part_name
 from tribolab.metrology.sensitivity import AMBIGUOUS, contributions, readings_of
 
 MOUNT = "mount"  # attribute of a friction result: which mount it was measured in
@@ -100,13 +100,13 @@ def with_curve_uncertainty(
     return CurveUncertainty(result, named)
 
 
-def _scatter(curve: xr.Dataset, runs: np.ndarray) -> list[Scatter]:
+def _scatter(curve: xr.Dataset, runs: np.ndarray) -> list[ScatterPart]:
     """Return the noise of points with one run, and the spread between runs of the others."""
     u, dof = (curve[f"friction_coefficient_{end}"].values for end in ("u", "dof"))
     several = runs > 1
-    scatter = [Scatter(np.where(several, 0.0, u), dof, NOISE)] if not several.all() else []
+    scatter = [ScatterPart(np.where(several, 0.0, u), dof, NOISE)] if not several.all() else []
     if several.any():
-        scatter.append(Scatter(np.where(several, u, 0.0), dof, BETWEEN))
+        scatter.append(ScatterPart(np.where(several, u, 0.0), dof, BETWEEN))
     return scatter
 
 

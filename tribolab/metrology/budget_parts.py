@@ -23,7 +23,7 @@ _FEW, _CHANCE = 4.0, 10.0
 _DOMINATES = 0.7  # share of the variance from which on one rectangular part shapes the whole
 
 
-class Scatter(NamedTuple):
+class ScatterPart(NamedTuple):
     """What the data themselves say of the uncertainty, one entry for each value.
 
     Parameters
@@ -88,7 +88,7 @@ def coverage_factor(dof: np.ndarray | float) -> np.ndarray:
 def combined(
     data: xr.Dataset,
     dim: str,
-    scatter: list[Scatter],
+    scatter: list[ScatterPart],
     parts: Mapping[str, np.ndarray],
     known: Mapping[str, Known],
     unstated: Sequence[str] = (),

@@ -13,7 +13,7 @@ from scipy import stats
 from tribolab.errors import AnalysisError
 
 Array = NDArray[np.float64]
-Marks = NDArray[np.bool_]
+Signalled = NDArray[np.bool_]
 
 SHEWHART, EWMA, CUSUM, WESTERN = "3 sigma", "EWMA", "CUSUM", "Western Electric"
 RULES = (SHEWHART, EWMA, CUSUM, WESTERN)
@@ -130,10 +130,10 @@ class Chart:
     smoothed: Array
     smoothed_low: Array
     smoothed_high: Array
-    signals: dict[str, Marks]
+    signals: dict[str, Signalled]
 
     @property
-    def any_signal(self) -> Marks:
+    def any_signal(self) -> Signalled:
         """Which points signal by any rule (point)."""
         return np.any(list(self.signals.values()), axis=0)
 
@@ -198,7 +198,7 @@ def control_chart(
     )
 
 
-def signals_of(standard: Array, baseline: Baseline, rules: Sequence[str]) -> dict[str, Marks]:
+def signals_of(standard: Array, baseline: Baseline, rules: Sequence[str]) -> dict[str, Signalled]:
     """Return which points signal by each rule.
 
     Parameters
@@ -212,7 +212,7 @@ def signals_of(standard: Array, baseline: Baseline, rules: Sequence[str]) -> dic
     """
     error = 1 / baseline.points
     limit = baseline.widened(LIMIT) * math.sqrt(1 + error)
-    made: dict[str, Marks] = {}
+    made: dict[str, Signalled] = {}
     if SHEWHART in rules:
         made[SHEWHART] = np.abs(standard) > limit
     if EWMA in rules:
@@ -249,12 +249,12 @@ def cusums(standard: Array, slack: float = CUSUM_SLACK) -> tuple[Array, Array]:
     return up, down
 
 
-def _cusum(standard: Array, baseline: Baseline) -> Marks:
+def _cusum(standard: Array, baseline: Baseline) -> Signalled:
     up, down = cusums(standard)
     return np.maximum(up, down) > CUSUM_LIMIT * baseline.widened(LIMIT) / LIMIT
 
 
-def _western(standard: Array, limit: float) -> Marks:
+def _western(standard: Array, limit: float) -> Signalled:
     marks = np.abs(standard) > limit
     for side in (1.0, -1.0):
         turned = side * standard

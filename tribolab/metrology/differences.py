@@ -18,7 +18,7 @@ from tribolab.metrology.resampling import (
 )
 
 Array = NDArray[np.float64]
-Groups = Sequence[tuple[Array, Array]]
+PairedGroups = Sequence[tuple[Array, Array]]
 
 PERMUTATION, ROTATION, HOLM = "permutation", "rotation", "Holm"
 DIFFERENT, EQUIVALENT, UNDECIDED = "different", "equivalent", "undecided"
@@ -79,7 +79,7 @@ def interval(
 
 
 def differences_of_groups(
-    groups: Groups,
+    groups: PairedGroups,
     *,
     not_in_scatter: Sequence[Array] | None = None,
     alpha: float = 0.05,

@@ -33,7 +33,7 @@ AMBIGUOUS = "zero_or_tilt"  # what a load that changed leaves where the two are 
 
 
 @dataclass(frozen=True)
-class Readings:
+class SegmentReadings:
     """What the sensitivities depend on, one entry for each segment.
 
     Parameters
@@ -68,7 +68,7 @@ class Readings:
     middle_is: str
 
 
-def readings_of(friction: xr.Dataset) -> Readings:
+def readings_of(friction: xr.Dataset) -> SegmentReadings:
     """Collect from a friction result what the sensitivities depend on.
 
     Parameters
@@ -89,7 +89,7 @@ def readings_of(friction: xr.Dataset) -> Readings:
             change = _of_pairs(np.where(load > 0, sign / load, np.nan), pair, both)
         middle = np.where(both, _values(friction, "friction_force_offset", 0.0), 0.0)
     by_itself = offset not in ("", "stated") and not offset.startswith("none")
-    return Readings(
+    return SegmentReadings(
         mu,
         load,
         np.where(sign == 0, 1.0, sign),
@@ -117,7 +117,7 @@ def _of_pairs(values: np.ndarray, pair: np.ndarray, both: np.ndarray) -> np.ndar
     return np.where(both, (sums / np.maximum(count, 1))[pair], 0.0)
 
 
-def contributions(at: Readings, known: Mapping[str, Known]) -> dict[str, np.ndarray]:
+def contributions(at: SegmentReadings, known: Mapping[str, Known]) -> dict[str, np.ndarray]:
     """Return by how much one standard uncertainty of each input moves mu, with its sign.
 
     Parameters
@@ -173,7 +173,7 @@ def contributions(at: Readings, known: Mapping[str, Known]) -> dict[str, np.ndar
 
 
 def _left_by_load(
-    at: Readings, u: Mapping[str, float], parts: Mapping[str, np.ndarray]
+    at: SegmentReadings, u: Mapping[str, float], parts: Mapping[str, np.ndarray]
 ) -> dict[str, np.ndarray]:
     """Return what a change of load between the strokes leaves of the tilt and of the zero.
 

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from tribolab.conditions import Conditions, Labels, labels_along
+from tribolab.conditions import ConditionLabels, Conditions, labels_along
 from tribolab.errors import AnalysisError, Cure
 from tribolab.mode.model import Mode
 from tribolab.mode.verdict import SlidingMode, sliding_mode
@@ -107,7 +107,7 @@ def sliding_modes(
             cure=Cure(notebook="weigh it with sliding_mode"),
         )
 
-    def weighed(labels: Labels) -> SlidingMode | None:
+    def weighed(labels: ConditionLabels) -> SlidingMode | None:
         if (curve := _cut(measured, labels)) is None:
             return None
         return sliding_mode(

@@ -35,7 +35,7 @@ from tribolab.untyped import Json
 SCHEMA_VERSION = "1.1"
 
 
-class Mark(NamedTuple):
+class StatusMark(NamedTuple):
     """How the page marks a status: colour, sign, the word on it, and what it means."""
 
     look: str
@@ -45,29 +45,29 @@ class Mark(NamedTuple):
 
 
 _MARKS = {
-    REPRODUCED: Mark(
+    REPRODUCED: StatusMark(
         "good",
         "✓",
         "reproduced",
         "computed from other numbers than itself, and it agrees within 1 % or its last digit",
     ),
-    BY_CONSTRUCTION: Mark(
+    BY_CONSTRUCTION: StatusMark(
         "none",
         "=",
         "by construction",
         "it was put in, an input was chosen for it, or it follows from such numbers alone: its "
         "agreement tests nothing",
     ),
-    WIDE: Mark("none", "≈", "wide tolerance", "it agrees only with more room than that"),
-    DIFFERS: Mark("bad", "✕", "differs", "the computed number is another one"),
-    INCONSISTENT: Mark(
+    WIDE: StatusMark("none", "≈", "wide tolerance", "it agrees only with more room than that"),
+    DIFFERS: StatusMark("bad", "✕", "differs", "the computed number is another one"),
+    INCONSISTENT: StatusMark(
         "warn",
         "▲",
         "inconsistent",
         "the paper's own numbers exclude what is printed, or it is a power of ten or the "
         "reciprocal of the computed one",
     ),
-    MEASURED: Mark(
+    MEASURED: StatusMark(
         "none", "·", "measured", "from the authors' own measurements, quoted and not computed"
     ),
 }

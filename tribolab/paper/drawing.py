@@ -18,7 +18,7 @@ from tribolab.words import force_text, number, span, speed_text, speeds
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Drawn = tuple["Figure", str]  # and what it shows, in words and numbers
+FigureAndText = tuple["Figure", str]  # and what it shows, in words and numbers
 _BOUNDARY = 1e-9  # m/s, from where on the theory of Smooth is shown
 
 
@@ -26,7 +26,7 @@ def _listed(parts: Iterable[str]) -> str:
     return "; ".join(parts) + "."
 
 
-def spectra(data: PaperData) -> Drawn:
+def spectra(data: PaperData) -> FigureAndText:
     """Stand-in spectra."""
     psds = data.dry("psd")
     said = _listed(
@@ -36,7 +36,7 @@ def spectra(data: PaperData) -> Drawn:
     return plot.spectra(psds, surfaces=SURFACES), said
 
 
-def scanned_spectra(data: PaperData) -> Drawn:
+def scanned_spectra(data: PaperData) -> FigureAndText:
     """Spectra that the analysis makes of the simulated profiles."""
     psds = {name: data.read("spectrum", name, "psd") for name in SURFACES}
     said = _listed(
@@ -46,7 +46,7 @@ def scanned_spectra(data: PaperData) -> Drawn:
     return plot.spectra(psds, surfaces=SURFACES), said
 
 
-def contact_area(data: PaperData) -> Drawn:
+def contact_area(data: PaperData) -> FigureAndText:
     """A/A0 over pressure without adhesion."""
     loads = data.dry("loads")
     said = _listed(
@@ -58,7 +58,7 @@ def contact_area(data: PaperData) -> Drawn:
     return figure, said
 
 
-def effective_work(data: PaperData) -> Drawn:
+def effective_work(data: PaperData) -> FigureAndText:
     """gamma_eff/gamma_0 over magnification."""
     works = data.dry("effective_work")
     said = _listed(
@@ -77,7 +77,7 @@ def _ends(line: xr.DataArray) -> str:
     return f"{float(line[0]):.3g} to {float(line[-1]):.3g}"
 
 
-def adhesive_area(data: PaperData) -> Drawn:
+def adhesive_area(data: PaperData) -> FigureAndText:
     """A/A0 over pressure with adhesion."""
     loads = data.dry("loads")
     said = _listed(
@@ -103,20 +103,20 @@ def _friction_of(curves: Iterable[xr.Dataset]) -> str:
     )
 
 
-def dry_friction(data: PaperData) -> Drawn:
+def dry_friction(data: PaperData) -> FigureAndText:
     """Dry mu(v)."""
     measured = [data.measured(name, "dry") for name in SURFACES]
     return plot.stribeck(measured, surfaces=SURFACES), _friction_of(measured)
 
 
-def modulus(data: PaperData) -> Drawn:
+def modulus(data: PaperData) -> FigureAndText:
     """Stand-in modulus."""
     table = modulus_table()
     ends = (f"{float(table.storage_modulus[end]):.3g} Pa" for end in (0, -1))
     return plot.modulus(table), f"Storage modulus from {' to '.join(ends)}."
 
 
-def viscoelastic(data: PaperData) -> Drawn:
+def viscoelastic(data: PaperData) -> FigureAndText:
     """mu_visc(v)."""
     rubbers = data.dry("rubber")
     rubbers["Smooth (complete contact)"] = data.read("dry", "Smooth", "rubber_complete")
@@ -127,7 +127,7 @@ def viscoelastic(data: PaperData) -> Drawn:
     return plot.viscoelastic(rubbers, surfaces=SURFACES), said
 
 
-def dry_shear_stress(data: PaperData) -> Drawn:
+def dry_shear_stress(data: PaperData) -> FigureAndText:
     """sigma_f(v) = mu sigma_0 A_0/A, from simulated friction and computed areas."""
     stresses = {}
     for name in SURFACES:
@@ -150,7 +150,7 @@ def dry_shear_stress(data: PaperData) -> Drawn:
     return plot.shear_stress_over_speed(stresses, surfaces=SURFACES), _listed(said)
 
 
-def _traces(data: PaperData, wanted: list[tuple[str, str, float]]) -> Drawn:
+def _traces(data: PaperData, wanted: list[tuple[str, str, float]]) -> FigureAndText:
     traces = [data.trace(*stroke) for stroke in wanted]
     said = []
     for trace in traces:
@@ -166,29 +166,29 @@ def _traces(data: PaperData, wanted: list[tuple[str, str, float]]) -> Drawn:
     return plot.slip_traces(traces, SURFACES, longest=min(ends)), _listed(said)
 
 
-def dry_traces(data: PaperData) -> Drawn:
+def dry_traces(data: PaperData) -> FigureAndText:
     """Dry traces of Smooth and Sb-R."""
     return _traces(data, [(n, "dry", v) for n in ("Sb-R", "Smooth") for v in (1e-6, 3e-6)])
 
 
-def wet_traces(data: PaperData) -> Drawn:
+def wet_traces(data: PaperData) -> FigureAndText:
     """Traces in glycerol."""
     wanted = [("Sb-R", "glycerol", 1e-6), *(("Smooth", "glycerol", v) for v in (1e-6, 3e-6))]
     return _traces(data, wanted)
 
 
-def rough_dry_and_wet(data: PaperData) -> Drawn:
+def rough_dry_and_wet(data: PaperData) -> FigureAndText:
     """Traces of Sb-R."""
     return _traces(data, [("Sb-R", "glycerol", 1e-6), ("Sb-R", "dry", 1e-6)])
 
 
-def smooth_dry_and_wet(data: PaperData) -> Drawn:
+def smooth_dry_and_wet(data: PaperData) -> FigureAndText:
     """Traces of Smooth, and of Sb-R in glycerol."""
     wanted = [("Sb-R", "glycerol"), ("Smooth", "glycerol"), ("Smooth", "dry")]
     return _traces(data, [(*stroke, 1e-6) for stroke in wanted])
 
 
-def both_rough(data: PaperData) -> Drawn:
+def both_rough(data: PaperData) -> FigureAndText:
     """Stribeck curves of both rough surfaces at the lowest load, with the dry ones."""
     force = data.forces[0]
     measured = [data.measured(name, medium) for name in ROUGH for medium in ("glycerol", "dry")]
@@ -196,7 +196,7 @@ def both_rough(data: PaperData) -> Drawn:
     return plot.stribeck(measured, models, surfaces=SURFACES), _friction_of(measured)
 
 
-def all_loads(data: PaperData, name: str) -> Drawn:
+def all_loads(data: PaperData, name: str) -> FigureAndText:
     """Stribeck curves of a surface."""
     measured = [data.measured(name, "glycerol", force) for force in data.forces]
     models = [data.model(name, force) for force in data.forces]
@@ -213,7 +213,7 @@ def _at(model: xr.Dataset, points: xr.Dataset) -> np.ndarray:
     return np.interp(v, np.log(model.sliding_speed.values), model.friction_coefficient.values)
 
 
-def shear_stress(data: PaperData) -> Drawn:
+def shear_stress(data: PaperData) -> FigureAndText:
     """sigma_f over load, as fitted and corrected."""
     said = _listed(
         f"{fit['surface']}, {force_text(fit['normal_force_N'])}: "
@@ -224,7 +224,7 @@ def shear_stress(data: PaperData) -> Drawn:
     return plot.shear_stress(data.fits, surfaces=SURFACES), said
 
 
-def smooth_and_theory(data: PaperData) -> Drawn:
+def smooth_and_theory(data: PaperData) -> FigureAndText:
     """Smooth at all loads, and the theory at the lowest."""
     measured = [data.measured("Smooth", "glycerol", force) for force in data.forces]
     force = data.forces[0]
@@ -236,7 +236,7 @@ def smooth_and_theory(data: PaperData) -> Drawn:
     return plot.stribeck(measured, model, surfaces=SURFACES), _friction_of(measured) + said
 
 
-def separation(data: PaperData) -> Drawn:
+def separation(data: PaperData) -> FigureAndText:
     """p_cont over separation."""
     tables = data.dry("separation")
     said = _listed(
@@ -248,7 +248,7 @@ def separation(data: PaperData) -> Drawn:
     return plot.contact_separation(tables, surfaces=SURFACES), said
 
 
-def factors(data: PaperData) -> Drawn:
+def factors(data: PaperData) -> FigureAndText:
     """Flow and friction factors."""
     factors = {name: data.read("wet", name, "factors") for name in SURFACES}
     closed = [
@@ -258,7 +258,7 @@ def factors(data: PaperData) -> Drawn:
     return plot.lubrication_factors(factors, surfaces=SURFACES), said
 
 
-def friction_factor_effect(data: PaperData) -> Drawn:
+def friction_factor_effect(data: PaperData) -> FigureAndText:
     """mu(v) at the highest load with and without friction factors."""
     force = data.forces[-1]
     pairs = {name: data.model(name, force) for name in ROUGH}
@@ -277,7 +277,7 @@ def _largest_rise(curve: xr.Dataset) -> str:
     return f"{float(rise[at]):.2g}, {100 * part:.2g} % at {v}"
 
 
-def profiles(data: PaperData, name: str) -> Drawn:
+def profiles(data: PaperData, name: str) -> FigureAndText:
     """Profiles across the contact of a surface."""
     across = data.read("wet", name, "profiles")
     said = _listed(
@@ -294,7 +294,7 @@ def profiles(data: PaperData, name: str) -> Drawn:
     return plot.film_profiles(across), said
 
 
-def bars(data: PaperData, name: str) -> Drawn:
+def bars(data: PaperData, name: str) -> FigureAndText:
     """Error bars of a surface."""
     measured = [data.measured(name, "glycerol", force) for force in data.forces]
     smallest, largest = (

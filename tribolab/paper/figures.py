@@ -9,7 +9,7 @@ from typing import Any
 
 from tribolab.paper import drawing
 from tribolab.paper.data import PaperData
-from tribolab.paper.drawing import Drawn
+from tribolab.paper.drawing import FigureAndText
 from tribolab.report.figures.files import DRAWING, save_figure
 from tribolab.report.figures.files import Drawn as Picture
 from tribolab.untyped import Json
@@ -72,7 +72,7 @@ class PlannedFigure:
     title: str
     kinds: tuple[str, ...]
     caption: str
-    draw: Callable[[PaperData], Drawn]
+    draw: Callable[[PaperData], FigureAndText]
     claims: tuple[tuple[str, str, str], ...] = ()
     wide: bool = False
     told: bool = False

@@ -18,7 +18,7 @@ from tribolab.paper import laboratory as lab
 from tribolab.paper.data import SURFACES, PaperData
 from tribolab.paper.document import context_of, paper_document, paper_sections
 from tribolab.paper.figures import FIGURES, DrawTask, draw_paper_figure
-from tribolab.paper.work import Task, compute
+from tribolab.paper.work import PaperTask, compute
 from tribolab.records.parts import Row
 from tribolab.report import tables
 from tribolab.report.page.templating import framed
@@ -101,15 +101,15 @@ def _computed(
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Compute what the theory gives, compare the numbers, and fit the simulated curves."""
     folder = outcome.folder
-    tasks = [Task("published", "", folder)]
+    tasks = [PaperTask("published", "", folder)]
     for name in SURFACES:
         wet = [c for c in outcome.curves if (c.surface, c.medium) == (name, "glycerol")]
         # of Smooth the paper computes the lowest load only
         forces = sorted(c.normal_force for c in wet if c.normal_force is not None)
         forces = forces[: 1 if name == "Smooth" else None]
-        tasks.append(Task("wet", name, folder, tuple(forces), tuple(wet)))
-    tasks += [Task("dry", name, folder) for name in SURFACES]
-    tasks += [Task("spectrum", surface.name, folder, scans=surface) for surface in scans]
+        tasks.append(PaperTask("wet", name, folder, tuple(forces), tuple(wet)))
+    tasks += [PaperTask("dry", name, folder) for name in SURFACES]
+    tasks += [PaperTask("spectrum", surface.name, folder, scans=surface) for surface in scans]
     rows: dict[tuple[str, str], list[Row]] = {}
     for task, future in completed(pool, compute, tasks):
         rows[task.kind, task.surface] = future.result()

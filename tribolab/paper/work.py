@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     from tribolab.campaign.surfaces.plan import PlannedSurface
     from tribolab.records.parts import CurveOutcome
 
-Computed = tuple[dict[str, "xr.Dataset"], list[Row]]  # groups of a file, and rows
+GroupsAndRows = tuple[dict[str, "xr.Dataset"], list[Row]]  # groups of a file, and rows
 _LOWEST_WAVENUMBER = 423.0  # 1/m, of the stand-in spectra
 
 
 @dataclass(frozen=True)
-class Task:
+class PaperTask:
     """Something to compute: `kind` is a key of `_KINDS`.
 
     Parameters
@@ -63,7 +63,7 @@ def data_file(folder: Path, kind: str, surface: str) -> Path:
     return folder / "data" / f"{kind}_{surface}.nc"
 
 
-def compute(task: Task) -> list[Row]:
+def compute(task: PaperTask) -> list[Row]:
     """Compute a task, write its data file, and return its rows if it has any."""
     groups, rows = _KINDS[task.kind](task)
     if groups:
@@ -72,14 +72,14 @@ def compute(task: Task) -> list[Row]:
     return rows
 
 
-def _root(task: Task) -> xr.Dataset:
+def _root(task: PaperTask) -> xr.Dataset:
     return xr.Dataset(
         attrs={"surface": task.surface, "references": xu2026.CITATION}
         | made(f"reproduce: {task.kind} {task.surface}", **_origin(task))
     )
 
 
-def _origin(task: Task) -> dict[str, str]:
+def _origin(task: PaperTask) -> dict[str, str]:
     """Return what a task's result is made from: files, or else the published constants alone.
 
     There is no checksum of a file where there is no file; the settings are then the constants.
@@ -92,15 +92,15 @@ def _origin(task: Task) -> dict[str, str]:
     return {"source": xu2026.CITATION, "config_sha256": sha256_of(config)}
 
 
-def _published(task: Task) -> Computed:
+def _published(task: PaperTask) -> GroupsAndRows:
     return {}, rows_of(compare_with_paper())
 
 
-def _dry(task: Task) -> Computed:
+def _dry(task: PaperTask) -> GroupsAndRows:
     return dry_contact(task.surface), []
 
 
-def _spectrum(task: Task) -> Computed:
+def _spectrum(task: PaperTask) -> GroupsAndRows:
     """Return the spectrum that the simulated profiles give, extrapolated as for any surface."""
     if task.scans is None:
         raise AnalysisError(f"{task.surface}: there are no scans to make a spectrum of")
@@ -108,7 +108,7 @@ def _spectrum(task: Task) -> Computed:
     return spectra_of_scans(task.scans, checked.scans, _LOWEST_WAVENUMBER)[0], []
 
 
-def _wet(task: Task) -> Computed:
+def _wet(task: PaperTask) -> GroupsAndRows:
     known = dict(xu2026.surface(task.surface).shear_stress)
     groups = lubricated(task.surface, task.forces)
     fitted = [] if task.surface == "Smooth" else [(c, c.normal_force) for c in task.curves]
@@ -120,7 +120,7 @@ def _wet(task: Task) -> Computed:
     return groups, rows
 
 
-def _fit(task: Task, curve: CurveOutcome, force: float, printed: float) -> Row:
+def _fit(task: PaperTask, curve: CurveOutcome, force: float, printed: float) -> Row:
     """Fit the shear stress to a simulated curve, as the authors did to theirs."""
     fit = fit_shear_stress(
         read_netcdf(task.folder / curve.data_file),

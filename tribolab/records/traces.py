@@ -40,22 +40,22 @@ def page_trace(
     points: int,
     fine_size: int,
 ) -> PageTrace:
-    """Return what the page draws of a run; parameters as of `trace` and `finer_trace`."""
+    """Return what the page draws of a run; parameters as of `decimated_trace` and `finer_trace`."""
     shared = shared_by_signals(run, friction)
     return PageTrace(
-        script_json(trace(run, segments, friction, points, shared)),
+        script_json(decimated_trace(run, segments, friction, points, shared)),
         finer_trace(run, segments, friction, points, fine_size, shared),
     )
 
 
-class Shared(NamedTuple):
+class SharedTrace(NamedTuple):
     """What a trace and its finer one share, as long as the run: clock and main signal."""
 
     clock: Clock
     main: Signal
 
 
-def shared_by_signals(run: xr.Dataset, friction: xr.Dataset | None) -> Shared:
+def shared_by_signals(run: xr.Dataset, friction: xr.Dataset | None) -> SharedTrace:
     """Return what all traces of a run share.
 
     Raises
@@ -63,7 +63,7 @@ def shared_by_signals(run: xr.Dataset, friction: xr.Dataset | None) -> Shared:
     AnalysisError
         If the run has neither a friction force nor a friction coefficient.
     """
-    return Shared(clock_of(np.asarray(run["time"], float)), main_signal(run, friction))
+    return SharedTrace(clock_of(np.asarray(run["time"], float)), main_signal(run, friction))
 
 
 def trace_size(runs: int) -> tuple[int, int]:
@@ -95,12 +95,12 @@ def trace_size(runs: int) -> tuple[int, int]:
     return int(np.clip(points, 300, 2000)), int((1 - _COARSE_SHARE) * each)
 
 
-def trace(
+def decimated_trace(
     run: xr.Dataset,
     segments: xr.Dataset,
     friction: xr.Dataset | None,
     points: int,
-    shared: Shared | None = None,
+    shared: SharedTrace | None = None,
 ) -> Json:
     """Return a run's trace for the page: signals over time, segments and flagged spans.
 
@@ -143,14 +143,14 @@ def finer_trace(
     friction: xr.Dataset | None,
     points: int,
     size: int,
-    shared: Shared | None = None,
+    shared: SharedTrace | None = None,
 ) -> str:
     """Return the signals of a run with as many points as fit, for the page to zoom into.
 
     Parameters
     ----------
     run, segments, friction
-        As for `trace`.
+        As for `decimated_trace`.
     points
         What the trace has that the page shows at once: with no more there is nothing to zoom into.
     size
@@ -161,8 +161,8 @@ def finer_trace(
     Returns
     -------
     str
-        ``complete`` and ``signals`` as of `trace`, compressed, as JSON that may stand in a script
-        element; "" if that trace is complete or no finer one fits.
+        ``complete`` and ``signals`` as of `decimated_trace`, compressed, as JSON that may stand in
+        a script element; "" if that trace is complete or no finer one fits.
     """
     shared = shared or shared_by_signals(run, friction)
     finer = min(_FINEST, int(size / _FINE_CHARACTERS)) if run.sizes["time"] > points else 0
@@ -174,7 +174,7 @@ def finer_trace(
     return ""
 
 
-def _signals(run: xr.Dataset, segments: xr.Dataset, shared: Shared, points: int) -> Json:
+def _signals(run: xr.Dataset, segments: xr.Dataset, shared: SharedTrace, points: int) -> Json:
     time = np.asarray(run["time"], float)
     bounds = np.c_[np.asarray(segments["start"], float), np.asarray(segments["stop"], float)]
     clock, main = shared

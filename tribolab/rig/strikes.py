@@ -14,8 +14,8 @@ from tribolab.rig.simulated import SimulatedRun
 from tribolab.untyped import Json
 from tribolab.words import Count
 
-Facts = Json
-Struck = tuple[xr.Dataset, xr.Dataset, Facts]
+StrikeFacts = Json
+Struck = tuple[xr.Dataset, xr.Dataset, StrikeFacts]
 _UNLOADED = 0.05  # of the greatest normal force; above it, load is on
 _FAST = 130.0  # Hz; slower logs do not show the lines of mains and rig
 
@@ -26,22 +26,22 @@ def _typical(run: SimulatedRun) -> float:
     return mean * float(run.facts["normal_force_N"])
 
 
-def _force(run: SimulatedRun, values: np.ndarray, facts: Facts) -> Struck:
+def _force(run: SimulatedRun, values: np.ndarray, facts: StrikeFacts) -> Struck:
     """Return the logs with another friction force."""
     return run.force_log.assign(friction_force=("time", values)), run.motion_log, facts
 
 
-def _normal(run: SimulatedRun, values: np.ndarray, facts: Facts) -> Struck:
+def _normal(run: SimulatedRun, values: np.ndarray, facts: StrikeFacts) -> Struck:
     """Return the logs with another normal force."""
     return run.force_log.assign(normal_force=("time", values)), run.motion_log, facts
 
 
-def _retimed(run: SimulatedRun, time: np.ndarray, facts: Facts) -> Struck:
+def _retimed(run: SimulatedRun, time: np.ndarray, facts: StrikeFacts) -> Struck:
     """Return the logs with other times in the force log."""
     return run.force_log.assign_coords(time=time), run.motion_log, facts
 
 
-def _kept(run: SimulatedRun, keep: np.ndarray, facts: Facts) -> Struck:
+def _kept(run: SimulatedRun, keep: np.ndarray, facts: StrikeFacts) -> Struck:
     """Return the logs with some rows of the force log only."""
     return run.force_log.isel(time=keep), run.motion_log, facts
 

@@ -106,7 +106,7 @@ class Profilometer:
 
 
 @dataclass(frozen=True)
-class Surface:
+class StudySurface:
     """One cylinder: its roughness, its contact areas and its fitted shear stresses.
 
     Parameters
@@ -159,7 +159,7 @@ def _pairs(*stresses: float) -> tuple[tuple[float, float], ...]:
 
 
 _SURFACES = (
-    Surface(
+    StudySurface(
         name="Smooth",
         spectrum=SelfAffine(1.090, 4.666116e4, 1.435334e-22, _LOW, _HIGH),
         rms_roughness=1.372e-6,
@@ -169,7 +169,7 @@ _SURFACES = (
         area_ratio_dry=0.924,
         shear_stress=_pairs(0.50e6),
     ),
-    Surface(
+    StudySurface(
         name="Sb-S",
         spectrum=SelfAffine(1.155, 9.053363e4, 1.629575e-22, _LOW, _HIGH),
         rms_roughness=2.798e-6,
@@ -179,7 +179,7 @@ _SURFACES = (
         area_ratio_dry=0.1313,
         shear_stress=_pairs(0.84e6, 0.78e6, 0.70e6, 0.65e6),
     ),
-    Surface(
+    StudySurface(
         name="Sb-R",
         spectrum=SelfAffine(1.190, 2.804894e4, 5.461285e-20, _LOW, _HIGH),
         rms_roughness=15.76e-6,
@@ -193,10 +193,10 @@ _SURFACES = (
     ),
 )
 surface_energies = PDMS_PMMA_GLYCEROL
-surfaces: dict[str, Surface] = {surface.name: surface for surface in _SURFACES}
+surfaces: dict[str, StudySurface] = {surface.name: surface for surface in _SURFACES}
 
 
-def surface(name: str) -> Surface:
+def surface(name: str) -> StudySurface:
     """Return the cylinder called `name`: ``"Smooth"``, ``"Sb-S"`` or ``"Sb-R"``, in any case.
 
     Raises
@@ -244,7 +244,7 @@ def psd(name: str | Sequence[str], points: int = 1201) -> xr.Dataset:
     )
 
 
-def _several(known: list[Surface], points: int) -> xr.Dataset:
+def _several(known: list[StudySurface], points: int) -> xr.Dataset:
     spectra = [each.spectrum for each in known]
     low, high = min(each.low for each in spectra), max(each.high for each in spectra)
     q = np.union1d(np.geomspace(low, high, points), [each.rolloff for each in spectra])

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _MANY = 12  # files, from which on it pays to start other processes
 
 
-Instrument = Annotated[
+InstrumentOption = Annotated[
     str | None,
     typer.Option(
         "--instrument",
@@ -39,7 +39,7 @@ def check(
     fail_on: Annotated[
         str, typer.Option(help="Exit with 1 from which status on: suspect, fail or never.")
     ] = "fail",
-    instrument: Instrument = None,
+    instrument: InstrumentOption = None,
     repeats: Annotated[
         bool | None,
         typer.Option(help="Compare scans as repeats.", show_default="by names but the last number"),
@@ -82,7 +82,7 @@ def check(
 
 def info(
     files: Annotated[list[Path], typer.Argument(help="Raw files.")],
-    instrument: Instrument = None,
+    instrument: InstrumentOption = None,
     jobs: Jobs = None,
     quiet: Quiet = False,
     debug: Debug = False,

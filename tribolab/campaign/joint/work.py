@@ -263,10 +263,12 @@ def _bands(task: JointTask) -> dict[str, xr.Dataset]:
     return bands
 
 
-Variant = tuple[Sequence["LoadCurve"], "JointPriors"]
+CurvesAndPriors = tuple[Sequence["LoadCurve"], "JointPriors"]
 
 
-def _variants(task: JointTask, dry: Mapping[str, Sequence[DryContact]]) -> dict[str, Variant]:
+def _variants(
+    task: JointTask, dry: Mapping[str, Sequence[DryContact]]
+) -> dict[str, CurvesAndPriors]:
     """Return the models that are compared: for each its curves and priors, the usual one first."""
     # late: starting stays quick
     from tribolab.fit.joint.comparison import CONSTANT, POWER_LAW, WITHOUT_FACTORS
@@ -279,7 +281,7 @@ def _variants(task: JointTask, dry: Mapping[str, Sequence[DryContact]]) -> dict[
         for area, factors in ((False, True), (False, False), (True, True))
     )
     usual = [*wet, *_dry(dry)]
-    variants: dict[str, Variant] = {
+    variants: dict[str, CurvesAndPriors] = {
         POWER_LAW: (usual, priors),
         CONSTANT: (usual, constant),
         WITHOUT_FACTORS: ([*bare, *_dry(dry)], priors),

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tribolab.campaign.settings.fields import MiddleShare, PositiveSi, ShareOfEnds, Si, Text
+from tribolab.campaign.settings.fields import MiddleShare, PositiveSi, ShareOfEnds, Si, SomeText
 from tribolab.campaign.settings.table import Table
 from tribolab.errors import ConfigError, TribolabError, nearest, shown
 from tribolab.untyped import Arguments
@@ -75,9 +75,9 @@ class Qc(Table):
 
     fail_on: Literal["suspect", "fail", "never"] = "fail"
     """The mildest finding that gives exit code 1."""
-    skip: tuple[Text, ...] = ()
+    skip: tuple[SomeText, ...] = ()
     """Checks on runs and on scans that are left out."""
-    limits: dict[Text, dict[Text, float | Text]] = {}
+    limits: dict[SomeText, dict[SomeText, float | SomeText]] = {}
     """Limits of checks by name, e.g. limits.spikes.noise = 10; numbers in SI or with a unit."""
 
     @property

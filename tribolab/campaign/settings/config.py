@@ -8,7 +8,7 @@ from pathlib import Path
 from pydantic import PrivateAttr
 
 from tribolab.campaign.settings.analysed import Friction, Qc, Roughness, Segments
-from tribolab.campaign.settings.fields import Text
+from tribolab.campaign.settings.fields import SomeText
 from tribolab.campaign.settings.measured import (
     Calibration,
     Contact,
@@ -29,13 +29,13 @@ SCHEMA_FILE = "campaign.schema.json"
 class About(Table):
     """What the campaign is called and where its files lie."""
 
-    name: Text
+    name: SomeText
     """Title of the report."""
-    raw: Text = "raw"
+    raw: SomeText = "raw"
     """Folder of the raw files, relative to this file."""
-    output: Text = "results"
+    output: SomeText = "results"
     """Folder of the results, relative to this file."""
-    note: Text | None = None
+    note: SomeText | None = None
     """What every reader of the report should know first; it stands at its top."""
 
 
@@ -44,7 +44,7 @@ class Campaign(Table):
 
     campaign: About
     contact: Contact = Contact()
-    medium: dict[Text, Medium] = {}
+    medium: dict[SomeText, Medium] = {}
     segments: Segments = Segments()
     friction: Friction = Friction()
     roughness: Roughness = Roughness()

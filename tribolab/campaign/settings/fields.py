@@ -85,9 +85,9 @@ def _positive(value: float) -> float:
     return value
 
 
-Text = Annotated[str, Field(min_length=1)]
+SomeText = Annotated[str, Field(min_length=1)]
 Patterns = Annotated[
-    tuple[Text, ...],
+    tuple[SomeText, ...],
     BeforeValidator(lambda value: (value,) if isinstance(value, str) else value),
     WithJsonSchema(
         {
@@ -110,7 +110,7 @@ def _name_pattern(value: Any) -> Any:
     return value
 
 
-LabelPattern = Annotated[Text, BeforeValidator(_name_pattern), Field(examples=["*_{mount}_*"])]
+LabelPattern = Annotated[SomeText, BeforeValidator(_name_pattern), Field(examples=["*_{mount}_*"])]
 
 
 def _share(value: Any) -> Any:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.settings.problems import Problem
+from tribolab.campaign.settings.problems import SettingsProblem
 from tribolab.campaign.settings.review import REVIEW_FILE
 from tribolab.errors import nearest, shown
 from tribolab.provenance import as_text, sha256_of_file
@@ -54,7 +54,10 @@ def instrument_of(campaign: Campaign, name: str) -> str:
 
 
 def resolve_patterns(
-    raw: Path, patterns: Iterable[str], where: tuple[str | int, ...], problems: list[Problem]
+    raw: Path,
+    patterns: Iterable[str],
+    where: tuple[str | int, ...],
+    problems: list[SettingsProblem],
 ) -> list[Path]:
     """Return the files of patterns, each once; adds to the problems where nothing matches."""
     files: dict[Path, None] = {}
@@ -62,7 +65,9 @@ def resolve_patterns(
         matching = matching_files(raw, pattern)
         if not matching:
             problems.append(
-                Problem(where, f"nothing matches '{shown(pattern)}' in {raw}{_there(raw, pattern)}")
+                SettingsProblem(
+                    where, f"nothing matches '{shown(pattern)}' in {raw}{_there(raw, pattern)}"
+                )
             )
         files.update(dict.fromkeys(matching))
     return list(files)

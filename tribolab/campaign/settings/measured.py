@@ -14,8 +14,8 @@ from tribolab.campaign.settings.fields import (
     PositiveSi,
     ShareOfMass,
     Si,
+    SomeText,
     Spread,
-    Text,
     ZeroPlace,
 )
 from tribolab.campaign.settings.table import Table
@@ -48,7 +48,7 @@ class Contact(Table):
     partial contact saves; or as fitted to boundary elements."""
     normal_forces: tuple[Annotated[float, PositiveSi("N", "31 N")], ...] = ()
     """Normal forces at which contact and adhesion are computed, beside those of the runs."""
-    modulus_file: Text | None = None
+    modulus_file: SomeText | None = None
     """Storage and loss modulus over frequency (DMA), relative to the raw folder."""
 
     def line(self) -> dict[str, float | None]:
@@ -89,18 +89,18 @@ class Medium(Table):
     "silicone oil 1000 cSt" (any grade) is known where none is stated."""
     water_content: ShareOfMass | None = None
     """Mass fraction of water in glycerol."""
-    liquid: Text | None = None
+    liquid: SomeText | None = None
     """What it is, where the table's name does not say it: "silicone oil 350 cSt"."""
 
 
 class Surface(Table):
     """One surface and its topography scans."""
 
-    name: Text
+    name: SomeText
     """What it is called in the [[run]] tables and in the report."""
     scans: Patterns | None = None
     """Profilometer files, relative to the raw folder."""
-    instrument: Text | None = None
+    instrument: SomeText | None = None
     """Dialect of the scans; left out, the files tell by themselves."""
 
 
@@ -109,9 +109,9 @@ class RunEntry(Table):
 
     files: Patterns
     """Raw files, relative to the raw folder: a pattern, or a list of patterns."""
-    surface: Text | None = None
+    surface: SomeText | None = None
     """Name of a [[surface]]."""
-    medium: Text | None = None
+    medium: SomeText | None = None
     """Name of a [medium.*] table."""
     normal_force: Annotated[float, PositiveSi("N", "31 N")] | None = None
     """Set-point of the normal force; it is the load where the files record none, and left out, the
@@ -120,7 +120,7 @@ class RunEntry(Table):
     """Set-point of the speed; it is the sliding speed where the files record none."""
     clock_shift: Annotated[float, Si("s", "0.42 s")] | None = None
     """What added to the companion log's clock gives the main log's; else the signals tell."""
-    instrument: Text | None = None
+    instrument: SomeText | None = None
     """Name of a dialect, or a dialect's TOML file; left out, the files tell by themselves."""
     zero_uncertainty: Spread | None = None
     """Standard uncertainty of the zero of the friction force, where no stroke or rest tells it."""
@@ -131,15 +131,15 @@ class RunEntry(Table):
     """Mass between the contact and the force sensor, whose inertia is taken out of the force."""
     rectified: bool | None = None
     """Whether friction was recorded without its sign; left out, the reversals tell."""
-    operator: Text | None = None
+    operator: SomeText | None = None
     """Who measured these runs: for `tribolab repeatability`, as are the next five."""
-    mount: Text | None = None
+    mount: SomeText | None = None
     """Which mounting of the specimen they belong to."""
-    day: Text | None = None
+    day: SomeText | None = None
     """Day on which they were measured; by default as the files say."""
-    specimen: Text | None = None
+    specimen: SomeText | None = None
     """Which specimen was measured."""
-    labels: dict[Text, Text] = {}
+    labels: dict[SomeText, SomeText] = {}
     """Whatever else may tell runs apart, e.g. labels.batch = "7"."""
     labels_in_name: LabelPattern | None = None
     """Where such labels stand in a file's name, without its ending: "*_{mount}_{operator}_*"; {}
@@ -169,7 +169,7 @@ class Calibration(Table):
     """How long it holds at most."""
     limit: Annotated[float, PositiveSi("1", "2 %")] | None = None
     """How far gain or reference may drift until it wants to be done anew."""
-    serial: Text | None = None
+    serial: SomeText | None = None
     """Serial number of the instrument."""
-    certificate: Text | None = None
+    certificate: SomeText | None = None
     """Number or place of the certificate."""

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.settings.files import instrument_of
-from tribolab.campaign.settings.problems import Problem
+from tribolab.campaign.settings.problems import SettingsProblem
 from tribolab.errors import ConfigError, TribolabError, nearest, shown
 from tribolab.lubrication.viscosity import LIQUIDS, knows_liquid
 
@@ -17,20 +17,20 @@ if TYPE_CHECKING:
     from tribolab.campaign.settings.measured import Medium
 
 
-def of_names(campaign: Campaign) -> list[Problem]:
+def of_names(campaign: Campaign) -> list[SettingsProblem]:
     """Names that are used but not declared, or declared twice."""
     problems = []
     surfaces = [surface.name for surface in campaign.surface]
     for number, name in enumerate(surfaces):
         if name in surfaces[:number]:
             problems.append(
-                Problem(
+                SettingsProblem(
                     ("surface", number, "name"), f"'{shown(name)}' is the name of a surface before"
                 )
             )
     for number, surface in enumerate(campaign.surface):
         if surface.instrument is not None and (what := _instrument(campaign, surface.instrument)):
-            problems.append(Problem(("surface", number, "instrument"), what))
+            problems.append(SettingsProblem(("surface", number, "instrument"), what))
     stated = [
         (("medium", name), quantity, medium)
         for name, medium in campaign.medium.items()
@@ -40,12 +40,12 @@ def of_names(campaign: Campaign) -> list[Problem]:
         value, bounds = getattr(table, name), getattr(table, f"{name}_range")
         if bounds and not (value is not None and bounds[0] <= value <= bounds[1]):
             what = f"must go from below to above {name}"
-            problems.append(Problem((*where, f"{name}_range"), what))
+            problems.append(SettingsProblem((*where, f"{name}_range"), what))
     problems += _of_liquids(campaign)
     problems += _of_theory(campaign)
     if not campaign.run and not any(surface.scans for surface in campaign.surface):
         what = 'is missing; add [[run]] with files = "...", or [[surface]] with scans = "..."'
-        problems.append(Problem(("run",), what))
+        problems.append(SettingsProblem(("run",), what))
     for number, entry in enumerate(campaign.run):
         if entry.surface is not None and entry.surface not in surfaces:
             what = f"no [[surface]] is called '{shown(entry.surface)}'" + _hint(
@@ -53,61 +53,61 @@ def of_names(campaign: Campaign) -> list[Problem]:
                 surfaces,
                 f'add [[surface]] with name = "{shown(entry.surface)}" (its scans may be left out)',
             )
-            problems.append(Problem(("run", number, "surface"), what))
+            problems.append(SettingsProblem(("run", number, "surface"), what))
         if entry.medium is not None and entry.medium not in campaign.medium:
             what = f"there is no [medium.{shown(entry.medium)}]" + _hint(
                 entry.medium,
                 campaign.medium,
                 f"add [medium.{shown(_toml_key(entry.medium))}] (its keys may be left out)",
             )
-            problems.append(Problem(("run", number, "medium"), what))
+            problems.append(SettingsProblem(("run", number, "medium"), what))
         if entry.instrument is not None and (what := _instrument(campaign, entry.instrument)):
-            problems.append(Problem(("run", number, "instrument"), what))
+            problems.append(SettingsProblem(("run", number, "instrument"), what))
     return problems
 
 
-def _of_liquids(campaign: Campaign) -> list[Problem]:
+def _of_liquids(campaign: Campaign) -> list[SettingsProblem]:
     """Liquids that are not known, or none at their temperature."""
     problems = []
     for name, medium in campaign.medium.items():
         if medium.liquid is not None and not knows_liquid(medium.liquid):
             what = f"no liquid '{shown(medium.liquid)}' is known{nearest(medium.liquid, LIQUIDS)}"
-            problems.append(Problem(("medium", name, "liquid"), what))
+            problems.append(SettingsProblem(("medium", name, "liquid"), what))
             continue
         try:
             campaign.viscosity_of(name)
         except TribolabError as error:
             key, _, what = str(error).partition(": ")
-            problems.append(Problem(("medium", name, key), what))
+            problems.append(SettingsProblem(("medium", name, key), what))
     return problems
 
 
-def _of_theory(campaign: Campaign) -> list[Problem]:
+def _of_theory(campaign: Campaign) -> list[SettingsProblem]:
     """Surfaces and media that [joint] and [rubber] name, and a modulus that is stated twice."""
     wrong = []
     surfaces = [surface.name for surface in campaign.surface]
     for name in campaign.joint.together:
         if name not in surfaces:
             what = f"no [[surface]] is called '{shown(name)}'{nearest(name, surfaces)}"
-            wrong.append(Problem(("joint", "together"), what))
+            wrong.append(SettingsProblem(("joint", "together"), what))
     for table, key, medium in (
         ("joint", "dry", campaign.joint.dry),
         ("rubber", "adhesion", campaign.rubber.adhesion),
     ):
         if medium is not None and medium not in campaign.medium:
             what = f"there is no [medium.{shown(medium)}]{nearest(medium, campaign.medium)}"
-            wrong.append(Problem((table, key), what))
+            wrong.append(SettingsProblem((table, key), what))
         elif medium is not None and not _binds(campaign.medium[medium]):
             what = f"[medium.{shown(medium)}] wants a work_of_adhesion above zero"
-            wrong.append(Problem((table, key), what))
+            wrong.append(SettingsProblem((table, key), what))
     rubber = campaign.rubber
     file = campaign.contact.modulus_file
     if rubber.prony_moduli and file is not None:
         what = "there is [contact] modulus_file as well; state one of them"
-        wrong.append(Problem(("rubber", "prony_moduli"), what))
+        wrong.append(SettingsProblem(("rubber", "prony_moduli"), what))
     if rubber.temperature is not None and file is None and not rubber.prony_moduli:
         what = "there is no modulus to shift; state [contact] modulus_file, or prony_moduli"
-        wrong.append(Problem(("rubber", "temperature"), what))
+        wrong.append(SettingsProblem(("rubber", "temperature"), what))
     return wrong
 
 

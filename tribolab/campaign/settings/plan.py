@@ -14,7 +14,7 @@ from tribolab.campaign.settings.files import (
     sha256_of_dialect,
 )
 from tribolab.campaign.settings.name_pattern import NamePattern
-from tribolab.campaign.settings.problems import Problem, message
+from tribolab.campaign.settings.problems import SettingsProblem, message
 from tribolab.campaign.settings.review import review_beside
 from tribolab.campaign.settings.run_names import unique_names
 from tribolab.errors import ConfigError
@@ -94,29 +94,29 @@ class Plan(NamedTuple):
     """The runs of a campaign, and what is wrong with its patterns."""
 
     runs: tuple[PlannedRun, ...]
-    problems: list[Problem]
+    problems: list[SettingsProblem]
 
 
 def plan_runs(campaign: Campaign) -> Plan:
     """Resolve the patterns of a campaign into runs, in the order of the campaign file."""
     if not campaign.raw.is_dir():
         what = f"there is no folder {campaign.raw}"
-        return Plan((), [Problem(("campaign", "raw"), what)])
-    problems: list[Problem] = []
+        return Plan((), [SettingsProblem(("campaign", "raw"), what)])
+    problems: list[SettingsProblem] = []
     groups: list[tuple[RunEntry, list[Path]]] = []
     owner: dict[Path, int] = {}
     for number, surface in enumerate(campaign.surface):
         resolve_patterns(campaign.raw, surface.scans or (), ("surface", number, "scans"), problems)
     if (name := campaign.contact.modulus_file) and not (campaign.raw / name).is_file():
         what = f"there is no file {campaign.raw / name}"
-        problems.append(Problem(("contact", "modulus_file"), what))
+        problems.append(SettingsProblem(("contact", "modulus_file"), what))
     for number, entry in enumerate(campaign.run):
         where = ("run", number, "files")
         files = resolve_patterns(campaign.raw, entry.files, where, problems)
         for file in files:
             if (other := owner.setdefault(file, number)) != number:
                 what = f"{label_of(campaign, file)} belongs to run {other + 1} already"
-                problems.append(Problem(where, what))
+                problems.append(SettingsProblem(where, what))
                 break
         groups += [(entry, group) for group in _groups(campaign, entry, files)]
     if problems:

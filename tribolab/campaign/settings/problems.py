@@ -24,14 +24,14 @@ _HINTED = 100  # mistakes for which a key's likely name is looked for
 _FIRST_KEY = re.compile(r"""(?:[ \t]*(?:#.*)?\r?\n)*[ \t]*(?:\[|["'A-Za-z0-9_.-]+[ \t]*=)""")
 
 
-class Problem(NamedTuple):
+class SettingsProblem(NamedTuple):
     """Where in the file (names and numbers of elements), and what is wrong there."""
 
     where: tuple[str | int, ...]
     what: str
 
 
-def message(problems: Iterable[Problem], path: Path, text: str) -> str:
+def message(problems: Iterable[SettingsProblem], path: Path, text: str) -> str:
     """Put problems into words, in the order of the file, one line each."""
     lines = []
     for problem in problems:
@@ -85,9 +85,9 @@ def toml_error(error: tomllib.TOMLDecodeError, text: str, kind: str) -> str:
     return said
 
 
-def from_pydantic(error: ValidationError, model: type[BaseModel]) -> list[Problem]:
+def from_pydantic(error: ValidationError, model: type[BaseModel]) -> list[SettingsProblem]:
     """Turn pydantic's findings into problems that name the cure."""
-    problems: dict[tuple[str | int, ...], Problem] = {}
+    problems: dict[tuple[str | int, ...], SettingsProblem] = {}
     items = error.errors(include_url=False)
     for item in items:
         if item["type"] == "too_short" and any(_within(item["loc"], o["loc"]) for o in items):
@@ -95,7 +95,7 @@ def from_pydantic(error: ValidationError, model: type[BaseModel]) -> list[Proble
         where, table = _walk(model, item["loc"])
         if len(problems) >= _HINTED:
             table = None
-        problems.setdefault(where, Problem(where, _words(item, table)))
+        problems.setdefault(where, SettingsProblem(where, _words(item, table)))
     return list(problems.values())
 
 

@@ -9,8 +9,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from tribolab.campaign.settings.fields import Si, Text
-from tribolab.campaign.settings.problems import Problem, message
+from tribolab.campaign.settings.fields import Si, SomeText
+from tribolab.campaign.settings.problems import SettingsProblem, message
 from tribolab.campaign.settings.toml_file import Opened, open_settings, settings_path
 from tribolab.errors import TribolabError, nearest, shown
 from tribolab.friction.decisions.decision import Decision
@@ -26,7 +26,7 @@ class DecisionEntry(NoSwitches):
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
-    run: Text
+    run: SomeText
     """Name of the run, as in the tables."""
     action: Literal["reject", "accept", "bounds", "note"]
     """Leave it out; use it in spite of a check; bound the segment anew; only remark something."""
@@ -38,9 +38,9 @@ class DecisionEntry(NoSwitches):
     """Where the segment begins now, for "bounds"; it is trimmed from there."""
     new_stop: Annotated[float, Si("s", "30 s")] | None = Field(default=None, alias="new_to")
     """Where it ends now."""
-    reason: Text
+    reason: SomeText
     """Why."""
-    author: Text
+    author: SomeText
     """Who decided."""
     date: dt.date
     """When."""
@@ -139,7 +139,7 @@ def lost_decisions(campaign_file: Path, runs: Iterable[str]) -> tuple[str, ...]:
         if entry.run not in known:
             what = f"no run is called '{shown(entry.run)}'{nearest(entry.run, known)}"
             what += "; name the run as the tables do, or take the decision out"
-            problem = Problem(("decision", number, "run"), what)
+            problem = SettingsProblem(("decision", number, "run"), what)
             lost.append(message([problem], Path(path.name), file.text))
     return tuple(lost)
 

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tribolab.campaign.settings.fields import PositiveSi, Text
+from tribolab.campaign.settings.fields import PositiveSi, SomeText
 from tribolab.campaign.settings.table import Table
 
 
@@ -58,9 +58,9 @@ class Joint(Table):
     compute: Literal["always", "two loads", "never"] = "always"
     """Whether it is done: also of one load, which leaves the exponent of load as assumed; where
     there are two loads or more; or not."""
-    together: tuple[Text, ...] = ()
+    together: tuple[SomeText, ...] = ()
     """Surfaces that are also fitted with each other: in one liquid they share its viscosity."""
-    dry: Text | None = None
+    dry: SomeText | None = None
     """Medium without liquid whose friction tells beforehand of the shear stress. Works of adhesion
     and their ranges say how much larger the area is in it."""
 
@@ -86,7 +86,7 @@ class Rubber(Table):
     """Constant C1 of the law of Williams, Landel and Ferry about the reference temperature."""
     c2: Annotated[float, PositiveSi("K", "51.6 K")] | None = None
     """Constant C2 of that law."""
-    adhesion: Text | None = None
+    adhesion: SomeText | None = None
     """Medium whose work_of_adhesion adds to the contact at every wavenumber; by default none."""
 
     @model_validator(mode="after")

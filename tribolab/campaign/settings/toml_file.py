@@ -12,7 +12,7 @@ from pydantic import BaseModel, ValidationError
 from tribolab.campaign.settings import problems
 from tribolab.errors import ConfigError
 
-Model = TypeVar("Model", bound=BaseModel)
+SettingsModel = TypeVar("SettingsModel", bound=BaseModel)
 
 
 def text_of(path: Path, missing: str) -> str:
@@ -39,14 +39,14 @@ def text_of(path: Path, missing: str) -> str:
 
 
 @dataclass(frozen=True)
-class Opened(Generic[Model]):
+class Opened(Generic[SettingsModel]):
     """A file that says what its model wants."""
 
     path: Path
     text: str
-    content: Model
+    content: SettingsModel
 
-    def error(self, wrong: list[problems.Problem]) -> ConfigError:
+    def error(self, wrong: list[problems.SettingsProblem]) -> ConfigError:
         """Return what is still wrong with it, by file and line."""
         return ConfigError(problems.message(wrong, self.path, self.text))
 
@@ -57,7 +57,9 @@ def settings_path(path: str | Path, name: str) -> Path:
     return (path / name if path.is_dir() else path).absolute()
 
 
-def open_settings(path: Path, model: type[Model], kind: str, missing: str = "") -> Opened[Model]:
+def open_settings(
+    path: Path, model: type[SettingsModel], kind: str, missing: str = ""
+) -> Opened[SettingsModel]:
     """Read a file and check it against its model.
 
     Parameters

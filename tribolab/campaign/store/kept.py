@@ -14,7 +14,7 @@ from tribolab.campaign.store.catalogue import Store
 from tribolab.records.part_records import ModelRecord, SurfaceRecord
 from tribolab.records.parts import Finding
 
-Record = TypeVar("Record", SurfaceRecord, ModelRecord)
+PartRecord = TypeVar("PartRecord", SurfaceRecord, ModelRecord)
 
 # The files were read, and the answer is about what is in them: it stands.
 VERDICTS = ("AnalysisError",)
@@ -35,8 +35,8 @@ def kept_text(path: Path, why: str) -> str:
 
 
 def kept_record(
-    store: Store, kind: str, earlier: Record, why: str, data_file: str = ""
-) -> Record | None:
+    store: Store, kind: str, earlier: PartRecord, why: str, data_file: str = ""
+) -> PartRecord | None:
     """Return an earlier record with a finding that it is kept, and why.
 
     Parameters

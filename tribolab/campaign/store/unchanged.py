@@ -27,7 +27,7 @@ from tribolab.records.parts import (
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
 
-Part = TypeVar("Part", RunOutcome, SurfaceOutcome, ModelOutcome)
+AnyOutcome = TypeVar("AnyOutcome", RunOutcome, SurfaceOutcome, ModelOutcome)
 _FACT = "made from"
 _SOURCES = "sources"
 # Errors that the files themselves give: with the same files they would come again.
@@ -130,7 +130,7 @@ def _listed(catalogue: Catalogue) -> list[list[str]]:
     return listed
 
 
-def _as_before(parts: Sequence[Part]) -> tuple[Part, ...]:
+def _as_before(parts: Sequence[AnyOutcome]) -> tuple[AnyOutcome, ...]:
     return tuple(replace(part, reused=part.status == "done") for part in parts)
 
 

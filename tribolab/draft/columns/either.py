@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.draft.columns.stated_load import find_load, number_of
+from tribolab.draft.columns.stated_load import find_load, stated_number
 from tribolab.draft.columns.values import DraftValue, find_values
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import WHICH_FORCE, DraftColumn
@@ -40,7 +40,7 @@ def told_by_load(
 
 
 def _guessed(column: DraftColumn, load: DraftValue, values: np.ndarray) -> DraftColumn:
-    stated = number_of(load) * unit_conversion(load.unit or "N", "normal_force")[0]
+    stated = stated_number(load) * unit_conversion(load.unit or "N", "normal_force")[0]
     read = np.abs(values[np.isfinite(values)])
     read = read * unit_conversion(column.read_unit or "N", "normal_force")[0]
     share = float(np.median(read[read > _LOADED * read.max()])) / stated if read.any() else 0.0

@@ -36,7 +36,7 @@ SAYS_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
 
 
-class Formula(NamedTuple):
+class DraftedFormula(NamedTuple):
     """A quantity that follows: its name, the formula, and what it rests on."""
 
     quantity: str
@@ -56,7 +56,7 @@ class SpeedBy(NamedTuple):
 class Follows(NamedTuple):
     """Formulas, the columns (with their symbols) and values that they need, and the speed."""
 
-    formulas: tuple[Formula, ...] = ()
+    formulas: tuple[DraftedFormula, ...] = ()
     symbols: tuple[tuple[str, DraftColumn], ...] = ()
     values: tuple[DraftValue, ...] = ()
     speed: SpeedBy | None = None
@@ -90,19 +90,19 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
         arm = track if track.formula else _of_value(find_arm(values))
         if arm.formula:
             about = "a torque and a radius"
-            formula = Formula("friction_force", f"torque / {arm.formula}", about)
+            formula = DraftedFormula("friction_force", f"torque / {arm.formula}", about)
             result = _and(result, formula, arm.values, (("torque", torque), *arm.symbols))
             names.add("friction_force")
     if understood.load and names & SAYS_FRICTION and not names & SAYS_LOAD:
         about = "it was said that the load is so all along"
-        return _and(result, Formula("normal_force", f"'{understood.load}'", about))
+        return _and(result, DraftedFormula("normal_force", f"'{understood.load}'", about))
     if "set_normal_force" in names and names & SAYS_FRICTION and not names & SAYS_LOAD:
         about = "nothing measures it: the load that was set"
-        return _and(result, Formula("normal_force", "set_normal_force", about))
+        return _and(result, DraftedFormula("normal_force", "set_normal_force", about))
     load = find_load(values)
     if load is not None and names & SAYS_FRICTION and not names & SAYS_LOAD:
         about = f"nothing measures it: '{load.text}' is taken for all of the run"
-        result = _and(result, Formula("normal_force", load.name, about), [load])
+        result = _and(result, DraftedFormula("normal_force", load.name, about), [load])
     return result
 
 
@@ -166,7 +166,7 @@ def _track(values: Sequence[DraftValue], understood: Understood) -> _Track:
 
 def _and(
     before: Follows,
-    formula: Formula,
+    formula: DraftedFormula,
     values: Sequence[DraftValue] = (),
     symbols: tuple[tuple[str, DraftColumn], ...] = (),
 ) -> Follows:
@@ -190,22 +190,24 @@ def _with_speed(
         return before._replace(speed=SpeedBy("rotation", (("radius", understood.radius),)))
     if turning and any(value.source == "step" for value in track.values):
         about = "turns and the radius of each step"
-        formula = Formula("sliding_velocity", f"rotation_speed * {track.formula}", about)
+        formula = DraftedFormula("sliding_velocity", f"rotation_speed * {track.formula}", about)
         return _and(before, formula, track.values)._replace(speed=SpeedBy("none"))
     if turning and track.values:
         speed = SpeedBy("rotation", (("radius_value", track.formula),))
         return before._replace(speed=speed, values=(*before.values, *track.values))
     if turning and track.symbols:
-        formula = Formula("sliding_velocity", "rotation_speed * radius", "turns and a radius")
+        formula = DraftedFormula(
+            "sliding_velocity", "rotation_speed * radius", "turns and a radius"
+        )
         return _and(before, formula, (), track.symbols)._replace(speed=SpeedBy("none"))
     angle = None if turning or not track.formula else angle_of(understood.columns)
     if angle is not None:
-        formula = Formula("position", f"angle * {track.formula}", "an angle and a radius")
+        formula = DraftedFormula("position", f"angle * {track.formula}", "an angle and a radius")
         symbols = (("angle", angle), *track.symbols)
         return _and(before, formula, track.values, symbols)._replace(speed=SpeedBy("position"))
     if {"rolling_speed", "slide_roll_ratio"} <= names:
         about = "the slide-to-roll ratio is the sliding speed over the mean speed of both surfaces"
-        formula = Formula("sliding_velocity", "slide_roll_ratio * rolling_speed", about)
+        formula = DraftedFormula("sliding_velocity", "slide_roll_ratio * rolling_speed", about)
         return _and(before, formula)._replace(speed=SpeedBy("none"))
     by_values = _of_values(values)
     of_strokes = by_values or _of_columns(understood)

@@ -29,7 +29,7 @@ def find_load(values: Sequence[DraftValue]) -> DraftValue | None:
     return fitting[0] if len(fitting) == 1 else None
 
 
-def number_of(value: DraftValue) -> float:
+def stated_number(value: DraftValue) -> float:
     """Return the number that a value's text states, in the value's unit.
 
     Parameters

@@ -114,10 +114,10 @@ def lacks_friction(draft: Drafted) -> bool:
     draft
         From `tribolab.draft.dialect.draft.draft_dialect`.
     """
-    return any(", for the friction" in lack for lack in missing(draft))
+    return any(", for the friction" in lack for lack in missing_words(draft))
 
 
-def missing(draft: Drafted) -> list[str]:
+def missing_words(draft: Drafted) -> list[str]:
     """Return what a run's file does not say and a friction coefficient over speed needs.
 
     Parameters

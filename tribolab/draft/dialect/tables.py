@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.draft.columns.follows import Formula
+from tribolab.draft.columns.follows import DraftedFormula
 from tribolab.draft.columns.values import DraftValue
 from tribolab.draft.model import UNKNOWN_NAME, DraftColumn
 from tribolab.quantities import quantity
@@ -80,7 +80,7 @@ def symbol_table(symbol: str, column: DraftColumn) -> str:
     return lines.replace(f'quantity = "{symbol}"', f'symbol = "{symbol}"')
 
 
-def formula_table(formula: Formula) -> str:
+def formula_table(formula: DraftedFormula) -> str:
     """Return a quantity that follows from others."""
     lines = ["[[derived]]", f'quantity = "{formula.quantity}"', f'formula = "{formula.formula}"']
     return "\n".join([f"# {comment(formula.about)}", *lines]) + "\n"

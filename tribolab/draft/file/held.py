@@ -98,7 +98,7 @@ def _of_table(form: str) -> Callable[[Path], tuple[Held, list[HeldColumn]]]:
     """Return what reads a format that needs no more than to be opened."""
 
     def read(path: Path) -> tuple[Held, list[HeldColumn]]:
-        table = columnar.open_columns(path, form, columnar.Layout())
+        table = columnar.open_columns(path, form, columnar.ColumnLayout())
         columns = []
         for place, (label, unit) in enumerate(zip(table.names, table.units, strict=True)):
             name, own = split_name(label)

@@ -47,7 +47,7 @@ def read_sheet(path: Path) -> tuple[Held, list[HeldColumn]]:
     _, held, names = max(tables, key=lambda table: table[0])
     alike = [t[1].sheet for t in tables if t[1] is not held and len(t[2] & names) > 1]
     held = held._replace(others=", ".join(f"'{shown(sheet, 30)}'" for sheet in alike[:4]))
-    layout = columnar.Layout(held.sheet, held.line, held.units_below)
+    layout = columnar.ColumnLayout(held.sheet, held.line, held.units_below)
     table = columnar.open_columns(path, "excel", layout)
     columns = []
     for place, (label, unit) in enumerate(zip(table.names, table.units, strict=True)):

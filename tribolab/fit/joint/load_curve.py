@@ -50,7 +50,7 @@ class LoadCurve(NamedTuple):
     dry: bool = False
 
 
-class Measured(NamedTuple):
+class MeasuredPoints(NamedTuple):
     """Points of all curves, the run of each, and how many cannot be taken."""
 
     points: Points
@@ -60,7 +60,7 @@ class Measured(NamedTuple):
 
 def points_of(
     curves: Sequence[LoadCurve], speed_range: tuple[float, float] = (0.0, np.inf)
-) -> Measured:
+) -> MeasuredPoints:
     """Return the points of all curves, one after the other.
 
     Parameters
@@ -130,7 +130,7 @@ def points_of(
     points = Points(
         np.log(speed[kept]), np.log(friction[kept]), relative[kept], of_curve[kept], level[kept]
     )
-    return Measured(points, run[kept], int(np.count_nonzero(taken & ~kept)))
+    return MeasuredPoints(points, run[kept], int(np.count_nonzero(taken & ~kept)))
 
 
 class _Run(NamedTuple):

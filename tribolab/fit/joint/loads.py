@@ -9,7 +9,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.fit.joint.common_errors import calibration_covariance, model_covariance
-from tribolab.fit.joint.load_curve import LoadCurve, Measured, points_of
+from tribolab.fit.joint.load_curve import LoadCurve, MeasuredPoints, points_of
 from tribolab.fit.joint.model import (
     SPEED,
     Curve,
@@ -199,7 +199,7 @@ def _points(
     posterior: Posterior,
     priors: JointPriors,
     curves: Sequence[LoadCurve],
-    measured: Measured,
+    measured: MeasuredPoints,
 ) -> xr.Dataset:
     """Return the points beside the model, and what of the residuals is shared."""
     points = model.points

@@ -18,7 +18,7 @@ _GAINED = 0.5  # of what a step should gain, below which shorter ones are tried
 _PARTS = (0.5, 0.25, 0.12, 0.03), (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)  # the latter if none is better
 
 
-class Modes(NamedTuple):
+class PosteriorModes(NamedTuple):
     """The most probable parameters at sizes of shared errors, their covariance, evidence (mode).
 
     The search for a mode may be given up, or creep: what it would still gain is `left`.
@@ -32,7 +32,7 @@ class Modes(NamedTuple):
 
 def modes_of(
     model: JointModel, shared: Shared, sizes: np.ndarray, before: np.ndarray, start: np.ndarray
-) -> Modes:
+) -> PosteriorModes:
     """Return the modes for sizes of shared errors (level and correlated, mode).
 
     `before` is ln of what is thought of each beforehand (mode). All at once, but for the largest,
@@ -84,7 +84,9 @@ def _looked_at(model: JointModel, white: np.ndarray, theta: np.ndarray) -> _Stat
     return _State(theta, residual, white @ slopes[..., free], off, size)
 
 
-def _searched(model: JointModel, white: np.ndarray, before: np.ndarray, start: np.ndarray) -> Modes:
+def _searched(
+    model: JointModel, white: np.ndarray, before: np.ndarray, start: np.ndarray
+) -> PosteriorModes:
     """Find the most probable parameters of each by Gauss-Newton, a step being shortened at need.
 
     A mode that is out of the question beside the best is not followed to its end.
@@ -121,7 +123,7 @@ def _searched(model: JointModel, white: np.ndarray, before: np.ndarray, start: n
         todo = todo[~stuck]
     spread = np.zeros((*start.shape, start.shape[1]))
     spread[:, free[:, None] & free] = np.linalg.inv(normal).reshape(len(white), -1)
-    return Modes(state.theta, spread, evidence, left)
+    return PosteriorModes(state.theta, spread, evidence, left)
 
 
 def _moved(

@@ -15,7 +15,7 @@ from tribolab.friction.decisions.rejected import beside_rejected
 from tribolab.friction.run_out import turn_remark, turned
 from tribolab.friction.statistics import Estimate, estimates_of, student_remark
 from tribolab.friction.zero.of_run import Settings, zero_of_run
-from tribolab.friction.zero.parts import Reference
+from tribolab.friction.zero.parts import ZeroReference
 from tribolab.friction.zero.rests import unloaded_rests
 from tribolab.medians import median
 from tribolab.pieces import one_by_one
@@ -391,7 +391,11 @@ def _memory(estimates: list[Estimate]) -> dict[str, np.ndarray]:
 
 
 def _table(
-    data: dict[str, np.ndarray], remarks: np.ndarray, zero: Reference, run: xr.Dataset, middle: str
+    data: dict[str, np.ndarray],
+    remarks: np.ndarray,
+    zero: ZeroReference,
+    run: xr.Dataset,
+    middle: str,
 ) -> xr.Dataset:
     columns = data | {"zero_from": zero.zero_from, "remark": remarks}
     table = xr.Dataset({name: ("segment", values) for name, values in columns.items()})

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribolab.friction.zero.parts import Reference
+from tribolab.friction.zero.parts import ZeroReference
 from tribolab.friction.zero.rests import Zeros
 
 # What the middle of a loop was taken for
@@ -85,7 +85,7 @@ def _of_pairs(values: np.ndarray, pair: np.ndarray) -> np.ndarray:
 
 
 def reversal_of(
-    zero: Reference,
+    zero: ZeroReference,
     pair: np.ndarray,
     load: np.ndarray,
     time: np.ndarray,

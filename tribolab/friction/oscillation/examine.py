@@ -14,10 +14,10 @@ from tribolab.friction.oscillation.noise import noise_level, quantisation_step
 from tribolab.friction.oscillation.oscillation import Oscillation, oscillation
 from tribolab.friction.oscillation.periods import ALIKE, PeriodVerdict, at_odds, period_verdict
 from tribolab.friction.oscillation.regularity import KINDS, Regularity, regularity, scatter
-from tribolab.friction.oscillation.spectra import Record, coarsened, make_record
+from tribolab.friction.oscillation.spectra import EvenRecord, coarsened, make_record
 from tribolab.friction.oscillation.survey import CHANCE, Survey, survey
 from tribolab.friction.oscillation.waveform import (
-    Waveform,
+    WaveformFeatures,
     class_probabilities,
     describe_waveform,
     features,
@@ -39,7 +39,7 @@ _AGAIN = 200  # cycles that tell how much noise adds to them
 _ROUNDS = 2
 
 
-class Limits(NamedTuple):
+class EventLimits(NamedTuple):
     """What an event has to exceed, and what is looked at; see `stick_slip`."""
 
     hysteresis: float = 0.5
@@ -47,7 +47,7 @@ class Limits(NamedTuple):
     fewest_samples: int = 16
 
 
-DEFAULT = Limits()
+DEFAULT = EventLimits()
 
 
 class Examined(NamedTuple):
@@ -55,7 +55,7 @@ class Examined(NamedTuple):
 
     oscillation: Oscillation
     events: Events
-    waveform: Waveform
+    waveform: WaveformFeatures
     regularity: Regularity
     probability: np.ndarray
     verdict: PeriodVerdict
@@ -70,14 +70,14 @@ class View(NamedTuple):
     """An oscillation with its cycles, and the record they were sought in."""
 
     oscillation: Oscillation
-    record: Record
+    record: EvenRecord
     events: Events
     hysteresis: float
     regularity: Regularity
 
 
 def examine_record(
-    time: np.ndarray, values: np.ndarray, limits: Limits = DEFAULT, *, force: bool = False
+    time: np.ndarray, values: np.ndarray, limits: EventLimits = DEFAULT, *, force: bool = False
 ) -> Examined | str:
     """Look at one record; text where there is nothing to see, saying why.
 
@@ -121,7 +121,7 @@ def examine_record(
     )  # fmt: skip
 
 
-def _settled(record: Record, surveyed: Survey, noise: float, limits: Limits) -> View:
+def _settled(record: EvenRecord, surveyed: Survey, noise: float, limits: EventLimits) -> View:
     """Look at the scale of the strongest line; another view counts where it is regular.
 
     Of few periods of a saw, the second harmonic may be the strongest line that counts: then the
@@ -147,7 +147,7 @@ def _settled(record: Record, surveyed: Survey, noise: float, limits: Limits) -> 
     return view
 
 
-def _without_drift(record: Record, frequency: float) -> Record:
+def _without_drift(record: EvenRecord, frequency: float) -> EvenRecord:
     """Take a drift off, far slower than the oscillation: it would make falls unlike rises."""
     periods = frequency * record.values.size * record.spacing
     degree = int(np.clip(periods / PER_DEGREE, 1, DEGREE))
@@ -161,7 +161,7 @@ def _without_drift(record: Record, frequency: float) -> Record:
     return record._replace(values=record.values - drift)
 
 
-def _beside_wander(record: Record, oscillation: Oscillation) -> Record | None:
+def _beside_wander(record: EvenRecord, oscillation: Oscillation) -> EvenRecord | None:
     """Take the mean over one period off; None where there is hardly a wander.
 
     A wave's mean over its own period does not change, so that its cycles stay as they are. Half a
@@ -177,11 +177,15 @@ def _beside_wander(record: Record, oscillation: Oscillation) -> Record | None:
         return None
     first = size // 2
     part = slice(first, first + mean.size)
-    return Record(record.time[part], record.values[part] - mean, *record[2:])
+    return EvenRecord(record.time[part], record.values[part] - mean, *record[2:])
 
 
 def _view(
-    record: Record, oscillation: Oscillation, noise: float, limits: Limits, fewest: int = PER_PERIOD
+    record: EvenRecord,
+    oscillation: Oscillation,
+    noise: float,
+    limits: EventLimits,
+    fewest: int = PER_PERIOD,
 ) -> View:
     """Seek the cycles of an oscillation at the scale of its period."""
     most = int(1 / (oscillation.frequency * fewest * record.spacing))
@@ -189,7 +193,7 @@ def _view(
     wanted = min(QUIET * noise / max(oscillation.swing, 1e-300), 1e6) ** 2
     size = int(max(1, min(most, wanted)))
     first = slice(MOST * size)
-    part = coarsened(Record(record.time[first], record.values[first], *record[2:]), size)
+    part = coarsened(EvenRecord(record.time[first], record.values[first], *record[2:]), size)
     part = _without_drift(part, oscillation.frequency)
     step = quantisation_step(record.values[: 1 << 16])
     hysteresis = max(
@@ -212,7 +216,9 @@ def _view(
     return View(oscillation, part, events, hysteresis, seen)
 
 
-def _excess(record: Record, view: View, form: Waveform, probability: np.ndarray) -> float:
+def _excess(
+    record: EvenRecord, view: View, form: WaveformFeatures, probability: np.ndarray
+) -> float:
     """By how much the mean of the drops, as picked from valley to peak, is too large."""
     if probability[0] >= 0.5:
         return 0.0
@@ -224,7 +230,7 @@ def _excess(record: Record, view: View, form: Waveform, probability: np.ndarray)
         # means round off what is abrupt
         finer = max(1, round(view.record.spacing / record.spacing) // 2)
         last = int(view.record.values.size * round(view.record.spacing / record.spacing))
-        part = Record(record.time[:last], record.values[:last], *record[2:])
+        part = EvenRecord(record.time[:last], record.values[:last], *record[2:])
         drop = means(coarsened(part, finer), events) if means else np.nan
         if 0.25 * mean < drop < 1.25 * mean:
             return mean - drop
@@ -239,7 +245,7 @@ def _excess(record: Record, view: View, form: Waveform, probability: np.ndarray)
 
 
 def noise_excess(
-    record: Record, oscillation: Oscillation, events: Events, hysteresis: float
+    record: EvenRecord, oscillation: Oscillation, events: Events, hysteresis: float
 ) -> float:
     """By how much the noise makes the mean drop look larger.
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.friction.oscillation.spectra import Record, block_means
+from tribolab.friction.oscillation.spectra import EvenRecord, block_means
 
 _POINTS = 192  # that the record is averaged to
 _CYCLES = np.arange(2.0, 5.21, 0.1)  # waves in the record that are tried
@@ -38,7 +38,7 @@ def _bases() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return np.linalg.qr(powers[:, :2])[0], np.linalg.qr(powers)[0], np.linalg.qr(waves)[0]
 
 
-def slow_wave(record: Record) -> SlowWave | None:
+def slow_wave(record: EvenRecord) -> SlowWave | None:
     """Find one slow wave that nearly all of the fluctuation is; None where there is none.
 
     Parameters
@@ -56,8 +56,8 @@ def slow_wave(record: Record) -> SlowWave | None:
     Examples
     --------
     >>> t = np.arange(600.0)
-    >>> wave = slow_wave(Record(t, np.sin(2 * np.pi * 3 * t / 600), 1.0, True))
-    >>> round(wave.periods, 1), slow_wave(Record(t, np.exp(-t / 100), 1.0, True))
+    >>> wave = slow_wave(EvenRecord(t, np.sin(2 * np.pi * 3 * t / 600), 1.0, True))
+    >>> round(wave.periods, 1), slow_wave(EvenRecord(t, np.exp(-t / 100), 1.0, True))
     (3.0, None)
     """
     if record.values.size < 32:

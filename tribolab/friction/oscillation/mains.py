@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.friction.oscillation.lines import LONGEST, amplitude_spectrum
-from tribolab.friction.oscillation.spectra import Record
+from tribolab.friction.oscillation.spectra import EvenRecord
 from tribolab.medians import median
 
 _SAMPLED = 130.0  # Hz; a record that is to show 50 and 60 Hz has to be sampled faster
@@ -24,7 +24,7 @@ class Mains(NamedTuple):
     name: str
 
 
-def find_mains(record: Record) -> tuple[Mains, ...]:
+def find_mains(record: EvenRecord) -> tuple[Mains, ...]:
     """Lines of the mains in a record that is sampled fast and evenly enough.
 
     Notes

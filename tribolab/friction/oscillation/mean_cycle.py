@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tribolab.friction.oscillation.events import Events, find_events
-from tribolab.friction.oscillation.spectra import Record
+from tribolab.friction.oscillation.spectra import EvenRecord
 
 _REACH = 0.38  # of a period to either side of the fall
 _BESIDE = 0.005  # of a period between the fall and the stretches beside it ...
@@ -15,7 +15,7 @@ _ROUNDS = 3
 _PHASES = 256  # at which the extremes of a smooth cycle are sought
 
 
-def abrupt_drop(record: Record, events: Events) -> float:
+def abrupt_drop(record: EvenRecord, events: Events) -> float:
     """Mean drop of a wave that rises slowly and falls abruptly.
 
     Parameters
@@ -43,7 +43,7 @@ def abrupt_drop(record: Record, events: Events) -> float:
     >>> t = np.arange(0, 20, 0.01)
     >>> saw = t % 1.0 + 0.1 * np.random.default_rng(0).standard_normal(t.size)
     >>> found = find_events(t, saw, 0.8)
-    >>> drops = found.drop.mean(), abrupt_drop(Record(t, saw, 0.01, True), found)
+    >>> drops = found.drop.mean(), abrupt_drop(EvenRecord(t, saw, 0.01, True), found)
     >>> [round(float(drop), 1) for drop in drops]
     [1.2, 1.0]
     """
@@ -74,7 +74,7 @@ def abrupt_drop(record: Record, events: Events) -> float:
     return float(high - low - slope * fall)
 
 
-def abrupt_rise(record: Record, events: Events) -> float:
+def abrupt_rise(record: EvenRecord, events: Events) -> float:
     """Mean height of a wave that falls slowly and rises abruptly; see `abrupt_drop`.
 
     Parameters
@@ -94,7 +94,7 @@ def abrupt_rise(record: Record, events: Events) -> float:
     return abrupt_drop(turned, find_events(turned.time, turned.values, 0.6 * swing))
 
 
-def smooth_drop(record: Record, events: Events) -> float:
+def smooth_drop(record: EvenRecord, events: Events) -> float:
     """Mean drop, from valley to peak, of a wave that rises and falls smoothly.
 
     Parameters
@@ -121,7 +121,7 @@ def smooth_drop(record: Record, events: Events) -> float:
     >>> t = np.arange(0, 20, 0.01)
     >>> wave = 0.5 * np.sin(6 * t) + 0.1 * np.random.default_rng(0).standard_normal(t.size)
     >>> found = find_events(t, wave, 0.5)
-    >>> drops = found.drop.mean(), smooth_drop(Record(t, wave, 0.01, True), found)
+    >>> drops = found.drop.mean(), smooth_drop(EvenRecord(t, wave, 0.01, True), found)
     >>> [round(float(drop), 1) for drop in drops]
     [1.3, 1.0]
     """

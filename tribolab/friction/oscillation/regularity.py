@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.friction.oscillation.events import Events
-from tribolab.friction.oscillation.spectra import Record
+from tribolab.friction.oscillation.spectra import EvenRecord
 from tribolab.medians import median
 
 KINDS = ("regular", "irregular", "intermittent")
@@ -35,7 +35,7 @@ class Regularity(NamedTuple):
     periods: np.ndarray
 
 
-def regularity(record: Record, events: Events) -> Regularity:
+def regularity(record: EvenRecord, events: Events) -> Regularity:
     """Tell regular, irregular and intermittent oscillations apart.
 
     Parameters
@@ -61,7 +61,7 @@ def regularity(record: Record, events: Events) -> Regularity:
     >>> from tribolab.friction.oscillation.events import find_events
     >>> t = np.arange(0, 60, 0.01)
     >>> saw = np.where((t > 20) & (t < 40), 0.5, t % 1.0)
-    >>> found = regularity(Record(t, saw, 0.01, True), find_events(t, saw, 0.3))
+    >>> found = regularity(EvenRecord(t, saw, 0.01, True), find_events(t, saw, 0.3))
     >>> found.kind, round(found.share, 1)
     ('intermittent', 0.7)
     """
@@ -99,7 +99,7 @@ def scatter(periods: np.ndarray) -> float:
     return float(np.std(periods, ddof=1) / periods.mean()) if periods.size > 1 else np.nan
 
 
-def _still(record: Record, start: float, stop: float, climb: float) -> bool:
+def _still(record: EvenRecord, start: float, stop: float, climb: float) -> bool:
     """Whether friction hardly moves in a stretch in which a stick would climb by so much."""
     part = slice(*np.searchsorted(record.time, [start, stop]))
     values = record.values[part]

@@ -66,7 +66,7 @@ def ringing(kind: np.ndarray, frequency: np.ndarray, speed: np.ndarray) -> np.nd
     return result
 
 
-class Row(NamedTuple):
+class SlipRow(NamedTuple):
     """Numbers of one segment; see `tribolab.friction.oscillation.stick_slip` for each."""
 
     dominant_frequency: float
@@ -131,7 +131,7 @@ def _std(values: np.ndarray) -> float:
     return float(values.std(ddof=1)) if values.size > 1 else np.nan
 
 
-def _row(e: Examined, speed: float, load: float) -> Row:
+def _row(e: Examined, speed: float, load: float) -> SlipRow:
     o, w, events = e.oscillation, e.waveform, e.events
     stick, slip = events.peak - events.start, events.stop - events.peak
     period = e.regularity.periods
@@ -140,7 +140,7 @@ def _row(e: Examined, speed: float, load: float) -> Row:
     if speed > 0 and stick.size:
         slope = float(median(events.rise / np.maximum(stick, 1e-300))) / speed
     mains = max(o.mains, key=lambda line: line.amplitude, default=None)
-    return Row(
+    return SlipRow(
         dominant_frequency=frequency,
         dominant_frequency_sem=error,
         dominant_wavelength=speed / frequency,
@@ -191,7 +191,7 @@ def slip_columns(
     examined: list[Examined | str], speed: np.ndarray, loads: np.ndarray
 ) -> dict[str, np.ndarray]:
     """Columns (segment): numbers, and the class and method as text."""
-    nothing = Row(*[np.nan] * len(Row._fields))
+    nothing = SlipRow(*[np.nan] * len(SlipRow._fields))
     rows = [
         nothing if isinstance(e, str) else _row(e, v, n)
         for e, v, n in zip(examined, speed, loads, strict=True)
@@ -204,7 +204,7 @@ def slip_columns(
         else row
         for row, kind in zip(rows, kinds, strict=True)
     ]
-    data = {name: np.array([getattr(row, name) for row in rows], float) for name in Row._fields}
+    data = {name: np.array([getattr(row, name) for row in rows], float) for name in SlipRow._fields}
     data["events"] = np.array([_count(e) for e in examined], int)
     data["waveform"] = np.array(kinds, dtype=object)
     regular = [e.regularity.kind if oscillates(e) else "" for e in examined]

@@ -27,7 +27,7 @@ class Spectrum(NamedTuple):
     method: str
 
 
-class Record(NamedTuple):
+class EvenRecord(NamedTuple):
     """A record as the analysis takes it: moments [s], values, and whether the moments are even."""
 
     time: np.ndarray
@@ -36,7 +36,7 @@ class Record(NamedTuple):
     even: bool
 
 
-def make_record(time: np.ndarray, values: np.ndarray) -> Record:
+def make_record(time: np.ndarray, values: np.ndarray) -> EvenRecord:
     """Leave out what is not a number, and see whether the moments are even.
 
     Examples
@@ -49,7 +49,7 @@ def make_record(time: np.ndarray, values: np.ndarray) -> Record:
         time, values = time[good], values[good]
     n = values.size
     if n < 3:
-        return Record(time, values, np.nan, True)
+        return EvenRecord(time, values, np.nan, True)
     spacing = float(time[-1] - time[0]) / (n - 1)
     # of a long record every so many samples tell: a gap or another rate moves all that follow
     some = max(1, n // BATCH)
@@ -61,7 +61,7 @@ def make_record(time: np.ndarray, values: np.ndarray) -> Record:
             for i in range(0, n - 1, BATCH)
         )
         even = largest < UNEVEN * spacing
-    return Record(time, values, spacing, even)
+    return EvenRecord(time, values, spacing, even)
 
 
 def block_means(values: np.ndarray, size: int) -> np.ndarray:
@@ -72,7 +72,7 @@ def block_means(values: np.ndarray, size: int) -> np.ndarray:
     return np.add.reduceat(values[: count * size], np.arange(0, count * size, size)) / size
 
 
-def coarsened(record: Record, size: int) -> Record:
+def coarsened(record: EvenRecord, size: int) -> EvenRecord:
     """Return the record averaged over blocks of `size` samples."""
     if size <= 1:
         return record
@@ -82,10 +82,10 @@ def coarsened(record: Record, size: int) -> Record:
         time = first + size * record.spacing * np.arange(values.size)
     else:
         time = block_means(record.time, size)
-    return Record(time, values, size * record.spacing, record.even)
+    return EvenRecord(time, values, size * record.spacing, record.even)
 
 
-def spectrum(record: Record) -> Spectrum:
+def spectrum(record: EvenRecord) -> Spectrum:
     """One-sided power spectrum of a record, its straight line removed.
 
     Parameters
@@ -123,7 +123,7 @@ def spectrum(record: Record) -> Spectrum:
     return Spectrum(frequency, power, width, freedom, method + ", Welch")
 
 
-def _transform(record: Record) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _transform(record: EvenRecord) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Spectrum by one transform of the whole record."""
     n = record.values.size
     count = n // 2 + 1
@@ -156,7 +156,9 @@ def line_through(place: np.ndarray, values: np.ndarray) -> np.ndarray:
     return mean + x * ((x @ (values - mean)) / max(float(x @ x), 1e-300))
 
 
-def _averaged(record: Record, window: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _averaged(
+    record: EvenRecord, window: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Spectrum averaged over stretches of `window` samples that do not overlap."""
     count = record.values.size // window
     frequency = np.arange(window // 2 + 1) / (window * record.spacing)
@@ -181,7 +183,7 @@ def _averaged(record: Record, window: int) -> tuple[np.ndarray, np.ndarray, np.n
     else:
         for first in range(0, count * window, window):
             own = slice(first, first + window)
-            stretch = Record(record.time[own], record.values[own], record.spacing, False)
+            stretch = EvenRecord(record.time[own], record.values[own], record.spacing, False)
             f, p, _, _ = _transform(stretch._replace(spacing=_own_spacing(stretch)))
             power += np.interp(frequency, f, p) / count
     width = np.full(frequency.size, frequency[1])
@@ -195,7 +197,7 @@ def _level_and_scale(values: np.ndarray) -> tuple[float, float]:
     return float(some.mean()), spread if spread > 0 else 1.0
 
 
-def _own_spacing(record: Record) -> float:
+def _own_spacing(record: EvenRecord) -> float:
     return float(record.time[-1] - record.time[0]) / (record.time.size - 1)
 
 

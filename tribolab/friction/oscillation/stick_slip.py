@@ -11,7 +11,7 @@ import xarray as xr
 from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import belong, trimmed_slices
 from tribolab.friction.decisions.rejected import REJECTED
-from tribolab.friction.oscillation.examine import Examined, Limits, examine_record
+from tribolab.friction.oscillation.examine import EventLimits, Examined, examine_record
 from tribolab.friction.oscillation.regularity import KINDS
 from tribolab.friction.oscillation.rig_waves import RigMotion, RigWave, motion_of, rig_wave
 from tribolab.friction.oscillation.slip_table import (
@@ -170,7 +170,7 @@ def stick_slip(
     ('sawtooth stick-slip', 10.0)
     """
     belong(run, segments)
-    limits = Limits(hysteresis, noise_levels, fewest_samples)
+    limits = EventLimits(hysteresis, noise_levels, fewest_samples)
     speed = segments["sliding_speed"].values.astype(float)
     force = "friction_force" in run and "normal_force" not in run
     motion = motion_of(run)

@@ -9,7 +9,7 @@ from scipy import special
 
 from tribolab.friction.oscillation.background import false_alarm, red_noise
 from tribolab.friction.oscillation.mains import Mains, find_mains
-from tribolab.friction.oscillation.spectra import Record, Spectrum, bands, spectrum
+from tribolab.friction.oscillation.spectra import EvenRecord, Spectrum, bands, spectrum
 from tribolab.medians import median
 
 PER_DECADE = 24  # bands of the spectrum: a tenth wide, as stick-slip lines are
@@ -75,7 +75,7 @@ class Survey(NamedTuple):
         return _seen(fine, self.duration, self.mains, self.background)
 
 
-def survey(record: Record) -> Survey | None:
+def survey(record: EvenRecord) -> Survey | None:
     """Take the spectrum of a record and fit its noise; None if it is too short.
 
     Parameters

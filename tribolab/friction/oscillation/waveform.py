@@ -18,7 +18,7 @@ from tribolab.friction.oscillation.regularity import scatter
 from tribolab.medians import median
 
 
-class Waveform(NamedTuple):
+class WaveformFeatures(NamedTuple):
     """Features of the form.
 
     Parameters
@@ -44,7 +44,9 @@ class Waveform(NamedTuple):
     events: int
 
 
-def describe_waveform(values: np.ndarray, lag: int, events: Events, period: np.ndarray) -> Waveform:
+def describe_waveform(
+    values: np.ndarray, lag: int, events: Events, period: np.ndarray
+) -> WaveformFeatures:
     """Features of the form of a record.
 
     Parameters
@@ -65,13 +67,13 @@ def describe_waveform(values: np.ndarray, lag: int, events: Events, period: np.n
     spread = float(np.sqrt(np.mean(slope**2))) if slope.size else 0.0
     skewness = float(np.mean((slope / spread) ** 3)) if spread > 0 else np.nan
     if n == 0:
-        return Waveform(np.nan, 1.0, skewness, np.nan, np.nan, 0)
+        return WaveformFeatures(np.nan, 1.0, skewness, np.nan, np.nan, 0)
     longer, shorter = int((rise > fall).sum()), int((rise < fall).sum())
     p_value = 1.0
     if longer + shorter:  # the exact sign test, from both sides
         tail = float(special.bdtr(min(longer, shorter), longer + shorter, 0.5))
         p_value = min(1.0, 2 * tail)
-    return Waveform(
+    return WaveformFeatures(
         fall_share=float(median(fall / (rise + fall))),
         asymmetry_p_value=p_value,
         derivative_skewness=skewness,
@@ -123,7 +125,7 @@ COEFFICIENTS = {
 }
 
 
-def features(form: Waveform, oscillation: Oscillation) -> dict[str, float]:
+def features(form: WaveformFeatures, oscillation: Oscillation) -> dict[str, float]:
     """Features of the class, each within its `LIMITS`."""
     raw = {
         "prominence": np.log10(max(oscillation.prominence, 1e-9)),

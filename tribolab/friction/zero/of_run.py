@@ -10,7 +10,7 @@ import xarray as xr
 
 from tribolab.friction.zero.offsets import pair_strokes
 from tribolab.friction.zero.part_folded import of_parts
-from tribolab.friction.zero.parts import Known, Reference, Strokes
+from tribolab.friction.zero.parts import KnownOfZero, StrokeMeans, ZeroReference
 from tribolab.friction.zero.rectified import SIGNED, Fold, ForceTrace, Pressed, folded
 from tribolab.friction.zero.reference import find_reference
 from tribolab.friction.zero.rests import UNLOADED, Zeros
@@ -71,7 +71,7 @@ def zero_of_run(
     middle: np.ndarray,
     rests: Zeros | None,
     settings: Settings,
-) -> tuple[Reference, Signs, np.ndarray]:
+) -> tuple[ZeroReference, Signs, np.ndarray]:
     """Decide what the zero of the friction signal rests on.
 
     Parameters
@@ -109,7 +109,7 @@ def zero_of_run(
         rests = None  # they read the size of the zero
     pair = _pairs(segments, settings, rests, stated)
     unit = quantity(name).unit
-    strokes = Strokes(
+    strokes = StrokeMeans(
         mean=unfold * mean,
         error=error,
         load=load,
@@ -121,7 +121,7 @@ def zero_of_run(
         unit="" if unit == "1" else f" {unit}",
     )
     others = tuple(settings.other_zeros)
-    known = Known(rests, stated, others, settings.pair_tolerance, *_read(run, name))
+    known = KnownOfZero(rests, stated, others, settings.pair_tolerance, *_read(run, name))
     source = str(run.attrs.get("source", "run"))
     reference = find_reference(strokes, known, settings.offset, fold, source)
     if _lost(fold):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribolab.friction.zero.parts import Doubt, Strokes, doubt
+from tribolab.friction.zero.parts import Doubt, StrokeMeans, doubt
 from tribolab.medians import median
 
 _CLEAR = 5.0  # standard errors beyond which a level has a sign
@@ -15,7 +15,7 @@ _ALIKE = 0.5  # of the larger of both levels, the smaller one where the sign was
 _LIKE = 4.0  # times the half loops of the others, or less by as much: the same friction
 
 
-def of_parts(strokes: Strokes) -> tuple[Doubt, ...]:
+def of_parts(strokes: StrokeMeans) -> tuple[Doubt, ...]:
     """Doubt pairs of strokes with one sign both ways, beside others whose sign changes.
 
     Half the difference of such a pair is no friction: of levels mu N and mu N nothing is left.

@@ -12,7 +12,7 @@ from tribolab.friction.zero.rests import Zeros
 
 
 @dataclass(frozen=True)
-class Strokes:
+class StrokeMeans:
     """What a zero is sought from: one entry for each segment.
 
     Parameters
@@ -50,7 +50,7 @@ class Strokes:
 
 
 @dataclass(frozen=True)
-class Known:
+class KnownOfZero:
     """What is known of the zero besides the strokes.
 
     Parameters
@@ -89,7 +89,7 @@ class Doubt(TypedDict):
 
 
 @dataclass(frozen=True)
-class Reference:
+class ZeroReference:
     """The zero of each segment and what it rests on.
 
     Parameters

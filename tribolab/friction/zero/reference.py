@@ -8,7 +8,7 @@ import numpy as np
 
 from tribolab.errors import AnalysisError, Cure
 from tribolab.friction.zero.middles import Middles, error_of_rows, interpolated, middles
-from tribolab.friction.zero.parts import Doubt, Known, Reference, Strokes, doubt
+from tribolab.friction.zero.parts import Doubt, KnownOfZero, StrokeMeans, ZeroReference, doubt
 from tribolab.friction.zero.rectified import Fold
 from tribolab.friction.zero.rests import Zeros
 from tribolab.friction.zero.unequal import across_speeds
@@ -21,7 +21,9 @@ MISSED = 3.0  # standard errors of the same
 _OFFSET_OF_ITSELF = 'say offset = "auto" in [friction]'
 
 
-def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name: str) -> Reference:
+def find_reference(
+    strokes: StrokeMeans, known: KnownOfZero, wanted: str, fold: Fold, name: str
+) -> ZeroReference:
     """Decide what the zero of each segment rests on.
 
     Parameters
@@ -39,7 +41,7 @@ def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name
 
     Returns
     -------
-    Reference
+    ZeroReference
         With "auto": the middles of the loops where strokes pair; rests without load where they
         do not, or where they contradict the middles; else a stated uncertainty of the zero; else
         a zero that was read at one place, which is in doubt; else the zeros of other runs; else
@@ -89,7 +91,7 @@ def find_reference(strokes: Strokes, known: Known, wanted: str, fold: Fold, name
     return replace(result, half_loop=nothing)
 
 
-def _turned(strokes: Strokes, rests: Zeros | None, loops: Middles) -> Middles:
+def _turned(strokes: StrokeMeans, rests: Zeros | None, loops: Middles) -> Middles:
     """Return the middles of the loops of loads turned back by the tilt, if they agree better.
 
     Through a tilt the load reads less one way and more the other, in proportion to friction, and
@@ -110,9 +112,11 @@ def _turned(strokes: Strokes, rests: Zeros | None, loops: Middles) -> Middles:
     return turned if apart[1] < apart[0] else loops
 
 
-def _constant(strokes: Strokes, value: float, error: float, words: str, method: str) -> Reference:
+def _constant(
+    strokes: StrokeMeans, value: float, error: float, words: str, method: str
+) -> ZeroReference:
     size = strokes.size
-    return Reference(
+    return ZeroReference(
         np.full(size, value),
         np.zeros(size),
         lambda own: np.hypot(own, error),
@@ -122,7 +126,7 @@ def _constant(strokes: Strokes, value: float, error: float, words: str, method: 
     )
 
 
-def _from_rests(strokes: Strokes, known: Known, rests: Zeros) -> Reference:
+def _from_rests(strokes: StrokeMeans, known: KnownOfZero, rests: Zeros) -> ZeroReference:
     value, error = rests.at(strokes.time)
     words = "a rest without load"
     if rests.time.size > 1:
@@ -141,7 +145,7 @@ def _from_rests(strokes: Strokes, known: Known, rests: Zeros) -> Reference:
             '(e.g. "0.2 N"), by how much the zero drifts, in the [[run]].'
         )
         doubts = (doubt(text, cure, np.flatnonzero(lonely)),)
-    return Reference(
+    return ZeroReference(
         value,
         rests.slope(strokes.time),
         lambda own: np.hypot(own, error),
@@ -152,7 +156,7 @@ def _from_rests(strokes: Strokes, known: Known, rests: Zeros) -> Reference:
     )
 
 
-def _from_loops(strokes: Strokes, known: Known, loops: Middles) -> Reference:
+def _from_loops(strokes: StrokeMeans, known: KnownOfZero, loops: Middles) -> ZeroReference:
     """Zeros from the middles of the loops; strokes without a partner from rests, if there are."""
     good = np.isfinite(loops.value)
     pair = np.where((strokes.pair >= 0) & good[strokes.pair.clip(0)], strokes.pair, -1)
@@ -181,10 +185,12 @@ def _from_loops(strokes: Strokes, known: Known, loops: Middles) -> Reference:
     words = np.where(by_rest, "rests without load, interpolated in time", own).astype(object)
     doubts = of_speeds(strokes, loops, known, allowance, measured)
     value = np.where(by_rest, at_rest, value)
-    return Reference(value, slope, error, words, half_loop, "half loop", tuple(doubts))
+    return ZeroReference(value, slope, error, words, half_loop, "half loop", tuple(doubts))
 
 
-def _checked(strokes: Strokes, known: Known, loops: Middles, loop: Reference) -> Reference:
+def _checked(
+    strokes: StrokeMeans, known: KnownOfZero, loops: Middles, loop: ZeroReference
+) -> ZeroReference:
     """Compare the middles of the loops with a zero that does not rest on them.
 
     Where the two differ by more than their errors and by more than `ASYMMETRY` of friction,
@@ -240,7 +246,7 @@ def _checked(strokes: Strokes, known: Known, loops: Middles, loop: Reference) ->
     return replace(other, doubts=doubts)
 
 
-def _ambiguous(strokes: Strokes, loops: Middles, loop: Reference) -> Reference:
+def _ambiguous(strokes: StrokeMeans, loops: Middles, loop: ZeroReference) -> ZeroReference:
     """Say that an offset and an asymmetry look the same where no other zero tells them apart."""
     half = (strokes.mean[loops.member] * (0.5, -0.5)).sum(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -260,7 +266,7 @@ def _ambiguous(strokes: Strokes, loops: Middles, loop: Reference) -> Reference:
     return replace(loop, doubts=(*loop.doubts, remark))
 
 
-def _from_outside(strokes: Strokes, known: Known, fold: Fold) -> Reference:
+def _from_outside(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroReference:
     """Zero that the run itself does not tell: stated, from other runs, or nothing."""
     if np.isfinite(known.stated):
         words = f"stated: zero within {known.stated:.3g}{strokes.unit}"

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from tribolab.friction.zero.middles import Middles
-from tribolab.friction.zero.parts import Doubt, Known, Strokes, doubt
+from tribolab.friction.zero.parts import Doubt, KnownOfZero, StrokeMeans, doubt
 from tribolab.friction.zero.rectified import Fold
 
 
 def words_of(
-    strokes: Strokes, loops: Middles, pair: np.ndarray, allowance: np.ndarray, i: int
+    strokes: StrokeMeans, loops: Middles, pair: np.ndarray, allowance: np.ndarray, i: int
 ) -> str:
     """Say what the zero of a segment rests on."""
     number = strokes.number
@@ -40,9 +40,9 @@ def _listed(numbers: np.ndarray) -> str:
 
 
 def of_speeds(
-    strokes: Strokes,
+    strokes: StrokeMeans,
     loops: Middles,
-    known: Known,
+    known: KnownOfZero,
     allowance: np.ndarray,
     measured: bool,
 ) -> list[Doubt]:

@@ -40,7 +40,7 @@ _SHIFTS = 17  # on a grid
 _AGAIN = 13  # of a grid about what the one before found: one to each standard error
 
 
-class Joint(NamedTuple):
+class JointShift(NamedTuple):
     """Shift [s], its standard deviation [s], the mean moment it refers to [s], each model's answer.
 
     `stroke` is the duration of the shortest of the fast strokes [s].
@@ -80,7 +80,7 @@ def told_by_motion(
     shift: float,
     span: float,
     least: float = 0.0,
-) -> Joint | None:
+) -> JointShift | None:
     """Tell the shift by fitting the force by the motion, around a first estimate.
 
     Parameters
@@ -95,7 +95,7 @@ def told_by_motion(
 
     Returns
     -------
-    Joint or None
+    JointShift or None
         None if too few samples lie around the changes of the motion, or nothing is explained.
     """
     period = sampling(force_time, basis, shift)
@@ -106,7 +106,7 @@ def told_by_motion(
     mean, error = mixture(answers)
     least = float(np.hypot(0.5 * period, 0.2 * basis.averaged))
     when = float(basis.time[basis.events].mean())
-    return Joint(mean, float(np.hypot(error, least)), when, basis.stroke, answers)
+    return JointShift(mean, float(np.hypot(error, least)), when, basis.stroke, answers)
 
 
 def sampling(force_time: Array, basis: Basis, shift: float) -> float:

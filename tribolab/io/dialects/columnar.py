@@ -6,13 +6,13 @@ from pathlib import Path
 
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.dialects.model import Dialect
-from tribolab.io.tables.columnar import Columns, Layout, open_columns
+from tribolab.io.tables.columnar import ColumnLayout, NamedColumns, open_columns
 
 
-def layout_of(dialect: Dialect) -> Layout:
+def layout_of(dialect: Dialect) -> ColumnLayout:
     """Return where a dialect says that columns and their names are."""
     header, binary = dialect.header, dialect.binary
-    return Layout(
+    return ColumnLayout(
         sheet=header.sheet,
         line=header.line or 1,
         units_below=header.units == "row",
@@ -22,7 +22,7 @@ def layout_of(dialect: Dialect) -> Layout:
     )
 
 
-def named(table: Columns) -> tuple[list[str], list[str | None]]:
+def named(table: NamedColumns) -> tuple[list[str], list[str | None]]:
     """Return names without units, and the units, of the file or in brackets behind the names."""
     split = [split_name(name) for name in table.names]
     units = [own or unit for (_, unit), own in zip(split, table.units, strict=True)]

@@ -16,7 +16,7 @@ from tribolab.io.dialects.headers import LONGEST_LINE
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.text_columns import GrowingColumns
 from tribolab.io.dialects.text_rows import RowParser
-from tribolab.io.dialects.text_tables import RawText, Table
+from tribolab.io.dialects.text_tables import RawText, TextTable
 
 BLOCK = 4 << 20  # bytes: small, so that memory is used again; but each block costs arrow a thread
 _WORKERS = 2
@@ -50,7 +50,7 @@ class _Work(NamedTuple):
 
 def read_table(
     raw: RawText,
-    table: Table,
+    table: TextTable,
     signals: list[ReadColumn],
     dialect: Dialect,
     hasher: Hasher | None = None,
@@ -103,7 +103,7 @@ def _opened(raw: RawText) -> io.FileIO | io.BytesIO:
 
 def _pump(
     file: io.FileIO | io.BytesIO,
-    table: Table,
+    table: TextTable,
     parser: RowParser,
     columns: GrowingColumns,
     workers: ThreadPoolExecutor,

@@ -11,7 +11,7 @@ from tribolab.io.dialects.columns import ReadColumn
 from tribolab.io.dialects.dates import seconds
 from tribolab.io.dialects.headers import endless
 from tribolab.io.dialects.model import Dialect
-from tribolab.io.dialects.text_tables import RawText, Table
+from tribolab.io.dialects.text_tables import RawText, TextTable
 from tribolab.untyped import Arguments
 
 _ONE_PIECE = 1 << 20  # arrow's own block: its intermediate results stay in the cache
@@ -21,7 +21,7 @@ _NO_VALUE = ["", "nan", "NaN", "NAN", "-nan", "null", "NULL", "N/A", "n/a", "NA"
 class RowParser:
     """Turns blocks of lines into arrow tables, and arrow's complaints into ours."""
 
-    def __init__(self, raw: RawText, table: Table, signals: list[ReadColumn], dialect: Dialect):
+    def __init__(self, raw: RawText, table: TextTable, signals: list[ReadColumn], dialect: Dialect):
         self._raw, self._table, self._signals, self._dialect = raw, table, signals, dialect
         names = [str(index) for index in range(table.width)]
         self._wanted = [names[signal.place] for signal in signals]

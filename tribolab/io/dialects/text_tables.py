@@ -25,7 +25,7 @@ from tribolab.io.dialects.signature import File, peek
 _BLANK = re.compile(rb"(?:[ \t\r\n]*\n)?")
 
 
-class Table(NamedTuple):
+class TextTable(NamedTuple):
     """One table of a text file: offsets of its first byte and of the byte after its last."""
 
     names: tuple[str, ...]
@@ -42,7 +42,7 @@ class RawText(NamedTuple):
 
     file: File
     memory: bytes | None
-    tables: tuple[Table, ...]
+    tables: tuple[TextTable, ...]
 
     @property
     def preamble(self) -> str:
@@ -80,12 +80,12 @@ def find_tables(path: str | Path | File, dialect: Dialect, *, head_only: bool = 
         raise ReadError(f"{file.path}: the file cannot be read any more: {error}") from error
 
 
-def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -> list[Table]:
+def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -> list[TextTable]:
     """Tables in `content`, the start of (or the whole of) a file of `size` bytes."""
     header, text = dialect.header, dialect.text
     starts = header_starts(file, content, dialect)
     end = compiled(text.end, dialect) if text.end else None
-    tables: list[Table] = []
+    tables: list[TextTable] = []
     origin = 3 if content[:3] == BOM else 0
     line, counted = 1, 0
     for number, start in enumerate(starts):
@@ -102,7 +102,7 @@ def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -
             before = ""
         line, counted = line + content[counted:body].count(b"\n"), body
         if body < stop:
-            tables.append(Table(names, units, width, body, stop, line, before))
+            tables.append(TextTable(names, units, width, body, stop, line, before))
         origin = min(stop, len(content))
     if not tables:
         raise ReadError(f"{file.path}: the file has a header, but no row of numbers below it")

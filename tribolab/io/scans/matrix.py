@@ -15,7 +15,7 @@ import xarray as xr
 from tribolab.errors import ReadError
 from tribolab.io.content.read import measurable
 from tribolab.io.scans.formats import NotSaidError
-from tribolab.io.scans.matrix_header import Header, header_of
+from tribolab.io.scans.matrix_header import MatrixHeader, header_of
 
 _HEAD = 1 << 20  # bytes in which a matrix begins
 _CUT = 8  # bytes of a sign at their end
@@ -82,7 +82,7 @@ def read_matrix(path: Path) -> xr.Dataset | None:
         head = file.read(_HEAD)
     if not any(_matrix(text.splitlines()) for text in _texts(head)):
         return None
-    told: tuple[_Matrix, Header] | None = None
+    told: tuple[_Matrix, MatrixHeader] | None = None
     for text in _texts(path.read_bytes()):
         matrix = _matrix(text.splitlines())
         if matrix is None:
@@ -195,7 +195,7 @@ def _even(values: np.ndarray) -> bool:
     return bool(steps.size > 1 and (np.abs(steps - steps[0]) < 1e-3 * abs(steps[0])).all())
 
 
-def _refuse(path: Path, matrix: _Matrix, header: Header) -> None:
+def _refuse(path: Path, matrix: _Matrix, header: MatrixHeader) -> None:
     """Refuse a matrix that is not whole, or of which too little is said."""
     rows, columns = len(matrix.rows), matrix.columns
     lacking = [

@@ -65,7 +65,7 @@ _COUNT = re.compile(
 )
 
 
-class Header(NamedTuple):
+class MatrixHeader(NamedTuple):
     """What stands above a matrix: pitch along x and y [m], unit of heights [m], rows and columns.
 
     None is what it does not say, or says in two ways.
@@ -86,7 +86,7 @@ class _Said(NamedTuple):
     units: tuple[str, ...]
 
 
-def header_of(lines: Iterable[str], shape: tuple[int, int], mark: str) -> Header:
+def header_of(lines: Iterable[str], shape: tuple[int, int], mark: str) -> MatrixHeader:
     """Understand the lines above a matrix.
 
     Parameters
@@ -111,7 +111,7 @@ def header_of(lines: Iterable[str], shape: tuple[int, int], mark: str) -> Header
     dx, dy = (first or second for first, second in zip(pitch, extent, strict=True))
     rows, columns = _counts(said)
     scaled = any(_FACTOR.search(part.key) and part.numbers[0] != 1.0 for part in said)
-    return Header(dx, dy, None if scaled else _height_unit(texts), rows, columns)
+    return MatrixHeader(dx, dy, None if scaled else _height_unit(texts), rows, columns)
 
 
 def _said(text: str, mark: str) -> _Said | None:

@@ -14,7 +14,7 @@ from tribolab.errors import ReadError, shown
 _MOST_CELLS = 50_000_000  # of a sheet
 
 
-class Layout(NamedTuple):
+class ColumnLayout(NamedTuple):
     """Where columns and their names are: of a sheet, or records behind a header of some bytes."""
 
     sheet: str | None = None
@@ -25,7 +25,7 @@ class Layout(NamedTuple):
     offset: int = 0
 
 
-class Columns(NamedTuple):
+class NamedColumns(NamedTuple):
     """Names of columns, their units where the file says them, and what gives their numbers."""
 
     names: list[str]
@@ -33,7 +33,7 @@ class Columns(NamedTuple):
     column: Callable[[int], np.ndarray]
 
 
-def open_columns(path: Path, form: str, layout: Layout) -> Columns:
+def open_columns(path: Path, form: str, layout: ColumnLayout) -> NamedColumns:
     """Open a file of columns.
 
     Parameters
@@ -66,7 +66,7 @@ def seconds_of(values: np.ndarray) -> np.ndarray:
     return np.where(known, since.astype(np.int64) / 1e9, np.nan)
 
 
-def _of_arrow(table: object) -> Columns:
+def _of_arrow(table: object) -> NamedColumns:
     # late: pyarrow takes long to load
     import pyarrow as pa
 
@@ -77,24 +77,24 @@ def _of_arrow(table: object) -> Columns:
         values: np.ndarray = table.column(place).to_numpy()
         return values
 
-    return Columns(names, [None] * len(names), column)
+    return NamedColumns(names, [None] * len(names), column)
 
 
-def _parquet(path: Path, layout: Layout) -> Columns:
+def _parquet(path: Path, layout: ColumnLayout) -> NamedColumns:
     # late: pyarrow takes long to load
     import pyarrow.parquet as pq
 
     return _of_arrow(pq.read_table(path))
 
 
-def _feather(path: Path, layout: Layout) -> Columns:
+def _feather(path: Path, layout: ColumnLayout) -> NamedColumns:
     # late: pyarrow takes long to load
     from pyarrow import feather
 
     return _of_arrow(feather.read_table(path))
 
 
-def _hdf5(path: Path, layout: Layout) -> Columns:
+def _hdf5(path: Path, layout: ColumnLayout) -> NamedColumns:
     # late: h5py takes long to load
     import h5py
 
@@ -129,7 +129,7 @@ def _hdf5(path: Path, layout: Layout) -> Columns:
                 take(name, item[()], item.attrs.get("units", item.attrs.get("unit")))
 
         file.visititems(visit)
-    return Columns(names, units, arrays.__getitem__)
+    return NamedColumns(names, units, arrays.__getitem__)
 
 
 def _labels_of_matrix(item: object) -> list[str]:
@@ -147,7 +147,7 @@ def _labels_of_matrix(item: object) -> list[str]:
     return []
 
 
-def _excel(path: Path, layout: Layout) -> Columns:
+def _excel(path: Path, layout: ColumnLayout) -> NamedColumns:
     # late: python_calamine takes long to load
     from python_calamine import CalamineWorkbook
 
@@ -178,7 +178,7 @@ def _excel(path: Path, layout: Layout) -> Columns:
         filled = [n for n, cell in enumerate(cells) if cell != ""]
         return _of_cells(path, cells[: filled[-1] + 1 if filled else 0])
 
-    return Columns(names, units[: len(names)], column)
+    return NamedColumns(names, units[: len(names)], column)
 
 
 def _of_cells(path: Path, cells: Sequence[object]) -> np.ndarray:
@@ -210,7 +210,7 @@ def _cell(path: Path, cell: object) -> float:
         raise ReadError(f"'{shown(text, 40)}' is not a number", where=path) from error
 
 
-def _binary(path: Path, layout: Layout) -> Columns:
+def _binary(path: Path, layout: ColumnLayout) -> NamedColumns:
     record, offset = layout.record, layout.offset
     assert record is not None  # a dialect of this format has one
     size = path.stat().st_size - offset
@@ -222,10 +222,10 @@ def _binary(path: Path, layout: Layout) -> Columns:
     count = size // record.itemsize
     rows = np.memmap(path, dtype=record, mode="r", offset=offset, shape=count)
     names = list(record.names or ())
-    return Columns(names, [None] * len(names), lambda place: np.array(rows[names[place]]))
+    return NamedColumns(names, [None] * len(names), lambda place: np.array(rows[names[place]]))
 
 
-_READERS: dict[str, Callable[[Path, Layout], Columns]] = {
+_READERS: dict[str, Callable[[Path, ColumnLayout], NamedColumns]] = {
     "parquet": _parquet,
     "feather": _feather,
     "hdf5": _hdf5,

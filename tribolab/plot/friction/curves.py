@@ -33,7 +33,7 @@ _SAID = {
     "normal_force": "normal_force_N",
     "nominal_normal_force": "normal_force_N",
 }
-Curves = xr.Dataset | Sequence[xr.Dataset] | None
+MeasuredCurves = xr.Dataset | Sequence[xr.Dataset] | None
 
 
 class _Look(NamedTuple):
@@ -45,8 +45,8 @@ class _Look(NamedTuple):
 
 
 def stribeck(
-    measured: Curves = None,
-    model: Curves = None,
+    measured: MeasuredCurves = None,
+    model: MeasuredCurves = None,
     *,
     surfaces: Sequence[str] = (),
     title: str = "",
@@ -122,7 +122,7 @@ def stribeck(
     return figure
 
 
-def _listed(curves: Curves) -> list[xr.Dataset]:
+def _listed(curves: MeasuredCurves) -> list[xr.Dataset]:
     if curves is None:
         return []
     given = [curves] if isinstance(curves, xr.Dataset) else list(curves)

@@ -20,7 +20,7 @@ from tribolab.plot.look.style import (
 )
 
 # Datasets by the surface's name, or one with the dim ``surface``.
-Surfaces = Mapping[str, xr.Dataset] | xr.Dataset
+SurfaceOrSeveral = Mapping[str, xr.Dataset] | xr.Dataset
 
 
 def logarithmic(axes: Axes, *names: str, small: bool = True) -> None:
@@ -76,7 +76,7 @@ def colours(surfaces: Sequence[str], every: Sequence[str] = ()) -> dict[str, str
     return {name: styles[name].colour for name in surfaces}
 
 
-def by_surface(data: Surfaces) -> dict[str, xr.Dataset]:
+def by_surface(data: SurfaceOrSeveral) -> dict[str, xr.Dataset]:
     """Return datasets by the surface's name, also from one that has a dim ``surface``.
 
     Where surfaces stand on different wavenumbers, each gets back its own.

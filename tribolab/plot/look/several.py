@@ -10,11 +10,11 @@ import xarray as xr
 from tribolab.errors import AnalysisError, shown
 
 Label = str | float
-Results = Mapping[str, xr.Dataset] | xr.Dataset | Sequence[xr.Dataset]
+OneOrSeveral = Mapping[str, xr.Dataset] | xr.Dataset | Sequence[xr.Dataset]
 
 
 def by_label(
-    results: Results, labels: Mapping[str, Sequence[Label]], known: str
+    results: OneOrSeveral, labels: Mapping[str, Sequence[Label]], known: str
 ) -> dict[str, xr.Dataset]:
     """Return results by their labels.
 

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from tribolab.plot.look.frame import (
-    Surfaces,
+    SurfaceOrSeveral,
     by_surface,
     colours,
     logarithmic,
@@ -298,7 +298,7 @@ def _above_zero(value: np.ndarray, bars: np.ndarray) -> np.ndarray:
 
 
 def friction_factor_effect(
-    curves: Surfaces,
+    curves: SurfaceOrSeveral,
     *,
     scale: Literal["log", "linear"] = "log",
     surfaces: Sequence[str] = (),
@@ -352,7 +352,7 @@ def friction_factor_effect(
 
 
 def shear_stress_over_speed(
-    curves: Surfaces,
+    curves: SurfaceOrSeveral,
     *,
     surfaces: Sequence[str] = (),
     title: str = "",

@@ -18,7 +18,7 @@ from tribolab.friction.oscillation.waveform import CLASSES, UNDECIDED
 from tribolab.plot.look.frame import colours, logarithmic
 from tribolab.plot.look.labels import plain
 from tribolab.plot.look.panel import Panels, name_all, several_panels
-from tribolab.plot.look.several import Label, Results, by_label, parts
+from tribolab.plot.look.several import Label, OneOrSeveral, by_label, parts
 from tribolab.plot.look.style import (
     BLACK,
     DOUBLE_MM,
@@ -209,7 +209,7 @@ def _distance(trace: Trace) -> tuple[np.ndarray, np.ndarray]:
 
 
 def slip_events(
-    slips: Results,
+    slips: OneOrSeveral,
     surfaces: Sequence[str] = (),
     *,
     axes: Panels | None = None,

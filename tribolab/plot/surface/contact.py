@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.typing import LineStyleType
 
 from tribolab.plot.look.frame import (
-    Surfaces,
+    SurfaceOrSeveral,
     by_surface,
     colours,
     logarithmic,
@@ -30,7 +30,7 @@ _DRY_STYLES: tuple[LineStyleType, ...] = ("--", (0, (2, 1)))
 
 
 def contact_area(
-    contacts: Surfaces,
+    contacts: SurfaceOrSeveral,
     loads: xr.Dataset | None = None,
     *,
     surfaces: Sequence[str] = (),
@@ -90,8 +90,8 @@ def contact_area(
 
 
 def adhesive_area(
-    contacts: Surfaces,
-    adhesions: Surfaces,
+    contacts: SurfaceOrSeveral,
+    adhesions: SurfaceOrSeveral,
     loads: xr.Dataset | None = None,
     *,
     surfaces: Sequence[str] = (),
@@ -161,7 +161,7 @@ def adhesive_area(
 
 
 def effective_work(
-    adhesions: Surfaces,
+    adhesions: SurfaceOrSeveral,
     *,
     relative_to: Mapping[str, float] | None = None,
     surfaces: Sequence[str] = (),
@@ -222,7 +222,7 @@ def effective_work(
 
 
 def gaps(
-    distributions: Surfaces,
+    distributions: SurfaceOrSeveral,
     *,
     surfaces: Sequence[str] = (),
     title: str = "",
@@ -269,7 +269,7 @@ def gaps(
 
 
 def line_pressure(
-    lines: Surfaces,
+    lines: SurfaceOrSeveral,
     hertz: tuple[np.ndarray, np.ndarray] | None = None,
     *,
     surfaces: Sequence[str] = (),
@@ -320,7 +320,7 @@ def line_pressure(
     return figure
 
 
-def _media(adhesions: Surfaces) -> dict[str, LineStyleType]:
+def _media(adhesions: SurfaceOrSeveral) -> dict[str, LineStyleType]:
     """Give every medium a line style: dashed where it is dry."""
     names = dict.fromkeys(m for data in adhesions.values() for m in data.medium.values.tolist())
     dry = [name for name in names if is_dry(name)]
@@ -352,7 +352,11 @@ def _area_axes(axes: Axes) -> None:
 
 
 def contact_separation(
-    separations: Surfaces, *, surfaces: Sequence[str] = (), title: str = "", ax: Axes | None = None
+    separations: SurfaceOrSeveral,
+    *,
+    surfaces: Sequence[str] = (),
+    title: str = "",
+    ax: Axes | None = None,
 ) -> Figure:
     """Draw the contact pressure over the mean separation in units of the roughness.
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
 from tribolab.plot.look.frame import (
-    Surfaces,
+    SurfaceOrSeveral,
     by_surface,
     colours,
     logarithmic,
@@ -27,7 +27,7 @@ _MEASURED = 0
 
 
 def spectra(
-    psds: Surfaces, *, surfaces: Sequence[str] = (), title: str = "", ax: Axes | None = None
+    psds: SurfaceOrSeveral, *, surfaces: Sequence[str] = (), title: str = "", ax: Axes | None = None
 ) -> Figure:
     """Draw two-dimensional power spectra with their bands, measured and extrapolated parts apart.
 
@@ -152,7 +152,11 @@ def modulus(table: xr.Dataset, *, title: str = "", ax: Axes | None = None) -> Fi
 
 
 def viscoelastic(
-    frictions: Surfaces, *, surfaces: Sequence[str] = (), title: str = "", ax: Axes | None = None
+    frictions: SurfaceOrSeveral,
+    *,
+    surfaces: Sequence[str] = (),
+    title: str = "",
+    ax: Axes | None = None,
 ) -> Figure:
     """Draw the viscoelastic friction coefficient over the sliding speed.
 

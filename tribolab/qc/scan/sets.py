@@ -15,13 +15,13 @@ from tribolab.qc.scan.checks import SCAN_CHECKS, check_scans
 from tribolab.qc.scan.instrument import not_computed
 
 _REPEATS = "repeats"
-Limits = Mapping[str, Mapping[str, str | float]]
+CheckLimits = Mapping[str, Mapping[str, str | float]]
 
 
 def check_scan_set(
     scans: Sequence[xr.Dataset],
     *,
-    limits: Limits | None = None,
+    limits: CheckLimits | None = None,
     skip: Sequence[str] = (),
     results: Sequence[Sequence[xr.Dataset]] | None = None,
 ) -> list[Findings]:
@@ -102,7 +102,7 @@ def _shape(scan: xr.Dataset) -> tuple[Any, ...]:
 
 
 def _repeats(
-    scans: list[xr.Dataset], numbers: list[int], limits: Limits | None, skip: Sequence[str]
+    scans: list[xr.Dataset], numbers: list[int], limits: CheckLimits | None, skip: Sequence[str]
 ) -> dict[int, Result]:
     """Judge scans of one shape against each other."""
     rows = [np.asarray(scan.height.transpose(..., "x").values, dtype=float) for scan in scans]

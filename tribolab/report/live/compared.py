@@ -10,12 +10,12 @@ from tribolab.records.wording import with_error
 from tribolab.report.live.curves import (
     FRICTION,
     SPEED,
-    Friction,
+    FrictionOverSpeed,
     labels_of,
     system_name,
     systems,
 )
-from tribolab.report.live.figure import Axis, Labels, LiveFigure, Panel, Series, places
+from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, SeriesLabels, places
 from tribolab.report.live.points import RunPoint, of_curve
 from tribolab.report.plain import plain_speed
 from tribolab.words import force_text, load_text, many, number, span
@@ -24,7 +24,7 @@ _SHARE = Axis("µ over its highest value")
 _HALF = 0.5
 
 
-def comparisons(known: Friction) -> list[LiveFigure]:
+def comparisons(known: FrictionOverSpeed) -> list[LiveFigure]:
     """Return all curves relative to their highest friction, and all single runs of repeats.
 
     What a curve itself is stands in its card and is not repeated.
@@ -38,7 +38,7 @@ def _load(curve: CurveRecord) -> str:
     return load_text(None, curve.outcome.load_from) if force is None else force_text(force)
 
 
-def _falling(known: Friction, colours: Mapping[str, int]) -> list[LiveFigure]:
+def _falling(known: FrictionOverSpeed, colours: Mapping[str, int]) -> list[LiveFigure]:
     """Return at which speed each curve leaves its highest friction; of one alone nothing."""
     alone = len(systems(known)) == 1  # then loads are compared, and have the colours
     loads = places(map(_load, known.curves))
@@ -99,7 +99,7 @@ def _shares(curve: CurveRecord, label: str, colour: int) -> Series | None:
     )
 
 
-def _every_run(known: Friction, colours: Mapping[str, int]) -> LiveFigure:
+def _every_run(known: FrictionOverSpeed, colours: Mapping[str, int]) -> LiveFigure:
     """Return all runs of the curves that have repeats; of the others the curve is the run."""
     series: list[Series] = []
     for curve in known.curves:
@@ -133,7 +133,9 @@ def _every_run(known: Friction, colours: Mapping[str, int]) -> LiveFigure:
     )
 
 
-def _run(name: str, points: Sequence[RunPoint], label: str, colour: int, labels: Labels) -> Series:
+def _run(
+    name: str, points: Sequence[RunPoint], label: str, colour: int, labels: SeriesLabels
+) -> Series:
     return Series(
         label,
         [point.speed for point in points],

@@ -11,7 +11,7 @@ from tribolab.records.parts import CurveOutcome, number_of
 from tribolab.records.wording import with_error
 from tribolab.report.document.models import ModelRow
 from tribolab.report.live.axes import comparable
-from tribolab.report.live.figure import Axis, Labels, LiveFigure, Panel, Series, Style, safe
+from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, SeriesLabels, Style, safe
 from tribolab.report.live.points import RunPoint, at_speed, of_curve, point_error, told_point
 from tribolab.report.live.record import Band, Missed
 from tribolab.report.plain import listed, plain_speed
@@ -27,7 +27,7 @@ FRICTION = Axis("friction coefficient µ", log=True)
 
 
 @dataclass(frozen=True)
-class Friction:
+class FrictionOverSpeed:
     """All that is known of friction over speed.
 
     Parameters
@@ -52,7 +52,7 @@ class Friction:
     surfaces: Sequence[str]
 
 
-def systems(known: Friction) -> dict[tuple[str, str], list[CurveRecord]]:
+def systems(known: FrictionOverSpeed) -> dict[tuple[str, str], list[CurveRecord]]:
     """Return the measured curves of each surface and medium, the lowest load first."""
     by_system: dict[tuple[str, str], list[CurveRecord]] = {}
     for curve in known.curves:
@@ -67,7 +67,7 @@ def system_name(surface: str, medium: str, runs: Sequence[str] = ()) -> str:
     return ", ".join(filter(None, (surface, medium))) or listed(list(runs)[:3]) or "runs"
 
 
-def card_figures(known: Friction) -> list[LiveFigure]:
+def card_figures(known: FrictionOverSpeed) -> list[LiveFigure]:
     """Return one figure for each surface and medium: measured, and the model with its band.
 
     Those of one medium have the same axes, so that surfaces are compared at a glance.
@@ -84,7 +84,7 @@ def card_figures(known: Friction) -> list[LiveFigure]:
 
 
 def _card(
-    known: Friction, place: int, surface: str, medium: str, curves: Sequence[CurveRecord]
+    known: FrictionOverSpeed, place: int, surface: str, medium: str, curves: Sequence[CurveRecord]
 ) -> LiveFigure:
     series: list[Series] = []
     for number_, curve in enumerate(curves):
@@ -121,7 +121,7 @@ def curve_label(curve: CurveOutcome, curves: Sequence[CurveRecord]) -> str:
     return f"measured, {load_text(curve.normal_force, curve.load_from)}"
 
 
-def labels_of(curve: CurveOutcome) -> Labels:
+def labels_of(curve: CurveOutcome) -> SeriesLabels:
     """Return what all series of a curve are of."""
     return {
         "surface": curve.surface,
@@ -132,7 +132,7 @@ def labels_of(curve: CurveOutcome) -> Labels:
     }
 
 
-def _measured(known: Friction, curve: CurveRecord, colour: int, label: str) -> Series:
+def _measured(known: FrictionOverSpeed, curve: CurveRecord, colour: int, label: str) -> Series:
     outcome = curve.outcome
     of_runs = (p for name in outcome.run_names for p in known.points.get(name, ()))
     every = of_curve(of_runs, outcome.normal_force)
@@ -197,7 +197,7 @@ def _within(rows: Sequence[Row], curve: CurveRecord) -> list[Row]:
 
 
 def _modelled(
-    known: Friction, model: ModelRow, curve: CurveRecord, colour: int, label: str
+    known: FrictionOverSpeed, model: ModelRow, curve: CurveRecord, colour: int, label: str
 ) -> list[Series]:
     labels = labels_of(curve.outcome)
     rows = _within(model.curve, curve)
@@ -233,7 +233,7 @@ _PARTS: tuple[tuple[str, str, Style, int], ...] = (
 )
 
 
-def model_figures(known: Friction) -> list[LiveFigure]:
+def model_figures(known: FrictionOverSpeed) -> list[LiveFigure]:
     """Return one figure for each surface and medium: the model's parts, and what it misses."""
     figures = []
     for (surface, medium), curves in systems(known).items():
@@ -277,7 +277,7 @@ def _taken_apart(model: ModelRow, curve: CurveRecord, missed: Missed | None) -> 
     return series
 
 
-def _missed(missed: Missed, curve: CurveRecord, labels: Labels) -> Series:
+def _missed(missed: Missed, curve: CurveRecord, labels: SeriesLabels) -> Series:
     words = [
         f"v = {plain_speed(v)}\nmeasured − model = {number(off, 2)}\nmodel: {number(mu)}"
         for v, off, mu in zip(missed.speed, missed.residual, missed.model, strict=True)

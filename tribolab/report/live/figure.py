@@ -91,7 +91,7 @@ class Series:
     open: bool = False
 
 
-class Labels(TypedDict, total=False):
+class SeriesLabels(TypedDict, total=False):
     """What several series are of: fields of `Series`."""
 
     surface: str

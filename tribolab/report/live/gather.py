@@ -15,7 +15,7 @@ from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import Notice
 from tribolab.report.document.models import ModelRow
 from tribolab.report.live.compared import comparisons
-from tribolab.report.live.curves import Friction, card_figures, model_figures
+from tribolab.report.live.curves import FrictionOverSpeed, card_figures, model_figures
 from tribolab.report.live.joint import record_of_joint_fits
 from tribolab.report.live.models import record_of_models
 from tribolab.report.live.points import RunPoint
@@ -72,7 +72,7 @@ def begun_live_figures(
             bands |= record.bands
             missed |= record.missed
         by_curve = {row.model.curve: row for row in models}
-        known = Friction(curves, points, by_curve, bands, missed, surfaces)
+        known = FrictionOverSpeed(curves, points, by_curve, bands, missed, surfaces)
         figures = [*card_figures(known), *comparisons(known), *model_figures(known)]
         return [
             *shown_figures(figures),

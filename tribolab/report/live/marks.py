@@ -9,7 +9,7 @@ import numpy as np
 
 from tribolab.report.live.figure import Series, Style
 
-Point = tuple[float, float]
+PlacedPoint = tuple[float, float]
 _HUES = 8  # of the palette, as in `assets/report.css`
 _DASHES: dict[Style, str] = {"dashed": "6 4", "dotted": "2 3", "dashdot": "6 3 2 3"}
 _SEEN = 0.3  # how far a line may pass from a point of it [px]
@@ -35,7 +35,7 @@ def coordinate(value: float) -> str:
     return f"{value:.1f}".removesuffix(".0")
 
 
-def path(points: Iterable[Point | None]) -> str:
+def path(points: Iterable[PlacedPoint | None]) -> str:
     """Return a line through points, broken where there is none.
 
     Examples
@@ -53,7 +53,7 @@ def path(points: Iterable[Point | None]) -> str:
     return "".join(text)
 
 
-def straightened(points: Sequence[Point | None]) -> Iterator[Point | None]:
+def straightened(points: Sequence[PlacedPoint | None]) -> Iterator[PlacedPoint | None]:
     """Give a line without the points that nobody would miss.
 
     Examples
@@ -61,7 +61,7 @@ def straightened(points: Sequence[Point | None]) -> Iterator[Point | None]:
     >>> list(straightened([(0, 0), (1, 1), (2, 2.1), (3, 0), None, (5, 5)]))
     [(0, 0), (2, 2.1), (3, 0), None, (5, 5), None]
     """
-    part: list[Point] = []
+    part: list[PlacedPoint] = []
     for point in [*points, None]:
         if point is not None:
             part.append(point)
@@ -71,7 +71,7 @@ def straightened(points: Sequence[Point | None]) -> Iterator[Point | None]:
             part = []
 
 
-def _straight(part: Sequence[Point]) -> Iterator[Point]:
+def _straight(part: Sequence[PlacedPoint]) -> Iterator[PlacedPoint]:
     """Give the points of one piece after Ramer, Douglas and Peucker."""
     x, y = np.array(part, float).T
     kept = {0, len(part) - 1}
@@ -89,7 +89,7 @@ def _straight(part: Sequence[Point]) -> Iterator[Point]:
     yield from (part[k] for k in sorted(kept))
 
 
-def markers(points: Sequence[Point], colour: int, size: float) -> str:
+def markers(points: Sequence[PlacedPoint], colour: int, size: float) -> str:
     """Return the outline of a marker at each point; its shape goes with the colour."""
     corners, turn = _CORNERS[colour % _HUES]
     return "".join(_marker(x, y, size, corners, turn) for x, y in points)
@@ -115,7 +115,7 @@ def error_bars(bars: Iterable[tuple[float, float, float]], cap: float) -> str:
     return "".join(parts)
 
 
-def drawn_points(points: Sequence[Point], series: Series, bars: str) -> Iterator[str]:
+def drawn_points(points: Sequence[PlacedPoint], series: Series, bars: str) -> Iterator[str]:
     """Give the markers of a series, and its error bars before them."""
     if bars:
         yield f'<path class="{hue(series.colour)} bar" d="{bars}"/>'
@@ -123,23 +123,25 @@ def drawn_points(points: Sequence[Point], series: Series, bars: str) -> Iterator
     yield f'<path class="{hue(series.colour)} {kind}" d="{markers(points, series.colour, 3.6)}"/>'
 
 
-def drawn_line(points: Sequence[Point | None], series: Series) -> Iterator[str]:
+def drawn_line(points: Sequence[PlacedPoint | None], series: Series) -> Iterator[str]:
     """Give the line of a series."""
     dash = _DASHES.get(series.style)
     dashed = f' stroke-dasharray="{dash}"' if dash else ""
     yield f'<path class="{hue(series.colour)} line"{dashed} d="{path(straightened(points))}"/>'
 
 
-def drawn_band(low: Sequence[Point], high: Sequence[Point], series: Series) -> Iterator[str]:
+def drawn_band(
+    low: Sequence[PlacedPoint], high: Sequence[PlacedPoint], series: Series
+) -> Iterator[str]:
     """Give the area between two lines."""
     if low and high:
         around = straightened([*low, *reversed(high)])
         yield f'<path class="{hue(series.colour)} band" d="{path(around)}z"/>'
 
 
-def drawn_heat(points: Sequence[tuple[Point, float]]) -> Iterator[str]:
+def drawn_heat(points: Sequence[tuple[PlacedPoint, float]]) -> Iterator[str]:
     """Give dots whose colour is a level, equal ones together."""
-    by_level: dict[int, list[Point]] = {}
+    by_level: dict[int, list[PlacedPoint]] = {}
     for point, value in points:
         share = (value - _LOW) / (_HIGH - _LOW)
         by_level.setdefault(min(max(int(share * _LEVELS), 0), _LEVELS - 1), []).append(point)

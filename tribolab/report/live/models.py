@@ -16,10 +16,10 @@ from tribolab.report.document.models import ModelRow
 from tribolab.report.live.curves import system_name
 from tribolab.report.live.figure import (
     Axis,
-    Labels,
     LiveFigure,
     Panel,
     Series,
+    SeriesLabels,
     Style,
     places,
     safe,
@@ -54,7 +54,7 @@ def record_of_models(
     """
     bands, missed = _of_curves(models, folder)
     colours = places([*surfaces, *(row.model.surface for row in models)])
-    drawn = [shear_stress(models, colours), sensitivity(models, colours)]
+    drawn = [shear_stress_figure(models, colours), sensitivity(models, colours)]
     drawn += _profiles(models, folder)
     drawn.append(_factors(models, folder, colours))
     return LiveRecord(shown_figures(drawn), bands, missed)
@@ -84,12 +84,12 @@ def _read(row: ModelRow, folder: Path, group: str) -> xr.Dataset:
     return read_data(folder / row.model.data_file, group=group)
 
 
-def _labels(row: ModelRow) -> Labels:
+def _labels(row: ModelRow) -> SeriesLabels:
     model = row.model
     return {"surface": model.surface, "medium": model.medium, "load": model.normal_force}
 
 
-def shear_stress(models: Sequence[ModelRow], colours: Mapping[str, int]) -> LiveFigure:
+def shear_stress_figure(models: Sequence[ModelRow], colours: Mapping[str, int]) -> LiveFigure:
     """Return the fitted shear stresses over the load."""
     series = []
     for (surface, medium), rows in _by_system(models).items():

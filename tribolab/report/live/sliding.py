@@ -15,10 +15,10 @@ from tribolab.records.parts import CurveOutcome
 from tribolab.report.live.curves import SPEED, labels_of, system_name
 from tribolab.report.live.figure import (
     Axis,
-    Labels,
     LiveFigure,
     Panel,
     Series,
+    SeriesLabels,
     Style,
     Values,
     places,
@@ -161,7 +161,7 @@ class _Open(NamedTuple):
     """What is opened of one condition: its traces at the slowest speeds, and its stick-slip."""
 
     name: str
-    labels: Labels
+    labels: SeriesLabels
     colour: int
     run: str
     traces: tuple[tuple[float, np.ndarray, np.ndarray], ...]

@@ -17,7 +17,7 @@ from markupsafe import escape
 from tribolab.report.live import marks
 from tribolab.report.live.axes import Scale, scales, ticks
 from tribolab.report.live.figure import Axis, LiveFigure, Series, Width, legend, plain_data, thinned
-from tribolab.report.live.marks import Point, coordinate
+from tribolab.report.live.marks import PlacedPoint, coordinate
 from tribolab.words import MINUS, number
 
 _WIDTHS: dict[Width, int] = {"card": 340, "half": 400, "whole": 680}  # [px], as on paper or so
@@ -41,7 +41,7 @@ class _Box:
     x: Scale
     y: Scale
 
-    def at(self, x: object, y: object) -> Point | None:
+    def at(self, x: object, y: object) -> PlacedPoint | None:
         """Return where a point stands within the box, far outside at most by its own size."""
         across, up = self.x.place(x), self.y.place(y)
         if across is None or up is None:

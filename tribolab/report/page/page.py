@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from tribolab.campaign.store.catalogue import Catalogue
 
 _MOST_ROWS = 100  # of the table of runs; more are packed, and laid out when they are asked for
-Runs = Callable[[], Iterable[Json]]
+RunDocuments = Callable[[], Iterable[Json]]
 
 
 class Detail(NamedTuple):
@@ -40,7 +40,7 @@ class Detail(NamedTuple):
 def write_page(
     document: Mapping[str, Any],
     folder: Path,
-    runs: Runs,
+    runs: RunDocuments,
     store: Catalogue,
     live: Sequence[ShownFigure] = (),
 ) -> Path:
@@ -85,7 +85,7 @@ def prepare_page() -> None:
 def _context(
     document: Mapping[str, Any],
     folder: Path,
-    runs: Runs,
+    runs: RunDocuments,
     store: Catalogue,
     live: Sequence[ShownFigure],
 ) -> Json:

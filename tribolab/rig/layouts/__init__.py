@@ -6,6 +6,6 @@ from tribolab.rig.layouts import (
     makers,  # noqa: F401
     where_speed,  # noqa: F401
 )
-from tribolab.rig.layouts.kinds import KINDS, Kind, WrittenRun, write_kind
+from tribolab.rig.layouts.kinds import KINDS, LayoutKind, WrittenRun, write_kind
 
-__all__ = ["KINDS", "Kind", "WrittenRun", "write_kind"]
+__all__ = ["KINDS", "LayoutKind", "WrittenRun", "write_kind"]

@@ -9,33 +9,33 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from tribolab.rig.layouts.kinds import Kind, add_kind, there_and_back
-from tribolab.rig.layouts.record import Record
+from tribolab.rig.layouts.kinds import LayoutKind, add_kind, there_and_back
+from tribolab.rig.layouts.record import MeasuredRecord
 from tribolab.rig.layouts.tables import Cells, friction_of, normal_of, position_of, time_of
 
 _RECORD = ("<f8", "<f4", "<f4", "<f4")
 _HEAD = b"RIG 7\0".ljust(128, b"\0")
 
 
-def _columns(record: Record) -> list[Cells]:
+def _columns(record: MeasuredRecord) -> list[Cells]:
     return [time_of(record), friction_of(record), normal_of(record), position_of(record)]
 
 
-def _frame(record: Record) -> pd.DataFrame:
+def _frame(record: MeasuredRecord) -> pd.DataFrame:
     return pd.DataFrame({f"{c.name} [{c.unit}]": c.values for c in _columns(record)})
 
 
-def _parquet(record: Record, folder: Path) -> Path:
+def _parquet(record: MeasuredRecord, folder: Path) -> Path:
     _frame(record).to_parquet(folder / "run.parquet")
     return folder / "run.parquet"
 
 
-def _feather(record: Record, folder: Path) -> Path:
+def _feather(record: MeasuredRecord, folder: Path) -> Path:
     _frame(record).to_feather(folder / "run.feather")
     return folder / "run.feather"
 
 
-def _zipped(record: Record, folder: Path) -> Path:
+def _zipped(record: MeasuredRecord, folder: Path) -> Path:
     file, packed = _parquet(record, folder), folder / "run.zip"
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.write(file, file.name)
@@ -43,7 +43,7 @@ def _zipped(record: Record, folder: Path) -> Path:
     return packed
 
 
-def _workbook(record: Record, folder: Path) -> Path:
+def _workbook(record: MeasuredRecord, folder: Path) -> Path:
     path = folder / "run.xlsx"
     with pd.ExcelWriter(path) as book:
         about = {"Operator": ["A. Person"], "Test": ["friction"]}
@@ -52,7 +52,7 @@ def _workbook(record: Record, folder: Path) -> Path:
     return path
 
 
-def _hdf5(record: Record, folder: Path) -> Path:
+def _hdf5(record: MeasuredRecord, folder: Path) -> Path:
     # late: h5py takes long to load
     import h5py
 
@@ -64,7 +64,7 @@ def _hdf5(record: Record, folder: Path) -> Path:
     return path
 
 
-def _tdms(record: Record, folder: Path) -> Path:
+def _tdms(record: MeasuredRecord, folder: Path) -> Path:
     # late: nptdms takes long to load
     from nptdms import ChannelObject, TdmsWriter
 
@@ -76,7 +76,7 @@ def _tdms(record: Record, folder: Path) -> Path:
     return path
 
 
-def _records(record: Record, folder: Path) -> Path:
+def _records(record: MeasuredRecord, folder: Path) -> Path:
     columns = _columns(record)
     kinds = list(zip((c.name.replace(" ", "_") for c in columns), _RECORD, strict=True))
     rows = np.zeros(record.motion.time.size, dtype=kinds)
@@ -127,4 +127,4 @@ for _name, _about, _write, _known in (
     ("zipped", "Parquet in a zip", _zipped, _dialect("parquet")),
     ("records", "records of bytes behind a header", _records, _BINARY),
 ):
-    add_kind(Kind(_name, _about, there_and_back, _write, dialect=_known))
+    add_kind(LayoutKind(_name, _about, there_and_back, _write, dialect=_known))

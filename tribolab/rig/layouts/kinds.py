@@ -9,10 +9,10 @@ from pathlib import Path
 
 from tribolab.errors import AnalysisError, nearest
 from tribolab.rig.laws import DryLaw
-from tribolab.rig.layouts.motion import Leg, Motion, carried_out, crank
-from tribolab.rig.layouts.record import Record, Sensors, recorded
+from tribolab.rig.layouts.motion import Leg, MachineMotion, carried_out, crank
+from tribolab.rig.layouts.record import MeasuredRecord, Sensors, recorded
 
-Writer = Callable[[Record, Path], Path]
+Writer = Callable[[MeasuredRecord, Path], Path]
 _RATE = 50.0  # Hz
 _LAW = DryLaw(0.35, 0.04)
 _UNLOADED = Leg(0.0, 8.0, 0.0)
@@ -20,7 +20,7 @@ _LOADED = Leg(0.0, 4.0)
 
 
 @dataclass(frozen=True)
-class Kind:
+class LayoutKind:
     """One kind of file.
 
     Parameters
@@ -41,7 +41,7 @@ class Kind:
 
     name: str
     about: str
-    run: Callable[[int], Record]
+    run: Callable[[int], MeasuredRecord]
     write: Writer
     typed: tuple[tuple[str, str], ...] = ()
     dialect: str = ""
@@ -52,15 +52,15 @@ class Kind:
 class WrittenRun:
     """A run in a file of some kind, and its truth."""
 
-    kind: Kind
+    kind: LayoutKind
     path: Path
-    record: Record
+    record: MeasuredRecord
 
 
-KINDS: dict[str, Kind] = {}
+KINDS: dict[str, LayoutKind] = {}
 
 
-def add_kind(kind: Kind) -> None:
+def add_kind(kind: LayoutKind) -> None:
     """Add a kind of file to those that are known."""
     KINDS[kind.name] = kind
 
@@ -92,39 +92,39 @@ def write_kind(name: str, folder: str | Path, seed: int = 0) -> WrittenRun:
     return WrittenRun(kind, kind.write(record, folder), record)
 
 
-def on_disc(seed: int) -> Record:
+def on_disc(seed: int) -> MeasuredRecord:
     """Slide one way at three speeds, unloaded before and after."""
     speeds = (0.05, 0.1, 0.2)
     legs = [_UNLOADED, _LOADED, *(Leg(v, 15.0) for v in speeds), _LOADED, _UNLOADED]
     return recorded(carried_out(legs, _RATE), _LAW, 10.0, seed=seed)
 
 
-def there_and_back(seed: int) -> Record:
+def there_and_back(seed: int) -> MeasuredRecord:
     """Stroke both ways at three speeds."""
     return recorded(_strokes(), _LAW, 25.0, seed=seed)
 
 
-def by_crank(seed: int) -> Record:
+def by_crank(seed: int) -> MeasuredRecord:
     """Stroke as a crank does, the load sensor set to zero before."""
     sensors = Sensors(normal_offset=0.0)
     motion = crank(10e-3, 1.0, 30, 200.0)
     return recorded(motion, _LAW, 20.0, seed=seed, sensors=sensors, build_up=5e-5)
 
 
-def pulled(seed: int) -> Record:
+def pulled(seed: int) -> MeasuredRecord:
     """Pull a sled of 200 g once at 100 mm/min, its sensor set to zero before."""
     motion = carried_out([_LOADED, Leg(0.1 / 60, 40.0)], _RATE)
     return recorded(motion, _LAW, 0.2 * 9.80665, seed=seed, sensors=Sensors(offset=0.0))
 
 
-def on_disc_under_load(seed: int) -> Record:
+def on_disc_under_load(seed: int) -> MeasuredRecord:
     """Slide one way at three speeds, never unloaded, its load sensor set to zero before."""
     legs = [_LOADED, *(Leg(v, 15.0) for v in (0.05, 0.1, 0.2)), _LOADED]
     sensors = Sensors(normal_offset=0.0)
     return recorded(carried_out(legs, _RATE), _LAW, 10.0, seed=seed, sensors=sensors)
 
 
-def _strokes() -> Motion:
+def _strokes() -> MachineMotion:
     legs = [_UNLOADED, _LOADED]
     for speed in (0.5e-3, 1e-3, 2e-3):
         legs += [Leg(speed, 10.0), Leg(0.0, 1.0), Leg(-speed, 10.0), Leg(0.0, 1.0)]

@@ -20,7 +20,7 @@ class Leg(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Motion:
+class MachineMotion:
     """Where a machine is and how it is loaded, sample by sample.
 
     Parameters
@@ -46,7 +46,7 @@ class Motion:
     speed: np.ndarray
 
 
-def carried_out(legs: Sequence[Leg], rate: float, ramp: float = 0.1) -> Motion:
+def carried_out(legs: Sequence[Leg], rate: float, ramp: float = 0.1) -> MachineMotion:
     """Carry out legs one after the other.
 
     Parameters
@@ -81,7 +81,7 @@ def carried_out(legs: Sequence[Leg], rate: float, ramp: float = 0.1) -> Motion:
     changes = np.column_stack([start, start + _RELOADING * durations]).ravel()
     shares = np.column_stack([np.concatenate([loads[:1], loads[:-1]]), loads]).ravel()
     slides = (speeds != 0) & (loads > 0)
-    return Motion(
+    return MachineMotion(
         time=time,
         velocity=at_knots[k] + slope[k] * passed,
         acceleration=slope[k],
@@ -94,7 +94,7 @@ def carried_out(legs: Sequence[Leg], rate: float, ramp: float = 0.1) -> Motion:
     )
 
 
-def crank(stroke: float, frequency: float, cycles: int, rate: float) -> Motion:
+def crank(stroke: float, frequency: float, cycles: int, rate: float) -> MachineMotion:
     """Go to and fro as a crank does, from one end of the stroke.
 
     Parameters
@@ -117,7 +117,7 @@ def crank(stroke: float, frequency: float, cycles: int, rate: float) -> Motion:
     time = np.arange(int(cycles / frequency * rate)) / rate
     turned = 2 * np.pi * frequency * time
     pace = np.pi * frequency * stroke
-    return Motion(
+    return MachineMotion(
         time=time,
         velocity=pace * np.sin(turned),
         acceleration=2 * np.pi * frequency * pace * np.cos(turned),

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tribolab.rig.layouts.motion import Motion
+from tribolab.rig.layouts.motion import MachineMotion
 from tribolab.rig.noise import slow_noise
 
 TRIM = 0.1  # of a stretch at either end: what the truth is the mean of
@@ -37,7 +37,7 @@ class Sensors:
 
 
 @dataclass(frozen=True)
-class Record:
+class MeasuredRecord:
     """Signals of a machine on one clock.
 
     Parameters
@@ -56,7 +56,7 @@ class Record:
         Between contact and force sensor [kg].
     """
 
-    motion: Motion
+    motion: MachineMotion
     friction_force: np.ndarray
     normal_force: np.ndarray
     ratio: np.ndarray
@@ -74,7 +74,7 @@ class Record:
 
 
 def recorded(
-    motion: Motion,
+    motion: MachineMotion,
     law: Callable[[np.ndarray], np.ndarray],
     normal_force: float,
     *,
@@ -82,7 +82,7 @@ def recorded(
     sensors: Sensors | None = None,
     moving_mass: float = 0.0,
     build_up: float = 1e-5,
-) -> Record:
+) -> MeasuredRecord:
     """Measure a motion.
 
     Parameters
@@ -128,7 +128,7 @@ def recorded(
         cut = TRIM * (stop - start)
         inside = (time >= start + cut) & (time <= stop - cut)
         means.append(np.abs(ratio[inside].mean()))
-    return Record(
+    return MeasuredRecord(
         motion,
         friction,
         pressed + normal_force * zero,
@@ -140,7 +140,7 @@ def recorded(
     )
 
 
-def _turned(motion: Motion, build_up: float) -> np.ndarray:
+def _turned(motion: MachineMotion, build_up: float) -> np.ndarray:
     """Return how far friction has turned into the direction of sliding, from -1 to 1.
 
     Along a way of one direction it goes there exponentially; the state at its start is what the

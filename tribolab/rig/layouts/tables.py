@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.rig.files import fixed_table
-from tribolab.rig.layouts.record import Record
+from tribolab.rig.layouts.record import MeasuredRecord
 
 
 class Cells(NamedTuple):
@@ -21,7 +21,7 @@ class Cells(NamedTuple):
     decimals: int = 4
 
 
-class Style(NamedTuple):
+class TableStyle(NamedTuple):
     """How a table is written; units stand in "[]", "()", or with "row" in the next line."""
 
     delimiter: str = ","
@@ -30,12 +30,12 @@ class Style(NamedTuple):
     encoding: str = "utf-8"
 
 
-CSV = Style()
-EUROPEAN = Style(";", ",", "[]", "latin-1")
-TABBED = Style("\t", ".", "row")
+CSV = TableStyle()
+EUROPEAN = TableStyle(";", ",", "[]", "latin-1")
+TABBED = TableStyle("\t", ".", "row")
 
 
-def header_of(columns: Sequence[Cells], style: Style) -> str:
+def header_line(columns: Sequence[Cells], style: TableStyle) -> str:
     """Return the line (or two) of names and units."""
     if style.units == "row":
         rows = [[c.name for c in columns], [c.unit for c in columns]]
@@ -45,42 +45,42 @@ def header_of(columns: Sequence[Cells], style: Style) -> str:
     return style.delimiter.join(named) + "\n"
 
 
-def written_rows(columns: Sequence[Cells], style: Style) -> bytes:
+def written_rows(columns: Sequence[Cells], style: TableStyle) -> bytes:
     """Return the lines of numbers."""
     body = fixed_table([(c.values, c.decimals) for c in columns], style.delimiter)
     return body if style.decimal == "." else body.replace(b".", style.decimal.encode())
 
 
 def write_table(
-    path: Path, columns: Sequence[Cells], head: Sequence[str] = (), style: Style = CSV
+    path: Path, columns: Sequence[Cells], head: Sequence[str] = (), style: TableStyle = CSV
 ) -> Path:
     """Write a table below some lines of text."""
-    text = "".join(f"{line}\n" for line in head) + header_of(columns, style)
+    text = "".join(f"{line}\n" for line in head) + header_line(columns, style)
     path.write_bytes(text.encode(style.encoding) + written_rows(columns, style))
     return path
 
 
-def time_of(record: Record) -> Cells:
+def time_of(record: MeasuredRecord) -> Cells:
     """Return the time in seconds."""
     return Cells("Time", "s", record.motion.time)
 
 
-def friction_of(record: Record, name: str = "Friction force") -> Cells:
+def friction_of(record: MeasuredRecord, name: str = "Friction force") -> Cells:
     """Return the friction force in N."""
     return Cells(name, "N", record.friction_force)
 
 
-def normal_of(record: Record, name: str = "Normal force") -> Cells:
+def normal_of(record: MeasuredRecord, name: str = "Normal force") -> Cells:
     """Return the normal force in N."""
     return Cells(name, "N", record.normal_force, 3)
 
 
-def position_of(record: Record, name: str = "Position") -> Cells:
+def position_of(record: MeasuredRecord, name: str = "Position") -> Cells:
     """Return the position in mm."""
     return Cells(name, "mm", 1e3 * record.motion.position, 5)
 
 
-def step_clock(record: Record) -> np.ndarray:
+def step_clock(record: MeasuredRecord) -> np.ndarray:
     """Return the time since the step began [s]."""
     time, leg = record.motion.time, record.motion.leg
     first = np.searchsorted(leg, leg, side="left")

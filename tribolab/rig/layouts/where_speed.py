@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from tribolab.rig.layouts.kinds import (
-    Kind,
+    LayoutKind,
     add_kind,
     by_crank,
     on_disc,
@@ -15,7 +15,7 @@ from tribolab.rig.layouts.kinds import (
     pulled,
     there_and_back,
 )
-from tribolab.rig.layouts.record import Record
+from tribolab.rig.layouts.record import MeasuredRecord
 from tribolab.rig.layouts.tables import (
     EUROPEAN,
     TABBED,
@@ -32,23 +32,23 @@ _TURN = 2 * np.pi
 _AREA = 100e-6  # [m2] of the nominal contact
 
 
-def _turns(record: Record, name: str = "Rotation", unit: str = "rpm") -> Cells:
+def _turns(record: MeasuredRecord, name: str = "Rotation", unit: str = "rpm") -> Cells:
     return Cells(name, unit, 60 * record.motion.velocity / _RADIUS / _TURN, 3)
 
 
-def _rotary_steps(record: Record, folder: Path) -> Path:
+def _rotary_steps(record: MeasuredRecord, folder: Path) -> Path:
     head = ["Rotary tribometer 2000", "Operator: A. Person", "Track radius: 25 mm"]
     step = Cells("Step", "", record.motion.leg, 0)
     columns = [step, time_of(record), _turns(record), friction_of(record), normal_of(record)]
     return write_table(folder / "disc.csv", columns, [*head, "Ball radius: 3 mm", ""])
 
 
-def _unsaid(record: Record, folder: Path) -> Path:
+def _unsaid(record: MeasuredRecord, folder: Path) -> Path:
     columns = [time_of(record), _turns(record), friction_of(record), normal_of(record)]
     return write_table(folder / "disc.csv", columns)
 
 
-def _rotary_torque(record: Record, folder: Path) -> Path:
+def _rotary_torque(record: MeasuredRecord, folder: Path) -> Path:
     torque = Cells("Torque", "N m", record.friction_force * _RADIUS, 6)
     columns = [
         time_of(record),
@@ -60,13 +60,13 @@ def _rotary_torque(record: Record, folder: Path) -> Path:
     return write_table(folder / "torque.csv", columns, head, EUROPEAN)
 
 
-def _two_load_channels(record: Record, folder: Path) -> Path:
+def _two_load_channels(record: MeasuredRecord, folder: Path) -> Path:
     low = Cells("Normal force", "N", np.zeros(record.motion.time.size), 3)
     columns = [time_of(record), _turns(record), friction_of(record), low, normal_of(record)]
     return write_table(folder / "pin_on_disc.csv", columns, ["Track radius: 25 mm"])
 
 
-def _mini_traction(record: Record, folder: Path) -> Path:
+def _mini_traction(record: MeasuredRecord, folder: Path) -> Path:
     rolling = np.where(record.motion.velocity > 0, 0.4, 0.0)
     share = np.where(rolling > 0, record.motion.velocity / 0.4, 0.0)
     columns = [
@@ -79,18 +79,18 @@ def _mini_traction(record: Record, folder: Path) -> Path:
     return write_table(folder / "traction.txt", columns, ["Traction machine"], TABBED)
 
 
-def _stroke_settings(record: Record, folder: Path) -> Path:
+def _stroke_settings(record: MeasuredRecord, folder: Path) -> Path:
     head = ["Reciprocating rig", "Stroke length: 10 mm", "Frequency: 1 Hz", "Drive: crank", ""]
     columns = [time_of(record), friction_of(record), normal_of(record)]
     return write_table(folder / "reciprocating.csv", columns, head)
 
 
-def _crank_position(record: Record, folder: Path) -> Path:
+def _crank_position(record: MeasuredRecord, folder: Path) -> Path:
     columns = [time_of(record), position_of(record), friction_of(record), normal_of(record)]
     return write_table(folder / "oscillating.csv", columns)
 
 
-def _sled(record: Record, folder: Path) -> Path:
+def _sled(record: MeasuredRecord, folder: Path) -> Path:
     head = ["Coefficient of friction test", "Sled mass: 200 g", "Test speed: 100 mm/min"]
     columns = [
         time_of(record),
@@ -100,7 +100,7 @@ def _sled(record: Record, folder: Path) -> Path:
     return write_table(folder / "sled.csv", columns, head)
 
 
-def _voltages(record: Record, folder: Path) -> Path:
+def _voltages(record: MeasuredRecord, folder: Path) -> Path:
     columns = [
         time_of(record),
         Cells("Bridge tangential", "mV/V", record.friction_force / 12.5, 6),
@@ -111,7 +111,7 @@ def _voltages(record: Record, folder: Path) -> Path:
     return write_table(folder / "bridges.csv", columns, head)
 
 
-def _counts(record: Record, folder: Path) -> Path:
+def _counts(record: MeasuredRecord, folder: Path) -> Path:
     columns = [
         time_of(record),
         Cells("adc0", "", np.round(record.friction_force / 50 * 2**15), 0),
@@ -121,7 +121,7 @@ def _counts(record: Record, folder: Path) -> Path:
     return write_table(folder / "counts.csv", columns)
 
 
-def _stresses(record: Record, folder: Path) -> Path:
+def _stresses(record: MeasuredRecord, folder: Path) -> Path:
     columns = [
         time_of(record),
         Cells("Shear stress", "kPa", 1e-3 * record.friction_force / _AREA, 4),
@@ -131,7 +131,7 @@ def _stresses(record: Record, folder: Path) -> Path:
     return write_table(folder / "shear_cell.csv", columns)
 
 
-def _blank(record: Record, folder: Path) -> Path:
+def _blank(record: MeasuredRecord, folder: Path) -> Path:
     noise = np.random.default_rng(1).standard_normal(500)
     blank = [
         Cells("Time", "s", np.arange(500) / 50),
@@ -227,11 +227,17 @@ for _name, _about, _run, _write in (
     ("sled", "sled, its mass in the header", pulled, _sled),
     ("stresses", "stresses in place of forces", there_and_back, _stresses),
 ):
-    add_kind(Kind(_name, _about, _run, _write))
+    add_kind(LayoutKind(_name, _about, _run, _write))
 add_kind(
-    Kind("radius_unsaid", "disc, radius not in the file", on_disc, _unsaid, typed=_RADIUS_TYPED)
+    LayoutKind(
+        "radius_unsaid", "disc, radius not in the file", on_disc, _unsaid, typed=_RADIUS_TYPED
+    )
 )
-add_kind(Kind("bridges", "strain bridges with gains", there_and_back, _voltages, dialect=_BRIDGES))
-add_kind(Kind("counts", "counts of a board", there_and_back, _counts, dialect=_COUNTS))
+add_kind(
+    LayoutKind("bridges", "strain bridges with gains", there_and_back, _voltages, dialect=_BRIDGES)
+)
+add_kind(LayoutKind("counts", "counts of a board", there_and_back, _counts, dialect=_COUNTS))
 _FROM = "file blank.csv"
-add_kind(Kind("blank_run", "zero in a file of its own", on_disc_under_load, _blank, zero=_FROM))
+add_kind(
+    LayoutKind("blank_run", "zero in a file of its own", on_disc_under_load, _blank, zero=_FROM)
+)
