@@ -109,9 +109,7 @@ def joined_sources(products: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
     }
 
 
-def provenance(
-    sources: Iterable[str | Path], action: str, config: Mapping[str, Any] | None = None
-) -> dict[str, str]:
+def provenance(sources: Iterable[str | Path], action: str) -> dict[str, str]:
     """Return the attributes of a product that is made from raw files.
 
     Parameters
@@ -120,21 +118,18 @@ def provenance(
         The raw files that the product was made from.
     action
         What was done, in a few words, for the history line.
-    config
-        The settings that shaped the product, if any.
 
     Returns
     -------
     dict
-        ``source``, ``source_sha256``, ``tribolab_version``, ``history``, ``Conventions`` and,
-        with `config`, ``config_sha256``. Several sources are joined by ``"; "``.
+        ``source``, ``source_sha256``, ``tribolab_version``, ``history`` and ``Conventions``;
+        several sources are joined by ``"; "``.
     """
     paths = [Path(source) for source in sources]
     return made(
         action,
         source="; ".join(as_text(path.name) for path in paths),
         source_sha256="; ".join(sha256_of_file(path) for path in paths),
-        config_sha256="" if config is None else sha256_of(config),
     )
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import xarray as xr
 
@@ -15,17 +13,13 @@ SPECTRUM = (
 )
 
 
-def shear_stress_shift(
-    uncertainty: xr.Dataset, names: Sequence[str] = SPECTRUM
-) -> tuple[float, float]:
-    """Return how far a fitted sigma_f may lie off, down and up, because of what is not known.
+def shear_stress_shift(uncertainty: xr.Dataset) -> tuple[float, float]:
+    """Return how far a fitted sigma_f may lie off, down and up, as the spectrum is not known.
 
     Parameters
     ----------
     uncertainty
         From `model_uncertainty`.
-    names
-        Variations that count; by default those of the spectrum.
 
     Returns
     -------
@@ -33,7 +27,7 @@ def shear_stress_shift(
         Relative changes [1] of sigma_f, not above and not below 0: those that lower it and those
         that raise it, each in quadrature, as the band of the curve.
     """
-    mine = uncertainty.sel(variation=[n for n in uncertainty.variation.values if n in names])
+    mine = uncertainty.sel(variation=[n for n in uncertainty.variation.values if n in SPECTRUM])
     ends = np.nan_to_num(
         np.stack([mine[f"shear_stress_change_{end}"].values for end in ("low", "high")])
     )

@@ -17,15 +17,13 @@ _TAIL_DECADES = 0.5
 _PLATEAU = 3.0  # an annulus wider than this was joined
 
 
-def confidence_band(
-    value: np.ndarray, independent: np.ndarray, confidence: float = CONFIDENCE
-) -> tuple[np.ndarray, np.ndarray]:
+def confidence_band(value: np.ndarray, independent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Band of a mean power: that of a chi-square variable with two degrees of freedom a value."""
     # late: scipy takes long to load
     from scipy.special import chdtri
 
     freedom = 2 * np.asarray(independent)
-    outside = 0.5 * (1 - confidence)
+    outside = 0.5 * (1 - CONFIDENCE)
     return (
         value * freedom / chdtri(freedom, outside),
         value * freedom / chdtri(freedom, 1 - outside),

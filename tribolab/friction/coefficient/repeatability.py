@@ -10,15 +10,13 @@ import xarray as xr
 from tribolab.friction.stribeck import measured_stribeck_curve
 
 
-def run_levels(frictions: Sequence[xr.Dataset], speed_tolerance: float = 0.1) -> np.ndarray:
+def run_levels(frictions: Sequence[xr.Dataset]) -> np.ndarray:
     """Friction of each run relative to that of all repeats together, over all speeds.
 
     Parameters
     ----------
     frictions
         Results of `friction_coefficient` of repeats, one for each run.
-    speed_tolerance
-        As for `measured_stribeck_curve`.
 
     Returns
     -------
@@ -30,11 +28,11 @@ def run_levels(frictions: Sequence[xr.Dataset], speed_tolerance: float = 0.1) ->
     -----
     Mean of mu_run/mu over the speeds, weighted by the squared relative errors of the run's points.
     """
-    together = measured_stribeck_curve(frictions, speed_tolerance)
+    together = measured_stribeck_curve(frictions)
     speed = np.log(together["sliding_speed"].values)
     levels = []
     for friction in frictions:
-        own = measured_stribeck_curve([friction], speed_tolerance)
+        own = measured_stribeck_curve([friction])
         if not own.sizes["sliding_speed"]:  # e.g. an instrument's steps, of unknown speed
             levels.append(np.nan)
             continue

@@ -13,6 +13,7 @@ LONGEST = 1 << 18  # samples of one transform; more do not make a line clearer t
 _FEWEST = 256  # samples of a stretch whose spectrum is worth a look
 _SLOWEST = 130.0  # Hz; a record that is to show 50 and 60 Hz has to be sampled faster
 _LOWEST = 5.0  # Hz; below, rigs do not ring and mains does not hum
+_CHANCE = 1e-6  # that noise alone shows a line anywhere in the spectrum
 
 
 class Line(NamedTuple):
@@ -78,17 +79,13 @@ def amplitude_spectrum(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray
     return np.fft.rfftfreq(n, interval), amplitude
 
 
-def find_lines(
-    time: np.ndarray, values: np.ndarray, significance: float = 1e-6, lowest: float = 0.0
-) -> list[Line]:
+def find_lines(time: np.ndarray, values: np.ndarray, lowest: float = 0.0) -> list[Line]:
     """Find the lines of a stretch that noise does not explain.
 
     Parameters
     ----------
     time, values
         An evenly sampled stretch: [s] and any unit (time).
-    significance
-        Largest probability with which noise alone shows such a line anywhere in the spectrum.
     lowest
         Only lines above this frequency [Hz].
 
@@ -100,14 +97,13 @@ def find_lines(
     Notes
     -----
     The background is a running median of the power over some 60 bins. In noise the power in a bin,
-    over its mean, is exponential, so that a peak above -ln(significance / bins) is no chance.
+    over its mean, is exponential, so that a peak above -ln(1e-6 / bins) is chance in
+    one of a million spectra.
     """
     if values.size < 128 or not np.isfinite(values).all() or np.ptp(values) == 0:
         return []
-    # late: scipy takes long to load
-    from scipy import (
-        ndimage,
-    )  # not before there is a spectrum: it takes a tenth of a second to load
+    # late: scipy takes long to load, and is not needed before there is a spectrum
+    from scipy import ndimage
 
     frequency, amplitude = amplitude_spectrum(time, values)
     power = amplitude**2
@@ -115,7 +111,7 @@ def find_lines(
     background = np.maximum(background, 1e-30 * power.max() + np.finfo(float).tiny)
     prominence = power / background
     peak = np.flatnonzero(
-        (prominence[1:-1] > -np.log(significance / power.size))
+        (prominence[1:-1] > -np.log(_CHANCE / power.size))
         & (power[1:-1] >= power[:-2])
         & (power[1:-1] > power[2:])
     )

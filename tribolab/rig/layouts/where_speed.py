@@ -32,8 +32,8 @@ _TURN = 2 * np.pi
 _AREA = 100e-6  # [m2] of the nominal contact
 
 
-def _turns(record: MeasuredRecord, name: str = "Rotation", unit: str = "rpm") -> Cells:
-    return Cells(name, unit, 60 * record.motion.velocity / _RADIUS / _TURN, 3)
+def _turns(record: MeasuredRecord, unit: str = "rpm") -> Cells:
+    return Cells("Rotation", unit, 60 * record.motion.velocity / _RADIUS / _TURN, 3)
 
 
 def _rotary_steps(record: MeasuredRecord, folder: Path) -> Path:
