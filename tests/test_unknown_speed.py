@@ -109,6 +109,29 @@ def test_a_speed_that_is_unknown_is_suspect_for_what_may_be_inside(said):
         assert "strokes figure" in row["cure"] and "`trim`" in row["cure"]
 
 
+def check_of(force, **attrs):
+    """What `segment_speed` and the lines of the rig say of a friction force at a set speed."""
+    time = np.arange(force.size) / 200
+    data = {"friction_force": ("time", force), "normal_force": ("time", np.full(force.size, 5.0))}
+    run = xr.Dataset(data, {"time": time}, {"set_speed_m_s": 0.01, **attrs})
+    rows = check_run(run).rows
+    return {(row["check"], row["status"]): row for row in rows}
+
+
+def test_a_force_that_turns_to_and_fro_without_a_direction_is_no_friction():
+    rng = np.random.default_rng(3)
+    noise = 0.02 * rng.standard_normal(8000)
+    sine = np.tanh(8 * np.sin(2 * np.pi * 2.0 * np.arange(8000) / 200))
+    rows = check_of(sine + 0.1 + noise)
+    told = rows["segment_speed", "fail"]
+    assert "changes its sign" in told["message"] and "to and fro" in told["message"]
+    assert "stroke and frequency" in told["cure"]
+    assert ("resonance", "pass") in rows  # the strokes themselves are no line of the rig
+    # a force of one sign, or that turns once, is friction as before
+    for force in (1.0 + noise, np.where(np.arange(8000) < 4000, 1.0, -1.0) + noise):
+        assert ("segment_speed", "fail") not in check_of(force)
+
+
 def test_a_trend_that_can_be_told_is_still_told_and_many_samples_show_that_there_is_none():
     time = np.arange(4000) / 100
     noise = 0.02 * np.random.default_rng(0).standard_normal(time.size)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -19,6 +19,9 @@ from tribolab.errors import TribolabError, shown
 from tribolab.quantities import quantity
 from tribolab.units import positive
 from tribolab.words import Count
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 NONE = "-"
 _RUN = {
@@ -210,6 +213,7 @@ def try_on(files: Sequence[Path], dialect: Path, kind: str) -> list[str]:
 def _run_said(file: Path, dialect: Path) -> str:
     # late: starting stays quick
     from tribolab.friction.coefficient.coefficient import friction_coefficient
+    from tribolab.friction.reversals import reversals
     from tribolab.friction.segments.find import find_segments
     from tribolab.io.runs import read_run
 
@@ -225,6 +229,14 @@ def _run_said(file: Path, dialect: Path) -> str:
     said += f", {Count(segments.sizes['segment']):segment|segments}"
     if "friction_coefficient" not in friction:
         return f"{said}, a friction force without a load: no friction coefficient"
+    signal = "friction_force" if "friction_force" in run else "friction_coefficient"
+    turned = reversals(run[signal].values) if _undirected(segments) else 0
+    if turned:
+        return (
+            f"{said}; friction changes its sign {turned} times while nothing tells the way: it "
+            "looks like motion to and fro, whose mean is no friction coefficient; state stroke and "
+            'frequency under [speed], with source = "stroke"'
+        )
     mu = np.atleast_1d(friction["friction_coefficient"].values)
     sem = np.atleast_1d(friction["friction_coefficient_sem"].values)[np.isfinite(mu)]
     mu = mu[np.isfinite(mu)]
@@ -234,6 +246,12 @@ def _run_said(file: Path, dialect: Path) -> str:
     known = sem[np.isfinite(sem)]
     width = f"at most {known.max():.2g}" if known.size else "not known"
     return f"{said}, friction coefficient {span} (standard error {width}, statistical only)"
+
+
+def _undirected(segments: xr.Dataset) -> bool:
+    """Whether nothing tells which way it slid."""
+    unknown = bool(segments["sliding_speed"].isnull().any())
+    return unknown or segments.attrs["velocity_source"] == "set speed"
 
 
 def _scan_said(file: Path, dialect: Path) -> str:

@@ -168,6 +168,7 @@ RUN_WORDS = (
         ("z",),
         _words(
             "verticaldisplacement verticalposition axialdisplacement axialposition "
+            "weardepth wearheight verschleisstiefe profondeurusure linearwear "
             "height wear verschleiss depth hoehe usure desgaste usura penetration eindringtiefe "
             "磨损 磨損 摩耗"
         ),

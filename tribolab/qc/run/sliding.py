@@ -20,6 +20,10 @@ from tribolab.qc.run.per_segment import by_segment, status_of
 from tribolab.qc.run.subject import RunSubject
 from tribolab.words import Count
 
+_CURE_OF_UNKNOWN_STROKES = (
+    'Say stroke and frequency in the dialect ([speed] source = "stroke"), or record the position.'
+)
+
 
 def _signal(subject: RunSubject) -> str:
     if subject.friction_signal is None:
@@ -28,12 +32,12 @@ def _signal(subject: RunSubject) -> str:
 
 
 def _hum(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    hum = [line for line in subject.lines if line.mains]
+    hum = [line for line in subject.sliding_lines if line.mains]
     return _strongest(subject, hum, limits, "mains hum")
 
 
 def _resonance(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    lines = [line for line in subject.lines if not line.mains]
+    lines = [line for line in subject.sliding_lines if not line.mains]
     frequency = np.array([line.frequency for line in lines])
     speed = np.array([line.speed for line in lines])
     fixed = []
@@ -208,13 +212,29 @@ def _segment_speed(subject: RunSubject, limits: Mapping[str, float]) -> list[Res
     # of friction: a rheometer's steps of shear stress have a shear rate in place of a speed
     unknown = np.isnan(subject.friction["sliding_speed"].values)
     if not unknown.any():
-        return [Result("pass", "sliding_speed", "the speed of every segment is known")]
+        known = Result("pass", "sliding_speed", "the speed of every segment is known")
+        return _to_and_fro(subject) or [known]
     text = (
         f"the speed of {int(unknown.sum())} of {Count(unknown.size):segment|segments} is "
         "unknown: start, stop and rest may be inside"
     )
     where, count = subject.segment_label(int(np.argmax(unknown))), int(unknown.sum())
-    return [Result("suspect", "sliding_speed", text, where=where, count=count)]
+    told = Result("suspect", "sliding_speed", text, where=where, count=count)
+    return [told, *_to_and_fro(subject)]
+
+
+def _to_and_fro(subject: RunSubject) -> list[Result]:
+    """Tell of segments of unknown direction whose force changes its sign again and again."""
+    turned = subject.reversals
+    if not turned.any():
+        return []
+    first, count = int(np.flatnonzero(turned)[0]), int((turned > 0).sum())
+    text = (
+        f"friction changes its sign {int(turned.max())} times while the direction of sliding is "
+        "not known: it looks like motion to and fro, and a mean over both ways is no friction"
+    )
+    where, cure = subject.segment_label(first), _CURE_OF_UNKNOWN_STROKES
+    return [Result("fail", _signal(subject), text, where=where, count=count, cure=cure)]
 
 
 def _distance(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

@@ -12,6 +12,7 @@ from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.oscillation.lines import Line, segment_lines
 from tribolab.friction.oscillation.noise import noise_level
 from tribolab.friction.oscillation.stick_slip import stick_slip
+from tribolab.friction.reversals import reversals
 from tribolab.friction.segments.find import find_segments, why_no_segment
 from tribolab.medians import median_in_pieces, median_of_known
 from tribolab.pieces import one_by_one, stretches
@@ -285,6 +286,27 @@ class RunSubject:
         if all(lines is None for lines in significant):
             raise Skip("sampled too slowly or too shortly for a spectrum")
         return [line for lines in significant for line in lines or []]
+
+    @cached_property
+    def reversals(self) -> np.ndarray:
+        """How often friction changes its sign in each segment whose direction is not known."""
+        if self.friction_signal is None:
+            raise Skip("no friction was recorded")
+        values = self.signals[self.friction_signal]
+        unknown = np.isnan(self.segments["sliding_speed"].values)
+        if self.segments.attrs.get("velocity_source") == "set speed":
+            unknown[:] = True  # it has no direction
+        return np.array(
+            [
+                reversals(values[part]) if lost else 0
+                for part, lost in zip(self.slices, unknown, strict=True)
+            ]
+        )
+
+    @property
+    def sliding_lines(self) -> list[Line]:
+        """Lines of the spectrum but those of motion to and fro that was not recorded."""
+        return [line for line in self.lines if not self.reversals[line.segment]]
 
     def unit(self, name: str) -> str:
         """Return the unit of a variable as text, empty for pure numbers."""
