@@ -18,12 +18,15 @@ from tribolab.draft.columns.stated_words import (
     POINTS,
     PROFILE_LENGTH,
     RADIUS,
+    RATE,
+    TRAVERSE_SPEED,
     TURNING,
 )
 from tribolab.draft.columns.values import DraftValue, find_values, words_said
 from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
+from tribolab.units import conversion
 
 
 def find_pitch(layout: Layout) -> DraftValue | None:
@@ -80,6 +83,8 @@ def find_height_unit(layout: Layout) -> str:
 def find_point_density(layout: Layout) -> str:
     """Return the distance of a profile's points where the text says how many a length has, or "".
 
+    A traverse at a stated speed that is sampled at a stated rate says it, too.
+
     Parameters
     ----------
     layout
@@ -88,7 +93,25 @@ def find_point_density(layout: Layout) -> str:
     stop = layout.heading.names if layout.heading else layout.blocks[0].start
     stated = (points_per_length(line) for line in layout.lines[:stop])
     number, unit = next((density for density in stated if density), (0.0, ""))
-    return f"{1 / number:.12g} {unit}" if number else ""
+    return f"{1 / number:.12g} {unit}" if number else _sampled_on_the_way(layout)
+
+
+def _sampled_on_the_way(layout: Layout) -> str:
+    values = [value for value in find_values(layout, bare=True) if value.source == "preamble"]
+    units = [value.unit or value.own_unit or "" for value in values]
+    speeds = [
+        _number(value) * conversion(unit, "m/s")[0]
+        for value, unit in zip(values, units, strict=True)
+        if TRAVERSE_SPEED.search(value.key) and converts(unit, "m/s")
+    ]
+    rates = [
+        _number(value) * conversion(unit, "Hz")[0]
+        for value, unit in zip(values, units, strict=True)
+        if RATE.search(value.key) and converts(unit, "Hz")
+    ]
+    if len(speeds) != 1 or len(rates) != 1 or not (speeds[0] > 0 and rates[0] > 0):
+        return ""
+    return f"{1e6 * speeds[0] / rates[0]:.12g} um"
 
 
 def find_radius(values: Sequence[DraftValue]) -> DraftValue | None:

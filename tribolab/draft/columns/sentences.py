@@ -20,9 +20,15 @@ _LITTLE = frozenset(
     "a an the of is was are be in to about approx ca von ist war der die das de du des la le les "
     "el di del della il est era es under unter bajo sous sotto nominal constant konstante".split()
 )
+_POINTS = r"(?:points?|pts?|samples?|Punkte|punten|puntos|punti|pontos|pixels?|px)"
+_UNIT_OF_LENGTH = r"(?P<unit>um|µm|μm|mm|nm)\b"
+_PER = r"\s?(?:/|per|pro|par|por)\s?"
 _PER_LENGTH = re.compile(
-    r"(?<![\d.,A-Za-z_])(?P<number>\d[\d.,]*)\s{0,3}(?:points?|pts?|samples?|Punkte|pixels?|px)?"
-    r"\s?(?:/|per|pro)\s?(?P<unit>um|µm|μm|mm|nm)\b",
+    rf"(?<![\d.,A-Za-z_])(?P<number>\d[\d.,]*)\s{{0,3}}{_POINTS}?{_PER}{_UNIT_OF_LENGTH}",
+    re.IGNORECASE,
+)
+_LENGTH_HAS = re.compile(  # "Points per mm: 2000"
+    rf"{_POINTS}{_PER}{_UNIT_OF_LENGTH}\W{{0,3}}[:=\t; ]\s*(?P<number>\d[\d.,]*)\s*$",
     re.IGNORECASE,
 )
 
@@ -89,8 +95,10 @@ def points_per_length(line: str) -> tuple[float, str] | None:
     --------
     >>> points_per_length("sampling 4 points/um")
     (4.0, 'um')
+    >>> points_per_length("Punten per mm: 2000")
+    (2000.0, 'mm')
     """
-    match = _PER_LENGTH.search(line[:_LONGEST])
+    match = _PER_LENGTH.search(line[:_LONGEST]) or _LENGTH_HAS.search(line[:_LONGEST])
     if match is None:
         return None
     try:

@@ -37,19 +37,19 @@ LOAD = re.compile(
 # the distance of a profile's points by its name
 PITCH = re.compile(
     r"^(?:d?x|deltax|pitch|spacing|increment|step|stepsize|stepping|interval|xscale)$"
-    r"|^(?:schritt\w*|pas|paso|passo|stap\w*|sampling|sampled|abtastung)$|(?:abtast|mess)schritt"
+    r"|^(?:schritt\w*|x?pas|x?paso|x?passo|x?stap\w*|x?schritt\w*|sampling|sampled|abtastung)$|(?:abtast|mess)schritt"
     r"|^(?:roztec|rozestup|krok|odstep|avstand|steglangd|lepeskoz)\w*"
     r"|间距|步长|步距|ピッチ|間隔|点间隔|采样间隔"
     r"|(?:sampl|point|mess|punkt|data|x|lateral|measur|echantillon|abtast|punt)\w*"
     r"(?:pitch|spacing|increment|step|interval|distance|abstand|afstand|schritt\w*|intervall)"
     r"|(?:distan[czt]\w*?|afstand|abstand|ecart|espaciado|intervall?[eo]?|pas|paso|passo)"
     r"(?:de\w?|di|entre(?:les|los)?|tra\w?|fra\w?|tussen|zwischen\w{0,5}|der)?"
-    r"(?:punt\w+|points?|punkten?|muestreo|d?echantillonnage|campionamento)$"
+    r"(?:punt\w+|points?|pontos?|punkten?|muestreo|d?echantillonnage|campionamento|amostragem)$"
     r"|(?:pitch|spacing|increment|interval)(?:x|between\w*)?$"
 )
 # the length of a whole profile, over which its points lie: no cut-off, no length of a part
 PROFILE_LENGTH = re.compile(
-    r"^(?:total|full|x|line)?(?:scan|trace|tracing|travers\w*|profile?|evaluation|assessment|record"
+    r"^(?:total|full|x|line)?(?:scan|trace|tracing|taster?|meet|travers\w*|profile?|evaluation|assessment|record"
     r"|measur\w+|mess|tast(?:er?)?|abtast|gesamt|lateral)?(?:ed|ing)?"
     r"(?:length|laenge|strecke|range|weg|lengte)(?:x|lt|ln)?$"
     r"|^(?:longueur|longitud|lunghezza|comprimento)"
@@ -58,11 +58,18 @@ PROFILE_LENGTH = re.compile(
     r"|scansione|traccia|valutazione|medicao|varredura|avaliacao|perfil)?$"
     r"|^(?:测量|扫描|轮廓|取样)?长度$|^(?:測定|走査)?長さ$"
 )
+# how fast a stylus goes over a profile
+_GOES = (
+    r"(?:tast|abtast|travers\w*|scan\w*|measur\w*|mess|meet|probe|stylus|tracing|vorschub|feed|palpage"
+    r"|mesure|exploration|avance|varredura|medi\w+|barrido|scansione|misura|esplorazione|扫描|测量)"
+)
+_FAST = r"(?:speed|velocity|snelheid|geschwindigkeit|vitesse|velocidade?|velocita|rate|速度)"
+TRAVERSE_SPEED = re.compile(rf"{_GOES}.{{0,4}}{_FAST}|{_FAST}.{{0,4}}{_GOES}")
 # how many points a profile has
 POINTS = re.compile(
     r"^(?:number|numbers|no|nr|n|num|total|count)?(?:of|de)?(?:data|measured?|measuring|profile)?"
     r"(?:points?|pts?|samples?|values?|heights?|pixels?)(?:number|count|total)?$"
-    r"|^(?:anzahl|zahl)(?:der)?(?:mess|daten|profil)?(?:punkte|werte|hoehen)$"
+    r"|^(?:anzahl|zahl|aantal|antal|antall)(?:der)?(?:mess|daten|profil)?(?:punkte|punten|punkter|waarden|werte|hoehen)$"
     r"|^(?:mess|daten|profil)?punkt(?:e|anzahl|zahl|eanzahl)$|^(?:count|npts|npoints|nx|anzahl)$"
     r"|^(?:nombre|nb|numero|num|no|n)(?:de|dei|di|des|dos)?"
     r"(?:points?|puntos?|punti|pontos?|mesures|valores|valori|echantillons|muestras)$"
@@ -75,7 +82,7 @@ HEIGHT_UNIT = re.compile(
     r"(?:the)?(?:z|heights?|hoehen?|hauteurs?|alturas?|altezze?|profile?|amplitude)$"
     r"|^高度单位$|^高さ単位$"
 )
-RADIUS = re.compile("radius|rayon|radio(?!m)|raggio|straal|半径")
+RADIUS = re.compile("radius|rayon|radio(?!m)|raggio|raio|straal|半径")
 ARM = re.compile(
     r"lever|hebelarm|arm(?:length|laenge)|torquearm|levier|palanca|braccio|力臂|アーム"
 )

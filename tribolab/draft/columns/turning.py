@@ -12,7 +12,7 @@ from tribolab.draft.model import DraftColumn
 from tribolab.io.dialects.cells import split_name
 
 _TORQUE = re.compile(
-    r"torque|drehmoment|reibmoment|moment|couple|coppia|momento|koppel|扭矩|转矩|力矩|トルク"
+    r"torque|drehmoment|reibmoment|moment|couple|coppia|momento|binario|koppel|扭矩|转矩|力矩|トルク"
     r"|parmotor|^(?:m|mr|mf|md|tq|par)$"
 )
 _TORQUE_UNIT = re.compile(r"[cmkuµμ]?N\s?[·⋅*.]?\s?[cmuµμ]?m")  # and no J
