@@ -154,14 +154,15 @@ report.Picture = (() => {
       panels.forEach((panel, row) => {
         const last = row === count - 1;
         const name = ({ label, unit }) => text(unit ? `${label} (${unit})` : label ?? "");
-        const side = (kind, what) => ({
+        const side = (kind, what, ends) => ({
           type: this.isLog(kind, row) ? "log" : what.label || kind === "x" ? "linear" : "category",
           title: { text: kind === "x" && !last ? "" : name(what), standoff: 8, font: { size: small ? 10 : 13 } }, gridcolor: grid, linecolor: ink, showline: true, ticks: "outside",
           tickcolor: ink, zeroline: kind === "y" && row > 0, zerolinecolor: ink, exponentformat: "power", automargin: true,
           tickfont: { size: (small ? 10 : 12) / (this.isLog(kind, row) ? 1.25 : 1) }, // the library writes powers of ten a quarter larger
-          minorloglabels: "none", nticks: narrow ? 5 : 8, range: kind === "x" ? this.along : this.range(kind, row),
+          // where a single power of ten is in sight, what lies beside it is named, too
+          minorloglabels: ends && Math.floor(ends[1]) <= Math.ceil(ends[0]) ? "complete" : "none", nticks: narrow ? 5 : 8, range: ends,
         });
-        const x = side("x", panel.x), y = side("y", panel.y);
+        const x = side("x", panel.x, this.along), y = side("y", panel.y, this.range("y", row));
         if (y.type === "category") Object.assign(y, { tickmode: "linear", dtick: 1, ticks: "" });
         if (y.type !== "log" || this.data.panels[row].y.unit === "") y.exponentformat = "none";
         x.anchor = axis("y", row);
