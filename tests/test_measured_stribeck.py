@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from made_runs import strokes, with_friction
 from scipy import stats
+from scipy.signal import lfilter
 
 from tribolab.draft.read import read
 from tribolab.errors import AnalysisError
@@ -242,3 +243,24 @@ def test_no_interval_is_shorter_than_the_standard_error_beside_it():
         assert wide >= float(curve.friction_coefficient_sem)
         held += abs(float(curve.friction_coefficient) - 0.3) < wide
     assert held >= 0.93 * 300
+
+
+def test_strokes_that_wander_together_are_not_independent():
+    rng = np.random.default_rng(4)
+    count, rho, inside = 119, 0.7, []
+    for _ in range(60):
+        steps = np.sqrt(1 - rho**2) * rng.standard_normal(count + 60)
+        mu = 0.2 + 0.01 * lfilter([1.0], [1.0, -rho], steps)[60:]
+        run = xr.Dataset(
+            {
+                "sliding_speed": ("segment", np.full(count, 1e-2)),
+                "friction_coefficient": ("segment", mu),
+                "friction_coefficient_std": ("segment", np.full(count, 0.01)),
+                "friction_coefficient_sem": ("segment", np.full(count, 1e-3)),
+            }
+        )
+        curve = measured_stribeck_curve([run])
+        assert curve.friction_coefficient_dof.item() < 0.6 * count
+        off = curve.friction_coefficient.item() - 0.2
+        inside.append(abs(off) < 1.96 * curve.friction_coefficient_sem.item())
+    assert np.mean(inside) > 0.85  # 0.61 if each counted by itself

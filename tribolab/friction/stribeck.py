@@ -12,12 +12,13 @@ from scipy import special
 from tribolab.errors import AnalysisError, shown
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.joined import Label, grouped, joined_curves
-from tribolab.friction.statistics import student_widening
+from tribolab.friction.statistics import error_of_mean, student_widening
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.medians import median
 from tribolab.provenance import joined_sources, made
 from tribolab.stamping import stamp
 
+_MANY = 24  # strokes of one speed that tell how long friction remembers
 FREEDOM = 3  # least degrees of freedom: two runs alone would widen the error twentyfold
 
 
@@ -38,6 +39,7 @@ class _Value(NamedTuple):
     known: _Known
     variance: float
     segments: int
+    order: float = 0.0
 
 
 def measured_stribeck_curve(
@@ -96,7 +98,9 @@ def measured_stribeck_curve(
     factor in it already, is for weights. Where observations agree better than their own errors
     let them, which a few do by chance, that interval would be too short: ``_u`` is then
     1/sqrt(sum w_i) with all degrees of freedom, if its interval is the wider one [3]_. With one run
-    the spread between runs is unknown, and the error is that run's own.
+    the spread between runs is unknown, and the error is that run's own. Where it has 24
+    observations or more at a speed, as a crank gives, those that follow each other need not be
+    independent: the error is at least that of the mean of a series with their spectrum.
 
     References
     ----------
@@ -206,6 +210,7 @@ def _observations(friction: xr.Dataset, run: int) -> list[_Value]:
                 _known(float(sem[part].mean()), None if samples is None else samples[part]),
                 float(np.mean(std[part] ** 2)),
                 int(part.sum()),
+                float(np.flatnonzero(part).mean()),
             )
         )
     return result
@@ -243,6 +248,20 @@ def _random_effects(
     return float(mean), error, _Known(float(scatter), y.size - 1.0)
 
 
+def _wandering(
+    level: tuple[float, float, _Known], in_order: Sequence[float]
+) -> tuple[float, float, _Known]:
+    """Widen the error of a run's mean where neighbouring strokes are off by the same."""
+    mean, error, known = level
+    if len(in_order) < _MANY:
+        return level
+    plain, wide = (float(part[0]) for part in error_of_mean(np.array([in_order])))
+    if not plain > known.u:
+        return mean, max(error, plain), known
+    freedom = max((len(in_order) - 1.0) * (known.u / plain) ** 2, 1.0)
+    return mean, max(error, wide), _Known(plain, min(freedom, known.dof))
+
+
 def _combined(values: list[_Value]) -> tuple[float, ...]:
     """One row of the curve from the observations of one speed."""
     run = np.array([v.run for v in values])
@@ -250,8 +269,9 @@ def _combined(values: list[_Value]) -> tuple[float, ...]:
     means, squares, freedom = [], 0.0, 0
     for number in np.unique(run):
         part = run == number
-        own = [v.known for v in values if v.run == number]
-        means.append(_random_effects(mu[part], sem[part], own))
+        own = [v for v in values if v.run == number]
+        level = _random_effects(mu[part], sem[part], [v.known for v in own])
+        means.append(_wandering(level, [v.mu for v in sorted(own, key=lambda v: v.order)]))
         squares += float(np.sum((mu[part] - mu[part].mean()) ** 2))
         freedom += int(part.sum()) - 1
     y, s = np.array([mean[:2] for mean in means]).T
