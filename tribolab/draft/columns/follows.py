@@ -27,7 +27,8 @@ from tribolab.io.dialects.cells import split_name
 from tribolab.io.missing import missing_of
 
 _DRIVE = re.compile(
-    r"drive|motion|waveform|profile|kinematic|antrieb|bewegung|entrainement|movimento|movimiento"
+    r"drive|motion|waveform|profile|kinematic|antrieb|bewegung|entrainement|mouvement|movim(?:ento|iento)"
+    r"|beweging|aandrijving|forma?(?:de|da|d)onda|formeonde|运动|運動"
 )
 _SINE = re.compile(r"crank|sine|sinus|sinoid|kurbel|eccentric|exzenter|manivelle|scotch")
 _EVEN = re.compile(r"triang|constant|linear|konstant|dreieck")
