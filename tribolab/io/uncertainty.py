@@ -45,30 +45,39 @@ class Known(NamedTuple):
 
 
 class _Strict(NoSwitches):
-    model_config = ConfigDict(
-        frozen=True, extra="forbid", use_attribute_docstrings=True, populate_by_name=True
-    )
+    model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
 
 
 class StatedUncertainty(_Strict):
     """One uncertainty, as a certificate, a data sheet or a measurement states it."""
 
-    value: Annotated[str, Field(min_length=1, examples=["0.2 %"])]
-    """How large it is, with its unit."""
-    kind: Annotated[Distribution, Field(alias="as")]
-    """What the value is: a standard uncertainty, one expanded by `k`, half the width of a
-    rectangular or a triangular distribution, or a whole step of a reading."""
-    k: Annotated[float, Field(gt=0)] | None = None
-    """Coverage factor, with `as = "expanded"`."""
-    dof: Annotated[float, Field(ge=1)] | None = None
-    """Degrees of freedom behind the value; left out, it counts as known exactly."""
-    varies: Varies | None = None
-    """With what it takes another value. What varies with run or mount is not added again where
-    repeats show it. Left out, it is what is usual for the name."""
-    source: str | None = None
-    """Where the value comes from: certificate, data sheet, date."""
-    full_scale: Annotated[str, Field(min_length=1, examples=["100 N"])] | None = None
-    """Of what a value in per cent is a share, for the linearity of a channel."""
+    value: str = Field(
+        min_length=1, examples=["0.2 %"], description="How large it is, with its unit."
+    )
+    kind: Distribution = Field(
+        alias="as",
+        description="What the value is: a standard uncertainty, one expanded by `k`, half the "
+        "width of a rectangular or a triangular distribution, or a whole step of a reading.",
+    )
+    k: Annotated[float, Field(gt=0)] | None = Field(
+        None, description='Coverage factor, with `as = "expanded"`.'
+    )
+    dof: Annotated[float, Field(ge=1)] | None = Field(
+        None,
+        description="Degrees of freedom behind the value; left out, it counts as known exactly.",
+    )
+    varies: Varies | None = Field(
+        None,
+        description="With what it takes another value. What varies with run or mount is not "
+        "added again where repeats show it. Left out, it is what is usual for the name.",
+    )
+    source: str | None = Field(
+        None, description="Where the value comes from: certificate, data sheet, date."
+    )
+    full_scale: Annotated[str, Field(min_length=1, examples=["100 N"])] | None = Field(
+        None,
+        description="Of what a value in per cent is a share, for the linearity of a channel.",
+    )
 
     @model_validator(mode="after")
     def _factor_is_stated(self) -> Self:
@@ -161,42 +170,58 @@ MODEL_INPUTS = ("speed", "load", "radius", "youngs_modulus", "temperature", "wat
 class Uncertainty(_Strict):
     """What is known of the instrument, the mount and the medium, each with how well."""
 
-    friction_gain: _Relative = None
-    """Gain of the friction channel, relative: "0.2 %"."""
-    normal_gain: _Relative = None
-    """Gain of the normal force channel, relative."""
-    friction_linearity: _Force = None
-    """Linearity and hysteresis of the friction channel ("class"): "0.1 %" of full_scale, or N."""
-    normal_linearity: _Force = None
-    """Linearity and hysteresis of the normal force channel."""
-    tilt: _Angle = None
-    """Angle between the force cell and the contact, in the plane of sliding: "0.5 deg"."""
-    yaw: _Angle = None
-    """Angle between the friction axis and the direction of sliding, in the plane of contact."""
-    cross_talk_friction_from_normal: _Relative = None
-    """Share of the normal force that the friction channel reads."""
-    cross_talk_normal_from_friction: _Relative = None
-    """Share of the friction force that the normal force channel reads."""
-    friction_zero: _Force = None
-    """Zero of the friction channel, where the run itself does not tell it."""
-    normal_zero: _Force = None
-    """Zero of the normal force channel, where the run itself does not tell it."""
-    zero_drift: _Force = None
-    """By how much the zero of the friction channel drifts between two strokes."""
-    resolution: _Force = None
-    """Resolution of the friction channel; `as = "step"` for one count."""
-    temperature: _Difference = None
-    """Temperature of the medium, as a difference: "0.5 K"."""
-    water_content: _Relative = None
-    """Mass fraction of water in the medium, absolute: "0.5 %" of the mass."""
-    speed: _Relative = None
-    """Sliding speed, relative."""
-    load: _Relative = None
-    """Normal force for the model, relative."""
-    radius: _Relative = None
-    """Radius of the cylinder, relative."""
-    youngs_modulus: _Relative = None
-    """Young's modulus of the elastomer, relative."""
+    friction_gain: _Relative = Field(
+        None, description='Gain of the friction channel, relative: "0.2 %".'
+    )
+    normal_gain: _Relative = Field(None, description="Gain of the normal force channel, relative.")
+    friction_linearity: _Force = Field(
+        None,
+        description='Linearity and hysteresis of the friction channel ("class"): "0.1 %" of '
+        "full_scale, or N.",
+    )
+    normal_linearity: _Force = Field(
+        None, description="Linearity and hysteresis of the normal force channel."
+    )
+    tilt: _Angle = Field(
+        None,
+        description="Angle between the force cell and the contact, in the plane of sliding: "
+        '"0.5 deg".',
+    )
+    yaw: _Angle = Field(
+        None,
+        description="Angle between the friction axis and the direction of sliding, in the plane of "
+        "contact.",
+    )
+    cross_talk_friction_from_normal: _Relative = Field(
+        None, description="Share of the normal force that the friction channel reads."
+    )
+    cross_talk_normal_from_friction: _Relative = Field(
+        None, description="Share of the friction force that the normal force channel reads."
+    )
+    friction_zero: _Force = Field(
+        None, description="Zero of the friction channel, where the run itself does not tell it."
+    )
+    normal_zero: _Force = Field(
+        None, description="Zero of the normal force channel, where the run itself does not tell it."
+    )
+    zero_drift: _Force = Field(
+        None, description="By how much the zero of the friction channel drifts between two strokes."
+    )
+    resolution: _Force = Field(
+        None, description='Resolution of the friction channel; `as = "step"` for one count.'
+    )
+    temperature: _Difference = Field(
+        None, description='Temperature of the medium, as a difference: "0.5 K".'
+    )
+    water_content: _Relative = Field(
+        None, description='Mass fraction of water in the medium, absolute: "0.5 %" of the mass.'
+    )
+    speed: _Relative = Field(None, description="Sliding speed, relative.")
+    load: _Relative = Field(None, description="Normal force for the model, relative.")
+    radius: _Relative = Field(None, description="Radius of the cylinder, relative.")
+    youngs_modulus: _Relative = Field(
+        None, description="Young's modulus of the elastomer, relative."
+    )
 
     def plain(self) -> Json:
         """Return what is stated as attributes of a run hold it: by name, in SI."""
