@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from threadpoolctl import threadpool_limits
 
 from tribolab.contact.area import AreaTheory
 from tribolab.contact.geometry import LineContact
@@ -19,6 +18,7 @@ from tribolab.lubrication.factors import RoughBody
 from tribolab.lubrication.solved_curve import SolvedCurve, solve_curve
 from tribolab.lubrication.system import CELLS
 from tribolab.stamping import labelled, stamp
+from tribolab.threads import one_thread
 from tribolab.units import positive, to_si
 from tribolab.untyped import Arguments
 from tribolab.validity import reasons_of, together
@@ -177,7 +177,7 @@ def model_uncertainty(
         "work_of_adhesion": work,
     }
     coarse = {**given, "cells": min(cells, _CELLS)}
-    with threadpool_limits(1, user_api="blas"):  # two wait for each other on arrays this small
+    with one_thread():
         whole = solve_curve(contact, psd, **given, cells=cells)
         start = solve_curve(contact, psd, **coarse) if cells > _CELLS else whole
         curve, reference = whole.curve, start.curve

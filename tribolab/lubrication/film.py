@@ -15,7 +15,6 @@ from tribolab.lubrication.system import (
     CELLS,
     PROOF,
     checked_speeds,
-    one_thread,
     real_area,
     system_attributes,
     system_of,
@@ -23,6 +22,7 @@ from tribolab.lubrication.system import (
 )
 from tribolab.several import over_dims
 from tribolab.stamping import stamp
+from tribolab.threads import one_thread
 from tribolab.units import positive
 from tribolab.validity import together
 

@@ -23,7 +23,6 @@ from tribolab.lubrication.system import (
     PROOF,
     checked_loads,
     checked_speeds,
-    one_thread,
     real_area,
     system_attributes,
     system_of,
@@ -31,6 +30,7 @@ from tribolab.lubrication.system import (
 )
 from tribolab.several import as_stated
 from tribolab.stamping import stamp
+from tribolab.threads import one_thread
 from tribolab.units import to_si
 
 

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import functools
-from contextlib import AbstractContextManager
 from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from threadpoolctl import ThreadpoolController
 
 from tribolab.contact.adhesive_growth import adhesive_growth
 from tribolab.contact.area import AreaTheory, check_area
@@ -71,18 +68,6 @@ def system_of(
     separation = None if psd is None else separation_table(psd, contact.effective_modulus, gamma)
     begins = to_si(inlet_length, "m", name="inlet_length")  # `solve_speeds` has its lower limit
     return System(contact, psd, separation, factors, eta, cells, domain, begins, area)
-
-
-@functools.cache
-def _libraries() -> ThreadpoolController:
-    """Find what computes on threads, once: it takes as long as some speeds of a curve."""
-    return ThreadpoolController()
-
-
-def one_thread() -> AbstractContextManager[object]:
-    """BLAS on one thread: two are slower on matrices as small as these."""
-    limited: AbstractContextManager[object] = _libraries().limit(limits=1, user_api="blas")
-    return limited
 
 
 def checked_loads(load: str | ArrayLike) -> xr.DataArray:

@@ -94,8 +94,7 @@ def write_tables(
     """
     folder = Path(outcome.folder) / "tables"
     for long in _long_tables(outcome, curves):
-        if long.columns or any(True for _ in long.rows()):
-            tables.write_rows(long.rows, folder / long.file, long.columns)
+        tables.write_rows(long.rows, folder / long.file, long.columns)
     columns = ["file", "sha256", "bytes"]
     short = {"sources": pd.DataFrame(list(outcome.sources), columns=columns)}
     rows = [surface.rows for surface in surfaces if surface.rows is not None]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import itertools
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -66,9 +67,9 @@ def as_it_was(cell: Any) -> Any:
 def write(table: pd.DataFrame, path: Path) -> None:
     """Write a table as CSV, and as Parquet beside it."""
     write_csv(table, path)
-    rows = table.astype({name: "float64" for name in table if table[name].isna().all()})
+    rows = table.astype(dict.fromkeys(table.columns[table.isna().all()], "float64"))
     with path.with_suffix(".parquet").open("wb") as packed:
-        rows.to_parquet(packed, index=False)
+        parquet.write_table(pa.Table.from_pandas(rows, preserve_index=False), packed)
 
 
 def write_csv(table: pd.DataFrame, path: Path, digits: int | None = None) -> None:
@@ -90,9 +91,11 @@ def write_rows(rows: Callable[[], Iterable[Row]], path: Path, columns: Sequence[
     path
         The CSV file.
     columns
-        What a table without rows has.
+        What a table without rows has; with none of either, nothing is written.
     """
     types = _types(rows()) or dict.fromkeys(columns, "object")
+    if not types:
+        return
     schema = pa.schema([(name, _ARROW[dtype]) for name, dtype in types.items()])
     with (
         path.open("w", encoding="utf-8", newline="") as file,
@@ -100,11 +103,23 @@ def write_rows(rows: Callable[[], Iterable[Row]], path: Path, columns: Sequence[
         path.with_suffix(".parquet").open("wb") as packed,
         parquet.ParquetWriter(packed, schema) as columnar,
     ):
-        _append(pd.DataFrame(columns=list(types)), file, header=True)
+        lines = csv.writer(file, lineterminator="\n")
+        lines.writerow(map(uncomputed, types))
         for part in _batches(rows(), _CHUNK):
-            table = pd.DataFrame.from_records(part, columns=list(types)).astype(types)
-            _append(table, file)
-            columnar.write_table(pa.Table.from_pandas(table, schema, preserve_index=False))
+            values = {name: [row.get(name) for row in part] for name in types}
+            texts = [_texts(values[name], dtype) for name, dtype in types.items()]
+            lines.writerows(zip(*texts, strict=True))
+            arrays = [pa.array(values[f.name], f.type, from_pandas=True) for f in schema]
+            columnar.write_table(pa.Table.from_arrays(arrays, schema=schema))
+
+
+def _texts(values: Sequence[Any], dtype: str) -> list[Any]:
+    """Return the cells of a column as they stand in CSV; a missing one is empty."""
+    if dtype == "float64":
+        return ["" if v is None or v != v else repr(float(v)) for v in values]
+    if dtype == "object":
+        return ["" if v is None or v != v else uncomputed(v) for v in values]
+    return list(values)
 
 
 def _types(rows: Iterable[Row]) -> dict[str, str]:
@@ -163,9 +178,9 @@ def read(path: Path) -> pd.DataFrame:
 
 def _mapped(table: pd.DataFrame, how: Callable[[Any], Any]) -> pd.DataFrame:
     """Map the texts of a table and the names of its columns."""
-    done = table.copy()
-    for place, name in enumerate(table.columns):
-        values = table.iloc[:, place]
-        if values.dtype == object or pd.api.types.is_string_dtype(values):
-            done[name] = values.map(how, na_action="ignore")
-    return done.rename(columns=how)
+    done = table.copy(deep=False)
+    for place, dtype in enumerate(table.dtypes):
+        if pd.api.types.is_object_dtype(dtype) or pd.api.types.is_string_dtype(dtype):
+            done[table.columns[place]] = table.iloc[:, place].map(how, na_action="ignore")
+    done.columns = done.columns.map(how)
+    return done

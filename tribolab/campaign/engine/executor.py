@@ -12,11 +12,10 @@ from concurrent.futures import (
 from queue import Empty, SimpleQueue
 from typing import Any
 
-from threadpoolctl import threadpool_limits
-
 from tribolab.campaign.engine.cluster import LOOK, Cluster, ClusterGone, dask_executor, gone
 from tribolab.campaign.engine.pool import LastingPool
 from tribolab.errors import ConfigError, brief
+from tribolab.threads import one_thread
 
 
 def default_jobs() -> int:
@@ -52,7 +51,7 @@ def _here(
     for task in tasks:
         future: Future[Any] = Future()
         try:
-            with threadpool_limits(1, user_api="blas"):  # as in the workers
+            with one_thread():  # as in the workers
                 future.set_result(function(task))
         except Exception as error:  # handed on: whoever asks for the result gets it
             future.set_exception(error)

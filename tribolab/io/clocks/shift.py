@@ -21,7 +21,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from tribolab.io.clocks.basis import Basis
 from tribolab.io.clocks.classes import Classes, coarse_shift, motion_classes
@@ -31,6 +30,7 @@ from tribolab.io.clocks.onset import refine_by_onsets
 from tribolab.io.clocks.rivals import APART, Candidate, candidates, likeliest
 from tribolab.io.clocks.starts import QUARTZ, Logs, changes, shift_from_starts
 from tribolab.medians import median
+from tribolab.threads import one_thread
 
 Array = NDArray[np.float64]
 
@@ -116,8 +116,7 @@ def estimate_clock_shift(
     much the ways differ: friction that rises before the sample slides, or only after slack is
     taken up, moves the shift by what that lasts.
     """
-    # on matrices this small two threads of BLAS wait for each other: ten times as long
-    with threadpool_limits(limits=1, user_api="blas"):
+    with one_thread():
         return _estimated(force_time, force, motion_time, velocity, expected, dated)
 
 

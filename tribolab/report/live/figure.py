@@ -6,6 +6,7 @@ nothing of how.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Any, Literal, TypedDict
@@ -179,13 +180,17 @@ def plain_data(value: Any) -> Any:
             for name, item in values.items()
             if item is not usual[name] and not (isinstance(item, str | tuple | list) and not item)
         }
-    if isinstance(value, np.ndarray | list | tuple):
-        return [plain_data(item) for item in value]
+    if isinstance(value, np.ndarray):
+        return plain_data(value.tolist())
+    if isinstance(value, list | tuple):
+        return [_seen(item) if type(item) is float else plain_data(item) for item in value]
     if isinstance(value, np.generic):
         return plain_data(value.item())
-    if isinstance(value, float):
-        return float(f"{value:.{_DIGITS}g}") if np.isfinite(value) else None
-    return value
+    return _seen(value) if isinstance(value, float) else value
+
+
+def _seen(value: float) -> float | None:
+    return float(f"{value:.{_DIGITS}g}") if math.isfinite(value) else None
 
 
 def thinned(count: int, most: int = 400) -> np.ndarray:
