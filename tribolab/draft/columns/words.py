@@ -42,6 +42,9 @@ _COUNTS = frozenset("count counts cts digit digits lsb bit bits raw adc incremen
 _AS_SET = {"sliding_velocity": "set_speed", "normal_force": "set_normal_force"}
 
 
+_SYMBOLS = frozenset(symbol for word in (*RUN_WORDS, *SCAN_WORDS) for symbol in word.symbols)
+
+
 class Match(NamedTuple):
     """A quantity that a name may stand for; the higher the score, the surer."""
 
@@ -84,6 +87,7 @@ def is_axis(name: str) -> bool:
 _PER = re.compile(r"[\s_]+per[\s_]+|(?<=[mN°])_(?=(?:s|min|h)$)")  # mm_per_s, mm_s
 
 
+@functools.lru_cache(maxsize=4096)
 def split_unit(label: str) -> tuple[str, str | None]:
     """Separate a unit at the end of a name that has no brackets: 'Lateral um', 'Force/N'.
 
@@ -97,8 +101,7 @@ def split_unit(label: str) -> tuple[str, str | None]:
     wide = _WIDE_BRACKETS.match(label.strip())
     if wide and is_unit(wide["unit"].strip()):
         return wide["name"], wide["unit"].strip()
-    known = {symbol for word in (*RUN_WORDS, *SCAN_WORDS) for symbol in word.symbols}
-    if squeezed(label) in known:
+    if squeezed(label) in _SYMBOLS:
         return _symbol_and_unit(label) or (label, None)
     for gap in re.finditer(r"\s+in\s+|[\s_/,]+", label.strip()):
         name, unit = label.strip()[: gap.start()], label.strip()[gap.end() :]

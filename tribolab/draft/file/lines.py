@@ -37,6 +37,7 @@ class Grammar:
 
     def __init__(self, delimiter: str, decimal: str):
         self.delimiter, self.decimal = delimiter, decimal
+        self._mark = None if delimiter == "whitespace" else delimiter
         number = _NUMBER[decimal]
         self._number = re.compile(number)
         gap = r"\s+" if delimiter == "whitespace" else re.escape(delimiter)
@@ -53,10 +54,14 @@ class Grammar:
 
     def merit(self, line: str) -> tuple[int, int]:
         """Return the number of cells, and by how much numbers outweigh text (0: not a row)."""
+        if self.is_plain(line):
+            parts = line.split(self._mark)
+            return len(parts), sum(1 for part in parts if part.strip())
         cells = self.cells(line)
         filled = [cell for cell in cells if cell]
-        numbers = sum(map(self.is_number, filled))
-        text = sum(1 for c in filled if not self.is_number(c) and not _NO_NUMBER.fullmatch(c))
+        others = [cell for cell in filled if not self.is_number(cell)]
+        numbers = len(filled) - len(others)
+        text = sum(1 for cell in others if not _NO_NUMBER.fullmatch(cell))
         is_row = numbers > 0 and 2 * (len(filled) - text) > len(filled)
         return len(cells), max(numbers - text, 1) if is_row else 0
 
@@ -68,7 +73,7 @@ class Grammar:
     def width(self, line: str) -> int:
         """Return the number of cells of a row of numbers; 0 for any other line."""
         if self.is_plain(line):
-            return len(line.split(None if self.delimiter == "whitespace" else self.delimiter))
+            return len(line.split(self._mark))
         width, merit = self.merit(line)
         return width if merit else 0
 
