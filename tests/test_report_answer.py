@@ -187,3 +187,14 @@ def test_curves_that_no_choice_of_load_parts_are_named_in_the_legend():
     assert curve_label(several, known) == "measured, several loads"
     assert curve_label(stated, known) == "measured, 15 N"
     assert curve_label(stated, known[1:]) == curve_label(other, known[1:]) == "measured"
+
+
+def test_a_campaign_with_a_run_in_which_nothing_could_be_measured_is_not_complete():
+    run = {"status": "done", "quality": "pass", "quantity": "friction_coefficient"}
+    run |= {"segments_found": 4, "segments_rejected": 0, "reused": False, "objections": []}
+    run |= {"value_min": 0.1, "value_max": 0.2, "instrument": "a", "instrument_title": "a"}
+    empty = run | {"value_min": None, "value_max": None, "segments_found": 0}
+    whole, part = verdict([run, run]), verdict([run, empty])
+    assert (whole.status, whole.without_value) == ("complete", 0)
+    assert (part.status, part.without_value) == ("incomplete", 1)
+    assert "2 of 2 runs done; 1 without a friction value; 4 segments" in part.text

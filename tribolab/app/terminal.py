@@ -125,6 +125,8 @@ def outcome_lines(outcome: Outcome) -> list[str]:
     done = [run for run in outcome.runs if run.done]
     reused = sum(run.reused for run in done)
     line = f"{len(done)} of {Count(len(outcome.runs)):run|runs}"
+    if empty := sum(not run.segments for run in done):
+        line += f" ({empty} without a segment)"
     line += f", {Count(outcome.segments):segment|segments}"
     if reused:
         line += f"; {reused} unchanged since the last time"

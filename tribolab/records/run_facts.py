@@ -10,6 +10,7 @@ import numpy as np
 
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.oscillation.waveform import NOT_EVALUATED, UNDECIDED, oscillating
+from tribolab.friction.stribeck import mean_of_observations
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.medians import median
 from tribolab.records.decision_rows import decision_rows
@@ -259,20 +260,21 @@ def _highlights(
             chosen[len(parts) // 2] = "middle"
         chosen[0] = "slowest"
         groups = [(word, parts[k]) for k, word in sorted(chosen.items())]
-    return [
-        Highlight(
-            where=word,
-            sliding_speed_m_s=plain_value(float(np.mean(speed[index]))),
-            value=plain_value(float(np.mean(value[index]))),
-            std=plain_value(float(np.sqrt(np.mean(std[index] ** 2)))),
-            # of independent observations the error of the mean is smaller than that of each
-            sem=plain_value(
-                float(np.sqrt(np.mean(sem[index] ** 2) / np.unique(alone[index]).size))
-            ),
-            segments=int(index.size),
+    highlights = []
+    for word, index in groups:
+        in_time = np.sort(index)
+        mean, error = mean_of_observations(value[in_time], sem[in_time], alone[in_time])
+        highlights.append(
+            Highlight(
+                where=word,
+                sliding_speed_m_s=plain_value(float(np.mean(speed[index]))),
+                value=plain_value(mean),
+                std=plain_value(float(np.sqrt(np.mean(std[index] ** 2)))),
+                sem=plain_value(error),
+                segments=int(index.size),
+            )
         )
-        for word, index in groups
-    ]
+    return highlights
 
 
 def left_out(segments: xr.Dataset) -> list[LeftOut]:

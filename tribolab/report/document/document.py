@@ -145,8 +145,9 @@ def verdict(
     segments_rejected = sum(run["segments_rejected"] for run in done)
     quantities = {run["quantity"] for run in sound if run["value_min"] is not None}
     kept = sum(bool(run.get("kept")) for run in done)
+    empty = sum(run["value_min"] is None for run in sound)
     status = "incomplete" if done else "nothing"
-    if done and not (failed or rejected or rejected_scans or kept or lost_decisions):
+    if done and not (failed or rejected or empty or rejected_scans or kept or lost_decisions):
         status = "complete"
     doubtful = sum(status_word(run) == "suspect" for run in runs)
     parts = [
@@ -154,6 +155,8 @@ def verdict(
     ]
     if failed:
         parts.append(f"{failed} failed")
+    if empty:
+        parts.append(f"{empty} without a friction value")
     if kept:
         parts.append(f"{kept} kept from before")
     if rejected:
@@ -180,6 +183,7 @@ def verdict(
         done=len(done),
         failed=failed,
         rejected=rejected,
+        without_value=empty,
         rejected_by_hand=by_hand["rejected"],
         accepted_by_hand=by_hand["accepted"],
         kept=kept,

@@ -220,6 +220,7 @@ class CampaignVerdict:
     done: Natural
     failed: Natural
     rejected: Natural
+    without_value: Annotated[Natural, means("sound runs in which no friction could be measured")]
     rejected_by_hand: Annotated[Natural, means("runs that a person rejected")]
     accepted_by_hand: Annotated[
         Natural, means("runs that a person accepted in spite of their checks")

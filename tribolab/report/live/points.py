@@ -6,6 +6,9 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+import numpy as np
+
+from tribolab.friction.stribeck import mean_of_observations
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.records.parts import Row, number_of
 from tribolab.records.wording import with_error
@@ -61,7 +64,7 @@ def run_points(
     ...          "friction_coefficient_sem": .01, "effective_samples": 50.}
     ...         for v, mu in ((1e-3, .8), (1.01e-3, .9))]
     >>> [(round(p.mu, 3), round(p.within, 4), p.effective_samples) for p in run_points("r", rows)]
-    [(0.85, 0.0071, 100.0)]
+    [(0.85, 0.0973, 100.0)]
     >>> [round(p.within, 4) for p in run_points("r", rows, "half loop")]
     [0.01]
     """
@@ -92,15 +95,18 @@ def run_points(
 
 
 def _point(name: str, group: list[tuple[float, float, Row]], paired: bool) -> RunPoint:
-    errors = [number_of(row, "friction_coefficient_sem") for _, _, row in group]
-    known = [error for error in errors if error is not None]
-    pairs = [int(number_of(row, "pair") or 0) if paired else -1 for _, _, row in group]
-    apart = len({pair for pair in pairs if pair >= 0}) + sum(pair < 0 for pair in pairs)
-    within = math.sqrt(sum(e * e for e in known) / len(known) / apart) if known else None
-    samples = sum(float(number_of(row, "effective_samples") or 0) for _, _, row in group)
+    rows = sorted((row for _, _, row in group), key=lambda row: number_of(row, "start_s") or 0.0)
+    values, errors = (
+        np.array([number_of(row, f"friction_coefficient{end}") for row in rows], float)
+        for end in ("", "_sem")
+    )
+    pairs = np.array([number_of(row, "pair") if paired else -1 for row in rows], float)
+    pairs = np.where(pairs >= 0, pairs, -1.0 - np.arange(pairs.size))
+    mu, within = mean_of_observations(values, errors, pairs)
+    samples = sum(float(number_of(row, "effective_samples") or 0) for row in rows)
     speed = sum(v for v, _, _ in group) / len(group)
-    mu = sum(value for _, value, _ in group) / len(group)
-    return RunPoint(name, speed, mu, within, samples, len(group))
+    known = within if np.isfinite(errors).any() else None
+    return RunPoint(name, speed, mu, known, samples, len(group))
 
 
 def _nearest(loads: Iterable[float], load: float) -> float:
