@@ -10,10 +10,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
+from tribolab.aliases import PathLike
 from tribolab.errors import ReadError
 from tribolab.io import cures, runs
 from tribolab.io.dialects.find import Dialect, Instrument, UnknownFileError
-from tribolab.io.logs import PathLike
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -7,10 +7,11 @@ from typing import Any, overload
 
 import xarray as xr
 
+from tribolab.aliases import PathLike
 from tribolab.draft.on_the_fly import read_run
 from tribolab.errors import ReadError
 from tribolab.io.dialects.find import Instrument
-from tribolab.io.logs import PathLike, group_files
+from tribolab.io.logs import group_files
 from tribolab.io.patterns import is_pattern, matching
 from tribolab.io.runs import Reading
 

@@ -11,13 +11,13 @@ from typing import Literal, overload
 
 import xarray as xr
 
+from tribolab.aliases import PathLike
 from tribolab.draft.dialect.draft import HEIGHTS, holds_heights
 from tribolab.draft.dialect.questions import GuessedError, how_to_keep, questions
 from tribolab.draft.on_the_fly import DRAFTED, draft_of
 from tribolab.errors import ReadError
 from tribolab.io import cures
 from tribolab.io.dialects.find import Dialect, Instrument
-from tribolab.io.logs import PathLike
 from tribolab.io.scans.read import files_of, read_known_scans, stacked
 from tribolab.io.scans.undescribed import is_own_text
 from tribolab.stamping import stamp

@@ -7,8 +7,8 @@ from typing import TypedDict
 import numpy as np
 import xarray as xr
 
+from tribolab.aliases import PathLike
 from tribolab.io.dialects.find import Instrument, known_dialects, load_dialect
-from tribolab.io.logs import PathLike
 from tribolab.io.row_counts import ROW_ATTRIBUTES, rows_in_words
 from tribolab.medians import median
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from tribolab.aliases import PathLike
 from tribolab.io.dialects.find import Dialect, Instrument, every_dialect, load_dialect
 from tribolab.provenance import as_text
-
-PathLike = str | Path
 
 
 def group_files(

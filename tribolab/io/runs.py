@@ -8,12 +8,13 @@ from typing import TypedDict
 
 import xarray as xr
 
+from tribolab.aliases import PathLike
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
 from tribolab.io.assemble import LogDialects, assemble
 from tribolab.io.dialects.find import Dialect, Instrument, is_scan, load_dialect, recognise
 from tribolab.io.dialects.signature import peek
-from tribolab.io.logs import PathLike, companion_name, companion_path
+from tribolab.io.logs import companion_name, companion_path
 from tribolab.io.row_counts import with_companion_rows
 from tribolab.units import positive, to_si
 

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
 
+from tribolab.aliases import Array
 from tribolab.errors import AnalysisError
 
-Array = NDArray[np.float64]
 Signalled = NDArray[np.bool_]
 
 SHEWHART, EWMA, CUSUM, WESTERN = "3 sigma", "EWMA", "CUSUM", "Western Electric"

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import stats
 
+from tribolab.aliases import Array
 from tribolab.errors import AnalysisError
 from tribolab.metrology.resampling import (
     MOST_ROTATED,
@@ -17,7 +17,6 @@ from tribolab.metrology.resampling import (
     permutations_will_do,
 )
 
-Array = NDArray[np.float64]
 PairedGroups = Sequence[tuple[Array, Array]]
 
 PERMUTATION, ROTATION, HOLM = "permutation", "rotation", "Holm"

@@ -6,12 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import stats
 
+from tribolab.aliases import Array
 from tribolab.errors import AnalysisError
-
-Array = NDArray[np.float64]
 
 POOLED_ABOVE = 0.25  # p value of the interaction, from which on it counts as repeatability
 _CATEGORIES = math.sqrt(2)  # ndc: widths of the 97 % interval of the gauge in that of the parts

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import stats
 
-Array = NDArray[np.float64]
+from tribolab.aliases import Array
 
 LIMIT = 2.8  # standard deviations that two single results differ by with 95 %: 1.96 sqrt(2)
 

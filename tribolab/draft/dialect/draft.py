@@ -8,6 +8,7 @@ import tomllib
 import warnings
 from pathlib import Path
 
+from tribolab.aliases import PathLike
 from tribolab.draft.columns.columns import first_cells_of, understand
 from tribolab.draft.columns.words import matches
 from tribolab.draft.dialect.drafted import SHOWN, Drafted
@@ -21,7 +22,6 @@ from tribolab.io.dialects.find import recognise
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, is_results, is_surftest_results, named_values, peek
 
-PathLike = str | Path
 HEIGHTS = (
     "heights without positions, of which the file does not say how far they lie apart: that is to "
     'be filled in, pitch = "(a length)"'

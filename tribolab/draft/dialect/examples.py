@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from tribolab.aliases import PathLike
 from tribolab.draft.dialect.answers import written
-from tribolab.draft.dialect.draft import Draft, PathLike, draft_dialect
+from tribolab.draft.dialect.draft import Draft, draft_dialect
 from tribolab.draft.model import DraftColumn
 from tribolab.errors import ReadError
 

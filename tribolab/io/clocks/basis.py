@@ -8,10 +8,10 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
+from tribolab.aliases import Array
 from tribolab.io.clocks.motion import Motion
 from tribolab.medians import median
 
-Array = NDArray[np.float64]
 Ways = Array | NDArray[np.int64]  # -1 backward, 0 at rest, 1 forward
 
 _LENGTHS = 9  # stops

@@ -20,9 +20,8 @@ import numpy as np
 from numpy.fft import irfft, rfft
 from numpy.typing import NDArray
 
+from tribolab.aliases import Array
 from tribolab.medians import median
-
-Array = NDArray[np.float64]
 
 _GRID = 1 << 14  # cells of the coarse grid over the longer log
 _OVERLAP = 0.6  # least part of the largest possible overlap

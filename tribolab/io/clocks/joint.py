@@ -21,10 +21,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tribolab.aliases import Array
 from tribolab.io.clocks.basis import SLACKS, Basis
 from tribolab.medians import median
-
-Array = NDArray[np.float64]
 
 _SAMPLES = 2000  # of the force, looked at in one fit
 _CANCELLED = 1e-6  # of the whole: a difference of sums that is smaller is summed itself

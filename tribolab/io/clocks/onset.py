@@ -16,11 +16,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tribolab.aliases import Array
 from tribolab.medians import median
-
-Array = NDArray[np.float64]
 
 _PART = 0.05  # of a stroke's length is looked at, and as long before it
 _DISTANCES = 1e-6 * 4.0 ** np.arange(9)  # d, in lengths of the stroke

@@ -12,12 +12,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from tribolab.aliases import Array
 from tribolab.io.clocks.basis import Basis
 from tribolab.io.clocks.joint import fit_jointly, sampling
-
-Array = NDArray[np.float64]
 
 APART = 0.25  # of a fast stroke's duration: shifts nearer than this are one
 _SPAN = 0.3  # of it, in which each is fitted

@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tribolab.aliases import Array
 from tribolab.io.clocks.basis import Basis
 from tribolab.io.clocks.classes import Classes, coarse_shift, motion_classes
 from tribolab.io.clocks.joint import told_by_motion
@@ -31,8 +32,6 @@ from tribolab.io.clocks.rivals import APART, Candidate, candidates, likeliest
 from tribolab.io.clocks.starts import QUARTZ, Logs, changes, shift_from_starts
 from tribolab.medians import median
 from tribolab.threads import one_thread
-
-Array = NDArray[np.float64]
 
 _LEAST_SIGNIFICANCE = 10.0  # as an F ratio: the classes alone tell that force follows motion
 _LEAST_AT_ALL = 1.5  # with the other ways' consent

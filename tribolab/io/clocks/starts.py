@@ -19,9 +19,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from tribolab.aliases import Array
 from tribolab.medians import median
-
-Array = NDArray[np.float64]
 
 QUARTZ = 10e-6  # usual relative difference of two quartz clocks: standard deviation
 _MOST_STARTS = 64

@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.aliases import Array
 from tribolab.errors import UnitError, nearest, shown
 from tribolab.units import base_unit, registry, to_si
 
@@ -28,7 +29,6 @@ _TOKEN = re.compile(
     r"|(?P<quoted>'[^']*')|(?P<sign>[-+*/()]))"
 )
 
-Array = np.ndarray
 Dimension = tuple[tuple[str, float], ...]  # base dimensions and their powers, in order of name
 
 

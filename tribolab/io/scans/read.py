@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from tribolab.aliases import PathLike
 from tribolab.errors import Cure, ReadError, shown
 from tribolab.io import cures
 from tribolab.io.content.read import read_content
@@ -30,7 +31,6 @@ from tribolab.stamping import stamp
 from tribolab.units import positive
 from tribolab.untyped import Json
 
-PathLike = str | Path
 # where the scans of a surface differ, the one that shows least counts for all
 _WORST = {"tip_radius_m": max, "lambda_s_m": max, "lambda_c_m": min}
 _JOINED = ("source", "source_sha256")
