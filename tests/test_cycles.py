@@ -105,6 +105,23 @@ def test_middles_of_strokes_are_segments_with_half_loops():
     assert tl.find_segments(run.drop_vars("position")).sizes["segment"] == 0
 
 
+@pytest.mark.parametrize("known", ["position", "sliding_velocity"])
+def test_no_stroke_goes_across_a_pause_of_the_logger(known):
+    run = crank().drop_vars({"position", "sliding_velocity"} - {known})
+    time = run["time"].values
+    period = 1 / FREQUENCY
+    bursts = time % (10 * period) < 4.6 * period  # each ends within a stroke
+    cut = run.isel(time=bursts)
+    cut = cut.assign_coords(time=cut["time"].values + 600 * (cut["time"].values // (10 * period)))
+    whole, parts = (tl.find_segments(one, stroke_middle=0.5) for one in (run, cut))
+    usual = float(whole["sliding_speed"].mean())
+    np.testing.assert_allclose(parts["sliding_speed"].values, usual, rtol=0.05)
+    assert 0.38 < parts.sizes["segment"] / whole.sizes["segment"] < 0.46
+    assert "gap" in parts["omitted_reason"].values
+    [told] = [row["status"] for row in tl.check(cut).rows if row["check"] == "time_gaps"]
+    assert told == "suspect"
+
+
 @pytest.mark.parametrize(
     ("change", "said"),
     [

@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 from slip_cases import noisy, saw, seen
 
+from tribolab.friction.oscillation.oscillation import gather
+from tribolab.friction.oscillation.spectra import Spectrum
+
 
 @pytest.mark.parametrize("periods", [2.5, 2.7, 3.0, 3.2, 3.6, 4.1, 4.2, 4.6, 5.3])
 @pytest.mark.parametrize("turned", [1, -1])
@@ -95,3 +98,11 @@ def test_a_slow_drift_of_the_load_is_no_period(bend):
     assert found["waveform"].item() == "sawtooth stick-slip"
     assert found["periods"].item() == pytest.approx(60, rel=0.02)
     assert found["drop"].item() == pytest.approx(0.1, rel=0.08)
+
+
+def test_what_the_mean_leaves_in_a_spectrum_is_no_line():
+    frequency = np.arange(40.0)
+    power = np.where(frequency == 0, 10.0, 0.5)
+    fine = Spectrum(frequency, power, np.ones(40), np.full(40, 2.0), "made")
+    line, _, powers = gather(fine, np.ones(40), 2)
+    assert line == 2.0 and powers.sum() == 0

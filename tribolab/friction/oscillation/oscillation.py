@@ -126,9 +126,11 @@ def oscillation(seen: Survey, near: float | None = None) -> Oscillation:
 
 
 def _nearest_summit(fine: Spectrum, near: float) -> int:
-    """Strongest bin near a frequency."""
+    """Strongest bin near a frequency, never that of the mean; of one beyond all, the next."""
     part = np.abs(fine.frequency - near) <= max(_NEAR * near, 1.01 * fine.width[0])
     part[:1] = False
+    if not part.any():
+        return 1 + int(np.argmin(np.abs(fine.frequency[1:] - near)))
     return int(np.argmax(np.where(part, fine.power, -1.0)))
 
 
@@ -142,6 +144,7 @@ def gather(fine: Spectrum, level: np.ndarray, at: int) -> tuple[float, float, np
     """Return a line's frequency as the centre of its power, its error, its harmonics' variances."""
     f0, error = float(fine.frequency[at]), 0.0
     excess = np.maximum(fine.power - level, 0) * fine.width
+    excess[fine.frequency <= 0] = 0.0  # what the mean leaves is no part of a line
     for _ in range(3):
         near = np.abs(fine.frequency - f0) <= max(_REACH * f0, 2.01 * fine.width[at])
         weight = excess[near]

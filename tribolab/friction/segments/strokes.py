@@ -15,6 +15,8 @@ HYSTERESIS = 0.25  # of the range: how far a position has to come back to be a t
 LEAST_SPEED = 0.2  # of the usual speed: what is slower does not say which way it goes
 SHORTEST = 0.5  # of the usual length: what is shorter is no stroke
 FEWEST = 3  # strokes, the cut ones at both ends left out
+_PAUSE = 20  # usual sample spacings: what is shorter is no pause
+_NOT_SEEN = 0.25  # of a stroke's duration
 SAME = 1e-9  # of the range, or of the usual speed: what differs by less is the same, or zero
 
 
@@ -33,6 +35,8 @@ class Strokes(NamedTuple):
         Share of its stroke that each sample has gone (time); NaN outside of whole strokes.
     usual
         Whether a stroke is as long as strokes are, and not a twitch at a turn (stroke).
+    paused
+        Whether much of a stroke was not recorded, so that it may be parts of two (stroke).
     """
 
     first: np.ndarray
@@ -40,6 +44,7 @@ class Strokes(NamedTuple):
     length: np.ndarray
     place: np.ndarray
     usual: np.ndarray
+    paused: np.ndarray
 
     @property
     def number(self) -> np.ndarray:
@@ -87,7 +92,15 @@ def find_strokes(run: xr.Dataset) -> Strokes:
                 "segments.stroke_middle = 0.5 in their [[run]]",
             ),
         )
-    return Strokes(first, way, length, place, _usual(run, first, length))
+    paused = _paused(run["time"].values, first)
+    return Strokes(first, way, length, place, _usual(run, first, length) & ~paused, paused)
+
+
+def _paused(time: np.ndarray, first: np.ndarray) -> np.ndarray:
+    """Whether no sample was taken in a quarter of a stroke (stroke)."""
+    pause = np.diff(time[first[0] : first[-1] + 1])
+    longest = np.maximum.reduceat(pause, first[:-1] - first[0])
+    return longest > np.maximum(_PAUSE * median(pause), _NOT_SEEN * np.diff(time[first]))
 
 
 def _settings(run: xr.Dataset) -> np.ndarray | None:

@@ -55,7 +55,9 @@ def _time_gaps(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     lost = timing.lost_time(time, flags)
     longest = float(timing.lengths_of_gaps(time, flags).max())
     text = f"{{count:gap|gaps}} in time, the longest {longest:.4g} s, {{where}}"
-    if lost > limits["lost"]:
+    # what stands between long pauses is whole, and no segment goes across one
+    parts = np.diff(np.concatenate([[0], np.flatnonzero(flags == SUSPECT), [flags.size]]))
+    if lost > limits["lost"] and np.median(parts) < limits["whole"]:
         flags = np.where(flags == SUSPECT, FAIL, flags).astype(np.int8)
     return [sample_result("time", flags, time, text, value=lost)]
 
@@ -241,10 +243,11 @@ RECORD_CHECKS = (
         "time_gaps",
         2,
         "Are stretches of time missing?",
-        "Look whether the logger lost data or paused; segments across a gap are not whole.",
+        "Look whether the logger lost data or paused; no segment goes across a long gap.",
         {
             "intervals": Limit(5.0, "1", "buffers that arrive late stretch 2 to 3 intervals"),
             "lost": Limit(0.2, "1", "a fifth of the record gone is no record of the experiment"),
+            "whole": Limit(100, "1", "so many samples between pauses are a record of their own"),
         },
         _time_gaps,
     ),
