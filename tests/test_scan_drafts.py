@@ -204,3 +204,51 @@ def test_a_total_profile_is_heights_and_of_total_and_raw_one_is_asked_for(tmp_pa
     both = "Lateral (um),Total Profile (nm),Raw Profile (nm)\n" + "".join(lines)
     with pytest.raises(ReadError, match="of several columns for height"):
         read_scans(written(tmp_path, both, "both.csv"))
+
+
+GAPPED = [*map(str, Z[:50]), *["{}"] * 40, *map(str, Z[90:])]  # a fifth is missing
+COUNTED = "Point spacing: 0.25 um\nPoints: 200\nHeight [{}]\n{}\n"
+
+
+@pytest.mark.parametrize("mark", ["***", "nan", "---", ""])
+def test_a_missing_height_keeps_its_place_where_heights_are_counted(tmp_path, mark):
+    column = "\n".join(GAPPED).replace("{}", mark)
+    path = written(tmp_path, COUNTED.format("um", column))
+    wanted = np.where((np.arange(200) >= 50) & (np.arange(200) < 90), np.nan, 1e-6 * Z)
+    target = save_draft(draft_dialect(path), tmp_path / "own.toml")
+    for scan in (read_scans(path), read_scans(path, target)):
+        np.testing.assert_allclose(scan.height[0], wanted, rtol=0, atol=1e-15)
+    assert any("40 points without a height" in line for line in file_lines(path))
+
+
+@pytest.mark.parametrize("around", ["\n\n{}\n\n\n", "{}"])
+def test_empty_lines_about_heights_and_after_each_are_no_heights(tmp_path, around):
+    path = written(tmp_path, COUNTED.format("um", around.format(COLUMN)))
+    np.testing.assert_allclose(read_scans(path).height[0], 1e-6 * Z, rtol=0, atol=1e-15)
+    path = written(tmp_path, COUNTED.format("um", around.format("\n\n".join(map(str, Z)))))
+    np.testing.assert_allclose(read_scans(path).height[0], 1e-6 * Z, rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("said", "unit"), [("Angstrom", 1e-10), ("Ångström", 1e-10), ("Nanometres", 1e-9)]
+)
+def test_a_unit_that_is_written_out_is_not_guessed(tmp_path, said, unit):
+    path = written(tmp_path, COUNTED.format(said, COLUMN))
+    np.testing.assert_allclose(read_scans(path).height[0], unit * Z, rtol=1e-9, atol=1e-20)
+
+
+def test_columns_whose_names_differ_by_a_number_are_profiles_side_by_side(tmp_path):
+    names = "\t".join(f"Profile {k}" for k in (1, 2, 3))
+    rows = "\n".join(f"{z}\t{2 * z:.4f}\t{'***' if k == 7 else 3 * z}" for k, z in enumerate(Z))
+    head = "Data spacing: 0.25 um\nHeight unit: nm\n"
+    path = written(tmp_path, f"{head}\n{names}\n{rows}\n")
+    target = save_draft(draft_dialect(path), tmp_path / "own.toml")
+    for scans in (read_scans(path), read_scans(path, target)):
+        assert scans.sizes == {"scan": 3, "x": 200} and "columns_not_used" not in scans.attrs
+        factor = np.nanmedian(scans.height / (1e-9 * Z), axis=1)
+        np.testing.assert_allclose(factor, [1, 2, 3], rtol=1e-3)
+        assert np.isnan(scans.height).sum(axis=1).values.tolist() == [0, 0, 1]
+    # forces with numbers are none
+    path = written(tmp_path, f"{head}\nForce 1 [N]\tForce 2 [N]\tForce 3 [N]\n{rows}\n")
+    with pytest.raises(TribolabError):
+        read_scans(path)

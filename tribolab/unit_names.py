@@ -19,7 +19,7 @@ _SAME = {
     "force_pound": "Lbf LBF lbF lbsf",
     "m": "metre metres mètre mètres metro metros metri м 米",
     "mm": "Millimeter millimetres millimètres milimetros millimetri MM мм 毫米",
-    "um": "mikrometer Mikrometer micromètres micras mkm мкм 微米",
+    "um": "UM Micron Microns MICRONS mikrometer Mikrometer micromètres micras mkm мкм 微米",
     "nm": "нм 纳米",
     "cm": "см 厘米",
     "degC": "Celsius celsius oC DegC ℃ grdC degrC °c °С",
@@ -55,11 +55,19 @@ _WHOLE = {
     **{f"{p}Pas": f"{p}Pa*s" for p in ("", "m", "u")},
     **{f"N{length}-2": f"N/{length}**2" for length in ("m", "cm", "mm")},
     **dict.fromkeys(("mil", "mils"), "thou"),
+    **dict.fromkeys(("u-inch", "uinch", "micro inch", "micro-inch", "uin."), "microinch"),
     **{"sec.": "s", "min.": "min", "mm.": "mm", "N.": "N", '"': "inch", "fpm": "ft/min"},
     **{"ips": "in/s", "lb-f": "force_pound", "kg-f": "force_kilogram", "gram-force": "force_gram"},
     **dict.fromkeys(("kg/cm2", "kg/cm²", "kg/cm^2"), "force_kilogram/cm**2"),
     **dict.fromkeys(("kg/mm2", "kg/mm²", "kg/mm^2"), "force_kilogram/mm**2"),
 }
+_WRITTEN = re.compile(
+    r"(?i)(?P<prefix>nano|micro|milli|centi|kilo|mega|giga)?(?P<unit>met(?:er|re)|newton|pascal|"
+    r"volt|hertz|second|minute|hour|inch|angstr(?:o|ö|oe|ø)m|ångstr(?:ö|o)m|radian|degree)(?:e?s)?"
+)
+_WRITTEN_AS = {"metre": "meter"} | dict.fromkeys(
+    ("angström", "angstroem", "angstrøm", "ångström", "ångstrom"), "angstrom"
+)
 _NAME = re.compile(r"[°]?[^\W\d_]+|℃|℉")
 # a weight on an arm: pounds, ounces, grams and kilograms stand for their weight in a torque
 _WEIGHTS = {"kg": "force_kilogram", "g": "force_gram", "lb": "force_pound", "oz": "force_ounce"}
@@ -90,4 +98,17 @@ def plain_unit(unit: str) -> str:
         if (torque := form.fullmatch(text)) and torque["arm"] + torque["weight"] != "mg":
             return f"{_WEIGHTS[torque['weight']]}*{torque['arm']}"
     text = re.sub("(?<=/)Nm$", "(N*m)", text)
-    return _NAME.sub(lambda name: _NAMES.get(name[0], name[0]), text)
+    return _NAME.sub(lambda name: _NAMES.get(name[0]) or _in_full(name[0]), text)
+
+
+def _in_full(name: str) -> str:
+    """Return a unit that is written out, in whatever letters, as the library of units has it.
+
+    >>> _in_full("Nanometres"), _in_full("INCHES"), _in_full("Ångström"), _in_full("Fx")
+    ('nanometer', 'inch', 'angstrom', 'Fx')
+    """
+    told = _WRITTEN.fullmatch(name)
+    if told is None:
+        return name
+    unit = told["unit"].lower()
+    return (told["prefix"] or "").lower() + _WRITTEN_AS.get(unit, unit)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 
 import numpy as np
 import pandas as pd
@@ -51,10 +52,11 @@ def understand(layout: Layout) -> Understood:
     length = None if pitch is not None or density else find_profile_length(layout)
     apart = pitch is not None or bool(density) or length is not None
     guesses = missing_factors(layout)
-    if _say_something(columns):
+    kind: Kind
+    if apart and (layout.width == 1 and not _say_something(columns) or _side_by_side(columns)):
+        kind, columns = "scan", [_heights(column, stated=bool(unit)) for column in columns]
+    elif _say_something(columns):
         kind, columns = _by_name(columns, numbers, placed=apart)
-    elif apart and layout.width == 1:
-        kind, columns = "scan", [_heights(columns[0], stated=bool(unit))]
     else:
         # late: starting stays quick
         from tribolab.draft.columns.behaviour import by_behaviour
@@ -267,6 +269,15 @@ def _say_something(columns: list[DraftColumn]) -> bool:
     """Whether the header says more than 'Channel 1, Channel 2'."""
     bare = [_bare(column)[:2] for column in columns if column.label]
     return any(unit is not None or matches(name, unit) for name, unit in bare)
+
+
+def _side_by_side(columns: list[DraftColumn]) -> bool:
+    """Whether columns are profiles side by side: their names differ by a number alone."""
+    names = [_bare(column)[0] for column in columns]
+    units = {column.file_unit or column.unit for column in columns}
+    alike = {re.sub(r"\d+", "", name).strip() for name in names}
+    lengths = all(unit is None or converts(unit, "m") for unit in units)
+    return len(set(names)) == len(names) > 1 and len(alike) == 1 and lengths
 
 
 def _heights(column: DraftColumn, *, stated: bool) -> DraftColumn:

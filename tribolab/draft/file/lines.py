@@ -19,9 +19,11 @@ _NUMBER = {
     ".": r"[+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?",  # digits are never given back
     ",": r"[+-]?(?:\d++(?:,\d*+)?|,\d++)(?:[eE][+-]?\d++)?",
 }
-# dates, times of day, and what instruments write where a value should stand
+# what instruments write where a value should stand; and dates and times of day
+_INSTEAD = r"nan|[+-]?inf|null|n/?a|-+|[*#][*.#]*[a-zµμ]*!?|err\w*|over\w*|ovl|none"
+_MISSING = re.compile(rf"(?i){_INSTEAD}")
 _NO_NUMBER = re.compile(
-    r"(?i)nan|[+-]?inf|null|n/?a|-+|[*#][*.#]*[a-zµμ]*!?|err\w*|over\w*|ovl|none|"
+    rf"(?i){_INSTEAD}|"
     r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}(?:[T ]\d.*)?|"
     r"\d{1,2}:\d\d(?::\d\d)?(?:[.,]\d+)?(?: ?[ap]\.?m\.?)?"
 )
@@ -85,6 +87,8 @@ class Grammar:
     def goes_on(self, line: str, width: int) -> bool:
         """Whether a line can be a row in the midst of others: half of it may be error codes."""
         cells = self.cells(line)
+        if width == 1:  # a value that is missing: where rows are counted it has to stay
+            return len(cells) == 1 and bool(_MISSING.fullmatch(cells[0]))
         numbers = sum(map(self.is_number, cells))
         filled = sum(1 for cell in cells if cell)
         return len(cells) == width and self.is_number(cells[0]) and 2 * numbers >= filled

@@ -81,7 +81,8 @@ class Dialect(Strict):
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
         names = [column.key for column in self.column]
-        for name in sorted({name for name in names if names.count(name) > 1}):
+        side_by_side = {"height"} if "y" not in names else set()  # profiles of one surface
+        for name in sorted({name for name in names if names.count(name) > 1} - side_by_side):
             if not all(column.optional for column in self.column if column.key == name):
                 raise ValueError(
                     f"'{name}' is given by two columns; if each file fills one of them, say "

@@ -14,7 +14,7 @@ from tribolab.errors import ReadError
 from tribolab.io.dialects.columns import ReadColumn
 from tribolab.io.dialects.headers import LONGEST_LINE
 from tribolab.io.dialects.model import Dialect
-from tribolab.io.dialects.text_columns import GrowingColumns
+from tribolab.io.dialects.text_columns import GrowingColumns, of_one_column
 from tribolab.io.dialects.text_rows import RowParser
 from tribolab.io.dialects.text_tables import RawText, TextTable
 
@@ -94,7 +94,10 @@ def read_table(
                 hasher.update(rest).result()
     except OSError as error:
         raise ReadError(f"{raw.file.path}: the file cannot be read any more: {error}") from error
-    return columns.finished(), parser.incomplete
+    finished = columns.finished()
+    if table.width == 1:
+        finished = {name: of_one_column(values) for name, values in finished.items()}
+    return finished, parser.incomplete
 
 
 def _opened(raw: RawText) -> io.FileIO | io.BytesIO:

@@ -8,6 +8,8 @@ import pyarrow as pa
 from tribolab.io.dialects.columns import ReadColumn
 from tribolab.room import is_long, let_go, room
 
+_FEW = 5  # lines that tell that each other one is empty
+
 
 class GrowingColumns:
     """Arrays that grow as blocks come in; each number is brought to SI as it is stored.
@@ -68,6 +70,24 @@ class GrowingColumns:
         return {
             s.quantity: array[: self._used] for s, array in zip(self._signals, arrays, strict=True)
         }
+
+
+def of_one_column(values: np.ndarray) -> np.ndarray:
+    """Return the values of a column on its own, without empty lines about it or after each line.
+
+    Examples
+    --------
+    >>> of_one_column(np.array([np.nan, 1.0, np.nan, 3.0, 4.0, np.nan]))
+    array([ 1., nan,  3.,  4.])
+    >>> of_one_column(np.array([1.0, np.nan, 2.0, np.nan, 3.0, np.nan, 4.0]))
+    array([1., 2., 3., 4.])
+    """
+    known = np.flatnonzero(np.isfinite(values))
+    if not known.size:
+        return values
+    inner = values[known[0] : known[-1] + 1]
+    is_double = inner.size > _FEW and inner.size == 2 * known.size - 1
+    return inner[::2] if is_double and np.isfinite(inner[::2]).all() else inner
 
 
 def _scaled(numbers: np.ndarray, scale: float, out: np.ndarray) -> None:

@@ -29,7 +29,11 @@ class RowParser:
         dated = dialect.time.format is not None
         self._dates = {names[s.place] for s in signals if dated and s.quantity == "time"}
         self.incomplete = 0
-        self._parse = {"delimiter": "\t" if delimiter == "whitespace" else delimiter}
+        self._parse: Arguments = {
+            "delimiter": "\t" if delimiter == "whitespace" else delimiter,
+            # of a single column the place is told by counting: an empty line is a missing value
+            "ignore_empty_lines": table.width > 1,
+        }
         self._read = arrow_csv.ReadOptions(
             column_names=names, block_size=_ONE_PIECE, use_threads=False
         )

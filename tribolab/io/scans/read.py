@@ -160,6 +160,22 @@ def _recognised(path: Path) -> Dialect | None:
 
 
 def _by_dialect(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
+    """Return the scans of a file, of columns of heights side by side one for each."""
+    beside = [c for c in dialect.column if c.key == "height" and not c.optional]
+    if len(beside) < 2:
+        return _of_columns(path, dialect)
+    others = tuple(column for column in dialect.column if column not in beside)
+    scans: list[xr.Dataset] = []
+    for column in beside:
+        mine, checksum = _of_columns(path, dialect.model_copy(update={"column": (*others, column)}))
+        scans += mine
+    for scan in scans:
+        scan.attrs.pop("columns_not_used", None)  # each leaves the others to the others
+        scan.attrs["traces"] = str(len(scans))
+    return scans, checksum
+
+
+def _of_columns(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
     # late: starting stays quick
     from tribolab.io.content.values import single_values
     from tribolab.io.scans.traces import traces_of
