@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from tribolab.draft.columns.assign import SIGNALS, assigned
+from tribolab.draft.columns.bridges import calibrated_forces
 from tribolab.draft.columns.either import told_by_load
 from tribolab.draft.columns.factors import missing_factors
 from tribolab.draft.columns.fill_in import Bare
@@ -80,6 +81,9 @@ def understand(layout: Layout) -> Understood:
     # late: starting stays quick
     from tribolab.draft.columns.clock import find_clock, summed
 
+    if kind == "run":  # what a force is reckoned with is not left out
+        spoken_for = [shown(force.value.text, 40) for force in calibrated_forces(layout, columns)]
+        guesses = [said for said in guesses if not any(text in said for text in spoken_for)]
     period = summed(columns, numbers)
     on_repeat, restart, columns = find_clock(layout, columns, numbers)
     used = [column.place - 1 for column in columns if column.used]

@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tribolab.draft.columns.bridges import calibrated_forces
 from tribolab.draft.columns.lengths import find_arm, find_radius
 from tribolab.draft.columns.stated_load import find_load
 from tribolab.draft.columns.strokes import (
@@ -94,6 +95,11 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
             formula = DraftedFormula("friction_force", f"torque / {arm.formula}", about)
             result = _and(result, formula, arm.values, (("torque", torque), *arm.symbols))
             names.add("friction_force")
+    for force in calibrated_forces(layout, understood.columns):
+        about = f"a signal in volts, and '{force.value.text}'"
+        formula = DraftedFormula(force.quantity, force.formula, about)
+        result = _and(result, formula, [force.value], ((force.symbol, force.column),))
+        names.add(force.quantity)
     if understood.load and names & SAYS_FRICTION and not names & SAYS_LOAD:
         about = "it was said that the load is so all along"
         return _and(result, DraftedFormula("normal_force", f"'{understood.load}'", about))
