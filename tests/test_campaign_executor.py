@@ -3,8 +3,10 @@
 import importlib.util
 import os
 import signal
+import struct
 import subprocess
 import sys
+import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 
@@ -113,6 +115,17 @@ def test_what_workers_are_copied_of_has_no_threads():
         imported, nursery = pool.submit(imported_and_parent, modules[-1]).result(timeout=120)
         assert imported
         assert len(os.listdir(f"/proc/{nursery}/task")) == 1  # noqa: PTH208 - a process table
+
+
+def test_a_worker_that_is_stopped_within_its_answer_keeps_nobody_waiting():
+    pool = LastingPool(1)
+    assert pool.submit(pow, 2, 3).result(timeout=60) == 8
+    # the beginning of an answer of a thousand bytes, of which no more comes
+    os.write(pool._main._pool._result_queue._writer.fileno(), struct.pack("!i", 1000) + b"half")
+    ending = threading.Thread(target=pool.end, daemon=True)
+    ending.start()
+    ending.join(30)
+    assert not ending.is_alive()
 
 
 def test_workers_know_the_environment_of_now(monkeypatch):
