@@ -17,6 +17,7 @@ from tribolab.errors import harmless
 from tribolab.records.part_records import CurveRecord, SurfaceRecord
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome, number_of
 from tribolab.records.run_record import RunRecord
+from tribolab.records.wording import with_error
 from tribolab.words import LOAD_MEASURED, LOAD_VARIES, Count, load_text
 
 if TYPE_CHECKING:
@@ -212,7 +213,9 @@ def _roughness(outcome: Outcome) -> list[str]:
             continue
         cut = number_of(row, "lambda_c_m")
         by = "no cut-off" if cut is None else f"cut-off {1e3 * cut:.3g} mm"
-        told.setdefault(by, []).append(f"{surface.name} {1e6 * rq:.3g} µm")
+        error = max(number_of(row, f"Rq_{what}_m") or 0.0 for what in ("sem", "gap_error"))
+        said = with_error(1e6 * rq, 1e6 * error) if error else f"{1e6 * rq:.3g}"
+        told.setdefault(by, []).append(f"{surface.name} {said} µm")
     return [
         f"Rq ({by}): {', '.join(names[:_HANDFUL])}"
         + (f" and {len(names) - _HANDFUL} more" if len(names) > _HANDFUL else "")

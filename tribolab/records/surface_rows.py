@@ -24,6 +24,7 @@ ROUGHNESS = [
     "scans",
     *("Ra_m", "Rq_m", "Rz_m", "Rsk", "Rku", "Rdq"),
     "Pq_m",
+    *(column(f"{name}_sem") for name in _ISO),
     *(column(f"{name}_gap_error") for name in _ISO),
     *(f"rms_roughness{end}_m" for end in _BAND),
     *(f"rms_slope{end}" for end in _BAND),
@@ -83,6 +84,7 @@ def _roughness(moments: xr.Dataset, psd: xr.Dataset) -> Row:
     rough = dict.fromkeys(ROUGHNESS)
     for name in _ISO:
         rough[column(name)] = float(moments[name].mean())
+        rough[column(f"{name}_sem")] = _error_over_scans(moments[name])
         if (error := f"{name}_gap_error") in moments:
             rough[column(error)] = _error_of_mean(moments[error])
     rough["Pq_m"] = float(moments["Pq"].mean()) if "Pq" in moments else None
@@ -95,6 +97,12 @@ def _roughness(moments: xr.Dataset, psd: xr.Dataset) -> Row:
     q = psd.wavenumber.values
     rough |= {"wavenumber_low_1_m": q[0], "wavenumber_high_1_m": q[-1]}
     return rough
+
+
+def _error_over_scans(values: xr.DataArray) -> float | None:
+    """Return the standard error of a mean over scans from their scatter; None of a single scan."""
+    scans = values.mean("y") if "y" in values.dims else values
+    return float(scans.std(ddof=1)) / np.sqrt(scans.size) if scans.size > 1 else None
 
 
 def _error_of_mean(error: xr.DataArray) -> float:

@@ -40,8 +40,9 @@ _CHECK = ("scan", "check", "status", "variable", "message", "value", "unit", "wh
 _VALIDITY = "limits of the theory that the results leave, and what to do; empty if none"
 _QUALITY = "gravest finding of the checks on the scans that were used; empty if there are none"
 _ROUGHNESS = (
-    "a row of tables/roughness.csv: ISO parameters are means over the scans, *_gap_error the "
-    "standard errors that missing heights bring to them, rms_* moments of the extrapolated spectrum"
+    "a row of tables/roughness.csv: ISO parameters are means over the scans, *_sem their "
+    "standard errors from the scatter of the scans, *_gap_error what missing heights bring, rms_* "
+    "moments of the extrapolated spectrum"
 )
 _CONTACT = (
     "a row of tables/contact.csv: without adhesion, at one load; at one pressure where no load is "
