@@ -7,7 +7,7 @@ FILES = (
     "tribolab.draft.scans",
 )
 
-SIMULATION = ("tribolab.app.plain", "tribolab.rig.campaign", "scipy.signal")
+SIMULATION = ("tribolab.app.plain", "tribolab.rig.campaign", "scipy.linalg")
 
 # the stages themselves, then what they import only where it is needed, in this order
 ANALYSIS = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 CORRELATION = np.array([0.0, 0.2, 0.4, 0.6, 0.7, 0.8, 0.9, 0.95])
 GROWTH = 1.35 ** np.arange(18)
@@ -108,7 +108,7 @@ def residual_error(
     share = np.exp(evidence - evidence.max())
     share /= share.sum()
     errors = share * np.sqrt(variance)[:, None] * growth / size[0]
-    quantile = np.full(growth.size, stats.t.ppf(0.975, freedom))
+    quantile = np.full(growth.size, special.stdtrit(freedom, 0.975))
     if known:
         quantile[growth == 1] = _NORMAL
     return ResidualError(

@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from scipy import stats
+from scipy import special
 from scipy.optimize import least_squares
-from scipy.special import comb
 
 from tribolab.contact.geometry import LineContact
 from tribolab.errors import AnalysisError, Cure, nearest, shown
@@ -217,7 +216,7 @@ def fit_shear_stress(
         residual_correlation=scatter.correlation,
         chi_square=chi_square,
         degrees_of_freedom=freedom,
-        chi_square_p_value=float(stats.chi2.sf(chi_square, freedom)),
+        chi_square_p_value=float(special.chdtrc(freedom, chi_square)),
         birge_ratio=birge,
         runs_p_value=runs_p_value(residual[used]),
         common_error=common,
@@ -251,11 +250,11 @@ def runs_p_value(residual: np.ndarray) -> float:
     for runs in range(2, seen + 1):
         half = runs // 2
         if runs % 2 == 0:
-            ways += float(2 * comb(plus - 1, half - 1) * comb(minus - 1, half - 1))
+            ways += float(2 * special.comb(plus - 1, half - 1) * special.comb(minus - 1, half - 1))
         else:
-            ways += float(comb(plus - 1, half) * comb(minus - 1, half - 1))
-            ways += float(comb(plus - 1, half - 1) * comb(minus - 1, half))
-    return float(ways / comb(plus + minus, plus))
+            ways += float(special.comb(plus - 1, half) * special.comb(minus - 1, half - 1))
+            ways += float(special.comb(plus - 1, half - 1) * special.comb(minus - 1, half))
+    return float(ways / special.comb(plus + minus, plus))
 
 
 def _over_speed(measured: xr.Dataset) -> xr.Dataset:
@@ -411,6 +410,6 @@ def _valid_range(
             known = errors.at(part)
             stress = _regression(mu[part], fluid[part], area[part], known)
             miss = known.whitened(mu[part] - fluid[part] - stress * area[part])
-            if stats.chi2.sf(float(miss @ miss), stop - first - 1) > _LIKELY:
+            if special.chdtrc(stop - first - 1, float(miss @ miss)) > _LIKELY:
                 best, widest = (float(speed[first]), float(speed[stop - 1])), width
     return best

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import pandas as pd
 import xarray as xr
-from scipy import stats
+from scipy import special
 
 from tribolab.errors import AnalysisError, Cure
 
@@ -99,7 +99,7 @@ class ShearStressFit:
         its own degrees of freedom; known from two runs alone, which may agree by chance, it counts
         with the t of one degree of freedom.
         """
-        t = stats.t.ppf(0.975, max(self.common_freedom, 1.0))
+        t = special.stdtrit(max(self.common_freedom, 1.0), 0.975)
         return float(np.hypot(self.scatter_half_interval, t * self.common_error))
 
     @property

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import stats
+from scipy import special
 
 from tribolab.aliases import Array
 from tribolab.errors import AnalysisError
@@ -61,7 +61,7 @@ class Baseline:
         """
         if math.isinf(self.degrees_of_freedom):
             return limit
-        return float(stats.t.isf(stats.norm.sf(limit), self.degrees_of_freedom))
+        return float(-special.stdtrit(self.degrees_of_freedom, float(special.ndtr(-limit))))
 
 
 def baseline_of(values: ArrayLike) -> Baseline:

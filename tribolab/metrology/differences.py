@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
-from scipy import stats
+from scipy import special
 
 from tribolab.aliases import Array
 from tribolab.errors import AnalysisError
@@ -73,7 +73,7 @@ def interval(
     difference: Array, standard_error: Array, degrees_of_freedom: Array, level: float
 ) -> tuple[Array, Array]:
     """Return the ends of Student's interval about differences at a level, e.g. 0.95."""
-    half = stats.t.ppf(0.5 + level / 2, degrees_of_freedom) * standard_error
+    half = special.stdtrit(degrees_of_freedom, 0.5 + level / 2) * standard_error
     return difference - half, difference + half
 
 
@@ -180,7 +180,7 @@ def _points(first: Array, second: Array, terms: Array) -> _Points:
         freedom = np.where(square > 0, freedom * (total / square) ** 2, freedom)
     error = np.sqrt(total)
     score = np.abs(_ratio(mean_b - mean_a, error))
-    p_value = 2 * stats.t.sf(score, freedom)
+    p_value = 2 * special.stdtr(freedom, -score)
     return _Points(mean_a, mean_b, mean_b - mean_a, error, freedom, np.asarray(p_value))
 
 
@@ -201,7 +201,7 @@ def _together(
         )
         return own, factor, ROTATION
     count = max(1, int(known.sum()))
-    factor = np.asarray(stats.t.ppf(1 - level / (2 * count), at.degrees_of_freedom))
+    factor = np.asarray(special.stdtrit(at.degrees_of_freedom, 1 - level / (2 * count)))
     return holm(at.p_value), factor, HOLM
 
 

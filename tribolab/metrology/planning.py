@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import optimize, stats
+from scipy import optimize, special
 
 from tribolab.errors import AnalysisError
 
@@ -111,7 +111,7 @@ def runs_for_half_interval(
     >>> runs_for_half_interval(0.01, 0.1)
     7
     """
-    student = stats.t.ppf(0.975, _RUNS - 1)
+    student = np.asarray(special.stdtrit(_RUNS - 1, 0.975), float)
     reached = student * np.sqrt(variance * _worst(assurance, pilot_runs) / _RUNS)
     return _first(reached, half_interval)
 
@@ -121,10 +121,10 @@ def _worst(assurance: float | None, pilot_runs: int | None) -> NDArray[np.float6
     """Variance that will be found, with the chance that is assured, over the one that is known."""
     if pilot_runs is not None:
         chance = 0.5 if assurance is None else assurance
-        return np.asarray(stats.f.ppf(chance, _RUNS - 1, pilot_runs - 1))
+        return np.asarray(special.fdtri(_RUNS - 1, pilot_runs - 1, chance))
     if assurance is None:
         return np.ones(_RUNS.size)
-    return np.asarray(stats.chi2.ppf(assurance, _RUNS - 1) / (_RUNS - 1))
+    return np.asarray(special.chdtri(_RUNS - 1, 1 - assurance) / (_RUNS - 1))
 
 
 def _first(reached: NDArray[np.float64], wanted: float) -> int | None:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy import special
 
 from tribolab.aliases import Array
 
@@ -70,7 +70,7 @@ def mandel_limits(laboratories: int, results: int, level: float = 0.01) -> tuple
     [2.06, 2.26]
     """
     p, n = laboratories, results
-    t = float(stats.t.isf(level / 2, p - 2))
+    t = float(-special.stdtrit(p - 2, level / 2))
     h = (p - 1) * t / math.sqrt(p * (t**2 + p - 2))
-    f = float(stats.f.isf(level, n - 1, (p - 1) * (n - 1)))
+    f = float(special.fdtri(n - 1, (p - 1) * (n - 1), 1 - level))
     return h, math.sqrt(p / (1 + (p - 1) / f))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import stats
+from scipy import special
 
 _FEWEST = 4  # points of a line with an error
 _FARTHEST = 3653  # days
@@ -69,16 +69,16 @@ def recalibration_due(
     t, y = np.asarray(days, dtype=float), np.asarray(values, dtype=float)
     if limit is None or t.size < _FEWEST or np.ptp(t) == 0:
         return Due(by_interval, "interval" if by_interval else "no interval is stated")
-    fit = stats.linregress(t, y)
-    residual = y - fit.intercept - fit.slope * t
+    slope, intercept = np.polyfit(t, y, 1)
+    residual = y - intercept - slope * t
     scatter = float(np.sqrt((residual**2).sum() / (t.size - 2)))
     ahead = np.arange(0.0, _FARTHEST + 1)
     spread = scatter * np.sqrt(
         1 + 1 / t.size + (ahead - t.mean()) ** 2 / ((t - t.mean()) ** 2).sum()
     )
-    bound = np.abs(fit.intercept + fit.slope * ahead) + stats.t.ppf(0.95, t.size - 2) * spread
+    bound = np.abs(intercept + slope * ahead) + special.stdtrit(t.size - 2, 0.95) * spread
     beyond = np.flatnonzero((bound >= limit) & (ahead >= t.max()))
-    drift = float(fit.slope)
+    drift = float(slope)
     if beyond.size:
         by_drift = calibrated + dt.timedelta(days=float(ahead[beyond[0]]))
         if by_interval is None or by_drift < by_interval:

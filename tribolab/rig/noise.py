@@ -26,14 +26,16 @@ def slow_noise(
         correlation length apart, linear in between.
     """
     # late: scipy takes long to load
-    from scipy.signal import lfilter
+    from scipy.linalg import lapack
 
     step = correlation / 8
     knots = int(np.ceil(span / step)) + 2
     memory = np.exp(-1 / 8)
     kicks = rng.standard_normal(knots)
     kicks[1:] *= np.sqrt(1 - memory**2)
-    values = lfilter([1.0], [1.0, -memory], kicks)
+    # x_i - memory x_{i-1} = kick_i: one below the other, solved from the first to the last
+    recursion = np.vstack([np.ones(knots), np.full(knots, -memory)])
+    values = lapack.dtbtrs(recursion, kicks[:, None], uplo="L", diag="U")[0][:, 0]
     grid = step * np.arange(knots)
     return lambda moments: np.interp(moments, grid, values)
 

@@ -62,7 +62,7 @@ def gaussian_filter(scans: xr.Dataset, cutoff: str | float) -> xr.Dataset:
     0.5
     """
     # late: scipy takes long to load
-    from scipy.signal import fftconvolve
+    from scipy import fft
 
     cutoff = to_si(cutoff, "m", "cutoff")
     x = scans.x.values
@@ -79,7 +79,9 @@ def gaussian_filter(scans: xr.Dataset, cutoff: str | float) -> xr.Dataset:
     weights = np.exp(-np.pi * (at / (ALPHA * cutoff)) ** 2)
     weights /= weights.sum()
     rows = height.values.reshape(-1, x.size)
-    share = fftconvolve(np.ones(x.size), weights, mode="same")
-    smooth = fftconvolve(rows, weights[None], mode="same", axes=-1) / share
+    length = fft.next_fast_len(x.size + 2 * reach, real=True)  # nothing comes round to the start
+    transfer, here = fft.rfft(weights, length), slice(reach, reach + x.size)
+    share = fft.irfft(fft.rfft(np.ones(x.size), length) * transfer, length)[here]
+    smooth = fft.irfft(fft.rfft(rows, length) * transfer, length)[:, here] / share
     result = scans.assign(height=height.copy(data=smooth.reshape(height.shape)))
     return stamp(result, gaussian_cutoff_m=cutoff)

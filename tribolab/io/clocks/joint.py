@@ -259,17 +259,26 @@ class _Fit:
         self.motion_time, values = motion_time[rows], np.ascontiguousarray(table[:, rows].T)
         self.step = np.diff(self.motion_time)
         self.table, self.change = values[:-1], np.diff(values, axis=0)
+        shape = len(samples.time), values.shape[1]
+        self._columns, self._begin = np.empty(shape), np.empty(shape)
 
     def columns(self, shift: float) -> Array:
-        """Return what the motion would have the force show: the table at the samples' times."""
+        """Return what the motion would have the force show: the table at the samples' times.
+
+        The next call writes over it: this is done hundreds of times a run, and fresh memory, which
+        no cache holds, would take half of its time.
+        """
         at = self.samples.time - shift
-        i = np.clip(np.searchsorted(self.motion_time, at) - 1, 0, len(self.step) - 1)
-        part = np.clip((at - self.motion_time[i]) / self.step[i], 0.0, 1.0)
-        # in place: this is done hundreds of times a run, and half of its time would go into copies
-        columns: Array = self.change.take(i, axis=0)
-        columns *= part[:, None]
-        columns += self.table.take(i, axis=0)
-        return columns
+        i = self.motion_time[1:-1].searchsorted(at)  # the first interval or the last beyond the log
+        at -= self.motion_time.take(i)
+        at /= self.step.take(i)
+        part = np.clip(at, 0.0, 1.0, out=at)
+        # where places are clipped, and none is, it is written without a copy between
+        self.change.take(i, axis=0, out=self._columns, mode="clip")
+        self._columns *= part[:, None]
+        self.table.take(i, axis=0, out=self._begin, mode="clip")
+        self._columns += self._begin
+        return self._columns
 
     def squares(self) -> tuple[Array, Array, Array]:
         """Return the sums of squares that are left, amplitudes, and shares of inertia (shift)."""
