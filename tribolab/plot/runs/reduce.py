@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribolab.pieces import pieces, whole_blocks
+from tribolab.pieces import whole_blocks
 
 
 def envelope(x: np.ndarray, y: np.ndarray, columns: int = 400) -> tuple[np.ndarray, np.ndarray]:
@@ -72,18 +72,13 @@ def envelope_index(x: np.ndarray, y: np.ndarray, columns: int = 400) -> np.ndarr
 
 def _starts(x: np.ndarray, columns: int) -> np.ndarray:
     """Index of the first point of each column that has any."""
-    span = x[-1] - x[0]
-    kept = [np.zeros(1, int)]
-    for begin, end in pieces(0, x.size - 1):
-        part = x[begin : end + 1]
-        if span > 0:
-            # dividing before the product keeps the ratio finite for any span
-            place = (part - x[0]) / span
-        else:
-            place = np.arange(begin, begin + part.size) * (1 / (x.size - 1))
-        column = np.minimum((place * columns).astype(np.int64), columns - 1)
-        kept.append(begin + 1 + np.flatnonzero(np.diff(column) > 0))
-    return np.concatenate(kept)
+    edges = np.arange(1, columns) / columns
+    if x[-1] > x[0]:  # of the two ends' shares, which are finite for any span
+        starts = np.searchsorted(x, x[0] * (1 - edges) + x[-1] * edges)
+    else:
+        starts = np.ceil(edges * (x.size - 1)).astype(np.int64)
+    starts = np.unique(np.append(0, starts))
+    return starts[starts < x.size]
 
 
 def _extremes(y: np.ndarray, starts: np.ndarray) -> np.ndarray:
