@@ -98,7 +98,23 @@ def anywhere(test: Callable[[np.ndarray], np.ndarray], values: np.ndarray) -> bo
     >>> anywhere(np.isfinite, np.array([np.nan, 1.0])), anywhere(np.isfinite, np.array([np.nan]))
     (True, False)
     """
-    return any(test(values[a:b]).any() for a, b in pieces(0, len(values)))
+    return any(test(values[a:b]).any() for a, b in _all_of(values))
+
+
+def samples_where(test: Callable[[np.ndarray], np.ndarray], values: np.ndarray) -> np.ndarray:
+    """Return the indices of the samples for which a test of single values holds.
+
+    Examples
+    --------
+    >>> samples_where(np.isnan, np.array([1.0, np.nan, 2.0, np.nan])).tolist()
+    [1, 3]
+    """
+    hits = [first + np.flatnonzero(test(values[first:last])) for first, last in _all_of(values)]
+    return np.concatenate([np.zeros(0, int), *hits])
+
+
+def _all_of(values: np.ndarray) -> Iterator[tuple[int, int]]:
+    return pieces(0, len(values))
 
 
 def stretches(holds: Callable[[int, int], np.ndarray], count: int) -> np.ndarray:

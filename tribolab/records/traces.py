@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tribolab.pieces import one_by_one
+from tribolab.pieces import one_by_one, samples_where
 from tribolab.plot.runs.reduce import envelope_index
 from tribolab.plot.runs.signals import Signal, main_signal
 from tribolab.qc.flags import FAIL, SUSPECT
@@ -278,7 +278,7 @@ def flagged_spans(run: xr.Dataset) -> list[FlaggedSpan]:
         flags = np.asarray(run[f"{name}_qc"])
         tests = np.asarray(run[f"{name}_qc_tests"]) if f"{name}_qc_tests" in run else None
         for severity, code in (("suspect", SUSPECT), ("fail", FAIL)):
-            hit = np.flatnonzero(flags == code)
+            hit = samples_where(code.__eq__, flags)
             if not hit.size:
                 continue
             breaks = np.flatnonzero(np.diff(time[hit]) > near)

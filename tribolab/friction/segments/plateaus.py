@@ -126,12 +126,19 @@ def is_commanded(velocity: np.ndarray, step: float) -> bool:
     >>> [is_commanded(values, quantum(values)) for values in (told, read)]
     [True, False]
     """
-    jumps = np.abs(np.diff(velocity))
-    jumps = jumps[jumps > 0.5 * step]
-    if not step > 0 or jumps.size * _HELD > velocity.size:
+    if not step > 0:
         return False
-    size = np.unique(np.round(np.abs(velocity) / step))
-    return size[size > 0].size == 1 or float(median(jumps)) >= _LEAP * step
+    jumps, sizes = [np.zeros(0)], [np.zeros(0)]
+    count = 0
+    for first, last in pieces(0, velocity.size):
+        own = np.abs(np.diff(velocity[max(first - 1, 0) : last]))
+        jumps.append(own[own > 0.5 * step])
+        count += jumps[-1].size
+        if count * _HELD > velocity.size:
+            return False
+        sizes.append(np.unique(np.round(np.abs(velocity[first:last]) / step)))
+    size = np.unique(np.concatenate(sizes))
+    return size[size > 0].size == 1 or float(median(np.concatenate(jumps))) >= _LEAP * step
 
 
 def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:

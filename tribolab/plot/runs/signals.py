@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tribolab.errors import AnalysisError
+from tribolab.medians import quantile_in_pieces
 from tribolab.pieces import lowered, pieces
 from tribolab.room import room
 
@@ -94,13 +95,13 @@ def _ratio(force: np.ndarray, force_zero: float, load: np.ndarray, load_zero: fl
 
 def _usual(load: np.ndarray, zero: float) -> float:
     """Return what 95 % of the readings above a zero do not exceed."""
-    finite, count = np.empty(load.size), 0
-    for first, last in pieces(0, load.size):
+
+    def above(first: int, last: int) -> np.ndarray:
         some = load[first:last] - zero
-        some = some[np.isfinite(some)]
-        finite[count : count + some.size] = some
-        count += some.size
-    return float(np.percentile(finite[:count], 95, overwrite_input=True)) if count else np.inf
+        return some[np.isfinite(some)]
+
+    usual = quantile_in_pieces(above, load.size, 0.95)
+    return np.inf if np.isnan(usual) else float(usual)
 
 
 class Stroke(NamedTuple):

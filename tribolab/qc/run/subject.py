@@ -15,7 +15,7 @@ from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.friction.reversals import reversals
 from tribolab.friction.segments.find import find_segments, why_no_segment
 from tribolab.medians import median_in_pieces, median_of_known
-from tribolab.pieces import one_by_one, stretches
+from tribolab.pieces import PIECE, one_by_one, pieces, stretches
 from tribolab.qc.flags import NOT_EVALUATED
 from tribolab.qc.register import Skip
 from tribolab.room import filled
@@ -330,4 +330,10 @@ def _mean(values: np.ndarray) -> float:
 
 def _std(values: np.ndarray) -> float:
     known = _known(values)
-    return float(known.std()) if known.size else float("nan")
+    if not known.size:
+        return float("nan")
+    if known.size <= PIECE:
+        return float(known.std())
+    level = known.mean()
+    squares = [np.square(known[a:b] - level).sum() for a, b in pieces(0, known.size)]
+    return float(np.sqrt(sum(squares) / known.size))
