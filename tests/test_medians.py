@@ -4,7 +4,13 @@ import numpy as np
 import pytest
 
 from tribolab import medians
-from tribolab.medians import median, median_in_pieces, median_of_known, medians_of_rows
+from tribolab.medians import (
+    median,
+    median_in_pieces,
+    median_of_known,
+    medians_of_rows,
+    quantile_in_pieces,
+)
 
 
 def _numbers(size: int, digits: int | None, gaps: float) -> np.ndarray:
@@ -46,6 +52,19 @@ def test_the_median_of_a_long_record_is_found_by_what_lies_about_it(monkeypatch,
     assert median_in_pieces(part, numbers.size) == whole
     # seen once to look about, and once or twice to find it
     assert sum(kept) < 2.5 * numbers.size
+
+
+@pytest.mark.parametrize("size", [1, 2, 5, 300_001])
+@pytest.mark.parametrize("share", [0.0, 0.02, 0.95, 0.991, 1.0])
+def test_a_quantile_of_a_long_record_is_that_of_numpy(monkeypatch, size, share):
+    monkeypatch.setattr(medians, "_MANY", 1000)
+    numbers = np.append(_numbers(size, None, 0.2), 7.0)
+    found = quantile_in_pieces(lambda a, b: numbers[a:b], numbers.size, share)
+    assert found == np.nanquantile(numbers, share)
+
+
+def test_of_nothing_there_is_no_quantile():
+    assert np.isnan(quantile_in_pieces(lambda a, b: np.full(b - a, np.nan), 9, 0.5))
 
 
 def test_a_record_whose_short_stretches_deceive_is_sorted_as_a_whole(monkeypatch):

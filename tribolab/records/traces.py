@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -278,7 +279,7 @@ def flagged_spans(run: xr.Dataset) -> list[FlaggedSpan]:
         flags = np.asarray(run[f"{name}_qc"])
         tests = np.asarray(run[f"{name}_qc_tests"]) if f"{name}_qc_tests" in run else None
         for severity, code in (("suspect", SUSPECT), ("fail", FAIL)):
-            hit = samples_where(code.__eq__, flags)
+            hit = samples_where(partial(np.equal, code), flags)
             if not hit.size:
                 continue
             breaks = np.flatnonzero(np.diff(time[hit]) > near)
