@@ -5,9 +5,9 @@ import re
 
 import pytest
 
-from tribolab.campaign.settings.config import SCHEMA_FILE, Campaign, campaign_schema
+from tribolab.campaign.settings.config import CAMPAIGN_SCHEMA_FILE, Campaign, campaign_schema
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.campaign.settings.page import PAGE_FILE, campaign_page
+from tribolab.campaign.settings.page import CAMPAIGN_PAGE, campaign_page
 from tribolab.campaign.settings.plan import plan_runs
 from tribolab.campaign.settings.toml_lines import line_of
 from tribolab.errors import ConfigError
@@ -300,12 +300,12 @@ def test_nothing_can_be_changed_after_reading(folder):
 
 
 def test_the_published_schema_is_the_models():
-    published = json.loads((schema_folder() / SCHEMA_FILE).read_text(encoding="utf-8"))
+    published = json.loads((schema_folder() / CAMPAIGN_SCHEMA_FILE).read_text(encoding="utf-8"))
     assert published == campaign_schema()
 
 
 def test_the_published_page_has_every_key_quantity_and_default():
-    page = (schema_folder() / PAGE_FILE).read_text(encoding="utf-8")
+    page = (schema_folder() / CAMPAIGN_PAGE).read_text(encoding="utf-8")
     assert page == campaign_page()
     assert '| `radius` | Radius of the cylinder. | m | `"7 cm"` |  |' in page
     assert '| `fastest` | Highest sliding speed. | m/s | `"10 cm/s"` | `0.1` |' in page

@@ -11,7 +11,7 @@ from real_runs import actuator, paper, reciprocating, rock
 from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.coefficient.half_loops import half_loops
-from tribolab.friction.coefficient.steadiness import NOT_STEADY, STEADY, UNDECIDED, judged
+from tribolab.friction.coefficient.steadiness import IS_NOT_STEADY, IS_STEADY, NOT_DECIDED, judged
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.zero.offsets import wander
 
@@ -228,12 +228,12 @@ def test_trend_within_a_segment_is_reported_and_not_steady():
 @pytest.mark.parametrize(
     ("change", "chance", "samples", "verdict"),
     [
-        (0.001, 0.4, 300, STEADY),
-        (0.2, 1e-4, 300, NOT_STEADY),
-        (-0.2, 0.36, 2.8, UNDECIDED),
-        (-6.2, 0.36, 2.8, UNDECIDED),
-        (-6.2, 0.03, 300, UNDECIDED),
-        (0.2, np.nan, 300, UNDECIDED),
+        (0.001, 0.4, 300, IS_STEADY),
+        (0.2, 1e-4, 300, IS_NOT_STEADY),
+        (-0.2, 0.36, 2.8, NOT_DECIDED),
+        (-6.2, 0.36, 2.8, NOT_DECIDED),
+        (-6.2, 0.03, 300, NOT_DECIDED),
+        (0.2, np.nan, 300, NOT_DECIDED),
     ],
 )
 def test_what_cannot_be_decided_is_not_called_steady(change, chance, samples, verdict):
@@ -242,7 +242,7 @@ def test_what_cannot_be_decided_is_not_called_steady(change, chance, samples, ve
     steady = judged(made.assign(friction_coefficient=("segment", [1.0])))["steady"]
     assert steady.values.tolist() == [verdict]
     words = steady.attrs["flag_meanings"].split()
-    assert words[steady.attrs["flag_values"].tolist().index(UNDECIDED)] == "undecided"
+    assert words[steady.attrs["flag_values"].tolist().index(NOT_DECIDED)] == "undecided"
 
 
 # what is missing
@@ -264,7 +264,7 @@ def test_segment_without_contact_is_missing_and_says_why(normal, remark):
     assert np.isnan(mu[2])
     assert friction["remark"].values[2].startswith(remark)
     assert np.isfinite(np.delete(mu, 2)).all()
-    assert friction["steady"].values[2] == UNDECIDED
+    assert friction["steady"].values[2] == NOT_DECIDED
 
 
 def test_normal_force_of_zero_everywhere_gives_no_number_anywhere():

@@ -19,7 +19,7 @@ from tribolab.app.run import run_campaign
 from tribolab.metrology.differences import (
     DIFFERENT,
     EQUIVALENT,
-    UNDECIDED,
+    OPEN,
     differences_of_groups,
     holm,
     verdicts,
@@ -184,7 +184,7 @@ def test_three_verdicts():
     second[:, 2] += rng.normal(0, 0.2, 6)
     compared = differences_of_groups([(first, second)])
     margin = np.full(3, 0.04)
-    assert verdicts(compared, margin) == [EQUIVALENT, DIFFERENT, UNDECIDED]
+    assert verdicts(compared, margin) == [EQUIVALENT, DIFFERENT, OPEN]
     assert EQUIVALENT not in verdicts(compared, None)
 
 

@@ -242,7 +242,7 @@ def test_blocks_join_without_loss_in_a_file_longer_than_a_block(tmp_path, monkey
     file, dialect = write(tmp_path, plain, data)
     whole = tl.read(file, dialect)
     for block in (17, 100, 4096):
-        monkeypatch.setattr(text, "BLOCK", block)
+        monkeypatch.setattr(text, "_BLOCK", block)
         run = tl.read(file, dialect)
         assert run["friction_force"].values.tolist() == numbers.tolist()
         assert run.attrs["source_sha256"] == whole.attrs["source_sha256"]

@@ -182,7 +182,7 @@ def test_a_check_of_ones_own_can_be_added(run):
 
 
 def test_the_page_of_all_checks_and_limits_is_made_from_the_code():
-    page = (schema_folder() / catalogue.PAGE_FILE).read_text(encoding="utf-8")
+    page = (schema_folder() / catalogue.CHECKS_PAGE).read_text(encoding="utf-8")
     assert page == catalogue.catalogue()
     for known in (*RUN_CHECKS.values(), *SCAN_CHECKS.values()):
         assert f"### {known.name}\n" in page

@@ -20,7 +20,7 @@ from tribolab.records.run_record import RunRecord
 from tribolab.report.figures.choice import wanted
 from tribolab.report.results import write_report
 from tribolab.report.slowest import slow_segments
-from tribolab.report.tables import read, write, write_rows
+from tribolab.report.tables import read_csv, write, write_rows
 
 RUNS = [
     ("sb-r_1", "Sb-R", "glycerol", 31.0, 0.8),
@@ -149,8 +149,8 @@ def test_every_table_is_parquet_beside_csv_with_the_same_values(made):
     assert len(files) >= 9
     for file in files:
         columnar = pd.read_parquet(file.with_suffix(".parquet"))
-        assert list(columnar.columns) == list(read(file).columns)
-        for name, column in read(file).items():
+        assert list(columnar.columns) == list(read_csv(file).columns)
+        for name, column in read_csv(file).items():
             there = columnar[name]
             if pd.api.types.is_numeric_dtype(there) or pd.api.types.is_bool_dtype(there):
                 np.testing.assert_array_equal(column.to_numpy(float), there.to_numpy(float))

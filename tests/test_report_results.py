@@ -21,12 +21,13 @@ from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.qc.flags import attach
 from tribolab.records.packed import clock_of, packed_points
 from tribolab.records.part_records import CurveRecord
+from tribolab.records.parts import CurveOutcome
 from tribolab.records.run_facts import stick_slip_of
 from tribolab.records.run_record import RunRecord, Waveform
 from tribolab.records.traces import decimated_trace, finer_trace, flagged_spans, script_json
 from tribolab.records.wording import plain_value, with_error
 from tribolab.report.campaign_tables import TABLES
-from tribolab.report.results import write_report
+from tribolab.report.results import shown_curves, write_report
 
 SCHEMA = json.loads(
     (Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json").read_text()
@@ -532,3 +533,11 @@ def test_flagged_spans_say_where_why_and_how_gravely():
     assert kinds == [("suspect", ("spikes",)), ("fail", ("spikes",))]
     assert spans[0].start_s == pytest.approx(float(run.time[100]))
     assert spans[0].stop_s == pytest.approx(float(run.time[102]))
+
+
+def test_a_curve_without_stick_slip_over_speed_is_shown_and_says_so():
+    outcome = CurveOutcome("c", "a", "oil", None, "data/c.nc", ("first", "second"))
+    curve = CurveRecord(outcome, ({"friction_coefficient": 0.3},), no_slip="two kinds of names")
+    shown, said = shown_curves([curve, replace(curve, no_slip="")], {})
+    assert len(shown) == 2
+    assert said == [("error", "first; second", "c", "no stick-slip over speed: two kinds of names")]

@@ -5,9 +5,9 @@ import json
 from tribolab.io.schema_folder import schema_folder
 from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
 from tribolab.report.document.models import SHEAR_STRESS
-from tribolab.report.document.schema import SCHEMA_FILE, report_schema
+from tribolab.report.document.schema import REPORT_SCHEMA_FILE, report_schema
 
-SCHEMA = json.loads((schema_folder() / SCHEMA_FILE).read_text("utf-8"))
+SCHEMA = json.loads((schema_folder() / REPORT_SCHEMA_FILE).read_text("utf-8"))
 DEFS = SCHEMA["$defs"]
 
 

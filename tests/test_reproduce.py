@@ -20,7 +20,7 @@ from tribolab.paper.laboratory import Laboratory
 from tribolab.paper.reproduce import reproduce
 from tribolab.provenance import sha256_of_file
 from tribolab.studies import xu2026
-from tribolab.studies.tally import STATUSES
+from tribolab.studies.tally import STUDY_STATUSES
 from tribolab.studies.verdict import INCONSISTENT, MEASURED, NARROW, REPRODUCED, WIDE, room_text
 from tribolab.studies.xu2026 import CITATION
 from tribolab.surface.moments import rms_slope
@@ -46,9 +46,9 @@ def test_every_published_number_has_a_status_and_a_reason_if_it_does_not_hold(ma
     targets = pd.read_csv(shared / "targets.csv")
     columns = ["quantity", "surface", "condition"]
     assert table[columns].values.tolist() == targets[columns].values.tolist()
-    assert set(table.status) == set(STATUSES)
+    assert set(table.status) == set(STUDY_STATUSES)
     told = json.loads((made.folder / "paper.json").read_text())["verdict"]
-    assert told["counts"] == {status: (table.status == status).sum() for status in STATUSES}
+    assert told["counts"] == {status: (table.status == status).sum() for status in STUDY_STATUSES}
     wide = table[table.status == WIDE].tolerance.astype(float)
     assert all(room_text(room) in told["text"] for room in wide) and wide.min() > NARROW
     unlike = table[table.status != REPRODUCED]

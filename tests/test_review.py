@@ -19,7 +19,12 @@ from tribolab.app.run import run_campaign
 from tribolab.campaign.runs.analysis import analyse_run
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.settings.plan import planned_runs
-from tribolab.campaign.settings.review import REVIEW_FILE, SCHEMA_FILE, load_review, review_schema
+from tribolab.campaign.settings.review import (
+    REVIEW_FILE,
+    REVIEW_SCHEMA_FILE,
+    load_review,
+    review_schema,
+)
 from tribolab.cli import app
 from tribolab.errors import ConfigError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
@@ -255,7 +260,7 @@ def test_a_mistake_in_the_review_file_is_met_before_any_work(
 
 
 def test_the_published_schema_is_the_models_and_knows_every_key():
-    published = json.loads((schema_folder() / SCHEMA_FILE).read_text(encoding="utf-8"))
+    published = json.loads((schema_folder() / REVIEW_SCHEMA_FILE).read_text(encoding="utf-8"))
     assert published == review_schema()
     whole = {"run": "x", "action": "bounds", "from": "1 s", "to": "2 s", "new_to": "1.5 s"}
     whole |= {"reason": "late", "author": "A", "date": "2026-11-20"}

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from scipy.signal import lfilter
 
 from tribolab.friction.statistics import (
-    BLOCKS,
+    MOST_STRETCHES,
     error_of_mean,
     estimate_of,
     on_grid,
@@ -46,9 +46,9 @@ def oscillation(rng, form, jitter, noise, fewest=5.0, most=10.0):
 def coverage(records):
     """Share of records whose mean lies within one and three standard errors of the truth, 0."""
     n = records.shape[1]
-    if n > BLOCKS:
-        assert n % BLOCKS == 0
-        blocks = records.reshape(RECORDS, BLOCKS, -1).mean(axis=2)
+    if n > MOST_STRETCHES:
+        assert n % MOST_STRETCHES == 0
+        blocks = records.reshape(RECORDS, MOST_STRETCHES, -1).mean(axis=2)
     else:
         blocks = records
     _, sem = error_of_mean(blocks)
@@ -124,7 +124,7 @@ def test_white_noise_counts_every_sample():
 @pytest.mark.parametrize("time", [0.3, N / 100, N / 20])
 def test_wander_is_rarely_called_a_trend(time):
     records = memory(np.random.default_rng(51), time)[:400]
-    blocks = records.reshape(400, BLOCKS, -1).mean(axis=2)
+    blocks = records.reshape(400, MOST_STRETCHES, -1).mean(axis=2)
     false = np.mean([trend(one)[1] < 0.05 for one in blocks])
     assert false <= 0.10
 
@@ -219,7 +219,9 @@ def test_intervals_of_few_effective_samples_hold_by_student_s_t():
     few = [one for one in found if one.effective_samples < 4]
     assert len(few) > 100
     inside = np.mean([abs(one.mean) < 1.96 * one.sem for one in few])
-    blocks = memory(np.random.default_rng(77), N / 4)[:400].reshape(400, BLOCKS, -1).mean(axis=2)
+    blocks = (
+        memory(np.random.default_rng(77), N / 4)[:400].reshape(400, MOST_STRETCHES, -1).mean(axis=2)
+    )
     plain, _ = error_of_mean(blocks)
     assert np.mean(np.abs(blocks.mean(axis=1)) < 1.96 * plain) < 0.75
     assert inside > 0.85

@@ -15,7 +15,7 @@ import numpy as np
 
 from tribolab.errors import AnalysisError
 
-PASS, SUSPECT = "pass", "suspect"
+_PASS, _SUSPECT = "pass", "suspect"
 TINY = float(np.finfo(float).tiny)  # what is divided by a number that may be 0
 
 
@@ -155,7 +155,7 @@ def examine(who: str, where: str = "", **values: Any) -> dict[str, str]:
             )
         reasons.append(f"{compared}, above {limit.suspect:g}: {limit.because}; {limit.cure}")
     return {
-        "validity": SUSPECT if reasons else PASS,
+        "validity": _SUSPECT if reasons else _PASS,
         "validity_reasons": " | ".join(reasons),
     }
 
@@ -171,7 +171,7 @@ def together(attrs: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
     """
     reasons = [reason for result in attrs for reason in reasons_of(result)]
     unique = list(dict.fromkeys(reasons))
-    return {"validity": SUSPECT if unique else PASS, "validity_reasons": " | ".join(unique)}
+    return {"validity": _SUSPECT if unique else _PASS, "validity_reasons": " | ".join(unique)}
 
 
 def reasons_of(attrs: Mapping[Any, Any]) -> list[str]:

@@ -15,7 +15,7 @@ from scipy import optimize
 from slip_traces import in_red_noise, intermittent, plain, quiet, scattered
 
 from tribolab.friction.oscillation.examine import examine_record
-from tribolab.friction.oscillation.waveform import CLASSES, LIMITS, features
+from tribolab.friction.oscillation.waveform import CLASSES, WAVEFORM_LIMITS, features
 from tribolab.rig.traces import simulate_trace
 
 _FORMS = {"none": 0, "sawtooth": 1, "rounded": 2, "irregular": 1}
@@ -73,7 +73,7 @@ def _tricky(rng: np.random.Generator) -> tuple[str, np.ndarray, np.ndarray]:
 
 def turned(kind: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Classes and features of the same traces turned round: a saw becomes a reversed one."""
-    sign = np.array([-1.0 if name in _TURNED else 1.0 for name in LIMITS])
+    sign = np.array([-1.0 if name in _TURNED else 1.0 for name in WAVEFORM_LIMITS])
     return np.array([0, 3, 2, 1])[kind], x * sign
 
 
@@ -131,7 +131,7 @@ def main() -> None:
         print(f"  {name}: {right[of].mean():.1%} of {of.sum()}")
     print("INTERCEPT = np.array([" + ", ".join(f"{v:.2f}" for v in intercept) + "])")
     print("COEFFICIENTS = {")
-    for name, row in zip(LIMITS, coefficients, strict=True):
+    for name, row in zip(WAVEFORM_LIMITS, coefficients, strict=True):
         print(f'    "{name}": np.array([' + ", ".join(f"{v:.2f}" for v in row) + "]),")
     print("}")
 

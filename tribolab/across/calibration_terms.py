@@ -10,13 +10,13 @@ import pandas as pd
 
 from tribolab.across.folder import Folder
 from tribolab.across.labels import labels_of_runs
-from tribolab.across.run_values import SPEED, TOLERANCE, Matched
+from tribolab.across.run_values import SPEED_COLUMN, TOLERANCE, Matched
 from tribolab.metrology.budget_curve import EACH_POINT
 from tribolab.metrology.budget_parts import BETWEEN, NOISE, part_words
 
 RunNames = tuple[str, ...]
 
-NOT_STATED = (
+_NOT_STATED = (
     "no calibration is stated: the intervals hold the scatter of the runs only, and instruments "
     "that read differently would differ"
 )
@@ -161,7 +161,7 @@ def _whose(folder: Folder, runs: RunNames, together: bool) -> Mapping[str, str]:
 
 def _at(rows: pd.DataFrame, speeds: np.ndarray) -> np.ndarray:
     """Return contributions at the speeds of a comparison; 0 where the curve has none."""
-    known = rows[SPEED].to_numpy(dtype=float)
+    known = rows[SPEED_COLUMN].to_numpy(dtype=float)
     apart = np.abs(np.log(known[:, None] / speeds))
     nearest = apart.argmin(axis=0)
     near = apart[nearest, np.arange(speeds.size)] <= np.log1p(TOLERANCE)
@@ -173,7 +173,7 @@ def terms_text(made: Sequence[CalibrationTerms]) -> str:
     shared = tuple(dict.fromkeys(name for terms in made for name in terms.shared))
     own = tuple(dict.fromkeys(name for terms in made for name in terms.own if name not in shared))
     if not shared and not own:
-        return NOT_STATED
+        return _NOT_STATED
     said = []
     if own:
         said.append(f"each of the two has its own {_listed(own)}, and both errors count")

@@ -13,7 +13,7 @@ from tribolab.across.changes import Change, changes_between
 from tribolab.across.quantities import of_quantities
 from tribolab.across.run_values import (
     CONDITION,
-    SPEED,
+    SPEED_COLUMN,
     Matched,
     matched,
 )
@@ -32,7 +32,7 @@ from tribolab.units import to_si
 from tribolab.words import many
 
 UNCHANGED, CHANGED = "unchanged", "changed by the analysis"
-LEVEL, EQUIVALENCE_LEVEL = 0.95, 0.90
+_LEVEL, _EQUIVALENCE_LEVEL = 0.95, 0.90
 _EXACT = 1e-12  # relative: results of the same raw data by the same analysis are the same
 
 
@@ -150,7 +150,7 @@ def compare(
             "speed"
         )
     same = [_all_same(condition, *sides) for condition in conditions]
-    alpha = (1 - LEVEL) / max(1, pairs)
+    alpha = (1 - _LEVEL) / max(1, pairs)
     tested = [condition for condition, is_same in zip(conditions, same, strict=True) if not is_same]
     terms = [calibration_terms(c, sides[0].folder, sides[1].folder) for c in conditions]
     own = [part for part, is_same in zip(terms, same, strict=True) if not is_same]
@@ -222,7 +222,7 @@ def _tested(
             compared.difference[part],
             compared.standard_error[part],
             compared.degrees_of_freedom[part],
-            EQUIVALENCE_LEVEL,
+            _EQUIVALENCE_LEVEL,
         )
         rows.append(
             _rows(
@@ -267,7 +267,7 @@ def _rows(
     return pd.DataFrame(
         {
             "condition": condition.condition,
-            SPEED: condition.speeds,
+            SPEED_COLUMN: condition.speeds,
             "first": first,
             "second": second,
             "difference": second - first,

@@ -10,11 +10,11 @@ import numpy as np
 from tribolab import plot
 from tribolab.across.compare import CHANGED, Comparison
 from tribolab.across.page import Part, Picture, Sheet, cells, write_parts
-from tribolab.metrology.differences import DIFFERENT, EQUIVALENT, UNDECIDED
+from tribolab.metrology.differences import DIFFERENT, EQUIVALENT, OPEN
 from tribolab.report import tables
 from tribolab.words import many, percent, speed_text
 
-_VERDICTS = (DIFFERENT, CHANGED, EQUIVALENT, UNDECIDED)
+_VERDICTS = (DIFFERENT, CHANGED, EQUIVALENT, OPEN)
 _HEADS = (
     "Condition",
     "Speed",
@@ -34,7 +34,7 @@ def comparison_verdict(compared: Comparison) -> str:
     points = len(compared.points)
     words = {word: word for word in _VERDICTS}
     words[EQUIVALENT] += f" within {compared.margin}"
-    words[UNDECIDED] += _open_to(compared)
+    words[OPEN] += _open_to(compared)
     counts = [
         f"{compared.counts[word]} {text}"
         for word, text in words.items()
@@ -46,7 +46,7 @@ def comparison_verdict(compared: Comparison) -> str:
 
 def _open_to(compared: Comparison) -> str:
     """Say by how much the two may differ where no difference was proved."""
-    rows = compared.points[compared.points["verdict"] == UNDECIDED]
+    rows = compared.points[compared.points["verdict"] == OPEN]
     reach = rows[["low", "high"]].abs().max(axis=1) / rows["first"].abs()
     if not np.isfinite(reach).any():
         return ""

@@ -80,7 +80,7 @@ class Folder:
         from tribolab.report import tables
 
         path = self.path / "tables" / f"{name}.csv"
-        return tables.read(path) if path.is_file() else None
+        return tables.read_csv(path) if path.is_file() else None
 
 
 @functools.lru_cache(maxsize=8)

@@ -18,11 +18,11 @@ from tribolab.across.watched import (
     at_common_speeds,
     observations_of,
 )
-from tribolab.campaign.settings.measured import Calibration
+from tribolab.campaign.settings.measured import CalibrationTable
 from tribolab.errors import AnalysisError, ReadError, TribolabError
 from tribolab.metrology.control_charts import (
     DEFAULT_RULES,
-    FEWEST,
+    FEWEST_OF_BASELINE,
     Baseline,
     Chart,
     baseline_of,
@@ -36,7 +36,7 @@ from tribolab.metrology.run_length import (
 )
 from tribolab.words import many
 
-BASELINE = 20  # points, if there are as many again
+_BASELINE = 20  # points, if there are as many again
 _DAY = 86400.0
 
 
@@ -190,7 +190,7 @@ def history(
     """
     points: list[Observation] = []
     unread: list[str] = []
-    calibrations: dict[str, Calibration] = {}
+    calibrations: dict[str, CalibrationTable] = {}
     for path in folders:
         try:
             made, folder = observations_of(path)
@@ -236,9 +236,9 @@ def _watched(
     values = np.array([point.value for point in points])
     when = tuple(point.when for point in points)
     bare = Watched(instrument, quantity, unit, when, tuple(p.folder for p in points), values)
-    count = min(BASELINE, values.size // 2) if baseline is None else baseline
-    if count < FEWEST or values.size <= count:
-        few = f"{many(values.size, 'point')}: too few to judge, {2 * FEWEST} are wanted"
+    count = min(_BASELINE, values.size // 2) if baseline is None else baseline
+    if count < FEWEST_OF_BASELINE or values.size <= count:
+        few = f"{many(values.size, 'point')}: too few to judge, {2 * FEWEST_OF_BASELINE} are wanted"
         return Watched(*_fields(bare), remark=few)
     try:
         usual = baseline_of(values[:count])
@@ -262,7 +262,7 @@ def _fields(
     return bare.instrument, bare.quantity, bare.unit, bare.when, bare.folders, bare.values
 
 
-def _due(stated: Calibration, charts: Sequence[Watched], instrument: str) -> Due:
+def _due(stated: CalibrationTable, charts: Sequence[Watched], instrument: str) -> Due:
     """Return when an instrument is due, by its interval and by its reference's drift."""
     assert stated.date is not None
     interval = None if stated.interval is None else stated.interval / _DAY

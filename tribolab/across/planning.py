@@ -12,7 +12,7 @@ import pandas as pd
 from tribolab.across.folder import open_folder
 from tribolab.across.run_values import (
     CONDITION,
-    SPEED,
+    SPEED_COLUMN,
     VALUE,
     condition_text,
     segments_of,
@@ -29,8 +29,8 @@ from tribolab.metrology.planning import (
 from tribolab.report.read_results import Results
 from tribolab.words import many
 
-ASSURANCE = 0.8
-LONGEST = 20  # times the pilot's sliding time, what is thought of as the longest stroke
+_ASSURANCE = 0.8
+LONGEST_STROKE = 20  # times the pilot's sliding time, what is thought of as the longest stroke
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def measuring_plan(
     *,
     standard_error: float | None = None,
     half_interval: float | None = None,
-    assurance: float = ASSURANCE,
+    assurance: float = _ASSURANCE,
     setup_time: float = 600.0,
 ) -> MeasuringPlan:
     """Tell how many runs, and how long ones, reach a precision at each speed.
@@ -125,10 +125,10 @@ def measuring_plan(
     rows = []
     for text, speed, runs in _pilots(pilot):
         told, sliding, mean = _told(runs)
-        row = {"condition": text, SPEED: speed, "mean": mean, "pilot_runs": len(runs)}
+        row = {"condition": text, SPEED_COLUMN: speed, "mean": mean, "pilot_runs": len(runs)}
         row |= {"within_std": told.within, "autocorrelation_time_s": told.memory}
         row |= {"between_runs_std": told.between, "sliding_time_s": sliding}
-        cheapest = cheapest_sliding_time(told, setup_time, LONGEST * sliding)
+        cheapest = cheapest_sliding_time(told, setup_time, LONGEST_STROKE * sliding)
         for name, each in (("", sliding), ("cheapest_", cheapest)):
             row[f"{name}sliding_time_s"] = each
             for sure, chance in (("", None), ("assured_", assurance)):
@@ -164,7 +164,7 @@ def _pilots(
         condition=[
             condition_text(*row) for row in segments[CONDITION].itertuples(index=False, name=None)
         ],
-        level=speed_levels(segments[SPEED].to_numpy(dtype=float)),
+        level=speed_levels(segments[SPEED_COLUMN].to_numpy(dtype=float)),
     )
     made = []
     for text in dict.fromkeys(segments["condition"].tolist()):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from tribolab import plot
 from tribolab.across.page import Part, Picture, Sheet, cells, write_parts
-from tribolab.across.planning import LONGEST, MeasuringPlan, plan_text
+from tribolab.across.planning import LONGEST_STROKE, MeasuringPlan, plan_text
 from tribolab.report import tables
 from tribolab.words import duration, speed_text
 
@@ -60,7 +60,7 @@ def write_plan(plan: MeasuringPlan, heading: str, folder: Path) -> Path:
         ),
         figures=(drawn,),
         tables=(Sheet("Runs at each speed", "plan", heads, rows),),
-        notes=(f"The cheapest sliding time is at most {LONGEST} times the pilot's.",),
+        notes=(f"The cheapest sliding time is at most {LONGEST_STROKE} times the pilot's.",),
     )
     page = folder / "plan.html"
     fine = not plan.table["cheapest_runs"].isna().any()

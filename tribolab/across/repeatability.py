@@ -13,7 +13,7 @@ import pandas as pd
 from tribolab.across.labels import labelled_segments
 from tribolab.across.run_values import (
     CONDITION,
-    SPEED,
+    SPEED_COLUMN,
     VALUE,
     condition_text,
     segments_of,
@@ -26,7 +26,7 @@ from tribolab.metrology.reml import variance_components
 from tribolab.report.read_results import Results
 from tribolab.words import many, speed_text
 
-POOLED = "all speeds"
+_POOLED = "all speeds"
 FEW = 5  # levels of a factor, below which what lies between them is hardly known
 
 
@@ -117,7 +117,7 @@ def repeatability(
     rows, methods = [], []
     for speed in np.unique(runs["level"]).tolist():
         row, method = _of_speed(runs[runs["level"] == speed], names)
-        rows.append({SPEED: speed, "speed": speed_text(speed), **row})
+        rows.append({SPEED_COLUMN: speed, "speed": speed_text(speed), **row})
         methods.append(method)
     rows.append(_pooled(rows, names))
     return Repeatability(
@@ -149,7 +149,7 @@ def _per_run(segments: pd.DataFrame, names: Sequence[str]) -> pd.DataFrame:
     known["condition"] = [
         condition_text(*row) for row in known[CONDITION].itertuples(index=False, name=None)
     ]
-    known["level"] = speed_levels(known[SPEED].to_numpy(dtype=float))
+    known["level"] = speed_levels(known[SPEED_COLUMN].to_numpy(dtype=float))
     groups = known.groupby(["run", "level", "condition", *names], sort=False)[VALUE]
     return groups.mean().reset_index()
 
@@ -246,8 +246,8 @@ def _pooled(rows: Sequence[dict[str, object]], names: Sequence[str]) -> dict[str
     relative = table[columns].fillna(0.0).div(table["mean"].abs(), axis=0) ** 2
     pooled = np.sqrt(relative.mul(weight, axis=0).sum() / weight.sum())
     return {
-        SPEED: np.nan,
-        "speed": POOLED,
+        SPEED_COLUMN: np.nan,
+        "speed": _POOLED,
         "mean": 1.0,
         **{name: float(pooled[name]) for name in columns},
         "runs": int(table["runs"].sum()),
@@ -269,7 +269,7 @@ def _mandel(runs: pd.DataFrame, name: str) -> pd.DataFrame:
         limits = mandel_limits(len(count), int(count.min()))
         for level, one_h, one_k in zip(count.index, h, k, strict=True):
             rows.append((condition, speed, str(level), one_h, one_k, *limits))
-    heads = ["condition", SPEED, name, "h", "k", "h_limit", "k_limit"]
+    heads = ["condition", SPEED_COLUMN, name, "h", "k", "h_limit", "k_limit"]
     return pd.DataFrame(rows, columns=heads)
 
 

@@ -12,7 +12,7 @@ from tribolab.errors import AnalysisError, shown
 from tribolab.words import force_text
 
 CONDITION = ["surface", "medium", "nominal_normal_force_N"]
-SPEED = "sliding_speed_m_s"
+SPEED_COLUMN = "sliding_speed_m_s"
 VALUE = "friction_coefficient"
 TOLERANCE = 0.1  # of speeds that belong together, as in measured curves
 
@@ -65,10 +65,10 @@ def segments_of(table: pd.DataFrame, where: object = "table") -> pd.DataFrame:
     AnalysisError
         If columns are missing, or nothing is left.
     """
-    missing = [name for name in ("run", SPEED, VALUE) if name not in table]
+    missing = [name for name in ("run", SPEED_COLUMN, VALUE) if name not in table]
     if missing:
         raise AnalysisError(f"{where}: the table of friction has no column {', '.join(missing)}")
-    kept = table[np.isfinite(table[VALUE]) & (table[SPEED] > 0)]
+    kept = table[np.isfinite(table[VALUE]) & (table[SPEED_COLUMN] > 0)]
     if "rejected" in kept:
         kept = kept[kept["rejected"] != 1]
     if kept.empty:
@@ -118,7 +118,7 @@ def matched(
         mine, theirs = first[keys[0] == key], second[keys[1] == key]
         if theirs.empty:
             continue
-        levels = speed_levels(np.concatenate([mine[SPEED], theirs[SPEED]]))
+        levels = speed_levels(np.concatenate([mine[SPEED_COLUMN], theirs[SPEED_COLUMN]]))
         a = _per_run(mine, levels[: len(mine)])
         b = _per_run(theirs, levels[len(mine) :])
         speeds = a.columns.intersection(b.columns)

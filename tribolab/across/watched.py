@@ -21,7 +21,7 @@ from tribolab.untyped import Json
 from tribolab.words import speed_text
 
 REFERENCE = "friction of the reference"
-TILT, GAIN = "tilt found", "gain of the normal force"
+_TILT, GAIN = "tilt found", "gain of the normal force"
 
 _FRICTION = [
     "run",
@@ -154,7 +154,7 @@ def _numbers(
     tilt = _middle(column["tilt_found_rad"])
     if not np.isfinite(tilt):
         tilt = _tilt(column["friction_force_offset_N"], column["normal_force_N"])
-    yield TILT, "rad", tilt
+    yield _TILT, "rad", tilt
     for what, value, wanted in (
         ("speed", "sliding_speed_m_s", "set_speed_m_s"),
         ("load", "normal_force_N", "nominal_normal_force_N"),

@@ -29,8 +29,8 @@ from tribolab.words import explain
 if TYPE_CHECKING:
     import xarray as xr
 
-SCHEMA_VERSION = 1
-UNREADABLE = 3
+_SCHEMA_VERSION = 1
+_UNREADABLE = 3
 _STYLES = {
     "error": "bold red",
     "fail": "red",
@@ -237,7 +237,7 @@ def _belongs(results: Path, scan: Path) -> bool:
 def code_of(checked: Sequence[Checked], fail_on: str) -> int:
     """Exit code: 3 if a file is unreadable or a check crashed, 1 from `fail_on` on, else 0."""
     code = exit_code({c.status for c in checked if not c.error}, fail_on)
-    return UNREADABLE if any(c.error for c in checked) else code
+    return _UNREADABLE if any(c.error for c in checked) else code
 
 
 def checked_table(
@@ -305,7 +305,7 @@ def document(checked: Sequence[Checked], fail_on: str) -> Json:
     from tribolab.version import __version__
 
     return {
-        "schema_version": SCHEMA_VERSION,
+        "schema_version": _SCHEMA_VERSION,
         "tribolab_version": __version__,
         "fail_on": fail_on,
         "exit_code": code_of(checked, fail_on),

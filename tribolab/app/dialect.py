@@ -23,7 +23,7 @@ from tribolab.words import Count
 if TYPE_CHECKING:
     import xarray as xr
 
-NONE = "-"
+_NONE = "-"
 _RUN = {
     "time": "time",
     "friction_force": "the friction force",
@@ -75,8 +75,8 @@ def _ask_for_motion(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft
         return draft
     speed = what_follows(layout, understood).speed
     if speed is not None and speed.guess and speed.source == "stroke":
-        crank = f"does a crank drive it ({NONE}: its speed is constant both ways)?"
-        drive = "constant speed" if ask(crank, "yes").strip() == NONE else "crank"
+        crank = f"does a crank drive it ({_NONE}: its speed is constant both ways)?"
+        drive = "constant speed" if ask(crank, "yes").strip() == _NONE else "crank"
         understood = understood._replace(drive=drive)
     return _ask_for_lengths(draft, layout, understood, ask, say)
 
@@ -89,13 +89,13 @@ def _ask_for_lengths(
     lacks = " ".join(lacking(understood, follows))
     guessed = [value for value in follows.values if value.guess]
     if guessed or "the radius of the track" in lacks:
-        guess = f"{stated_number(guessed[0]):.6g} {guessed[0].unit}" if guessed else NONE
+        guess = f"{stated_number(guessed[0]):.6g} {guessed[0].unit}" if guessed else _NONE
         question = "what is the radius of the track, with its unit?"
         radius = _ask_amount(question, "radius", "m", guess, ask, say)
         understood = understood._replace(radius=radius)
     if "the load" in " ".join(lacking(understood, what_follows(layout, understood))):
         question = "what is the load, with its unit, if it is one for all of the run?"
-        load = _ask_amount(question, "load", "N", NONE, ask, say)
+        load = _ask_amount(question, "load", "N", _NONE, ask, say)
         understood = understood._replace(load=load)
     return written(draft, layout, understood)
 
@@ -106,7 +106,7 @@ def _ask_for_pitch(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft:
     if layout is None or understood is None:
         return draft
     question = "how far do neighbouring heights lie apart, with its unit?"
-    pitch = _ask_amount(question, "pitch", "m", NONE, ask, say)
+    pitch = _ask_amount(question, "pitch", "m", _NONE, ask, say)
     if not pitch:
         return draft
     return as_profile(draft, pitch, _ask_unit(understood.columns[0], "height", ask))
@@ -117,8 +117,8 @@ def _ask_amount(
 ) -> str:
     """Ask for a number with a unit until it is one; "" if it is not known."""
     while True:
-        typed = ask(f"{question} ({NONE}: not known)", guess).strip()
-        if typed == NONE:
+        typed = ask(f"{question} ({_NONE}: not known)", guess).strip()
+        if typed == _NONE:
             return ""
         try:
             positive(typed, si_unit, f"the {name}")
@@ -134,10 +134,10 @@ def _ask_for(draft: Draft, name: str, words: str, ask: Ask, say: Callable[[str],
         return draft  # it is their ratio
     while True:
         typed = ask(
-            f"which column is {words}? (its number; {NONE} for none)",
-            str(held.place) if held else NONE,
+            f"which column is {words}? (its number; {_NONE} for none)",
+            str(held.place) if held else _NONE,
         )
-        if typed == NONE:
+        if typed == _NONE:
             return draft if held is None else corrected(draft, name, None)
         try:
             column = _column(draft, typed)

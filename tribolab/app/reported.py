@@ -11,7 +11,7 @@ import typer
 from tribolab.app.streams import Terminated, say
 from tribolab.errors import ConfigError, TribolabError, UnitError
 
-USAGE, UNREADABLE, INTERRUPTED = 2, 3, 130
+USAGE, UNREADABLE, _INTERRUPTED = 2, 3, 130
 
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bars.")]
@@ -33,12 +33,12 @@ def reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
     except TribolabError as error:
         fail(error.told(audience), UNREADABLE, debug)
     except KeyboardInterrupt as stop:
-        code = stop.code if isinstance(stop, Terminated) else INTERRUPTED
+        code = stop.code if isinstance(stop, Terminated) else _INTERRUPTED
         fail("interrupted; results of before are as they were", code, debug)
     except (typer.Exit, BrokenPipeError):
         raise
     except typer.Abort:
-        fail("stopped at a question without an answer: nothing is written", INTERRUPTED, debug)
+        fail("stopped at a question without an answer: nothing is written", _INTERRUPTED, debug)
     except Exception as error:  # a mistake of ours: said in one line, shown in full on demand
         # late: starting stays quick
         from tribolab.words import explain

@@ -301,7 +301,7 @@ def _not_described(results: Path) -> str:
     path = results / "tables" / "shear_stress.csv"
     if not path.is_file():
         return ""
-    fits = tables.read(path)
+    fits = tables.read_csv(path)
     fits = fits[[not is_described(words) for words in fits.judgement]]
     said = [f"{Count(n):curve|curves} of {name}" for name, n in fits.surface.value_counts().items()]
     verb = "is" if len(fits) == 1 else "are"

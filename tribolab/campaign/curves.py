@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from tribolab.campaign.recorded import Recorded
-from tribolab.campaign.runs.analysis import AS_FOUND as FRICTION_AS_FOUND
+from tribolab.campaign.runs.analysis import AS_FOUND
 from tribolab.campaign.runs.loads import at_level
 from tribolab.campaign.runs.stage import RunCame
 from tribolab.campaign.settings.run_names import distinct, safe_name
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     Parts = dict[str | None, xr.Dataset]  # of a data file, by group
 
 SLIP = "stick_slip"  # group of the stick-slip over speed
-AS_FOUND = "as_found"  # group of the curve without a person's decisions
+_AS_FOUND = "as_found"  # group of the curve without a person's decisions
 Condition = tuple[str, str, float | None, str]
 
 
@@ -201,7 +201,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
         if points_found == points:  # e.g. a note
             points_found = ()
         else:
-            groups[AS_FOUND] = undecided
+            groups[_AS_FOUND] = undecided
     write_data({None: curve} | groups, task.folder / task.curve.data_file)
     return CurveRecord(
         task.curve,
@@ -246,7 +246,7 @@ def _as_found(task: CurveTask) -> xr.Dataset | None:
 
     if not task.found_files:
         return None
-    wanted = ("friction", FRICTION_AS_FOUND)
+    wanted = ("friction", AS_FOUND)
     parts = [read_groups(task.folder / n, wanted, optional=True) for n in task.found_files]
     undecided = [part.get(wanted[1], part[wanted[0]]) for part in parts]
     pairs = zip(undecided, task.found_levels, strict=True)

@@ -23,11 +23,11 @@ class Named(Protocol):
 
 
 Mine = TypeVar("Mine", bound=Named)
-Record = TypeVar("Record")
+Settled = TypeVar("Settled")
 Failure = TypeVar("Failure")
 
 
-class Recorded(Stage[Mine, Record | Failure, Record | Failure], Generic[Mine, Record, Failure]):
+class Recorded(Stage[Mine, Settled | Failure, Settled | Failure], Generic[Mine, Settled, Failure]):
     """A stage whose records are taken over where the fingerprint is the same.
 
     Parameters
@@ -55,9 +55,9 @@ class Recorded(Stage[Mine, Record | Failure, Record | Failure], Generic[Mine, Re
         """Return what is to be done."""
         return self._tasks
 
-    def known(self, task: Mine, place: int) -> Record | None:
+    def known(self, task: Mine, place: int) -> Settled | None:
         """Take over the record of a task that is made of the same, if its files are there."""
-        earlier: Record | None = self._store.same(
+        earlier: Settled | None = self._store.same(
             self.kind, task.name, task.fingerprint, self.record
         )
         record = None if earlier is None else self.taken(task, earlier)
@@ -65,7 +65,7 @@ class Recorded(Stage[Mine, Record | Failure, Record | Failure], Generic[Mine, Re
             self._store.put(self.kind, task.name, place, task.fingerprint, record)
         return record
 
-    def taken(self, task: Mine, record: Record) -> Record | None:
+    def taken(self, task: Mine, record: Settled) -> Settled | None:
         """Return an earlier record as it is now, its files among the new; None: done anew."""
         return record
 
@@ -73,7 +73,7 @@ class Recorded(Stage[Mine, Record | Failure, Record | Failure], Generic[Mine, Re
         """Have the data file of an earlier record among the new ones; False if it is not whole."""
         return self._store.link(self.kind, task.name, old, new)
 
-    def keep(self, task: Mine, place: int, record: Record | Failure) -> Record | Failure:
+    def keep(self, task: Mine, place: int, record: Settled | Failure) -> Settled | Failure:
         """Write a record down; one that says of itself that it failed is done anew next time."""
         if isinstance(record, self.record):
             mark = task.fingerprint if getattr(record, "done", True) else ""
@@ -81,9 +81,9 @@ class Recorded(Stage[Mine, Record | Failure, Record | Failure], Generic[Mine, Re
         return record
 
 
-def done_and_failed(came: Iterable[Record | Notice]) -> tuple[list[Record], list[Notice]]:
+def done_and_failed(came: Iterable[Settled | Notice]) -> tuple[list[Settled], list[Notice]]:
     """Return what was done, and why the rest was not."""
-    done: list[Record] = []
+    done: list[Settled] = []
     why: list[Notice] = []
     for record in came:
         if isinstance(record, Notice):

@@ -23,23 +23,23 @@ from tribolab.stamping import labelled, stamp
 from tribolab.surface.moments import rms_slope
 from tribolab.validity import TINY, examine
 
-KAPPA, C_A = 0.4, 1.0
-NODES, ITERATIONS = 200, 100
-Pressure = TypeVar("Pressure", float, np.ndarray, xr.DataArray)
+_KAPPA, _C_A = 0.4, 1.0
+_NODES, _ITERATIONS = 200, 100
+AnyPressure = TypeVar("AnyPressure", float, np.ndarray, xr.DataArray)
 
 
 @over_dims(psd=("wavenumber",), work_of_adhesion=())
 def adhesion(
-    pressure: str | Pressure,
+    pressure: str | AnyPressure,
     psd: xr.Dataset,
     effective_modulus: str | float,
     work_of_adhesion: str | float | xr.DataArray,
     *,
     area: AreaTheory = "persson",
-    kappa: float = KAPPA,
-    c_a: float = C_A,
-    nodes: int = NODES,
-    max_iterations: int = ITERATIONS,
+    kappa: float = _KAPPA,
+    c_a: float = _C_A,
+    nodes: int = _NODES,
+    max_iterations: int = _ITERATIONS,
 ) -> xr.Dataset:
     """Contact area and effective work of adhesion of a rough adhesive contact.
 
@@ -151,9 +151,9 @@ def adhesion_by_works(
     >>> bool(dry.contact_area_ratio > wet.contact_area_ratio)
     True
     """
-    surface = rough_interface(psd, effective_modulus, KAPPA, C_A, NODES)
+    surface = rough_interface(psd, effective_modulus, _KAPPA, _C_A, _NODES)
     works = [work_value(work) for work in works_of_adhesion]
-    return _adhesions(surface, finite_pressures(pressure), psd, works, area, ITERATIONS)
+    return _adhesions(surface, finite_pressures(pressure), psd, works, area, _ITERATIONS)
 
 
 def _adhesions(
@@ -235,10 +235,10 @@ def macroscopic_work_of_adhesion(
     effective_modulus: str | float,
     work_of_adhesion: str | float,
     *,
-    kappa: float = KAPPA,
-    c_a: float = C_A,
-    nodes: int = NODES,
-    max_iterations: int = ITERATIONS,
+    kappa: float = _KAPPA,
+    c_a: float = _C_A,
+    nodes: int = _NODES,
+    max_iterations: int = _ITERATIONS,
 ) -> xr.Dataset:
     """Effective work of adhesion at magnification 1 and vanishing load: the verdict on pull-off.
 
@@ -304,7 +304,7 @@ def macroscopic_work_of_adhesion(
     )
 
 
-def finite_pressures(pressure: str | Pressure) -> xr.DataArray:
+def finite_pressures(pressure: str | AnyPressure) -> xr.DataArray:
     """Return pressures as a DataArray, none of them infinite or negative."""
     over = labelled(pressure, "pressure")
     wrong = over.values[(over.values < 0) | np.isinf(over.values)]

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
-from tribolab.contact.adhesion import Pressure, finite_pressures, pressure_coords
+from tribolab.contact.adhesion import AnyPressure, finite_pressures, pressure_coords
 from tribolab.contact.adhesion_balance import balance, parameters, rough_interface
 from tribolab.contact.work_of_adhesion import (
     PDMS_PMMA_GLYCEROL,
@@ -22,7 +22,7 @@ from tribolab.validity import TINY, examine
 
 @over_dims(psd=("wavenumber",))
 def adhesion_uncertainty(
-    pressure: str | Pressure,
+    pressure: str | AnyPressure,
     psd: xr.Dataset,
     effective_modulus: str | float,
     energies: SurfaceEnergies = PDMS_PMMA_GLYCEROL,

@@ -12,7 +12,7 @@ from tribolab.contact.separation import Separation
 from tribolab.surface.moments import rms_slope
 from tribolab.validity import LIMITS, examine, together
 
-OF_OILS = 2e-8  # 1/Pa: viscosity over pressure, in its logarithm; of glycerol it is a third
+_OF_OILS = 2e-8  # 1/Pa: viscosity over pressure, in its logarithm; of glycerol it is a third
 
 
 def line_limits(
@@ -70,7 +70,9 @@ def line_limits(
         thick = films.reshape(speeds.size, -1).max(axis=1) / contact.radius
         peak = float(hertz_max_pressure(largest, contact))
         compared.append(
-            examine(who, f"({1e-6 * peak:.3g} MPa at {largest:.3g} N/m)", thickening=OF_OILS * peak)
+            examine(
+                who, f"({1e-6 * peak:.3g} MPa at {largest:.3g} N/m)", thickening=_OF_OILS * peak
+            )
         )
         beyond = speeds[thick > LIMITS["film"].suspect]
         where = f"(above the limit from {beyond.min():.3g} m/s on)" if beyond.size else ""

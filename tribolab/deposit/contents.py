@@ -16,7 +16,7 @@ from tribolab.provenance import sha256_of_file
 from tribolab.report.campaign_tables import TABLES
 from tribolab.untyped import Json
 
-RESULTS = "published"  # not where `tribolab run` writes: what it makes anew stands beside
+_RESULTS = "published"  # not where `tribolab run` writes: what it makes anew stands beside
 _OWN = ("catalogue.sqlite",)  # what the next run here is made from; says nothing to others
 _KINDS = {
     ".html": "text/html",
@@ -101,7 +101,7 @@ def items_of(results: Path, campaign: Campaign, *, raw: bool) -> list[Item]:
         Item(path, path.relative_to(root).as_posix(), words.capitalize(), _kind(path))
         for path, (_, words) in zip(paths, inputs, strict=True)
     ]
-    below = (home.relative_to(root) / RESULTS).as_posix()
+    below = (home.relative_to(root) / _RESULTS).as_posix()
     return list({item.name: item for item in [*items, *_of_results(results, below)]}.values())
 
 

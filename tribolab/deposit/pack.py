@@ -90,7 +90,7 @@ def pack(
         with zipfile.ZipFile(draft, "w", zipfile.ZIP_DEFLATED) as archive:
             facts = {item.name: _add(archive, item) for item in items}
             listed = {
-                item.name: tables.read(item.source)
+                item.name: tables.read_csv(item.source)
                 for item in items
                 if "/tables/" in item.name and item.name.endswith(".csv")
             }

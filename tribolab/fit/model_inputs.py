@@ -16,11 +16,11 @@ from tribolab.lubrication.solved_curve import SolvedCurve, solve_curve
 from tribolab.stamping import labelled, stamp
 from tribolab.units import positive
 
-INPUTS = ("load", "radius", "youngs_modulus")
+_INPUTS = ("load", "radius", "youngs_modulus")
 _STEP = 0.02  # of ln x, to both sides
 _CELLS = 100  # a change needs no finer mesh than this: its error is on both sides
 _PARTS = ("friction_coefficient_couette", "friction_coefficient_pressure")
-SOLID = "friction_per_shear_stress"
+_SOLID = "friction_per_shear_stress"
 _MOVED = ("fluid_part", "solid_part", "solid_part_other")
 
 
@@ -74,8 +74,8 @@ def model_inputs(
     array([-0.00011])
     """
     for name, error in errors.items():
-        if name not in INPUTS:
-            raise AnalysisError(f"errors: '{shown(name)}' is not known{nearest(name, INPUTS)}")
+        if name not in _INPUTS:
+            raise AnalysisError(f"errors: '{shown(name)}' is not known{nearest(name, _INPUTS)}")
         if not 0 <= error < 0.5:
             raise AnalysisError(
                 f"errors: {name}: a relative standard uncertainty from 0 to 0.5 is wanted; "
@@ -109,7 +109,7 @@ def model_inputs(
 
 def _columns(above: xr.Dataset, below: xr.Dataset) -> list[tuple[np.ndarray, np.ndarray]]:
     """Return the friction of the liquid and both contact areas, at both ends of an input."""
-    names = (SOLID, f"{SOLID}_other")
+    names = (_SOLID, f"{_SOLID}_other")
     fluid = [end[_PARTS[0]].values + end[_PARTS[1]].values for end in (above, below)]
     return [(fluid[0], fluid[1]), *((above[n].values, below[n].values) for n in names)]
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
-CORRELATION = np.array([0.0, 0.2, 0.4, 0.6, 0.7, 0.8, 0.9, 0.95])
-GROWTH = 1.35 ** np.arange(18)
+_CORRELATION = np.array([0.0, 0.2, 0.4, 0.6, 0.7, 0.8, 0.9, 0.95])
+_GROWTH = 1.35 ** np.arange(18)
 # What is thought of the points' errors before the residuals are seen: that they are right with
 # 90 %, and then that neighbours are independent with 50 %; errors that are too small mostly leave
 # out what the points of a run have in common, so that there neighbours are independent with 10 %.
@@ -88,12 +88,12 @@ def residual_error(
     jac = jac / size  # well conditioned
     apart = np.abs(place[:, None] - place)
     freedom = residual.size - jac.shape[1]
-    growth = GROWTH if known else np.concatenate([1 / GROWTH[:0:-1], GROWTH])
+    growth = _GROWTH if known else np.concatenate([1 / _GROWTH[:0:-1], _GROWTH])
     prior = _prior(growth, known)
     weights = np.linalg.pinv(jac)[0]
-    evidence, variance = np.empty(prior.shape), np.empty(CORRELATION.size)
+    evidence, variance = np.empty(prior.shape), np.empty(_CORRELATION.size)
     spacing = float(np.median(np.diff(place))) or 1.0
-    for i, rho in enumerate(CORRELATION):
+    for i, rho in enumerate(_CORRELATION):
         together = np.eye(residual.size) if rho == 0 else rho ** (apart / spacing)
         lower = np.linalg.cholesky(together)
         white = np.linalg.solve(lower, np.column_stack([scaled, jac]))
@@ -114,7 +114,7 @@ def residual_error(
     return ResidualError(
         error=float(errors.sum()),
         half_interval=float((errors * quantile).sum()),
-        correlation=float(share.sum(1) @ CORRELATION),
+        correlation=float(share.sum(1) @ _CORRELATION),
         growth=float(share.sum(0) @ growth),
     )
 
@@ -123,8 +123,8 @@ def _prior(growth: np.ndarray, known: bool) -> np.ndarray:
     """Weight of each correlation and growth before anything is measured (correlation, growth)."""
     by_correlation = []
     for independent, power in _INDEPENDENT:
-        some = np.where(CORRELATION > 0, CORRELATION**power, 0.0)
-        alone = np.where(CORRELATION == 0, independent, 0.0)
+        some = np.where(_CORRELATION > 0, _CORRELATION**power, 0.0)
+        alone = np.where(_CORRELATION == 0, independent, 0.0)
         by_correlation.append(alone + (1 - independent) * some / some.sum())
     if not known:
         return np.repeat(by_correlation[0][:, None] / growth.size, growth.size, axis=1)

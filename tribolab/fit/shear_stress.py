@@ -22,7 +22,7 @@ from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
 from tribolab.stamping import stamp
 from tribolab.units import positive, to_si
 
-FREE = ("viscosity", "youngs_modulus")
+_FREE = ("viscosity", "youngs_modulus")
 _LIKELY = 0.01  # probability of chi-square above which a range of speeds counts as described
 _FEWEST = 4  # speeds in such a range
 _ATOM = 1e-19  # m2, contact area under which the bodies do not touch
@@ -132,10 +132,10 @@ def fit_shear_stress(
     >>> f"{fit.shear_stress / 1e6:.3f} MPa"
     '0.840 MPa'
     """
-    unknown = [name for name in free if name not in FREE]
+    unknown = [name for name in free if name not in _FREE]
     if unknown:
         raise AnalysisError(
-            f"free: '{shown(unknown[0])}' cannot be fitted{nearest(unknown[0], FREE)}"
+            f"free: '{shown(unknown[0])}' cannot be fitted{nearest(unknown[0], _FREE)}"
         )
     eta = positive(viscosity, "Pa s", "viscosity")
     force = positive(load, "N/m", "load")

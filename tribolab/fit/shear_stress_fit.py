@@ -11,7 +11,7 @@ from scipy import special
 
 from tribolab.errors import AnalysisError, Cure
 
-UNITS = {"viscosity": "Pa s", "youngs_modulus": "Pa"}  # of what may be fitted besides
+_UNITS = {"viscosity": "Pa s", "youngs_modulus": "Pa"}  # of what may be fitted besides
 
 _FEW = 30  # degrees of freedom under which Student's t is worth a word
 
@@ -188,7 +188,7 @@ class ShearStressFit:
              "its standard error"),
         ]  # fmt: skip
         rows += [
-            (name, value, UNITS[name], "fitted as well")
+            (name, value, _UNITS[name], "fitted as well")
             for name, value in self.parameters.items()
             if name != "shear_stress"
         ]

@@ -58,14 +58,14 @@ YOUNGS_MODULUS = StatedRange(
     lambda value: f"{value / 1e6:.3g} MPa",
     lambda base, value: {"contact": replace(base.contact, youngs_modulus=value)},
 )
-LOAD = StatedRange(
+LOAD_RANGE = StatedRange(
     "load",
     "load",
     "it hangs on the force cell and on the length that carries it",
     lambda value: f"{value:.4g} N/m",
     lambda base, value: {"load": value},
 )
-RADIUS = StatedRange(
+RADIUS_RANGE = StatedRange(
     "radius",
     "radius",
     "of a ground or cast cylinder it is that near the contact",

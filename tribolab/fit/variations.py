@@ -8,7 +8,13 @@ import numpy as np
 
 from tribolab.contact.area import other_area
 from tribolab.contact.separation import separation_table
-from tribolab.fit.stated_ranges import LOAD, RADIUS, VISCOSITY, WORK_OF_ADHESION, YOUNGS_MODULUS
+from tribolab.fit.stated_ranges import (
+    LOAD_RANGE,
+    RADIUS_RANGE,
+    VISCOSITY,
+    WORK_OF_ADHESION,
+    YOUNGS_MODULUS,
+)
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
 from tribolab.fit.varied_spectrum import hurst_exponent, long_waves, short_waves, spectrum_band
 from tribolab.lubrication.domain import SHORTEST, half_width
@@ -18,19 +24,19 @@ _OPEN, _SHUT = 0.40, 0.50
 _CUTOFFS = 0.3e-9, 3e-9
 _GAMMA = 0.5
 # What no variation reaches, between any surfaces and between rough ones.
-FIXED = (
+_FIXED = (
     ("liquid", "Newtonian and isothermal, its viscosity the same at every pressure and shear rate"),
     ("cavitation", "the liquid ruptures at the pressure outside"),
     ("elasticity", "linear and without loss, of a half-space"),
 )
-FIXED_IF_ROUGH = (
+_FIXED_IF_ROUGH = (
     ("shear stress in the contact", "the same at every speed, load and temperature"),
     ("contact area", "without adhesion, at rest"),
     ("roughness", "Gaussian, isotropic and on one of the bodies"),
     ("form of the flow factors", "effective-medium theory of the gaps' distribution"),
 )
 
-WITH_ADHESION = "with adhesion in its mean field, at rest; films and pressures are without it"
+_WITH_ADHESION = "with adhesion in its mean field, at rest; films and pressures are without it"
 
 
 def percolation(base: Base) -> Variation:
@@ -122,7 +128,7 @@ def inlet_length(base: Base) -> Variation | Skipped:
     )
 
 
-OF_ROUGHNESS: tuple[Callable[[Base], Variation | Skipped], ...] = (
+_OF_ROUGHNESS: tuple[Callable[[Base], Variation | Skipped], ...] = (
     spectrum_band,
     long_waves,
     hurst_exponent,
@@ -135,29 +141,29 @@ OF_ROUGHNESS: tuple[Callable[[Base], Variation | Skipped], ...] = (
     friction_factors,
 )
 
-OF_ANY: tuple[Callable[[Base], Variation | Skipped], ...] = (
+_OF_ANY: tuple[Callable[[Base], Variation | Skipped], ...] = (
     VISCOSITY,
     YOUNGS_MODULUS,
-    LOAD,
-    RADIUS,
+    LOAD_RANGE,
+    RADIUS_RANGE,
     inlet_length,
 )
 
 
 def variations(base: Base) -> list[Variation | Skipped]:
     """Return all that can be varied in a model, and what cannot with the reason."""
-    rough = [] if base.psd is None else [make(base) for make in OF_ROUGHNESS]
+    rough = [] if base.psd is None else [make(base) for make in _OF_ROUGHNESS]
     if rough and base.work_of_adhesion is not None:
         rough.append(WORK_OF_ADHESION(base))
-    return [*rough, *(make(base) for make in OF_ANY)]
+    return [*rough, *(make(base) for make in _OF_ANY)]
 
 
 def held_fixed(base: Base) -> list[Skipped]:
     """Return what no variation reaches."""
     fixed = {"geometry and load": _as_stated(base)}
-    fixed |= dict(FIXED if base.psd is None else FIXED + FIXED_IF_ROUGH)
+    fixed |= dict(_FIXED if base.psd is None else _FIXED + _FIXED_IF_ROUGH)
     if base.psd is not None and base.work_of_adhesion is not None:
-        fixed["contact area"] = WITH_ADHESION
+        fixed["contact area"] = _WITH_ADHESION
     return [Skipped(name, reason) for name, reason in fixed.items()]
 
 

@@ -7,7 +7,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
-from tribolab.surface.extrapolation import MEASURED, TO_LARGE, TO_SMALL
+from tribolab.surface.extrapolation import AS_MEASURED, TO_LARGE, TO_SMALL
 from tribolab.surface.moments import band, spectrum_arrays
 
 _NORMAL = 1.959963984540054  # 95 % of a normal distribution, as the bands of spectra
@@ -27,7 +27,7 @@ def spectrum_band(base: Base) -> Variation | Skipped:
     if "psd_2d_low" not in psd or "psd_2d_high" not in psd:
         return Skipped("spectrum band", "the spectrum has no psd_2d_low and psd_2d_high")
     q, c = spectrum_arrays(psd)
-    seen = np.flatnonzero((_origin(psd) == MEASURED) & (c > 0))
+    seen = np.flatnonzero((_origin(psd) == AS_MEASURED) & (c > 0))
     if seen.size == 0:
         return Skipped("spectrum band", "no part of the spectrum is marked as measured")
     ends: list[Changed] = []
@@ -123,7 +123,7 @@ def short_waves(base: Base) -> Variation | Skipped:
 def _origin(psd: xr.Dataset) -> np.ndarray:
     if "origin" in psd:
         return psd["origin"].values
-    return np.full(psd.sizes["wavenumber"], MEASURED)
+    return np.full(psd.sizes["wavenumber"], AS_MEASURED)
 
 
 def _measured_to(base: Base) -> float | None:

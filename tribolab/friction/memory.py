@@ -15,7 +15,7 @@ What lies beneath white noise tells little of itself. Over 1000 records of 400 s
 memory (AR(1)) of 1, 2, 5, 8, 15, 30 % of the record, the truth was beyond three errors in 0.2, 0,
 0, 0.1, 0, 0.2 %; beneath white noise twice as strong as the wander in 0.3, 0.4, 0.4, 0.7, 1.5,
 3.9 %. There a record that stays on one side of its true mean looks like white noise without memory;
-an error that held it would be twice as wide on every calm record (`CALM` 0.2: 1.8 %, and 1.9
+an error that held it would be twice as wide on every calm record (`_CALM` 0.2: 1.8 %, and 1.9
 times). Strokes that are repeated show it, one alone does not.
 
 References
@@ -33,13 +33,13 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
-TIMES = np.geomspace(0.01, 0.7, 8)  # of the record
-WHITE = np.concatenate([[0.0], np.geomspace(0.01, 100.0, 9)])  # variances, of the wander's
-CALM = 0.8  # chance, before the record is seen, that there is no wander
-FEWEST = 8  # stretches
+_TIMES = np.geomspace(0.01, 0.7, 8)  # of the record
+_WHITE = np.concatenate([[0.0], np.geomspace(0.01, 100.0, 9)])  # variances, of the wander's
+_CALM = 0.8  # chance, before the record is seen, that there is no wander
+_FEWEST = 8  # stretches
 _HALVINGS = 50  # of pi/(n + 1): to the last digit
 _NEGLIGIBLE = 1e-7  # chance of a model that no other figure of the answer knows of
-BEYOND = 0.006  # chance of more than three standard errors, where a memory may be long
+_BEYOND = 0.006  # chance of more than three standard errors, where a memory may be long
 
 
 class MemoryModels(NamedTuple):
@@ -76,9 +76,9 @@ def wander_axes(count: int) -> tuple[np.ndarray, np.ndarray]:
     ----------
     .. [2] Grenander and Szego (1958), Toeplitz Forms and Their Applications, sec. 5.3.
     """
-    rho = np.exp(-1 / (count * TIMES))[:, None]
+    rho = np.exp(-1 / (count * _TIMES))[:, None]
     number = np.arange(count)
-    below = np.broadcast_to(number * np.pi / (count + 1), (TIMES.size, count))
+    below = np.broadcast_to(number * np.pi / (count + 1), (_TIMES.size, count))
     width = np.pi / (count + 1)
     sign = 1.0 - 2.0 * (number % 2)  # of the polynomial below its root
     for _ in range(_HALVINGS):
@@ -100,11 +100,11 @@ def wander_axes(count: int) -> tuple[np.ndarray, np.ndarray]:
 @lru_cache(maxsize=16)
 def _models(count: int) -> MemoryModels:
     own, axes = wander_axes(count)
-    variance = own[:, None, :] + WHITE[None, :, None] + 1e-9
-    prior = np.full((TIMES.size, WHITE.size), (1 - CALM) / (TIMES.size * WHITE.size))
+    variance = own[:, None, :] + _WHITE[None, :, None] + 1e-9
+    prior = np.full((_TIMES.size, _WHITE.size), (1 - _CALM) / (_TIMES.size * _WHITE.size))
     # no wander at all: the last share of white noise, at any time
     variance[:, -1, :] = 1.0
-    prior[:, -1] = CALM / TIMES.size
+    prior[:, -1] = _CALM / _TIMES.size
     level, weight = axes.sum(axis=2), 1 / variance
     of_level = (weight * level[:, None, :] ** 2).sum(axis=2)
     fixed = np.log(prior) - 0.5 * (np.log(variance).sum(axis=2) + np.log(of_level))
@@ -134,7 +134,7 @@ def errors_with_memory(records: np.ndarray) -> np.ndarray:
     """
     size, n = records.std(axis=1), records.shape[1]
     moved = size > 0
-    if n < FEWEST or not moved.any():
+    if n < _FEWEST or not moved.any():
         return np.zeros(len(records))
     models, size = _models(n), np.where(moved, size, 1.0)
     centred = (records - records.mean(axis=1, keepdims=True)) / size[:, None]
@@ -150,7 +150,7 @@ def errors_with_memory(records: np.ndarray) -> np.ndarray:
     told = chance > _NEGLIGIBLE
     row = np.nonzero(told)[2]
     level = Level(n - 1, row, place[told], scale[told], chance[told])
-    return np.where(moved, level.exceeded_with(BEYOND, len(records)) / 3 * size, 0.0)
+    return np.where(moved, level.exceeded_with(_BEYOND, len(records)) / 3 * size, 0.0)
 
 
 class Level(NamedTuple):

@@ -13,10 +13,10 @@ from __future__ import annotations
 import numpy as np
 
 ORDER = 20  # highest order: as long as one of five teeth of a saw
-PENALTY = 3.0  # for each coefficient
+_PENALTY = 3.0  # for each coefficient
 GRID = 2048  # frequencies of the spectrum's quadrature
-LINE = 150.0  # a peak so much above the spectrum at zero is a line
-TAIL = 0.3  # share of the line's tail that is counted
+_LINE = 150.0  # a peak so much above the spectrum at zero is a line
+_TAIL = 0.3  # share of the line's tail that is counted
 
 
 def autoregression(records: np.ndarray, order: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -48,7 +48,7 @@ def autoregression(records: np.ndarray, order: int) -> tuple[np.ndarray, np.ndar
         models[p] = models[p - 1]
         models[p, :, 1 : p + 1] += k[:, None] * models[p - 1, :, p - 1 :: -1]
         variances[p] = variances[p - 1] * (1 - k * k)
-    price = PENALTY * np.arange(order + 1)[:, None]
+    price = _PENALTY * np.arange(order + 1)[:, None]
     best = np.argmin(n * np.log(np.maximum(variances, 1e-300)) + price, axis=0)
     rows = np.arange(count)
     sigma = variances[best, rows] * n / np.maximum(n - best - 1, 1)
@@ -70,13 +70,13 @@ def model_spectra(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     cycles = np.arange(GRID // 2 + 1) * n / GRID  # in the record
     peak = power.argmax(axis=1)
     height = power[np.arange(power.shape[0]), peak]
-    line = (cycles[peak] > 2.5) & (height > LINE * power[:, 0])
+    line = (cycles[peak] > 2.5) & (height > _LINE * power[:, 0])
     near = np.flatnonzero(cycles <= 6)
     filled = np.maximum.accumulate(power[:, near][:, ::-1], axis=1)[:, ::-1]
     power[:, near] = np.where(line[:, None], power[:, near], filled)
     below = cycles[None, :] < cycles[peak][:, None] / 2
     floor = power.min(axis=1, keepdims=True)
-    damped = floor + TAIL * (power - floor)
+    damped = floor + _TAIL * (power - floor)
     return np.where(line[:, None] & below, damped, power), np.where(line, floor[:, 0], 0.0)
 
 

@@ -11,9 +11,10 @@ A wave is believed where it stands far above the spectrum of what is left.
 
 Of more than a sixth as many turns as a record has stretches, the stretches do not show the wave's
 course, and what they keep of it looks like a line beside which slow noise is overlooked. There the
-waves are fitted to shorter stretches, `PER_TURN` of each turn, and taken out whether they stand out
-or not: they are far from what moves the mean. Whose speed was recorded up to `SPEED_OFF` wrong, the
-wave would run out of step over many turns; the angle is stretched to where the wave is largest.
+waves are fitted to shorter stretches, `_PER_TURN` of each turn, and taken out whether they stand
+out or not: they are far from what moves the mean. Whose speed was recorded up to `_SPEED_OFF`
+wrong, the wave would run out of step over many turns; the angle is stretched to where the wave is
+largest.
 
 Less than a turn tells neither the size of the wave nor its middle: the error is widened to what
 the part that is seen may hide in the worst case, half a turn about a crest.
@@ -31,13 +32,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-MOST = 40.0  # turns in a record: of more, each stretch of time holds half a turn
-TWICE = 2.0  # turns from which on a wave twice per turn is looked for, too
-LEAST = 0.25  # of a turn: less is taken for as much
-PER_TURN, LEAST_PER_TURN = 8, 4  # stretches of each of many turns
-FINEST = 6144  # stretches: of more turns, 16 and more are averaged in each of 96
-SPEED_OFF = 0.01  # a set speed that is given as the measured one is as good as this
-CLEAR = 12.0  # a wave so much above the spectrum beside it is no noise: chance e**-12
+MOST_TURNS = 40.0  # turns in a record: of more, each stretch of time holds half a turn
+_TWICE = 2.0  # turns from which on a wave twice per turn is looked for, too
+_LEAST = 0.25  # of a turn: less is taken for as much
+_PER_TURN, _LEAST_PER_TURN = 8, 4  # stretches of each of many turns
+_FINEST = 6144  # stretches: of more turns, 16 and more are averaged in each of 96
+_SPEED_OFF = 0.01  # a set speed that is given as the measured one is as good as this
+_CLEAR = 12.0  # a wave so much above the spectrum beside it is no noise: chance e**-12
 
 
 class Wave(NamedTuple):
@@ -57,7 +58,7 @@ class Wave(NamedTuple):
         count = self.signal.size
         cycles = np.linspace(0, count / 2, power.size)
         beside = power[(cycles >= self.turns / 2) & (cycles <= 2 * self.turns)]
-        return bool(self.signal @ self.signal / 2 > CLEAR * beside.max())
+        return bool(self.signal @ self.signal / 2 > _CLEAR * beside.max())
 
 
 def turned(time: np.ndarray, speed: np.ndarray) -> np.ndarray:
@@ -91,7 +92,7 @@ def hidden_by_part(turns: float) -> float:
     Worst about a crest: the mean is off by sinc(k), which 1.96 errors shall hold; the scatter is
     ``(1 + sinc(2 k))/2 - sinc(k)**2``, squared, with ``sinc(x) = sin(pi x)/(pi x)``.
     """
-    k = max(turns, LEAST)
+    k = max(turns, _LEAST)
     scatter = np.sqrt((1 + np.sinc(2 * k)) / 2 - np.sinc(k) ** 2)
     return float(np.sinc(k) / scatter / 1.96)
 
@@ -105,7 +106,7 @@ def fitted_waves(blocks: np.ndarray, angle: np.ndarray) -> list[Wave]:
         Means of the signal and of the angle [rad] over equal stretches of time (stretch).
     """
     turns = turns_of(angle)
-    orders = (1, 2) if turns >= TWICE else (1,)
+    orders = (1, 2) if turns >= _TWICE else (1,)
     columns = [f(order * angle) for order in orders for f in (np.cos, np.sin)]
     design = np.stack([np.ones(blocks.size), *columns], axis=1)
     size, *_ = np.linalg.lstsq(design, blocks, rcond=None)
@@ -132,20 +133,20 @@ def stretches_for_many_turns(turns: float, coarse: int, samples: int) -> int:
     """
     if not turns > coarse / 6:
         return 0
-    finer = min(math.ceil(PER_TURN * turns / coarse), min(samples, FINEST) // coarse)
-    return finer * coarse if finer * coarse >= LEAST_PER_TURN * turns else 0
+    finer = min(math.ceil(_PER_TURN * turns / coarse), min(samples, _FINEST) // coarse)
+    return finer * coarse if finer * coarse >= _LEAST_PER_TURN * turns else 0
 
 
 def in_step(blocks: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Return the angle [rad], stretched by up to `SPEED_OFF` to where its wave is largest.
+    """Return the angle [rad], stretched by up to `_SPEED_OFF` to where its wave is largest.
 
     Parameters
     ----------
     blocks, angle
         Means of the signal and of the angle over equal stretches of time (stretch).
     """
-    steps = math.ceil(4 * SPEED_OFF * turns_of(angle))  # by a quarter of a turn each
-    stretched = 1 + np.linspace(-SPEED_OFF, SPEED_OFF, 2 * steps + 1)
+    steps = math.ceil(4 * _SPEED_OFF * turns_of(angle))  # by a quarter of a turn each
+    stretched = 1 + np.linspace(-_SPEED_OFF, _SPEED_OFF, 2 * steps + 1)
     size = np.abs(np.exp(1j * np.outer(stretched, angle)) @ (blocks - blocks.mean()))
     best: np.ndarray = stretched[size.argmax()] * angle
     return best

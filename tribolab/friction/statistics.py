@@ -39,7 +39,7 @@ from scipy import special
 from tribolab.friction.memory import errors_with_memory
 from tribolab.friction.model_spectrum import GRID, ORDER, model_spectra, variance_of_sum
 from tribolab.friction.run_out import (
-    MOST,
+    MOST_TURNS,
     fitted_waves,
     hidden_by_part,
     in_step,
@@ -47,13 +47,13 @@ from tribolab.friction.run_out import (
     turns_of,
 )
 
-BLOCKS = 96  # stretches of a record; more resolve no slower memory
-HUMP = 4.0  # an oscillation so much above the spectrum at zero is no slow wander
-BESIDE = 0.3  # widening where the noise beside a line is all that moves the mean
+MOST_STRETCHES = 96  # stretches of a record; more resolve no slower memory
+_HUMP = 4.0  # an oscillation so much above the spectrum at zero is no slow wander
+_BESIDE = 0.3  # widening where the noise beside a line is all that moves the mean
 # how much the error is widened (and narrowed again where few samples were found because the memory
 # was overestimated), and below how many effective samples
-WIDENING, FEW = 0.62, 20.0
-NARROWING, FEWER = 0.2, 11.0
+_WIDENING, _FEW = 0.62, 20.0
+_NARROWING, _FEWER = 0.2, 11.0
 STUDENT = 8.0  # effective samples below which the error is at least as wide as Student's t asks
 
 
@@ -72,7 +72,7 @@ class Estimate(NamedTuple):
     turns: float = np.nan
 
 
-NOTHING = Estimate(
+_NOTHING = Estimate(
     mean=np.nan,
     std=np.nan,
     sem=np.nan,
@@ -128,7 +128,7 @@ def estimates_of(records: Iterable[tuple[np.ndarray, ...]]) -> list[Estimate]:
         and ``turns`` says how many were seen (:mod:`tribolab.friction.run_out`).
     """
     told = [_described(*record) for record in records]
-    out = [NOTHING if isinstance(each, _Record) else each for each in told]
+    out = [_NOTHING if isinstance(each, _Record) else each for each in told]
     alike: dict[int, list[int]] = {}
     for place, each in enumerate(told):
         if isinstance(each, _Record):
@@ -163,9 +163,9 @@ def _described(
         angle = None if angle is None else angle[good]
     n = values.size
     if n == 0:
-        return NOTHING
+        return _NOTHING
     if n < 3:
-        return NOTHING._replace(mean=float(np.mean(values)), samples=n)
+        return _NOTHING._replace(mean=float(np.mean(values)), samples=n)
     weight = sample_weights(time)
     if weight is None:
         mean, std = float(np.mean(values)), float(np.std(values, ddof=1))
@@ -173,7 +173,7 @@ def _described(
         mean = float(weight @ values)
         variance = float(weight @ (values - mean) ** 2)
         std = float(np.sqrt(variance / max(1 - weight @ weight, 1 / n)))
-    blocks = on_grid(time, values, min(n, BLOCKS))
+    blocks = on_grid(time, values, min(n, MOST_STRETCHES))
     duration = float((time[-1] - time[0]) * n / (n - 1))
     if std == 0 or np.ptp(blocks) <= 1e-12 * abs(mean):
         return Estimate(mean, std, std / np.sqrt(n), n, n, duration / (2 * n), 0.0, 0.0, 1.0)
@@ -243,7 +243,7 @@ def _without_turns(records: list[_Record]) -> tuple[np.ndarray, np.ndarray]:
     blocks = np.stack([record.blocks for record in records])
     left = np.array([record.left for record in records])
     turns = np.array([turns_of(record.angle) for record in records])
-    looked = np.flatnonzero((turns > 0) & (turns <= min(MOST, blocks.shape[1] / 6)))
+    looked = np.flatnonzero((turns > 0) & (turns <= min(MOST_TURNS, blocks.shape[1] / 6)))
     if not looked.size or blocks.shape[1] < 2 * ORDER:
         return blocks, left
     waves = [fitted_waves(blocks[k], records[k].angle) for k in looked]
@@ -264,7 +264,7 @@ def _without_turns(records: list[_Record]) -> tuple[np.ndarray, np.ndarray]:
 def _oscillates(power: np.ndarray, samples: int) -> bool:
     """Whether most of a record goes to and fro: its periods cancel, and no wander is left."""
     cycles = np.arange(power.size) * samples / GRID
-    return bool(power[cycles > 2.5].max(initial=0.0) > HUMP * power[0])
+    return bool(power[cycles > 2.5].max(initial=0.0) > _HUMP * power[0])
 
 
 def student_widening(effective: float) -> float:
@@ -361,15 +361,15 @@ def _errors_of_mean(
     student = special.stdtrit(n - 1, 0.995) / special.ndtri(0.995)
     # the many coefficients that describe a line leave the noise beside it less well known
     share = floor / n / np.maximum(plain**2, 1e-300)
-    beside = 1 + BESIDE * share**2
+    beside = 1 + _BESIDE * share**2
     return plain, plain * student * beside * _widening(effective, n)
 
 
 def _widening(effective: np.ndarray, n: int) -> np.ndarray:
     """Return the factor by which a spectrum known from few effective samples widens an error."""
-    share = effective / min(n / BLOCKS, 1)
-    wide = 1 + WIDENING / (1 + (share / FEW) ** 2)
-    return wide * (1 - NARROWING / (1 + (share / FEWER) ** 2))
+    share = effective / min(n / MOST_STRETCHES, 1)
+    wide = 1 + _WIDENING / (1 + (share / _FEW) ** 2)
+    return wide * (1 - _NARROWING / (1 + (share / _FEWER) ** 2))
 
 
 def trend(record: np.ndarray) -> tuple[float, float]:

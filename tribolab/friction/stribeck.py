@@ -19,7 +19,7 @@ from tribolab.provenance import joined_sources, made
 from tribolab.stamping import stamp
 
 _MANY = 24  # strokes of one speed that tell how long friction remembers
-FREEDOM = 3  # least degrees of freedom: two runs alone would widen the error twentyfold
+_FREEDOM = 3  # least degrees of freedom: two runs alone would widen the error twentyfold
 
 
 class _Known(NamedTuple):
@@ -239,7 +239,7 @@ def _random_effects(
     w = 1 / (1 / w + tau2)
     mean = (w @ y) / w.sum()
     spread = w @ (y - mean) ** 2 / ((y.size - 1) * w.sum())
-    student = special.stdtrit(max(y.size - 1, FREEDOM), 0.995) / 3
+    student = special.stdtrit(max(y.size - 1, _FREEDOM), 0.995) / 3
     error = float(np.sqrt(max(1 / w.sum(), max(student, 1.0) ** 2 * spread)))
     own, scatter = np.sqrt([1 / w.sum(), spread])
     # few that agree by chance are known no better than each of them is

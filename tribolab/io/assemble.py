@@ -19,7 +19,7 @@ from tribolab.io.content.twice import each_row_once
 from tribolab.io.content.values import add_assumed, single_values, step_values, tell_assumed
 from tribolab.io.derived import add_derived
 from tribolab.io.dialects.as_written import as_written
-from tribolab.io.dialects.column_rule import FRICTION
+from tribolab.io.dialects.column_rule import FRICTION_SIGNALS
 from tribolab.io.dialects.find import Dialect
 from tribolab.io.dialects.signature import peek
 from tribolab.io.forces_agree import keep_forces_that_agree
@@ -69,7 +69,7 @@ def assemble(logs: LogDialects, zero: str | None = None) -> xr.Dataset:
     time -= origin
     rules = {column.key: column.zero for column in dialect.column if column.zero}
     if zero is not None:
-        rules |= {name: zero for name in FRICTION if name in columns}
+        rules |= {name: zero for name in FRICTION_SIGNALS if name in columns}
 
     def blank(name: str) -> Mapping[str, np.ndarray]:
         return _blank(contents[0].path.parent / name, dialect)

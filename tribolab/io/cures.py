@@ -67,7 +67,7 @@ def joined(first: Cure, second: Cure) -> Cure:
     )
 
 
-SIGNALS = Cure(
+MEND_SIGNALS = Cure(
     notebook="read it with read()",
     terminal="a campaign takes it as a [[run]]",
     campaign="it belongs in a [[run]]",
@@ -77,7 +77,7 @@ TESTER_RESULTS = Cure(
     terminal="'tribolab check' takes them",
     campaign="'tribolab check' takes them; the scans of a [[surface]] are profiles",
 )
-UNITS = Cure(
+MEND_UNITS = Cure(
     notebook="say them with x_unit= and height_unit=, e.g. x_unit='mm', height_unit='um', or name "
     "the dialect that says them with instrument=",
     terminal="name the dialect that says them with --instrument",

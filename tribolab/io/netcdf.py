@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 # The library is not safe under threads, which some executors use.
 _LIBRARY = threading.RLock()
 _CACHE = 1 << 20  # bytes of a long variable that the library keeps
-GROUPS = "groups"  # attribute of the root of a file of groups
+_GROUPS = "groups"  # attribute of the root of a file of groups
 # What netCDF4 and xarray raise on a file that is damaged.
 _DAMAGE = (
     *(OSError, ValueError, TypeError, KeyError, IndexError, AttributeError, RuntimeError),
@@ -129,7 +129,7 @@ def _write(path: Path, groups: Mapping[str | None, xr.Dataset], mode: Literal["w
         with _LIBRARY, _plain_name(path) as name, netCDF4.Dataset(name, mode) as file:
             write_into(file, groups)
             if any(groups):  # whoever opens the file without a group sees the root alone
-                file.setncattr(GROUPS, "; ".join(file.groups))
+                file.setncattr(_GROUPS, "; ".join(file.groups))
         seal(path)
     except _REFUSED as error:
         raise TribolabError(f"{path}: the netCDF file cannot be written: {error}") from error

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.io.dialects.column_rule import FRICTION
+from tribolab.io.dialects.column_rule import FRICTION_SIGNALS
 from tribolab.medians import median
 from tribolab.pieces import chosen, pieces
 from tribolab.untyped import Json
@@ -62,7 +62,7 @@ def sampled_together(columns: dict[str, np.ndarray], time: np.ndarray) -> Togeth
     }
     if not seldom:
         return Together(time, columns)
-    lead = next((name for name in (*FRICTION, "shear_stress") if name in columns), None)
+    lead = next((name for name in (*FRICTION_SIGNALS, "shear_stress") if name in columns), None)
     told = [
         f"{name}: a value in every {_ordinal(rows)} row"
         for name, rows in seldom.items()

@@ -15,7 +15,7 @@ from typing import Protocol
 
 from tribolab.errors import Cure, ReadError, TribolabError, shown
 
-GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
+_GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
 _OFFICE = ("[Content_Types].xml", "main.xml")  # Office files and x3p are archives, too
 _MOST = 64  # GB of what is unpacked
 _TIMES = 1000  # the size of the archive: beyond it, it is a bomb
@@ -42,7 +42,7 @@ def unpacked(path: Path, head: bytes) -> Path:
     ReadError
         If it is damaged, or an archive of several files.
     """
-    if head.startswith(GZIP):
+    if head.startswith(_GZIP):
         state = path.stat()
         return _unpacked(path.resolve(), state.st_size, state.st_mtime_ns, "gz")
     if head.startswith(ZIP) and _members(path) is not None:

@@ -11,7 +11,7 @@ from tribolab.lubrication.parabolas import Between
 
 # Share of the smooth conductance u^3 that is left beyond percolation, so that fluid locked between
 # closed channels has a pressure; the flow it lets through is nothing beside any other.
-LEAK = 1e-10
+_LEAK = 1e-10
 # Films in roughnesses: below the first a straight line lies between two of them, as flow changes
 # by decades where channels close, and from the second on a cubic through four.
 _STRAIGHT, _CURVED = 0.3, 0.6
@@ -47,7 +47,7 @@ def flow_between(
     """
     u, share = _film_between(between, film, factors.rms_roughness / gap)
     phi, phi_slope, entrained, entrained_slope = factors.transport(u * gap)
-    phi = phi + LEAK
+    phi = phi + _LEAK
     resistance = 1 / (u * u * u * phi)
     entrained = entrained * (couette / gap)
     conductance = 1 / (between.weight * (resistance[0] + resistance[1]))

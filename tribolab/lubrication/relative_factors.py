@@ -12,7 +12,7 @@ from tribolab.lubrication.factors import flow_factors
 from tribolab.several import over_dims
 from tribolab.stamping import stamp
 
-OVER = "relative_separation"
+_OVER = "relative_separation"
 
 
 @over_dims(psd=("wavenumber",))
@@ -51,6 +51,6 @@ def relative_flow_factors(psd: xr.Dataset, over: ArrayLike, **options: Any) -> x
     """
     table = flow_factors(psd, **options)
     relative = np.atleast_1d(np.asarray(over, float))
-    separation = xr.DataArray(relative * table.rms_roughness, dims=OVER, coords={OVER: relative})
+    separation = xr.DataArray(relative * table.rms_roughness, dims=_OVER, coords={_OVER: relative})
     factors = table.dataset(separation).reset_coords("separation")
     return stamp(factors, **{k: v for k, v in factors.attrs.items() if not k.endswith("_m")})

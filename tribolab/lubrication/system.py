@@ -28,7 +28,7 @@ from tribolab.units import positive, to_si
 
 CELLS = 160
 PROOF = ("residual", "load_balance", "flux_variation", "iterations")  # of every point
-REFERENCE = (
+_REFERENCE = (
     "R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, Adhesion-controlled sliding and the "
     "Stribeck curve in hydrophobic soft contacts (2026), Eqs. (3)-(10)"
 )
@@ -104,7 +104,7 @@ def system_attributes(system: System) -> dict[str, str | float | int]:
         "inlet_length_m": system.inlet_length,
         "area": system.area,
         "work_of_adhesion_J_m2": system.growth.work_of_adhesion if system.growth else 0.0,
-        "references": REFERENCE,
+        "references": _REFERENCE,
     }
 
 

@@ -19,7 +19,7 @@ from tribolab.metrology.budget_parts import NOISE, ScatterPart, combined
 from tribolab.metrology.budget_result import UncertaintyBudget
 from tribolab.metrology.sensitivity import contributions, readings_of
 
-OWN = ("friction_coefficient_u", "friction_coefficient_dof")  # of a curve's own scatter
+_OWN = ("friction_coefficient_u", "friction_coefficient_dof")  # of a curve's own scatter
 StatedUncertainties = Mapping[str, StatedUncertainty | Mapping[str, Any]]
 
 
@@ -83,7 +83,7 @@ def uncertainty_budget(
     alone = [zero_apart(run, known_uncertainties(run, uncertainty)) for run in friction]
     if any(part.friction is not run for part, run in zip(alone, friction, strict=True)):
         own = measured_stribeck_curve([part.friction for part in alone], speed_tolerance)
-        curve = curve.assign({name: own[name] for name in OWN})
+        curve = curve.assign({name: own[name] for name in _OWN})
     stated = [part.known for part in alone]
     return UncertaintyBudget(*with_curve_uncertainty(curve, friction, stated))
 

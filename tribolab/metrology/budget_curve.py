@@ -13,7 +13,7 @@ from tribolab.io.uncertainty import Known
 from tribolab.metrology.budget_parts import BETWEEN, NOISE, ScatterPart, combined, part_name
 from tribolab.metrology.sensitivity import AMBIGUOUS, contributions, readings_of
 
-MOUNT = "mount"  # attribute of a friction result: which mount it was measured in
+_MOUNT = "mount"  # attribute of a friction result: which mount it was measured in
 EACH_POINT = (NOISE, BETWEEN, AMBIGUOUS, "resolution", "zero_drift")  # each point has its own
 
 
@@ -141,7 +141,7 @@ def _at_points(
 
 
 def _mounts(frictions: Sequence[xr.Dataset]) -> int:
-    labels = [str(friction.attrs.get(MOUNT, "")) for friction in frictions]
+    labels = [str(friction.attrs.get(_MOUNT, "")) for friction in frictions]
     return len(set(labels)) if all(labels) else 1
 
 

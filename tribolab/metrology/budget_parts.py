@@ -13,7 +13,7 @@ from tribolab.io.uncertainty import Known
 from tribolab.stamping import stamp
 
 NOISE, BETWEEN = "noise and zero within the run", "between runs"
-NOT_STATED = "calibration not stated: statistical only"
+_NOT_STATED = "calibration not stated: statistical only"
 _RECTANGULAR = ("half-width", "step")
 # Few repeats that agree by chance would count as known from many. Where a scatter has fewer degrees
 # of freedom than _FEW, its share x of Welch's and Satterthwaite's sum grows to 1 - (1 - x)^(1 +
@@ -149,7 +149,7 @@ def _says(
     unstated: Sequence[str],
 ) -> str:
     """Say what an uncertainty does not hold, or holds too widely."""
-    said = [] if any(name in known for name in names) else [NOT_STATED]
+    said = [] if any(name in known for name in names) else [_NOT_STATED]
     said += [
         f"calibration of {name or 'an instrument without a name'} not stated" for name in unstated
     ]

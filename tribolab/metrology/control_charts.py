@@ -19,10 +19,13 @@ SHEWHART, EWMA, CUSUM, WESTERN = "3 sigma", "EWMA", "CUSUM", "Western Electric"
 RULES = (SHEWHART, EWMA, CUSUM, WESTERN)
 DEFAULT_RULES = (SHEWHART, EWMA)
 
-LIMIT = 3.0
-EWMA_WEIGHT, EWMA_LIMIT = 0.2, 2.86
-CUSUM_SLACK, CUSUM_LIMIT = 0.5, 4.77
-FEWEST, MANY = 5, 30  # points of the baseline: least, and from which on moving ranges will do
+_LIMIT = 3.0
+_EWMA_WEIGHT, _EWMA_LIMIT = 0.2, 2.86
+_CUSUM_SLACK, _CUSUM_LIMIT = 0.5, 4.77
+FEWEST_OF_BASELINE, MANY = (
+    5,
+    30,
+)  # points of the baseline: least, and from which on moving ranges will do
 _RANGE_TO_SIGMA = 2 / math.sqrt(math.pi)  # mean moving range of normal values in their deviations
 RANGE_FREEDOM = 0.62  # degrees of freedom of a mean moving range, of each point beyond the first
 
@@ -90,8 +93,10 @@ def baseline_of(values: ArrayLike) -> Baseline:
     (1.04, 0.114)
     """
     y = np.asarray(values, dtype=float)
-    if y.size < FEWEST:
-        raise AnalysisError(f"a baseline wants {FEWEST} points or more; there are {y.size}")
+    if y.size < FEWEST_OF_BASELINE:
+        raise AnalysisError(
+            f"a baseline wants {FEWEST_OF_BASELINE} points or more; there are {y.size}"
+        )
     overall = float(y.std(ddof=1))
     if not overall > 1e-12 * abs(y.mean()):
         raise AnalysisError("the points of the baseline are all the same: nothing tells the spread")
@@ -185,9 +190,9 @@ def control_chart(
     standard = ((y - baseline.centre) / baseline.sigma)[None, :]
     judged = signals_of(standard, baseline, rules)
     centre_error = 1 / baseline.points
-    half = baseline.widened(LIMIT) * math.sqrt(1 + centre_error) * baseline.sigma
+    half = baseline.widened(_LIMIT) * math.sqrt(1 + centre_error) * baseline.sigma
     smoothed, deviation = _smoothed(standard, centre_error)
-    width = baseline.widened(EWMA_LIMIT) * deviation * baseline.sigma
+    width = baseline.widened(_EWMA_LIMIT) * deviation * baseline.sigma
     return Chart(
         baseline.centre - half,
         baseline.centre + half,
@@ -211,13 +216,13 @@ def signals_of(standard: Array, baseline: Baseline, rules: Sequence[str]) -> dic
         As for `control_chart`.
     """
     error = 1 / baseline.points
-    limit = baseline.widened(LIMIT) * math.sqrt(1 + error)
+    limit = baseline.widened(_LIMIT) * math.sqrt(1 + error)
     made: dict[str, Signalled] = {}
     if SHEWHART in rules:
         made[SHEWHART] = np.abs(standard) > limit
     if EWMA in rules:
         smoothed, deviation = _smoothed(standard, error)
-        made[EWMA] = np.abs(smoothed) > baseline.widened(EWMA_LIMIT) * deviation
+        made[EWMA] = np.abs(smoothed) > baseline.widened(_EWMA_LIMIT) * deviation
     if CUSUM in rules:
         made[CUSUM] = _cusum(standard, baseline)
     if WESTERN in rules:
@@ -230,15 +235,15 @@ def _smoothed(standard: Array, centre_error: float) -> tuple[Array, Array]:
     z = np.empty_like(standard)
     last = np.zeros(standard.shape[0])
     for place in range(standard.shape[1]):
-        last = EWMA_WEIGHT * standard[:, place] + (1 - EWMA_WEIGHT) * last
+        last = _EWMA_WEIGHT * standard[:, place] + (1 - _EWMA_WEIGHT) * last
         z[:, place] = last
     steps = np.arange(1, standard.shape[1] + 1)
-    decay = 1 - (1 - EWMA_WEIGHT) ** steps  # of the weights, how many there are yet
-    own = EWMA_WEIGHT / (2 - EWMA_WEIGHT) * (1 - (1 - EWMA_WEIGHT) ** (2 * steps))
+    decay = 1 - (1 - _EWMA_WEIGHT) ** steps  # of the weights, how many there are yet
+    own = _EWMA_WEIGHT / (2 - _EWMA_WEIGHT) * (1 - (1 - _EWMA_WEIGHT) ** (2 * steps))
     return z, np.sqrt(own + centre_error * decay**2)
 
 
-def cusums(standard: Array, slack: float = CUSUM_SLACK) -> tuple[Array, Array]:
+def cusums(standard: Array, slack: float = _CUSUM_SLACK) -> tuple[Array, Array]:
     """Return the upper and the lower cumulative sum (series, point)."""
     up, down = np.empty_like(standard), np.empty_like(standard)
     high, low = np.zeros(standard.shape[0]), np.zeros(standard.shape[0])
@@ -251,7 +256,7 @@ def cusums(standard: Array, slack: float = CUSUM_SLACK) -> tuple[Array, Array]:
 
 def _cusum(standard: Array, baseline: Baseline) -> Signalled:
     up, down = cusums(standard)
-    return np.maximum(up, down) > CUSUM_LIMIT * baseline.widened(LIMIT) / LIMIT
+    return np.maximum(up, down) > _CUSUM_LIMIT * baseline.widened(_LIMIT) / _LIMIT
 
 
 def _western(standard: Array, limit: float) -> Signalled:

@@ -20,7 +20,7 @@ from tribolab.metrology.resampling import (
 PairedGroups = Sequence[tuple[Array, Array]]
 
 PERMUTATION, ROTATION, HOLM = "permutation", "rotation", "Holm"
-DIFFERENT, EQUIVALENT, UNDECIDED = "different", "equivalent", "undecided"
+DIFFERENT, EQUIVALENT, OPEN = "different", "equivalent", "undecided"
 
 
 @dataclass(frozen=True)
@@ -257,7 +257,7 @@ def verdicts(compared: Differences, margin: Array | None, alpha: float = 0.05) -
     for place, chance in enumerate(compared.adjusted_p_value):
         within = margin is not None and max(-low[place], high[place]) <= margin[place]
         differs = chance <= alpha
-        words.append(EQUIVALENT if within else DIFFERENT if differs else UNDECIDED)
+        words.append(EQUIVALENT if within else DIFFERENT if differs else OPEN)
     return words
 
 

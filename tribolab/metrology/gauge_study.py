@@ -12,7 +12,7 @@ from scipy import special
 from tribolab.aliases import Array
 from tribolab.errors import AnalysisError
 
-POOLED_ABOVE = 0.25  # p value of the interaction, from which on it counts as repeatability
+_POOLED_ABOVE = 0.25  # p value of the interaction, from which on it counts as repeatability
 _CATEGORIES = math.sqrt(2)  # ndc: widths of the 97 % interval of the gauge in that of the parts
 
 
@@ -104,7 +104,7 @@ def gauge_study(values: ArrayLike) -> GaugeStudy:
         if (mean_trial > 0)
         else 0.0
     )
-    pooled = chance > POOLED_ABOVE
+    pooled = chance > _POOLED_ABOVE
     if pooled:
         repeatability = (squares["both"] + squares["trial"]) / (freedom_both + freedom_trial)
         noise, interaction = repeatability, 0.0

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from tribolab.metrology.control_charts import (
     DEFAULT_RULES,
-    FEWEST,
+    FEWEST_OF_BASELINE,
     MANY,
     RANGE_FREEDOM,
     Baseline,
@@ -90,7 +90,7 @@ def _run_lengths(
     rng = np.random.default_rng(_SEED)
     count = _SERIES * (_MORE if longest <= _SHORT else 1)
     usual, centre, sigma = Baseline(0.0, 1.0), np.zeros(count), np.ones(count)
-    if baseline is not None and baseline >= FEWEST:
+    if baseline is not None and baseline >= FEWEST_OF_BASELINE:
         before = rng.normal(size=(count, baseline))
         centre = before.mean(axis=1)
         sigma, freedom = before.std(axis=1, ddof=1), baseline - 1.0

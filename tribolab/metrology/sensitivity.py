@@ -13,9 +13,9 @@ from tribolab.friction.coefficient.reversal import ZERO as TAKEN_FOR_ZERO
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.io.uncertainty import Known
 
-TOLD_BY_LOOPS = 3  # pairs from which on the loops themselves show how the zero drifts
+_TOLD_BY_LOOPS = 3  # pairs from which on the loops themselves show how the zero drifts
 # inputs of the friction coefficient; the other names are inputs of the model beside it
-OF_FRICTION = (
+_OF_FRICTION = (
     "friction_gain",
     "normal_gain",
     "friction_linearity",
@@ -98,7 +98,7 @@ def readings_of(friction: xr.Dataset) -> SegmentReadings:
         middle,
         np.full(mu.size, by_itself) & ~both,
         _values(friction, "normal_force_offset", 0.0) != 0,
-        int(pair.max(initial=-1)) + 1 >= TOLD_BY_LOOPS,
+        int(pair.max(initial=-1)) + 1 >= _TOLD_BY_LOOPS,
         str(friction.attrs.get("middle_of_loop", "")),
     )
 
@@ -168,7 +168,7 @@ def contributions(at: SegmentReadings, known: Mapping[str, Known]) -> dict[str, 
         "zero_drift": drift,
         "resolution": np.where(one_way, 1.0, np.sqrt(0.5)) * per_load,
     }
-    parts = {name: sensitivity[name] * u[name] for name in OF_FRICTION if name in u}
+    parts = {name: sensitivity[name] * u[name] for name in _OF_FRICTION if name in u}
     return parts | _left_by_load(at, u, parts)
 
 

@@ -7,21 +7,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.oscillation.slip_curve import FIXED_FREQUENCY, STEADY
-from tribolab.friction.oscillation.waveform import UNDECIDED, oscillating
+from tribolab.friction.oscillation.slip_curve import FIXED_FREQUENCY, STEADY_SLIDING
+from tribolab.friction.oscillation.waveform import NOT_CLEAR, oscillating
 from tribolab.mode.misfit import is_sufficient
-from tribolab.mode.model import AGAINST, FOR, NEUTRAL, Evidence
+from tribolab.mode.model import AGAINST, FOR, UNTOUCHED, Evidence
 from tribolab.mode.words import REVERSED, SAW, SINE, friction_text, percent_text, rig_wave_text
 from tribolab.words import Count, speed_text
 
 if TYPE_CHECKING:
     from tribolab.mode.model import Mode
 
-FAR = 10.0  # times apart, that a plateau and the model's boundary regime are not the same
-BELOW = 2.0  # times that friction lies below a uniform slip's
-WEAKER = 1.5  # times that drops differ between speeds
-FALLS = 0.10  # relative; less of a fall between two speeds is none
-FALLEN = 0.8  # of the plateau's friction: below, the plateau is left
+_FAR = 10.0  # times apart, that a plateau and the model's boundary regime are not the same
+_BELOW = 2.0  # times that friction lies below a uniform slip's
+_WEAKER = 1.5  # times that drops differ between speeds
+_FALLS = 0.10  # relative; less of a fall between two speeds is none
+_FALLEN = 0.8  # of the plateau's friction: below, the plateau is left
 
 
 def _moving(slip: xr.Dataset) -> xr.Dataset:
@@ -31,14 +31,14 @@ def _moving(slip: xr.Dataset) -> xr.Dataset:
 def traces(slip: xr.Dataset | None) -> Evidence | None:
     """Say what the traces show."""
     if slip is None or not slip.sizes.get("sliding_speed", 0):
-        return Evidence(NEUTRAL, "stick-slip was not looked for in the traces", "traces")
+        return Evidence(UNTOUCHED, "stick-slip was not looked for in the traces", "traces")
     moving = _moving(slip)
     count = moving.sizes["sliding_speed"]
-    open_ = int((slip["waveform"].values == UNDECIDED).sum())
+    open_ = int((slip["waveform"].values == NOT_CLEAR).sum())
     if count == 0 and open_:
         text = f"at {open_} of {Count(slip.sizes['sliding_speed']):speed|speeds} it is not decided "
         text += "whether friction oscillates, at the others it does not"
-        return Evidence(NEUTRAL, text, "traces")
+        return Evidence(UNTOUCHED, text, "traces")
     if count == 0:
         text = "no stick-slip is seen at any speed"
         if "oscillation_swing" in slip and np.isfinite(slip["oscillation_swing"]).any():
@@ -86,7 +86,7 @@ def macroscopic_adhesion(known: Mode) -> Evidence | None:
     if work is None:
         text = "the work of adhesion at magnification 1 is not known: it takes scans, a modulus "
         text += "and the medium's work of adhesion"
-        return Evidence(NEUTRAL, text, "adhesion")
+        return Evidence(UNTOUCHED, text, "adhesion")
     value = f"γ_eff(1) = {1e3 * work:.2g} mJ/m²"
     span = ""
     if bounds is not None:
@@ -126,7 +126,7 @@ def weakening(curve: xr.Dataset, slip: xr.Dataset | None) -> Evidence | None:
     speed, mu = speed[part], mu[part]
     words = f"µ = {friction_text(mu[0])} at {speed_text(speed[0])}"
     words += f", {friction_text(mu[-1])} at {speed_text(speed[-1])}"
-    if mu[-1] < (1 - FALLS) * mu[0]:
+    if mu[-1] < (1 - _FALLS) * mu[0]:
         text = f"friction falls with speed where the traces oscillate ({words}): stick-slip of the "
         return Evidence(AGAINST, text + "rig's own spring would look alike", "curve")
     text = f"friction hardly falls where the traces oscillate ({words}): a spring alone, which "
@@ -145,12 +145,12 @@ def strength(slip: xr.Dataset | None) -> Evidence | None:
     slow, fast = float(drop[0]), float(drop[-1])
     words = f"{friction_text(slow)} at {speed_text(speed[0])}"
     words += f", {friction_text(fast)} at {speed_text(speed[-1])}"
-    if slow > WEAKER * fast:
-        quiet = slip["sliding_speed"].values[slip["waveform"].values == STEADY]
+    if slow > _WEAKER * fast:
+        quiet = slip["sliding_speed"].values[slip["waveform"].values == STEADY_SLIDING]
         above = quiet[quiet > speed.max()]
         end = f", gone at {speed_text(above.min())}" if above.size else ""
         return Evidence(FOR, f"drops weaken as the speed grows: {words}{end}", "speed")
-    return Evidence(NEUTRAL, f"drops hardly depend on speed: {words}", "speed")
+    return Evidence(UNTOUCHED, f"drops hardly depend on speed: {words}", "speed")
 
 
 def scaling(slip: xr.Dataset | None) -> Evidence | None:
@@ -159,7 +159,7 @@ def scaling(slip: xr.Dataset | None) -> Evidence | None:
         return None
     if (own := slip.attrs.get("resonance_frequency_Hz")) is not None:
         text = f"an oscillation at {own:.3g} Hz keeps its frequency at all speeds: a resonance of "
-        return Evidence(NEUTRAL, text + "the rig, not counted as stick-slip", "traces")
+        return Evidence(UNTOUCHED, text + "the rig, not counted as stick-slip", "traces")
     if slip.attrs.get("scaling") == FIXED_FREQUENCY:
         text = "the frequency does not go with the speed: something rings, as no fold that crosses "
         return Evidence(AGAINST, text + "the contact does", "traces")
@@ -171,7 +171,7 @@ def repeating(slip: xr.Dataset | None) -> Evidence | None:
     text = rig_wave_text(slip)
     if not text:
         return None
-    return Evidence(NEUTRAL, f"{text}; it is taken out, not counted as stick-slip", "traces")
+    return Evidence(UNTOUCHED, f"{text}; it is taken out, not counted as stick-slip", "traces")
 
 
 def plateau(numbers: dict[str, float], model: xr.Dataset | None) -> Evidence | None:
@@ -186,7 +186,7 @@ def plateau(numbers: dict[str, float], model: xr.Dataset | None) -> Evidence | N
         words = f"at {speed_text(computed)}"
     text = f"the measured plateau reaches up to {speed_text(end)}"
     text += f"; the model's boundary regime ends {words}"
-    if end > FAR * computed:
+    if end > _FAR * computed:
         return Evidence(FOR, text + f", {float(f'{end / computed:.1g}'):g} times slower", "curve")
     return Evidence(AGAINST, text, "curve")
 
@@ -206,7 +206,7 @@ def misfit(numbers: dict[str, float]) -> Evidence | None:
     if enough is None:
         text = "the errors are too large to tell whether the mixed-lubrication model is sufficient:"
         text += f" it misses the measured curve by {percent_text(off)} of the largest friction"
-        return Evidence(NEUTRAL, f"{text}{band}", "curve")
+        return Evidence(UNTOUCHED, f"{text}{band}", "curve")
     if enough:
         text = "the mixed-lubrication model is sufficient: its curve misses the measured one by"
         text += f" {percent_text(off)} of the largest friction{band}"
@@ -220,7 +220,7 @@ def uniform_slip(numbers: dict[str, float], known: Mode) -> Evidence | None:
     """Say what friction a uniform slip at the rough surfaces' shear stress would need."""
     uniform, seen = numbers["uniform_friction"], numbers["plateau_friction"]
     stress = known.rough_shear_stress
-    if stress is None or not uniform > BELOW * seen > 0:  # nothing to explain
+    if stress is None or not uniform > _BELOW * seen > 0:  # nothing to explain
         return None
     text = (
         f"uniform slip at the rough surfaces' shear stress "
@@ -239,9 +239,9 @@ def forced_wetting(curve: xr.Dataset, slip: xr.Dataset | None, known: Mode) -> d
         return {}
     speed, mu = curve["sliding_speed"].values, curve["friction_coefficient"].values
     last = _moving(slip)["sliding_speed"].values.max()
-    fallen = speed[(mu < FALLEN * np.median(mu[:3])) & (speed > 0)]
+    fallen = speed[(mu < _FALLEN * np.median(mu[:3])) & (speed > 0)]
     quiet = slip["sliding_speed"].values
-    quiet = quiet[(quiet > last) & (slip["waveform"].values == STEADY)]
+    quiet = quiet[(quiet > last) & (slip["waveform"].values == STEADY_SLIDING)]
     ends = [x.min() for x in (fallen, quiet) if x.size]
     if not ends:
         return {}

@@ -52,7 +52,7 @@ class Mode:
     fluid: bool = True
 
 
-FOR, AGAINST, NEUTRAL = "for", "against", "neutral"
+FOR, AGAINST, UNTOUCHED = "for", "against", "neutral"
 
 
 class Evidence(NamedTuple):

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-BOUNDARY, MIXED, HYDRODYNAMIC = "boundary", "mixed", "hydrodynamic"
-FLAT = 0.15  # part of its level by which friction may change along a plateau
-SIGMAS = 3.0  # or that many standard errors
-RISE = 1.2  # friction over its minimum where it is hydrodynamic
-CARRIED = 0.9  # part of the load on one side that decides a regime
+_BOUNDARY, _MIXED, _HYDRODYNAMIC = "boundary", "mixed", "hydrodynamic"
+_FLAT = 0.15  # part of its level by which friction may change along a plateau
+_SIGMAS = 3.0  # or that many standard errors
+_RISE = 1.2  # friction over its minimum where it is hydrodynamic
+_CARRIED = 0.9  # part of the load on one side that decides a regime
 
 
 def measured_regimes(curve: xr.Dataset) -> np.ndarray:
@@ -45,19 +45,19 @@ def measured_regimes(curve: xr.Dataset) -> np.ndarray:
     error = np.zeros(mu.size)
     if "friction_coefficient_sem" in curve:
         error = np.nan_to_num(curve["friction_coefficient_sem"].values)
-    regimes = np.full(mu.size, MIXED, dtype=object)
+    regimes = np.full(mu.size, _MIXED, dtype=object)
     if mu.size < 3:
         return regimes
     level = float(np.median(mu[:3]))
-    flat = np.abs(mu - level) <= np.maximum(FLAT * abs(level), SIGMAS * error)
+    flat = np.abs(mu - level) <= np.maximum(_FLAT * abs(level), _SIGMAS * error)
     count = int(np.argmin(np.append(flat, False)))
     if count >= 3:
-        regimes[:count] = BOUNDARY
+        regimes[:count] = _BOUNDARY
     lowest = int(np.argmin(mu))
     risen = np.arange(mu.size) > lowest
-    risen &= mu > np.maximum(RISE * mu[lowest], mu[lowest] + SIGMAS * error)
+    risen &= mu > np.maximum(_RISE * mu[lowest], mu[lowest] + _SIGMAS * error)
     if count < mu.size:
-        regimes[risen & (regimes != BOUNDARY)] = HYDRODYNAMIC
+        regimes[risen & (regimes != _BOUNDARY)] = _HYDRODYNAMIC
     return regimes
 
 
@@ -75,11 +75,11 @@ def model_regimes(curve: xr.Dataset) -> np.ndarray:
         Text (sliding_speed).
     """
     share = curve["solid_load_share"].values
-    solid, fluid = share >= CARRIED, share <= 1 - CARRIED
-    return np.where(solid, BOUNDARY, np.where(fluid, HYDRODYNAMIC, MIXED)).astype(object)
+    solid, fluid = share >= _CARRIED, share <= 1 - _CARRIED
+    return np.where(solid, _BOUNDARY, np.where(fluid, _HYDRODYNAMIC, _MIXED)).astype(object)
 
 
 def end_of_boundary(speed: np.ndarray, regimes: np.ndarray) -> float:
     """Highest speed of the boundary regime [m/s]; NaN if there is none."""
-    inside = speed[regimes == BOUNDARY]
+    inside = speed[regimes == _BOUNDARY]
     return float(inside.max()) if inside.size else float("nan")

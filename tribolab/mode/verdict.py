@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.friction.oscillation.slip_curve import FIXED_FREQUENCY, one_curve
-from tribolab.friction.oscillation.waveform import UNDECIDED
+from tribolab.friction.oscillation.waveform import NOT_CLEAR
 from tribolab.friction.oscillation.waveform import oscillating as oscillates
 from tribolab.mode import evidence
 from tribolab.mode.misfit import misfit_numbers
@@ -170,7 +170,7 @@ def _verdict(slip: xr.Dataset | None, known: Mode) -> str:
     if slip is None or slip.sizes.get("sliding_speed", 0) == 0:
         return UNKNOWN
     if not oscillating_speeds(slip).size:
-        undecided = slip["waveform"].values == UNDECIDED
+        undecided = slip["waveform"].values == NOT_CLEAR
         return UNKNOWN if undecided.mean() > 0.5 else NO_STICK_SLIP
     if known.work_of_adhesion is None or slip.attrs.get("scaling") == FIXED_FREQUENCY:
         return UNEXPLAINED

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.oscillation.waveform import CLASSES, UNDECIDED, oscillating
+from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR, oscillating
 from tribolab.mode.misfit import SUFFICIENT, is_sufficient
 from tribolab.mode.model import LOCAL, SUSPECTED, UNEXPLAINED
 from tribolab.words import Count, speed_text
@@ -16,9 +16,9 @@ from tribolab.words import Count, speed_text
 if TYPE_CHECKING:
     from tribolab.mode.model import Evidence, Mode
 
-STEADY, SAW, SINE, REVERSED = CLASSES
-LONG = 0.5e-3  # m: shorter waves are no turn of a track and no pitch of a screw
-APART, ALIKE = 1.5, 1.15  # times, of the speeds at which a wavelength is the same, and of those
+_STEADY, SAW, SINE, REVERSED = CLASSES
+_LONG = 0.5e-3  # m: shorter waves are no turn of a track and no pitch of a screw
+_APART, _ALIKE = 1.5, 1.15  # times, of the speeds at which a wavelength is the same, and of those
 
 
 def friction_text(value: float) -> str:
@@ -70,7 +70,7 @@ def _verdict_text(
     if verdict == "no stick-slip":
         off = numbers["model_misfit"]
         steady = "steady sliding, no stick-slip at any speed"
-        if slip is not None and (count := int((slip["waveform"].values == UNDECIDED).sum())):
+        if slip is not None and (count := int((slip["waveform"].values == NOT_CLEAR).sum())):
             steady = f"steady sliding where it is decided; {count} of "
             steady += f"{Count(slip.sizes['sliding_speed']):speed|speeds} not decided"
         if not modelled or np.isnan(off):
@@ -108,7 +108,7 @@ def suggestions(
     """Return what measurement would decide."""
     length = _fixed_wavelength(slip)
     compare: tuple[str, ...] = ()
-    if verdict in (SUSPECTED, LOCAL, UNEXPLAINED) and length > LONG:
+    if verdict in (SUSPECTED, LOCAL, UNEXPLAINED) and length > _LONG:
         compare = (
             f"compare the wavelength, {1e3 * length:.3g} mm at every speed, with the "
             "circumference of the track (2 π times its radius), the pitch of the drive's screw and "
@@ -126,7 +126,11 @@ def _fixed_wavelength(slip: xr.Dataset | None) -> float:
     length, speed = slip["dominant_wavelength"].values[moving], slip["sliding_speed"].values[moving]
     good = np.isfinite(length)
     length, speed = length[good], speed[good]
-    if length.size < 2 or speed.max() < APART * speed.min() or length.max() > ALIKE * length.min():
+    if (
+        length.size < 2
+        or speed.max() < _APART * speed.min()
+        or length.max() > _ALIKE * length.min()
+    ):
         return np.nan
     return float(np.median(length))
 

@@ -19,7 +19,7 @@ from tribolab.report.document.document import versions
 from tribolab.report.page.sections import Section
 from tribolab.studies import xu2026
 from tribolab.studies.published import Published
-from tribolab.studies.tally import STATUSES, count_statuses, tell_statuses
+from tribolab.studies.tally import STUDY_STATUSES, count_statuses, tell_statuses
 from tribolab.studies.verdict import (
     BOUNDS,
     BY_CONSTRUCTION,
@@ -32,7 +32,7 @@ from tribolab.studies.verdict import (
 )
 from tribolab.untyped import Json
 
-SCHEMA_VERSION = "1.1"
+_SCHEMA_VERSION = "1.1"
 
 
 class StatusMark(NamedTuple):
@@ -73,7 +73,7 @@ _MARKS = {
 }
 _BODY = "paper/section.html.j2"
 # Key, heading, and which words of "where a number is printed" mean it.
-PARTS = (
+_PARTS = (
     ("theory", "2 Theory of mixed lubrication", ("Sec. 2",)),
     ("setup", "3 Experiment", ("Sec. 3",)),
     ("topography", "4 Surface topography and contact area", ("Sec. 4",)),
@@ -117,7 +117,7 @@ def paper_sections() -> list[Section]:
     return [
         Section("summary", "Summary", "paper/summary.html.j2"),
         Section("numbers", "All published numbers", "paper/numbers.html.j2"),
-        *(Section(key, title, _BODY) for key, title, _ in PARTS),
+        *(Section(key, title, _BODY) for key, title, _ in _PARTS),
         Section("provenance", "Where it comes from", "paper/provenance.html.j2"),
     ]
 
@@ -148,7 +148,7 @@ def paper_document(
     counts = count_statuses(table)
     return plain_value(
         {
-            "schema_version": SCHEMA_VERSION,
+            "schema_version": _SCHEMA_VERSION,
             "made_at": dt.datetime.now(dt.UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
             "paper": xu2026.CITATION,
             "verdict": {
@@ -179,9 +179,9 @@ def context_of(document: Json) -> Json:
                 "figures": [figure for figure in document["figures"] if figure["section"] == key],
                 "rows": [row for row in rows if row["section"] == key and not row["figure"]],
             }
-            for key, _, _ in PARTS
+            for key, _, _ in _PARTS
         },
-        "marks": {status: _MARKS[status]._asdict() for status in STATUSES},
+        "marks": {status: _MARKS[status]._asdict() for status in STUDY_STATUSES},
     }
 
 
@@ -223,7 +223,7 @@ def _difference(record: Json, known: Published) -> str:
 
 
 def _section(where: str) -> str:
-    for key, _, words in PARTS:
+    for key, _, words in _PARTS:
         if where.startswith(words):
             return key
     raise AnalysisError(f"no section of the page has what the paper prints in {where}")

@@ -26,7 +26,7 @@ def _listed(parts: Iterable[str]) -> str:
     return "; ".join(parts) + "."
 
 
-def spectra(data: PaperData) -> FigureAndText:
+def paper_spectra(data: PaperData) -> FigureAndText:
     """Stand-in spectra."""
     psds = data.dry("psd")
     said = _listed(
@@ -46,7 +46,7 @@ def scanned_spectra(data: PaperData) -> FigureAndText:
     return plot.spectra(psds, surfaces=SURFACES), said
 
 
-def contact_area(data: PaperData) -> FigureAndText:
+def paper_contact_area(data: PaperData) -> FigureAndText:
     """A/A0 over pressure without adhesion."""
     loads = data.dry("loads")
     said = _listed(
@@ -58,7 +58,7 @@ def contact_area(data: PaperData) -> FigureAndText:
     return figure, said
 
 
-def effective_work(data: PaperData) -> FigureAndText:
+def paper_effective_work(data: PaperData) -> FigureAndText:
     """gamma_eff/gamma_0 over magnification."""
     works = data.dry("effective_work")
     said = _listed(
@@ -77,7 +77,7 @@ def _ends(line: xr.DataArray) -> str:
     return f"{float(line[0]):.3g} to {float(line[-1]):.3g}"
 
 
-def adhesive_area(data: PaperData) -> FigureAndText:
+def paper_adhesive_area(data: PaperData) -> FigureAndText:
     """A/A0 over pressure with adhesion."""
     loads = data.dry("loads")
     said = _listed(
@@ -109,14 +109,14 @@ def dry_friction(data: PaperData) -> FigureAndText:
     return plot.stribeck(measured, surfaces=SURFACES), _friction_of(measured)
 
 
-def modulus(data: PaperData) -> FigureAndText:
+def paper_modulus(data: PaperData) -> FigureAndText:
     """Stand-in modulus."""
     table = modulus_table()
     ends = (f"{float(table.storage_modulus[end]):.3g} Pa" for end in (0, -1))
     return plot.modulus(table), f"Storage modulus from {' to '.join(ends)}."
 
 
-def viscoelastic(data: PaperData) -> FigureAndText:
+def paper_viscoelastic(data: PaperData) -> FigureAndText:
     """mu_visc(v)."""
     rubbers = data.dry("rubber")
     rubbers["Smooth (complete contact)"] = data.read("dry", "Smooth", "rubber_complete")
@@ -213,7 +213,7 @@ def _at(model: xr.Dataset, points: xr.Dataset) -> np.ndarray:
     return np.interp(v, np.log(model.sliding_speed.values), model.friction_coefficient.values)
 
 
-def shear_stress(data: PaperData) -> FigureAndText:
+def paper_shear_stress(data: PaperData) -> FigureAndText:
     """sigma_f over load, as fitted and corrected."""
     said = _listed(
         f"{fit['surface']}, {force_text(fit['normal_force_N'])}: "
@@ -258,7 +258,7 @@ def factors(data: PaperData) -> FigureAndText:
     return plot.lubrication_factors(factors, surfaces=SURFACES), said
 
 
-def friction_factor_effect(data: PaperData) -> FigureAndText:
+def paper_friction_factor_effect(data: PaperData) -> FigureAndText:
     """mu(v) at the highest load with and without friction factors."""
     force = data.forces[-1]
     pairs = {name: data.model(name, force) for name in ROUGH}

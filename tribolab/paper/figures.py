@@ -96,7 +96,7 @@ FIGURES = (
     PlannedFigure(
         "spectra", "topography", "Surface roughness power spectra", (COMPUTED,),
         "Roughness and slope are the paper's by construction. " + _STAND_IN,
-        drawing.spectra, (("rms_roughness", "", ""), ("rms_slope", "", "")),
+        drawing.paper_spectra, (("rms_roughness", "", ""), ("rms_slope", "", "")),
     ),
     PlannedFigure(
         "spectra_from_profiles", "topography", "Spectra from simulated profiles", (SIMULATED,),
@@ -107,7 +107,7 @@ FIGURES = (
     PlannedFigure(
         "contact_area", "topography", "Contact area without adhesion", (COMPUTED,),
         "Grey: mean Hertz pressures of the four loads. " + _STAND_IN,
-        drawing.contact_area, (("contact_area_ratio", "", "0.042 MPa; no adhesion"),),
+        drawing.paper_contact_area, (("contact_area_ratio", "", "0.042 MPa; no adhesion"),),
     ),
     PlannedFigure(
         "effective_work", "adhesion", "Effective work of adhesion over magnification", (COMPUTED,),
@@ -115,14 +115,14 @@ FIGURES = (
         "51 mJ/m² in glycerol (full). Zero at magnification 1 means no pull-off force; that only "
         "Smooth has one the authors found by hand. At the highest magnification it exceeds 1, as "
         "a rough surface has more area than its projection.",
-        drawing.effective_work,
+        drawing.paper_effective_work,
         (("work_of_adhesion", "", ""), ("macroscopic_work_of_adhesion", "", "")),
     ),
     PlannedFigure(
         "adhesive_area", "adhesion", "Contact area with adhesion", (COMPUTED,),
         "Dotted: without adhesion; dashed: dry; full: in glycerol. Grey: mean Hertz pressures. The "
         "paper's text and caption swap full and dotted lines.",
-        drawing.adhesive_area,
+        drawing.paper_adhesive_area,
         (
             ("contact_area_ratio", "", "0.042 MPa; adhesion"),
             ("dry_over_glycerol_area", "", ""),
@@ -138,13 +138,13 @@ FIGURES = (
         "modulus", "dry", "Viscoelastic modulus of the rubber", (COMPUTED,),
         "A stand-in (1.5 MPa at rest, 1 GPa as a glass): the authors' measured modulus is a "
         "picture without numbers.",
-        drawing.modulus,
+        drawing.paper_modulus,
     ),
     PlannedFigure(
         "viscoelastic", "dry", "Viscoelastic contribution to friction", (COMPUTED,),
         "At 0.0417 MPa, without adhesion; dashed: Smooth in complete contact. With the stand-in "
         "modulus, so an order of magnitude only.",
-        drawing.viscoelastic,
+        drawing.paper_viscoelastic,
         (("viscoelastic_friction", "", ""), ("area_enhancement", "", "dry")),
     ),
     PlannedFigure(
@@ -180,7 +180,7 @@ FIGURES = (
         "Open: fitted to the simulated points, for the area without adhesion; filled: divided by "
         "the computed growth of the area by adhesion in glycerol. Bars: 95 %. The authors' own "
         "fits, which the rig was given, stand in the table.",
-        drawing.shear_stress,
+        drawing.paper_shear_stress,
         (
             ("contact_area_ratio", "", "0.1 MPa"),
             ("area_enhancement", "Sb-S", "at the loads"),
@@ -228,7 +228,7 @@ FIGURES = (
         "friction_factor_effect", "factors", "With and without friction factors", (COMPUTED,),
         "At the highest load with the printed shear stress. Full: with them; dashed: without. The "
         "paper draws Sb-R alone, with a small effect, and finds none to be seen on Sb-S. Here:",
-        drawing.friction_factor_effect, told=True,
+        drawing.paper_friction_factor_effect, told=True,
     ),
     PlannedFigure(
         "profiles_sb-s", "profiles", "Across the contact of Sb-S at 310 N/m", (COMPUTED,),

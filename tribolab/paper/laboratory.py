@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome
     from tribolab.campaign.surfaces.plan import PlannedSurface
 
-FOLDER = "simulated"
+_FOLDER = "simulated"
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def simulate_laboratory(
 ) -> Campaign:
     """Let the rig write its raw files below a folder, and return the campaign."""
     file = simulate_campaign(
-        folder / FOLDER,
+        folder / _FOLDER,
         laboratory.seed,
         loads=laboratory.loads,
         n_repeats=1,

@@ -9,7 +9,7 @@ from tribolab.qc.register import Check
 from tribolab.qc.run.checks import RUN_CHECKS
 from tribolab.qc.scan.checks import SCAN_CHECKS
 
-PAGE_FILE = "CHECKS.md"
+CHECKS_PAGE = "CHECKS.md"
 _HEAD = """# The checks
 
 What `tribolab check` and `tribolab run` ask of every run and scan. Limits are set in the campaign

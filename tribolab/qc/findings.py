@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-FAIL_ON = ("suspect", "fail", "never")
+_FAIL_ON = ("suspect", "fail", "never")
 
 
 class FindingRow(TypedDict):
@@ -243,8 +243,8 @@ def exit_code(statuses: set[str], fail_on: str = "fail") -> int:
     >>> exit_code({"pass", "suspect"}), exit_code({"suspect"}, "suspect"), exit_code({"error"})
     (0, 1, 3)
     """
-    if fail_on not in FAIL_ON:
-        raise ConfigError(f"fail_on: '{shown(fail_on)}' is not a level{nearest(fail_on, FAIL_ON)}")
+    if fail_on not in _FAIL_ON:
+        raise ConfigError(f"fail_on: '{shown(fail_on)}' is not a level{nearest(fail_on, _FAIL_ON)}")
     if "error" in statuses:
         return 3
     if fail_on == "never":

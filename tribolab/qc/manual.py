@@ -25,7 +25,7 @@ from tribolab.qc.register import OBJECTIONS, Result
 from tribolab.room import room
 
 MANUAL, BIT = "manual", 26  # its name and bit in ``<variable>_qc_tests``, as of a check
-ACCEPTED, REJECTED = "accepted", "rejected"
+_ACCEPTED, _REJECTED = "accepted", "rejected"
 
 
 class _Heard(NamedTuple):
@@ -72,9 +72,9 @@ def reviewed(findings: Findings, segments: xr.Dataset) -> Findings:
     objecting = [r for _, r in results if r.status in OBJECTIONS]
     verdict = ""
     if seen.rejected.all() or (segments.sizes["segment"] and rejected(segments).all()):
-        verdict = REJECTED
+        verdict = _REJECTED
     elif objecting and all(r.settled for r in objecting):
-        verdict = ACCEPTED if any(r.settled == ACCEPTED for r in objecting) else ""
+        verdict = _ACCEPTED if any(r.settled == _ACCEPTED for r in objecting) else ""
     return replace(findings, results=results, flagged=_marked(flagged, seen), verdict=verdict)
 
 
@@ -105,9 +105,9 @@ def _settled(result: Result, seen: _Reviewed) -> Result:
     if result.flags is not None and (result.flags >= SUSPECT).any():
         bad = result.flags >= SUSPECT
     if seen.rejected[bad].all():
-        return replace(result, settled=REJECTED, settled_by=seen.who(REJECT, bad))
+        return replace(result, settled=_REJECTED, settled_by=seen.who(REJECT, bad))
     if (seen.accepted | seen.rejected)[bad].all():
-        return replace(result, settled=ACCEPTED, settled_by=seen.who(ACCEPT, bad))
+        return replace(result, settled=_ACCEPTED, settled_by=seen.who(ACCEPT, bad))
     return result
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.decisions.decide import DECISIONS, WORDS
+from tribolab.friction.decisions.decide import DECISION_WORDS, DECISIONS
 from tribolab.friction.decisions.decision import Decision
 from tribolab.friction.decisions.rejected import rejected
 from tribolab.qc.register import OBJECTIONS
@@ -17,7 +17,7 @@ from tribolab.records.run_record import DecisionRow
 from tribolab.records.wording import plain_value
 from tribolab.words import many
 
-NOT_APPLIED = "not applied: the run failed"
+_NOT_APPLIED = "not applied: the run failed"
 
 
 def decision_rows(
@@ -46,7 +46,7 @@ def decision_rows(
 
 def not_applied(decisions: Iterable[Decision]) -> tuple[DecisionRow, ...]:
     """Return what was decided on a run that failed."""
-    return tuple(DecisionRow(**decision.plain(), effect=NOT_APPLIED) for decision in decisions)
+    return tuple(DecisionRow(**decision.plain(), effect=_NOT_APPLIED) for decision in decisions)
 
 
 def decision_notices(run: str, rows: Sequence[DecisionRow]) -> list[Notice]:
@@ -56,7 +56,7 @@ def decision_notices(run: str, rows: Sequence[DecisionRow]) -> list[Notice]:
             "note",
             run,
             "decision",
-            f"{row.where}: {WORDS[row.action]} by {row.author} ({row.date}): {row.reason}"
+            f"{row.where}: {DECISION_WORDS[row.action]} by {row.author} ({row.date}): {row.reason}"
             + (f" [{row.effect}]" if row.effect else ""),
         )
         for row in rows

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from tribolab.friction.coefficient.steadiness import WORDS
+from tribolab.friction.coefficient.steadiness import STEADINESS_WORDS
 from tribolab.plot.look.labels import column
 from tribolab.records.parts import Row
 from tribolab.records.wording import plain_value
@@ -116,7 +116,7 @@ def friction_columns(friction: xr.Dataset) -> dict[str, np.ndarray]:
     """
     columns = columns_of(friction, "segment", _FRICTION_FIRST)
     if "steady" in columns:
-        steady = [WORDS.get(value) for value in columns["steady"].tolist()]
+        steady = [STEADINESS_WORDS.get(value) for value in columns["steady"].tolist()]
         columns["steady"] = np.array(steady, dtype=object)
     return {"segment": np.arange(1, friction.sizes["segment"] + 1)} | _but("segment", columns)
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-LABELS = ("surface", "medium", "normal_force_N")
+MODEL_LABELS = ("surface", "medium", "normal_force_N")
 
 
 FITTED = {  # columns of a fit, and what they mean where the name does not say it

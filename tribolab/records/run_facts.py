@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribolab.friction.decisions.rejected import kept
-from tribolab.friction.oscillation.waveform import NOT_EVALUATED, UNDECIDED, oscillating
+from tribolab.friction.oscillation.waveform import NOT_CLEAR, NOT_LOOKED_AT, oscillating
 from tribolab.friction.stribeck import mean_of_observations
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.medians import median
@@ -172,21 +172,21 @@ def stick_slip_of(slip: xr.Dataset) -> Waveform:
         From `tribolab.friction.oscillation.stick_slip.stick_slip`.
     """
     # late: starting stays quick
-    from tribolab.friction.oscillation.slip_curve import STEADY, stick_slip_curve
+    from tribolab.friction.oscillation.slip_curve import STEADY_SLIDING, stick_slip_curve
 
     curve = stick_slip_curve([slip])
     over_speed = bool(curve.sizes["sliding_speed"])
     kind = (curve if over_speed else slip)["waveform"].values.astype(str)
-    kind = kind[kind != NOT_EVALUATED]
+    kind = kind[kind != NOT_LOOKED_AT]
     if not kind.size:
-        return Waveform(NOT_EVALUATED, "")
+        return Waveform(NOT_LOOKED_AT, "")
     moving = oscillating(kind)
-    if not moving.any() and (kind == UNDECIDED).any():
+    if not moving.any() and (kind == NOT_CLEAR).any():
         what = "speed" if over_speed else "segment"
-        count = f"{(kind == UNDECIDED).sum()} of {many(kind.size, what)}"
-        return Waveform(UNDECIDED, f"{'at' if over_speed else 'in'} {count}")
+        count = f"{(kind == NOT_CLEAR).sum()} of {many(kind.size, what)}"
+        return Waveform(NOT_CLEAR, f"{'at' if over_speed else 'in'} {count}")
     if not moving.any():  # without a speed, standing still may be among the sliding
-        return Waveform(STEADY, "" if over_speed else "if it slides: speed not known")
+        return Waveform(STEADY_SLIDING, "" if over_speed else "if it slides: speed not known")
     names, counts = np.unique(kind[moving], return_counts=True)
     ordered = [str(name) for name in names[np.argsort(-counts, kind="stable")]]
     detail = f"at {moving.sum()} of {many(kind.size, 'speed')}"

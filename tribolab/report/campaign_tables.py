@@ -15,7 +15,7 @@ from tribolab.records.run_record import RunRecord
 from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
 from tribolab.records.wording import plain_value
 from tribolab.report import tables
-from tribolab.report.document.decisions import AS_FOUND
+from tribolab.report.document.decisions import CURVES_AS_FOUND
 from tribolab.report.document.document import labels
 from tribolab.report.document.models import (
     ModelRow,
@@ -28,9 +28,17 @@ if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome
 
 _CHECK = ("check", "variable", "status", "value", "unit", "message")
-_POINT = (*tables.LABELS, "sliding_speed_m_s", "friction_coefficient")
-_PART = (*tables.LABELS, "sliding_speed_m_s", "part", "varies", "contribution", "share", "dof")
-_SEGMENT = (*tables.LABELS, "segment", "sliding_speed_m_s", "friction_coefficient")
+_POINT = (*tables.CURVE_LABELS, "sliding_speed_m_s", "friction_coefficient")
+_PART = (
+    *tables.CURVE_LABELS,
+    "sliding_speed_m_s",
+    "part",
+    "varies",
+    "contribution",
+    "share",
+    "dof",
+)
+_SEGMENT = (*tables.CURVE_LABELS, "segment", "sliding_speed_m_s", "friction_coefficient")
 
 
 # All that may be written, with what they say.
@@ -174,4 +182,4 @@ def _long_tables(outcome: Outcome, curves: Sequence[CurveRecord]) -> Iterator[_L
     def as_found(record: CurveRecord) -> Iterable[Row]:
         return _saying(record.uncertainty_says, map(plain_value, record.points_as_found))
 
-    yield _Long(AS_FOUND, of_curves(as_found))
+    yield _Long(CURVES_AS_FOUND, of_curves(as_found))

@@ -41,7 +41,7 @@ class Results(Mapping[str, "pd.DataFrame"]):
             raise ReadError(
                 f"{self.folder}: there is no table '{shown(name)}'{nearest(name, self._files)}"
             )
-        return tables.read(self._files[name])
+        return tables.read_csv(self._files[name])
 
     def __contains__(self, name: object) -> bool:
         """Say whether there is such a table."""

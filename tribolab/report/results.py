@@ -44,7 +44,7 @@ if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import OpenOutcome, Outcome
     from tribolab.records.parts import CurveOutcome, RunOutcome
 
-SECTIONS = ("figures", "surface_figures", "model_figures", "sliding_figures")
+_SECTIONS = ("figures", "surface_figures", "model_figures", "sliding_figures")
 
 
 def write_report(
@@ -114,7 +114,7 @@ def write_report(
     prepare_page()
     live, undrawn = making()
     findings += undrawn
-    drawn: dict[str, list[FigureRecord]] = {section: [] for section in SECTIONS}
+    drawn: dict[str, list[FigureRecord]] = {section: [] for section in _SECTIONS}
     for task, record in zip(tasks, drawing(), strict=True):
         if isinstance(record, Notice):
             findings.append(record)
@@ -224,10 +224,14 @@ def _failure(run: RunOutcome) -> Notice:
 def shown_curves(
     curves: Sequence[CurveRecord], quantities: Mapping[str, str | None]
 ) -> tuple[list[CurveRecord], list[Notice]]:
-    """Return the curves that can be shown, and why the others cannot."""
+    """Return the curves that can be shown, and what the others, or parts of them, lack."""
     shown, missing = [], []
     for curve in curves:
         outcome, reason = curve.outcome, curve.outcome.reason
+        members = "; ".join(outcome.run_names)
+        if curve.no_slip:
+            text = f"no stick-slip over speed: {curve.no_slip}"
+            missing.append(Notice("error", members, outcome.name, text))
         if outcome.done:
             if any(row["friction_coefficient"] is not None for row in curve.points):
                 shown.append(curve)
@@ -237,6 +241,5 @@ def shown_curves(
         known = [quantities.get(name) for name in outcome.run_names]
         severity = "suspect" if "friction_coefficient" in known else "note"
         severity = "error" if outcome.crash else severity
-        members = "; ".join(outcome.run_names)
         missing.append(Notice(severity, members, outcome.name, f"no measured curve: {reason}"))
     return shown, missing

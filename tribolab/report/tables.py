@@ -25,7 +25,7 @@ _ARROW = {
 }
 SEVERITIES = ("fail", "error", "suspect", "note")
 
-LABELS = ["surface", "medium", "nominal_normal_force_N"]
+CURVE_LABELS = ["surface", "medium", "nominal_normal_force_N"]
 
 
 def findings_table(findings: Iterable[Notice]) -> pd.DataFrame:
@@ -75,7 +75,8 @@ def write(table: pd.DataFrame, path: Path) -> None:
 def write_csv(table: pd.DataFrame, path: Path, digits: int | None = None) -> None:
     """Write a table as CSV: UTF-8, LF, every float with all its digits or with so many.
 
-    Text that a spreadsheet would compute is kept from it, see `uncomputed`; `read` gives it back.
+    Text that a spreadsheet would compute is kept from it, see `uncomputed`; `read_csv` gives it
+    back.
     """
     with path.open("w", encoding="utf-8", newline="") as file:
         _append(table, file, header=True, digits=digits)
@@ -161,7 +162,7 @@ def _append(
     safe.to_csv(file, index=False, header=header, lineterminator="\n", float_format=float_format)
 
 
-def read(path: Path) -> pd.DataFrame:
+def read_csv(path: Path) -> pd.DataFrame:
     """Read a table that `write` wrote.
 
     Raises

@@ -12,7 +12,7 @@ from tribolab.errors import AnalysisError, nearest
 from tribolab.rig.mixed_law import MixedLaw, mixed_law
 from tribolab.studies import xu2026
 
-MEDIA = ("glycerol", "dry")
+_MEDIA = ("glycerol", "dry")
 
 # Effective shear stress of the dry contact [Pa], for the area with adhesion: of the magnitude of
 # Sec. 6, with the paper's ratio of 1.5 between Sb-R and Sb-S; the values stand in a figure only.
@@ -149,8 +149,8 @@ def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | Str
     >>> round(float(law(1e-9)), 2)
     1.39
     """
-    if medium not in MEDIA:
-        raise AnalysisError(f"the rig has no medium '{medium}'{nearest(medium, MEDIA)}")
+    if medium not in _MEDIA:
+        raise AnalysisError(f"the rig has no medium '{medium}'{nearest(medium, _MEDIA)}")
     s, known = xu2026.system, xu2026.surface(surface)
     pressure = s.nominal_pressure(normal_force)
     # adhesion pulls Smooth into nearly full contact at every load; elsewhere area goes with load

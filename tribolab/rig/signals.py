@@ -14,7 +14,7 @@ from tribolab.rig.parameters import Protocol, Scatter
 from tribolab.rig.schedule import Schedule
 from tribolab.rig.waves import WAVES
 
-TRIM = 0.10  # the paper leaves out this part of a segment at either end (App. C)
+_TRIM = 0.10  # the paper leaves out this part of a segment at either end (App. C)
 _FINE = 20_000  # points per segment for the averages that the truth states
 
 
@@ -154,7 +154,7 @@ def make_signals(
         strokes.append(stroke)
         last = direction * float(stroke(np.array([length]))[0])
         left = last * float(_relaxed(protocol, protocol.rest))
-        cut = int(TRIM * _FINE)
+        cut = int(_TRIM * _FINE)
         rows.append(
             {
                 "segment": k,

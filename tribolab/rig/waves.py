@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 JITTER = 0.07  # relative standard deviation of period and drop
-FALL = 0.04  # part of a period that the abrupt drop takes
+_FALL = 0.04  # part of a period that the abrupt drop takes
 
 
 def sawtooth(
@@ -38,7 +38,7 @@ def sawtooth(
     starts, periods, sizes = _periods(rng, length, wavelength, jitter)
     valleys = -0.5 * drop * sizes[:-1]
     peaks = 0.5 * drop * sizes[1:]
-    distance = np.stack([starts, starts + (1 - FALL) * periods], axis=1).ravel()
+    distance = np.stack([starts, starts + (1 - _FALL) * periods], axis=1).ravel()
     values = np.stack([valleys, peaks], axis=1).ravel()
     return lambda s: np.interp(s, distance, values)
 

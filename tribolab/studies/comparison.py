@@ -13,7 +13,7 @@ from tribolab.studies.published import Published
 from tribolab.studies.theory import Theory
 from tribolab.studies.verdict import BOUNDS, Computed, Measured, Own, verdict_on
 
-COLUMNS = [
+_COLUMNS = [
     "quantity",
     "surface",
     "condition",
@@ -26,12 +26,12 @@ COLUMNS = [
 ]
 
 _COMPUTE: dict[str, Callable[[Published, Theory], Computed | Measured]] = {
-    **comparison_contact.COMPUTE,
-    **comparison_lubrication.COMPUTE,
+    **comparison_contact.COMPUTE_CONTACT,
+    **comparison_lubrication.COMPUTE_LUBRICATION,
 }
 _OWN: dict[str, Callable[[Published], Own | None]] = {
-    **comparison_contact.OWN,
-    **comparison_lubrication.OWN,
+    **comparison_contact.OWN_CONTACT,
+    **comparison_lubrication.OWN_LUBRICATION,
 }
 
 
@@ -81,7 +81,7 @@ def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataF
                 "note": verdict.note,
             }
         )
-    return pd.DataFrame(compared, columns=COLUMNS)
+    return pd.DataFrame(compared, columns=_COLUMNS)
 
 
 def _numbers(row: Published, computed: Computed | Measured) -> dict[str, str | float]:

@@ -113,7 +113,7 @@ def _excess(row: Published, theory: Theory) -> Computed:
     return Computed(dry / wet - 1, 0.1, "computed: the dry over the wet area, less 1")
 
 
-COMPUTE: dict[str, Callable[[Published, Theory], Computed]] = {
+COMPUTE_CONTACT: dict[str, Callable[[Published, Theory], Computed]] = {
     "nominal_pressure": _nominal_pressure,
     "hertz_max_pressure": _hertz_max_pressure,
     "hertz_contact_width": _hertz_width,
@@ -169,7 +169,7 @@ def _area_ratio(surface: str, above: str, below: str) -> tuple[float, float, str
     return low, high, words
 
 
-OWN: dict[str, Callable[[Published], Own | None]] = {
+OWN_CONTACT: dict[str, Callable[[Published], Own | None]] = {
     "dry_over_glycerol_area": _own_excess,
     "area_enhancement": _own_enhancement,
     "half_width_no_adhesion": _own_half_width,

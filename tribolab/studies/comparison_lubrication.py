@@ -63,7 +63,7 @@ def _corrected_ratio(row: Published, theory: Theory) -> Computed:
     return Computed(sum(every) / len(every), 0.03, note, low=min(every), high=max(every))
 
 
-COMPUTE: dict[str, Callable[[Published, Theory], Computed | Measured]] = {
+COMPUTE_LUBRICATION: dict[str, Callable[[Published, Theory], Computed | Measured]] = {
     "percolation_separation": _percolation,
     "boundary_onset_speed": _boundary_onset,
     "shear_stress": _fitted,
@@ -103,7 +103,7 @@ def _own_ratio(row: Published) -> Own:
     return max(every, key=lambda own: abs((own.low + own.high) / 2 - row.si))
 
 
-OWN: dict[str, Callable[[Published], Own | None]] = {
+OWN_LUBRICATION: dict[str, Callable[[Published], Own | None]] = {
     "shear_stress": _own_stress,
     "corrected_shear_stress_ratio": _own_ratio,
 }

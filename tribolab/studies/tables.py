@@ -8,10 +8,10 @@ import xarray as xr
 from tribolab.stamping import labelled, stamp
 from tribolab.studies import xu2026
 
-Groups = dict[str, xr.Dataset]
+SurfaceGroups = dict[str, xr.Dataset]
 # Work of adhesion [J/m2] as the paper rounds it and goes on with.
 MEDIA = {row.condition: row.si for row in xu2026.published if row.quantity == "work_of_adhesion"}
-PROFILE_SPEEDS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)  # m/s, in App. B
+_PROFILE_SPEEDS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)  # m/s, in App. B
 _PRESSURES = np.geomspace(1e-3, 1.0, 46) * 1e6  # Pa
 # m/s; rounded, so that none stands twice, a last digit apart
 _SPEEDS = np.unique([*(float(f"{v:.3g}") for v in np.geomspace(1e-9, 1e-1, 33)), *xu2026.SPEEDS])
@@ -19,7 +19,7 @@ _SEPARATIONS = np.geomspace(0.1, 6.0, 120)  # over h_rms
 _MOST_PRESSED = 0.3  # of E*, up to which the separation is shown
 
 
-def dry_contact(name: str) -> Groups:
+def dry_contact(name: str) -> SurfaceGroups:
     """Compute contact, adhesion and rubber friction of a surface without a fluid.
 
     Parameters
@@ -115,7 +115,7 @@ def modulus_table() -> xr.Dataset:
     return stamp(xr.Dataset(over, {"angular_frequency": omega}))
 
 
-def lubricated(name: str, forces: tuple[float, ...] = xu2026.system.loads) -> Groups:
+def lubricated(name: str, forces: tuple[float, ...] = xu2026.system.loads) -> SurfaceGroups:
     """Compute the mixed lubrication of a surface in glycerol.
 
     Parameters
@@ -161,6 +161,6 @@ def _profiles(psd: xr.Dataset, load: float) -> xr.Dataset:
         .reset_index("x")
         .reset_coords("x")
         .rename_dims(x="point")
-        for v in PROFILE_SPEEDS
+        for v in _PROFILE_SPEEDS
     ]
     return stamp(xr.concat(profiles, "sliding_speed", combine_attrs="drop_conflicts"))

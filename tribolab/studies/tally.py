@@ -27,7 +27,7 @@ _WORDS = {
         "measured by the authors and not computed",
     ),
 }
-STATUSES = tuple(_WORDS)
+STUDY_STATUSES = tuple(_WORDS)
 
 
 def count_statuses(table: pd.DataFrame) -> dict[str, int]:
@@ -38,7 +38,7 @@ def count_statuses(table: pd.DataFrame) -> dict[str, int]:
     table
         From `tribolab.studies.comparison.compare_with_paper`.
     """
-    return {status: int((table["status"] == status).sum()) for status in STATUSES}
+    return {status: int((table["status"] == status).sum()) for status in STUDY_STATUSES}
 
 
 def tell_statuses(table: pd.DataFrame) -> str:

@@ -11,7 +11,7 @@ from tribolab.surface.moments import bin_integrals
 from tribolab.surface.self_affine import SelfAffine, psd_2d
 from tribolab.surface.smooth_law import FittedLaw, smooth
 
-CONFIDENCE = 0.95
+_CONFIDENCE = 0.95
 _LARGEST_ERROR = 0.25  # relative standard error that an annulus may have
 _TAIL_DECADES = 0.5
 _PLATEAU = 3.0  # an annulus wider than this was joined
@@ -23,7 +23,7 @@ def confidence_band(value: np.ndarray, independent: np.ndarray) -> tuple[np.ndar
     from scipy.special import chdtri
 
     freedom = 2 * np.asarray(independent)
-    outside = 0.5 * (1 - CONFIDENCE)
+    outside = 0.5 * (1 - _CONFIDENCE)
     return (
         value * freedom / chdtri(freedom, outside),
         value * freedom / chdtri(freedom, 1 - outside),

@@ -13,7 +13,7 @@ from tribolab.stamping import stamp
 from tribolab.surface.moments import at_wavenumber, spectrum_arrays
 from tribolab.units import to_si
 
-MEASURED, TO_SMALL, TO_LARGE = 0, 1, 2
+AS_MEASURED, TO_SMALL, TO_LARGE = 0, 1, 2
 _PER_DECADE = 20
 _ABOVE_ROLLOFF = 1.5  # the fit keeps so far above the roll-off
 _STEEPEST = 2.0  # Hurst exponent; smoothed surfaces reach 1.2, tips and filters 1.5
@@ -115,7 +115,7 @@ def extrapolate(
     law, decade, rolloff = _fit(q, c, _log_error(psd), fit_decade)
     if high > q[-1]:
         _refuse_steep(law, decade, str(psd.attrs.get("not_self_affine", "")))
-    measured = _Part(q, c, _relative_band(psd, c), MEASURED)
+    measured = _Part(q, c, _relative_band(psd, c), AS_MEASURED)
     parts = [measured.between(low, high)]
     if low < q[0]:
         grid = _grid(low, min(high, float(q[0])))
@@ -182,7 +182,7 @@ def _refuse_steep(law: PowerLaw, decade: tuple[float, float], why: str) -> None:
 def origin_flags() -> dict[str, str | list[int]]:
     """Attributes that say what the values of ``origin`` mean (CF flags)."""
     return {
-        "flag_values": [MEASURED, TO_SMALL, TO_LARGE],
+        "flag_values": [AS_MEASURED, TO_SMALL, TO_LARGE],
         "flag_meanings": "measured extrapolated_to_small_q extrapolated_to_large_q",
     }
 

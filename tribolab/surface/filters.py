@@ -10,7 +10,7 @@ from tribolab.stamping import stamp
 from tribolab.units import to_si
 
 # alpha = sqrt(ln 2 / pi): a wave as long as the cut-off keeps half of its amplitude
-ALPHA = float(np.sqrt(np.log(2) / np.pi))
+_ALPHA = float(np.sqrt(np.log(2) / np.pi))
 
 
 def transmission(wavelength: np.ndarray | float, cutoff: float) -> np.ndarray:
@@ -19,7 +19,7 @@ def transmission(wavelength: np.ndarray | float, cutoff: float) -> np.ndarray:
     >>> round(float(transmission(0.8e-3, 0.8e-3)), 12)
     0.5
     """
-    return np.exp(-np.pi * (ALPHA * cutoff / np.asarray(wavelength, dtype=float)) ** 2)
+    return np.exp(-np.pi * (_ALPHA * cutoff / np.asarray(wavelength, dtype=float)) ** 2)
 
 
 def gaussian_filter(scans: xr.Dataset, cutoff: str | float) -> xr.Dataset:
@@ -76,7 +76,7 @@ def gaussian_filter(scans: xr.Dataset, cutoff: str | float) -> xr.Dataset:
     height = scans.height.transpose(..., "x")
     reach = min(int(np.ceil(1.5 * cutoff / pitch)), x.size - 1)  # weight 5e-14 of its middle there
     at = pitch * np.arange(-reach, reach + 1)
-    weights = np.exp(-np.pi * (at / (ALPHA * cutoff)) ** 2)
+    weights = np.exp(-np.pi * (at / (_ALPHA * cutoff)) ** 2)
     weights /= weights.sum()
     rows = height.values.reshape(-1, x.size)
     length = fft.next_fast_len(x.size + 2 * reach, real=True)  # nothing comes round to the start

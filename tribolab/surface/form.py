@@ -12,7 +12,7 @@ from tribolab.surface.gaps import bridged
 from tribolab.surface.level import rounding_only
 
 # Polynomial order that a form uses up: so many of the longest waves go with it.
-FORMS = {"mean": 0, "tilt": 1, "circle": 2, "polynomial": None}
+_FORMS = {"mean": 0, "tilt": 1, "circle": 2, "polynomial": None}
 _STEPS = 60
 _NO_CIRCLE = Cure(
     notebook="check the unit of x, or take form='polynomial'",
@@ -112,15 +112,15 @@ def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> 
     >>> round(flat.attrs["form_radius_m"], 9), bool(abs(flat.height).max() < 1e-12)
     (0.07, True)
     """
-    if form not in FORMS:
+    if form not in _FORMS:
         raise AnalysisError(
-            f"there is no form '{shown(form)}'{nearest(form, FORMS)}", function="remove_form"
+            f"there is no form '{shown(form)}'{nearest(form, _FORMS)}", function="remove_form"
         )
     if not 0 <= degree <= 12:
         raise AnalysisError(
             f"a degree from 0 to 12 is wanted, got {degree}", function="remove_form"
         )
-    order = FORMS[form]
+    order = _FORMS[form]
     order = degree if order is None else order
     attrs: dict[str, str | float] = {"form_removed": form, "form_order": order}
     if "y" in scans.height.dims:

@@ -14,7 +14,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 
-TRIALS = 16  # places where the gaps are laid
+_TRIALS = 16  # places where the gaps are laid
 _MOST = 0.5  # share of missing heights from which on a scan says too little
 _FEW = 8  # heights at an end: they are bridged by the nearest one
 _STUDENT = 1.087  # 97.5 % quantile of Student's t with 15 degrees of freedom over the normal's
@@ -189,7 +189,7 @@ def gap_effect(
     rng = np.random.default_rng(20)
     whole = measure(height)
     changes, left = [], []
-    for _ in range(TRIALS):
+    for _ in range(_TRIALS):
         laid = missing[rng.permutation(len(missing))] if joint else missing
         gaps, row = _elsewhere(laid, rng, (-2, -1) if is_map else (-1,))
         change = measure(bridged(height, gaps, is_map=is_map)) - whole
@@ -208,7 +208,7 @@ def gap_effect(
     # gaps that hit the one highest peak make tails longer than the normal distribution's
     farthest = np.abs(every - every.mean(axis=0)).max(axis=0) / _NORMAL
     scatter = np.maximum(_STUDENT * every.std(axis=0, ddof=1), farthest)
-    error = np.hypot(np.sqrt(1.0 + 1.0 / TRIALS) * widen * scatter, _DOUBT * shift)
+    error = np.hypot(np.sqrt(1.0 + 1.0 / _TRIALS) * widen * scatter, _DOUBT * shift)
     return GapEffect(shift, error, shift)
 
 

@@ -11,7 +11,7 @@ from tribolab.errors import AnalysisError
 
 # Share of the largest height below which a deviation is rounding: floats carry 16 digits, of
 # which a fit of the form spoils a few; the best gauges resolve 8 and are never meant.
-ROUNDING = 1e-12
+_ROUNDING = 1e-12
 _CHUNK = 1 << 20
 
 
@@ -39,7 +39,7 @@ def rounding_only(deviation: np.ndarray, heights: np.ndarray) -> np.ndarray:
     largest, left = (
         np.where(np.isfinite(z), np.abs(z), 0.0).max(axis=-1) for z in (heights, deviation)
     )
-    return (left <= ROUNDING * largest) & np.isfinite(deviation).any(axis=-1)
+    return (left <= _ROUNDING * largest) & np.isfinite(deviation).any(axis=-1)
 
 
 def level_rows(height: np.ndarray) -> np.ndarray:

@@ -79,7 +79,7 @@ def write_comparison(outcome: Outcome, compared: DemoComparison) -> None:
 def paper_of(outcome: Outcome) -> pd.DataFrame:
     """Return the paper's table as it lies in the results; computed if it does not."""
     there = _paper_file(outcome)
-    return tables.read(there) if there.is_file() else compare_with_paper()
+    return tables.read_csv(there) if there.is_file() else compare_with_paper()
 
 
 def _paper_file(outcome: Outcome) -> Path:

@@ -14,7 +14,7 @@ from tribolab.rig import read_truth
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome
 
-COLUMNS = [
+_COLUMNS = [
     *("curve", "surface", "medium", "normal_force_N"),
     *("found_Pa", "found_low_Pa", "found_high_Pa", "true_Pa"),
     *("relative_difference", "within_interval"),
@@ -39,20 +39,20 @@ def compare_shear_stress(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
     """
     path = Path(outcome.folder) / "tables" / "shear_stress.csv"
     if not path.is_file():
-        return pd.DataFrame(columns=COLUMNS)
+        return pd.DataFrame(columns=_COLUMNS)
     true = {
         (run["surface"], run["medium"], run["normal_force_N"]): run["law"]["shear_stress"]
         for run in read_truth(folder).facts["runs"].values()
         if "shear_stress" in run["law"]
     }
     rows: list[Row] = []
-    for fit in tables.read(path).to_dict("records"):
+    for fit in tables.read_csv(path).to_dict("records"):
         known = true.get((fit["surface"], fit["medium"], fit["normal_force_N"]))
         if known is None:
             continue
         low, high = fit["shear_stress_low_Pa"], fit["shear_stress_high_Pa"]
         rows.append(
-            {name: fit[name] for name in COLUMNS[:4]}
+            {name: fit[name] for name in _COLUMNS[:4]}
             | {
                 "found_Pa": fit["shear_stress_Pa"],
                 "found_low_Pa": low,
@@ -62,4 +62,4 @@ def compare_shear_stress(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
                 "within_interval": int(low <= known <= high),
             }
         )
-    return pd.DataFrame(rows, columns=COLUMNS)
+    return pd.DataFrame(rows, columns=_COLUMNS)

@@ -16,7 +16,7 @@ from tribolab.surface.self_affine import SelfAffine, rms_roughness, rms_slope, t
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome
 
-COLUMNS = [
+_COLUMNS = [
     "surface",
     "quantity",
     "normal_force_N",
@@ -79,7 +79,7 @@ def compare_surfaces(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
             true = contact_area_ratio(_known(row, "pressure_Pa"), tabulate(spectrum), modulus)
             force = number_of(row, "normal_force_N")
             add(surface.name, "contact_area_ratio", force, row, float(true))
-    return pd.DataFrame(rows, columns=COLUMNS)
+    return pd.DataFrame(rows, columns=_COLUMNS)
 
 
 def _with_bounds(column: str) -> list[str]:

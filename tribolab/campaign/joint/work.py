@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 
 _NORMAL = 1.959963984540054
 _SAME_LOAD = 0.02  # relative: of forces that are one load
-ADHESIVE = "adhesive area"
-OTHER_AREA = {"persson": "corrected area"}  # by the theory of the fit; else Persson's
+_ADHESIVE = "adhesive area"
+_OTHER_AREA = {"persson": "corrected area"}  # by the theory of the fit; else Persson's
 _CURVE = (
     "friction_coefficient_couette",
     "friction_coefficient_pressure",
@@ -237,7 +237,7 @@ def _wet(task: JointTask) -> list[_Beside]:
 
 def other_area_name(task: JointTask) -> str:
     """Return what the model with the other theory of the contact area is called."""
-    return OTHER_AREA.get(task.area, "Persson's area")
+    return _OTHER_AREA.get(task.area, "Persson's area")
 
 
 def _computed(task: JointTask, model: ModelOutcome) -> xr.Dataset:
@@ -293,7 +293,7 @@ def _variants(
             curve._replace(response=curve.response.enlarged(factor))
             for curve, factor in zip(wet, known, strict=True)
         ]
-        variants[ADHESIVE] = ([*larger, *_dry(dry, enlarged=True)], priors)
+        variants[_ADHESIVE] = ([*larger, *_dry(dry, enlarged=True)], priors)
     return variants
 
 

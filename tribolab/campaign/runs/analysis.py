@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from tribolab.qc.findings import Findings
 
 # Attributes of a data file's run: the gravest status of its checks, and what they said.
-QUALITY, FINDINGS = "quality", "findings"
+QUALITY, _FINDINGS = "quality", "findings"
 _LOADS = {"normal_force", "normal_stress", "friction_coefficient"}  # any of them tells the load
 AS_FOUND = "friction_as_found"  # group of a data file: friction without a person's decisions
 
@@ -91,7 +91,7 @@ def analyse_run(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
     if run.decisions and before[0] is None:  # the numbers are the same
         before = without_decisions(friction), said.status_as_found
     signals = said.marked
-    signals.attrs.update({QUALITY: said.status, FINDINGS: said.rows})
+    signals.attrs.update({QUALITY: said.status, _FINDINGS: said.rows})
     analysed = Analysed(signals, segments, friction, slip, said.status, *before)
     for data in analysed.groups.values():
         data.attrs.update(run_labels(run), config_sha256=run.config_sha256)

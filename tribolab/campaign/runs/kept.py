@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from tribolab.campaign.settings.measured import RunEntry
     from tribolab.campaign.store.catalogue import Entry, Store
 
-REJECTED = "rejected"  # quality of a run, by a person
+_REJECTED = "rejected"  # quality of a run, by a person
 _LATER = "what was decided since reaches no segment of it, only the run as a whole"
 
 
@@ -111,10 +111,10 @@ def _with_decisions(
     rows = tuple(DecisionRow(**decision.plain(), effect=_LATER) for decision in decided)
     facts = replace(record.facts, decisions=rows)
     outcome = replace(outcome, kept=f"{outcome.kept}; {_LATER}")
-    if out and outcome.quality != REJECTED:
+    if out and outcome.quality != _REJECTED:
         quality = outcome.quality_as_found or outcome.quality
-        outcome = replace(outcome, quality=REJECTED, quality_as_found=quality)
-        facts = replace(facts, quality=REJECTED)
+        outcome = replace(outcome, quality=_REJECTED, quality_as_found=quality)
+        facts = replace(facts, quality=_REJECTED)
     return outcome, known._replace(record=replace(record, facts=facts))
 
 

@@ -29,7 +29,7 @@ from tribolab.room import tidy_up
 from tribolab.untyped import Json
 from tribolab.words import LOAD_STATED, explain
 
-KIND = "run"
+_KIND = "run"
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
         What is known, and where it is written down.
     """
 
-    name = KIND + "s"
+    name = _KIND + "s"
 
     def __init__(self, runs: Sequence[PlannedRun], store: Store) -> None:
         self._runs = runs
@@ -110,7 +110,7 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
             return None
         run = task.run
         mark = fingerprint_of(run.config_sha256)
-        record = self._store.same(KIND, run.name, mark, RunRecord)
+        record = self._store.same(_KIND, run.name, mark, RunRecord)
         if record is None or not record.outcome.done:
             return None
         sources = self._unchanged(run, record)
@@ -126,17 +126,17 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
             kept="",
         )
         taken = replace(record, outcome=outcome, sources=sources)
-        if not self._store.take(KIND, run.name, place, mark, taken, record.outcome.data_file):
+        if not self._store.take(_KIND, run.name, place, mark, taken, record.outcome.data_file):
             return None
         return RunCame(outcome, sources, record.zero, mark)
 
     def prepared(self, task: RunTask) -> RunTask:
         """Say where the signals are, if the raw files and how they are read are the same."""
         run = task.run
-        entry = self._store.before.get(KIND, run.name, RunRecord)
+        entry = self._store.before.get(_KIND, run.name, RunRecord)
         if entry is None or not entry.record.outcome.done:
             return task
-        file = self._store.intact(KIND, entry.name, entry.record.outcome.data_file)
+        file = self._store.intact(_KIND, entry.name, entry.record.outcome.data_file)
         sources = self._unchanged(run, entry.record)
         if file is None or sources is None:
             return task
@@ -170,7 +170,7 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
         mark = fingerprint_of(task.run.config_sha256)
         if self._lent is not None:  # it stands where it stood
             place = next(k for k, run in enumerate(self._runs) if run.name == task.run.name)
-        self._store.put(KIND, task.run.name, place, mark, run, record.trace)
+        self._store.put(_KIND, task.run.name, place, mark, run, record.trace)
         self._store.note_sources(zip(task.run.files, run.sources, strict=False), self._began)
         return RunCame(run.outcome, run.sources, run.zero, mark)
 
@@ -184,7 +184,7 @@ def keep_earlier(
     """
     record = replace(entry.record, outcome=outcome)
     data_file = entry.record.outcome.data_file
-    if not store.take(KIND, entry.name, place, entry.fingerprint, record, data_file):
+    if not store.take(_KIND, entry.name, place, entry.fingerprint, record, data_file):
         return None
     return RunCame(outcome, record.sources, record.zero, entry.fingerprint)
 

@@ -13,9 +13,9 @@ from tribolab.records.parts import RunZero
 if TYPE_CHECKING:
     import xarray as xr
 
-OWN = "own_zero_N"  # attribute of a friction result: its zero, where it is sure of it
-LENT = "zeros_of_other_runs_N"  # attribute: what others lent; there, if empty, where it has none
-FEWEST = 2  # zeros without which their scatter is not known
+_OWN = "own_zero_N"  # attribute of a friction result: its zero, where it is sure of it
+_LENT = "zeros_of_other_runs_N"  # attribute: what others lent; there, if empty, where it has none
+_FEWEST = 2  # zeros without which their scatter is not known
 _DIGITS = 6
 
 
@@ -27,9 +27,9 @@ def attributes(friction: xr.Dataset, lent: Iterable[float]) -> dict[str, str | f
     if method in ("half loop", "zero load") and sure and "friction_force_offset" in friction:
         zeros = friction["friction_force_offset"].values
         if np.isfinite(zeros).any():
-            return {OWN: float(np.nanmedian(zeros))}
+            return {_OWN: float(np.nanmedian(zeros))}
     if "friction_force_offset" in friction and method.startswith(("none: no pair", "other runs")):
-        return {LENT: zeros_text(lent)}
+        return {_LENT: zeros_text(lent)}
     return {}
 
 
@@ -46,8 +46,8 @@ def zero_of(attrs: Mapping[str, Any], recorded: str, stated: str | None) -> RunZ
         Dialect that the campaign names: two files of one name may be two instruments.
     """
     instrument = stated if stated and stated.endswith(".toml") else recorded
-    own = attrs.get(OWN)
-    lent = attrs.get(LENT)
+    own = attrs.get(_OWN)
+    lent = attrs.get(_LENT)
     return RunZero(instrument, None if own is None else float(own), lent)
 
 
@@ -83,7 +83,7 @@ def to_lend(zeros: Mapping[str, RunZero | None]) -> dict[str, tuple[float, ...]]
             # what no dialect names may be any instrument
             if other and other.own is not None and zero.instrument == other.instrument != ""
         )
-        others = others if len(others) >= FEWEST else ()
+        others = others if len(others) >= _FEWEST else ()
         if zeros_text(others) != zero.lent:
             again[name] = others
     return again

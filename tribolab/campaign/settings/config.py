@@ -10,7 +10,7 @@ from pydantic import PrivateAttr
 from tribolab.campaign.settings.analysed import Friction, Qc, Roughness, Segments
 from tribolab.campaign.settings.fields import SomeText
 from tribolab.campaign.settings.measured import (
-    Calibration,
+    CalibrationTable,
     Contact,
     Medium,
     Reference,
@@ -23,7 +23,7 @@ from tribolab.campaign.settings.theory import Joint, Model, Rubber
 from tribolab.io.uncertainty import Uncertainty
 from tribolab.untyped import Arguments, Json
 
-SCHEMA_FILE = "campaign.schema.json"
+CAMPAIGN_SCHEMA_FILE = "campaign.schema.json"
 
 
 class About(Table):
@@ -55,7 +55,7 @@ class Campaign(Table):
     run: tuple[RunEntry, ...] = ()
     qc: Qc = Qc()
     reference: Reference = Reference()
-    calibration: Calibration = Calibration()
+    calibration: CalibrationTable = CalibrationTable()
     uncertainty: Uncertainty = Uncertainty()
 
     _file: Path = PrivateAttr(default=Path("campaign.toml"))

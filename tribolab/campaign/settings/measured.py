@@ -160,7 +160,7 @@ class Reference(Table):
     on or taken off within a record that need not slide, or lying on during the strokes."""
 
 
-class Calibration(Table):
+class CalibrationTable(Table):
     """The last calibration of the instrument, for `tribolab history` and `tribolab pack`."""
 
     date: dt.date | None = None

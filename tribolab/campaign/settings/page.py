@@ -12,7 +12,7 @@ from tribolab.io.uncertainty import NAMES
 from tribolab.quantities import QUANTITIES, Quantity
 from tribolab.turns import reciprocal
 
-PAGE_FILE = "CAMPAIGN.md"
+CAMPAIGN_PAGE = "CAMPAIGN.md"
 _HEAD = """# The campaign file
 
 Every table and key that a campaign file may have. A quantity is text with a unit, any that

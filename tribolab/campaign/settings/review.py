@@ -18,7 +18,7 @@ from tribolab.io.switches import NoSwitches
 from tribolab.untyped import Json
 
 REVIEW_FILE = "review.toml"
-SCHEMA_FILE = "review.schema.json"
+REVIEW_SCHEMA_FILE = "review.schema.json"
 
 
 class DecisionEntry(NoSwitches):

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
     from tribolab.campaign.surfaces.scans import CheckedScans
 
-SCANS = "scans"  # group of the scans as they were read, with their quality flags
+_SCANS = "scans"  # group of the scans as they were read, with their quality flags
 
 
 @dataclass(frozen=True)
@@ -144,7 +144,7 @@ def process_surface(task: SurfaceTask) -> SurfaceRecord:
         )
         root = _root(surface, sources, checked.quality)
         write_data({None: root} | groups, task.folder / surface.data_file)
-        shown = {name: data for name, data in groups.items() if name != SCANS}
+        shown = {name: data for name, data in groups.items() if name != _SCANS}
         rows = surface_rows(surface.name, shown, checked.quality)
         shaping = digest(groups["psd"], groups.get("adhesion_loads"))
     except OutputError:
@@ -180,7 +180,7 @@ def analyse_surface(
     groups, more = spectra_of_scans(surface, checked.scans, q_low)
     findings += more
     contact, more = contact_groups(surface, groups["psd"])
-    return {SCANS: checked.raw} | groups | contact, findings + more
+    return {_SCANS: checked.raw} | groups | contact, findings + more
 
 
 def failed_surface(

@@ -10,7 +10,7 @@ from tribolab.draft.columns.fill_in import FORCES, Bare, filled_in
 from tribolab.draft.columns.roles import Role, role_of
 from tribolab.draft.columns.strokes import is_frequency, lengths_beside_frequencies
 from tribolab.draft.columns.turning import torque_of
-from tribolab.draft.columns.words import SURE, Match, is_axis, is_count, squeezed
+from tribolab.draft.columns.words import KNOWN_WORD, Match, is_axis, is_count, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import UNKNOWN_NAME, WHICH_FORCE, DraftColumn, Kind
 from tribolab.errors import shown
@@ -118,7 +118,7 @@ def assigned(
 def _asked_which(column: DraftColumn, rival: _Proposal, matched: list[Match]) -> DraftColumn:
     """Do not use a column of which nothing says which of both forces it holds."""
     equal = {option.quantity for option in matched if option.score >= rival.option.score - _NEAR}
-    if rival.option.score >= SURE or not set(_EITHER) <= equal or column.fill_in:
+    if rival.option.score >= KNOWN_WORD or not set(_EITHER) <= equal or column.fill_in:
         return column
     return column._replace(used=False, fill_in=WHICH_FORCE.format(shown(column.label)))
 
@@ -144,7 +144,7 @@ def _contested(rivals: list[_Proposal], numbers: np.ndarray, bare: list[Bare]) -
 
     def is_rival(rival: _Proposal) -> bool:
         plain = not role_of(bare[rival.place][0])
-        here = rival is not best and plain and rival.option.score >= SURE
+        here = rival is not best and plain and rival.option.score >= KNOWN_WORD
         # across the motion a sensor shows some cross-talk: the larger force is along it
         across = squeezed(bare[rival.place][0]) in _ACROSS and size(rival) < size(best)
         return here and not across and size(rival) > 0 and _apart(size(rival), size(best))
@@ -194,7 +194,7 @@ def _with_options(
     if len(_alike(rivals)) > 1:
         others = sorted(r.place for r in rivals if r is not rival)
         options = (*options, *(f"column {place + 1}" for place in others))
-    if rival.option.score < SURE:
+    if rival.option.score < KNOWN_WORD:
         others_named = (o.quantity for o in matched if o.quantity != rival.option.quantity)
         options = (*options, *others_named, "not used")
     return column._replace(options=options)
@@ -204,10 +204,10 @@ def _give_way(proposals: dict[str, list[_Proposal]], matched: list[list[Match]])
     """Let a vague name mean what nothing else is called, where a better one has its quantity."""
     for rivals in list(proposals.values()):
         best = max(rivals)
-        for rival in [r for r in rivals if r is not best and r.option.score < SURE]:
+        for rival in [r for r in rivals if r is not best and r.option.score < KNOWN_WORD]:
             others = [o for o in matched[rival.place] if o.score >= rival.option.score - 0.05]
             free = [o for o in others if o.quantity not in proposals]
-            if free and best.option.score >= SURE:
+            if free and best.option.score >= KNOWN_WORD:
                 rivals.remove(rival)
                 proposals[free[0].quantity] = [rival._replace(option=free[0])]
 
@@ -218,17 +218,17 @@ def _take_the_other(
     """Let a name of either force be no guess where the other force is surely named."""
     for name, other in (_EITHER, _EITHER[::-1]):
         rivals = proposals.get(name, [])
-        if len(rivals) != 1 or rivals[0].option.score >= SURE:
+        if len(rivals) != 1 or rivals[0].option.score >= KNOWN_WORD:
             continue
         meant = {option.quantity for option in matched[rivals[0].place]}
         if not set(_EITHER) <= meant:
             continue
-        sure = any(rival.option.score >= SURE for rival in proposals.get(other, []))
+        sure = any(rival.option.score >= KNOWN_WORD for rival in proposals.get(other, []))
         if name == "friction_force" and torque and not proposals.get(other):
             proposals[other] = proposals.pop(name)
             name, sure = other, True
         if sure:
-            option = rivals[0].option._replace(quantity=name, score=SURE)
+            option = rivals[0].option._replace(quantity=name, score=KNOWN_WORD)
             proposals[name] = [rivals[0]._replace(option=option)]
 
 

@@ -13,7 +13,7 @@ from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
 from tribolab.io.dialects.cells import split_name
 
-FORCES = {"friction_force": "friction", "normal_force": "load"}  # and names of their volts
+_FORCES = {"friction_force": "friction", "normal_force": "load"}  # and names of their volts
 _RATIO = re.compile(
     r"(?<![^\s\[(=:;,\d])(?P<unit>(?:[mkµu]?N|k?gf|kp|lbf)\s?/\s?[mµu]?V"
     r"|[mµu]?V\s?/\s?(?:[mkµu]?N|k?gf|kp|lbf))(?![\w/])"
@@ -30,7 +30,7 @@ class Calibrated(NamedTuple):
     @property
     def symbol(self) -> str:
         """What the column is called in a formula."""
-        return f"{FORCES[self.quantity]}_signal"
+        return f"{_FORCES[self.quantity]}_signal"
 
     @property
     def formula(self) -> str:
@@ -59,11 +59,11 @@ def calibrated_forces(layout: Layout, columns: Sequence[DraftColumn]) -> list[Ca
     told = [(column, _force_of(column)) for column in columns if not column.used]
     factors = [factor for value in find_values(layout) if (factor := _factor(value)) is not None]
     made = []
-    for quantity in FORCES:
+    for quantity in _FORCES:
         mine = [column for column, force in told if force == quantity]
         fitting = [factor for factor in factors if _speaks_of(factor, quantity)]
         if quantity not in held and len(mine) == len(fitting) == 1:
-            name = f"{FORCES[quantity]}_factor"
+            name = f"{_FORCES[quantity]}_factor"
             made.append(Calibrated(quantity, mine[0], fitting[0]._replace(name=name)))
     return made
 
@@ -76,7 +76,7 @@ def _force_of(column: DraftColumn) -> str:
     if not converts(column.file_unit or unit or "", "V"):
         return ""
     options = matches(name, None)
-    return options[0].quantity if options and options[0].quantity in FORCES else ""
+    return options[0].quantity if options and options[0].quantity in _FORCES else ""
 
 
 def _factor(value: DraftValue) -> DraftValue | None:
@@ -90,5 +90,5 @@ def _factor(value: DraftValue) -> DraftValue | None:
 
 def _speaks_of(factor: DraftValue, quantity: str) -> bool:
     """Whether a factor's name is of a force, or of none."""
-    options = [option for option in matches(factor.key, None) if option.quantity in FORCES]
+    options = [option for option in matches(factor.key, None) if option.quantity in _FORCES]
     return not options or options[0].quantity == quantity

@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from tribolab.draft.columns.roles import role_of
-from tribolab.draft.columns.words import SURE, Match, is_count
+from tribolab.draft.columns.words import KNOWN_WORD, Match, is_count
 from tribolab.draft.model import DraftColumn, Kind, other_units, time_unit
 from tribolab.errors import shown
 from tribolab.quantities import quantity
@@ -49,7 +49,7 @@ def filled_in(
     si_unit = quantity(option.quantity).unit
     guessed = []
     options: tuple[str, ...] = ()
-    if option.score < SURE:
+    if option.score < KNOWN_WORD:
         guessed.append(f"the name means {quantity(option.quantity).long_name}")
     if several and option.quantity not in _ASIDE:
         guessed.append(f"of several columns for {option.quantity} it is the one meant")

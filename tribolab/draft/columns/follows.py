@@ -33,7 +33,7 @@ _DRIVE = re.compile(
 )
 _SINE = re.compile(r"crank|sine|sinus|sinoid|kurbel|eccentric|exzenter|manivelle|scotch")
 _EVEN = re.compile(r"triang|constant|linear|konstant|dreieck")
-SAYS_SPEED = {"sliding_velocity", "position", "set_speed"}
+_SAYS_SPEED = {"sliding_velocity", "position", "set_speed"}
 SAYS_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
 
@@ -85,7 +85,7 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     values = find_values(layout)
     track = _track(values, understood)
     result = Follows()
-    if not names & SAYS_SPEED:
+    if not names & _SAYS_SPEED:
         result = _with_speed(result, names, values, understood, words_said(layout), track)
     torque = torque_of(understood.columns)
     if not names & SAYS_FRICTION and torque is not None:

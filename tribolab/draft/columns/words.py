@@ -18,7 +18,7 @@ _LETTERS = str.maketrans(_SPELT)
 _ACCENTS = re.compile("[\u0300-\u036f]")  # not the marks that make one kana of another
 _VAGUE = 0.6  # of the score of a word that names this quantity alone
 _OF_DEVICE = 0.98
-SURE = 0.7  # a name of which so much is a known word is no guess
+KNOWN_WORD = 0.7  # a name of which so much is a known word is no guess
 # "Stage.X", "DAQ.Fz": letters on both sides of the last point
 _DEVICE = re.compile(r"(?P<device>.*[^\W\d]\w*)\.(?P<name>[^\W\d].*)$")
 _LONGEST = 1000  # characters of a name that are looked at: searches take their square
@@ -173,11 +173,11 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
         if score and (known.unit != "1" if counted else fits):
             # what only this quantity is measured in tells it, whatever else the name says
             told = alone or (turns and word.quantity == "rotation_speed")
-            score = SURE + (1 - SURE) * score if told else score
+            score = KNOWN_WORD + (1 - KNOWN_WORD) * score if told else score
             held = _AS_SET.get(word.quantity, word.quantity) if role == "set" else word.quantity
             options.append(Match(held, score, read_as))
     if not scan and role != "set" and _TURNS.fullmatch(unit or ""):
-        options.append(Match("rotation_speed", SURE, None))
+        options.append(Match("rotation_speed", KNOWN_WORD, None))
     best: dict[str, Match] = {}
     for match in sorted(options, key=lambda match: -match.score):
         best.setdefault(match.quantity, match)

@@ -13,7 +13,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from tribolab.draft.dialect.drafted import Drafted
-from tribolab.draft.dialect.sparks import BLOCKS, PLAIN, sparks
+from tribolab.draft.dialect.sparks import BARS, PLAIN, sparks
 from tribolab.draft.model import DraftColumn
 from tribolab.errors import shown as cut
 from tribolab.quantities import quantity
@@ -59,7 +59,7 @@ def print_signals(draft: Drafted, console: Console) -> None:
     if draft.understood is None or not draft.toml:
         return
     table = _table("signals", "", "from", "to")
-    blocks = BLOCKS if console.encoding.startswith("utf") else PLAIN
+    blocks = BARS if console.encoding.startswith("utf") else PLAIN
     table.columns[1].no_wrap = True
     for name, values in draft.first_rows(len(draft.understood.numbers)).items():
         known = values[np.isfinite(values)]

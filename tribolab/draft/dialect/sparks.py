@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-BLOCKS = "▁▂▃▄▅▆▇█"
+BARS = "▁▂▃▄▅▆▇█"
 PLAIN = "_.-:=+*#"  # for terminals that know no other letters
 
 
-def sparks(values: np.ndarray, width: int = 60, blocks: str = BLOCKS) -> str:
+def sparks(values: np.ndarray, width: int = 60, blocks: str = BARS) -> str:
     """Return a signal as one line of blocks: the height of each is the mean of its part.
 
     Parameters

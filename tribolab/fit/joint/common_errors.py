@@ -15,7 +15,7 @@ from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.spectrum_error import SPECTRUM
 from tribolab.metrology.budget_curve import shared_parts
 
-INPUTS = ("load", "radius", "Young's modulus")  # variations that all surfaces share
+_INPUTS = ("load", "radius", "Young's modulus")  # variations that all surfaces share
 _NORMAL = 1.959963984540054
 _FEWEST = 4
 
@@ -66,7 +66,7 @@ def model_covariance(
         wet = np.array([not model.curves[k].dry for k in points.curve])
         for name, ends in _told(model, posterior.centre, surface, columns, band).items():
             moved = ends @ (slopes[:, columns] * (of_surface & wet)[:, None]).T @ answer.T
-            if name in INPUTS:
+            if name in _INPUTS:
                 together[name] = together.get(name, 0.0) + moved
             else:
                 added += moved.T @ moved / len(ends) / _NORMAL**2
@@ -165,7 +165,7 @@ def _told(
         raise AnalysisError(f"the model's uncertainty is of {load:g} N/m, which is not fitted")
     measured = model.points.log_speed[model.points.curve == number]
     log_speed = np.log(band["sliding_speed"].values)
-    known = (*SPECTRUM, *INPUTS)
+    known = (*SPECTRUM, *_INPUTS)
     chosen = [name for name in band["variation"].values.tolist() if name in known]
     ends_of = band["friction_coefficient_varied"].sel(variation=chosen)
     varied = ends_of.transpose("variation", "range_end", "sliding_speed").values

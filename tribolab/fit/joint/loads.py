@@ -11,7 +11,7 @@ from tribolab.errors import AnalysisError
 from tribolab.fit.joint.common_errors import calibration_covariance, model_covariance
 from tribolab.fit.joint.load_curve import LoadCurve, MeasuredPoints, points_of
 from tribolab.fit.joint.model import (
-    SPEED,
+    REFERENCE_SPEED,
     Curve,
     JointModel,
     Parameters,
@@ -118,7 +118,7 @@ def fit_loads(
     return JointFit(
         marginals=tuple(_marginals(parameters, posterior, priors, names)),
         correlation=_correlation(posterior.spread),
-        reference_speed=SPEED,
+        reference_speed=REFERENCE_SPEED,
         reference_load=reference,
         log_evidence=posterior.log_evidence,
         left_out=alone,

@@ -12,7 +12,7 @@ import numpy as np
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.response import Response, Responses
 
-SPEED = 1e-5  # m/s, v0: there sigma_0 and n are hardly correlated
+REFERENCE_SPEED = 1e-5  # m/s, v0: there sigma_0 and n are hardly correlated
 
 
 class Points(NamedTuple):
@@ -174,7 +174,7 @@ class JointModel:
         design = np.zeros((number.size, where.mean.size))
         rows = np.arange(number.size)
         design[rows, where.stress[surface]] = 1.0
-        design[rows, where.speed[surface]] = points.log_speed - np.log(SPEED)
+        design[rows, where.speed[surface]] = points.log_speed - np.log(REFERENCE_SPEED)
         design[rows, where.load[surface]] = log_load
         design[rows[dry], where.dry[surface[dry]]] = 1.0
         return design

@@ -13,7 +13,7 @@ from tribolab.words import many, number, percent
 _UNTOLD, _LITTLE = 0.2, 0.5  # of the prior's standard deviation that the data take away
 _TOGETHER = 0.8  # correlation from which two parameters are hardly told apart
 _FAR = 0.09  # correlated error from which the model does not describe the curves
-NAMES = {  # of a parameter: its unit, and in words
+_NAMES = {  # of a parameter: its unit, and in words
     "shear_stress": ("Pa", "shear stress"),
     "speed_exponent": ("1", "exponent of speed"),
     "load_exponent": ("1", "exponent of load"),
@@ -56,7 +56,7 @@ class Marginal:
     @property
     def unit(self) -> str:
         """Unit of the value."""
-        return NAMES[self.name][0]
+        return _NAMES[self.name][0]
 
     @property
     def identified(self) -> str:
@@ -70,7 +70,7 @@ class Marginal:
     @property
     def words(self) -> str:
         """The parameter's name as it is said."""
-        said = NAMES[self.name][1]
+        said = _NAMES[self.name][1]
         return f"{said} of {self.surface}" if self.surface else said
 
 

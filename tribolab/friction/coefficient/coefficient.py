@@ -23,9 +23,9 @@ from tribolab.several import of_runs, over_dims
 from tribolab.stamping import stamp
 from tribolab.untyped import Json
 
-OFFSETS = ("auto", "half loop", "zero load", "none")
-NO_CONTACT = 0.02  # share of the run's load below which there is no contact
-LOST = 0.05  # share of samples without contact that spoils a segment
+_OFFSETS = ("auto", "half loop", "zero load", "none")
+_NO_CONTACT = 0.02  # share of the run's load below which there is no contact
+_LOST = 0.05  # share of samples without contact that spoils a segment
 
 
 @of_runs
@@ -131,8 +131,8 @@ def friction_coefficient(
     >>> found.friction_coefficient.values.round(6).tolist(), found.attrs["offset"]
     ([0.3, 0.3], 'half loop')
     """
-    if offset not in OFFSETS:
-        raise AnalysisError(f"offset: '{shown(offset)}' is not known{nearest(offset, OFFSETS)}")
+    if offset not in _OFFSETS:
+        raise AnalysisError(f"offset: '{shown(offset)}' is not known{nearest(offset, _OFFSETS)}")
     belong(run, segments)
     settings = Settings(offset, pair_tolerance, zero_uncertainty, rectified, other_zeros)
     return stamp(beside_rejected(segments, lambda part: _of_segments(run, part, settings)))
@@ -339,13 +339,13 @@ def _ratio(
     if load.samples == 0 or normal.size == 0:
         why = "normal force is not a number" if normal.size else "no samples"
         return nothing, nothing, _Pointwise(why)
-    if not load.mean - zero > max(NO_CONTACT * usual, 0.0):
+    if not load.mean - zero > max(_NO_CONTACT * usual, 0.0):
         why = f"no contact: mean normal force {load.mean - zero:.3g} N"
         return nothing, nothing, _Pointwise(why)
     pressed = known & (normal > 0)
     left = normal.size - int(np.count_nonzero(pressed))
     lost = 1 - (normal.size - left) / normal.size
-    if lost > LOST:
+    if lost > _LOST:
         why = f"no contact or no normal force in {lost:.0%} of the samples"
         return nothing, nothing, _Pointwise(why)
     if left:

@@ -8,8 +8,8 @@ import numpy as np
 
 from tribolab.medians import median
 
-CLEAR = 3.0  # standard errors of the peak above sliding from which it is one
-FEWEST = 5  # readings that a parabola is fitted to
+_CLEAR = 3.0  # standard errors of the peak above sliding from which it is one
+FEWEST_OF_PEAK = 5  # readings that a parabola is fitted to
 _NOISE = 1.4826 / np.sqrt(2)  # median of the steps between samples -> standard deviation
 # of the way from sliding to the highest reading: what belongs to the peak; of a pointed one less
 _NEAR = (0.8, 0.9, 0.95, 0.98)
@@ -34,7 +34,7 @@ def noise_between(values: np.ndarray) -> float:
         Readings (time); infinite where there are too few.
     """
     steps = np.abs(np.diff(values[np.isfinite(values)]))
-    return _NOISE * float(median(steps)) if steps.size >= FEWEST else np.inf
+    return _NOISE * float(median(steps)) if steps.size >= FEWEST_OF_PEAK else np.inf
 
 
 def peak_of_start(
@@ -58,7 +58,7 @@ def peak_of_start(
     """
     known = np.isfinite(ratio)
     time, ratio = time[known], ratio[known]
-    if ratio.size < FEWEST or not np.isfinite(sliding) or not np.isfinite(noise):
+    if ratio.size < FEWEST_OF_PEAK or not np.isfinite(sliding) or not np.isfinite(noise):
         return Peak(np.nan, np.nan, np.nan, False)
     smooth, width, clear = _smoothed(ratio, sliding, noise)
     top = int(np.argmax(smooth))
@@ -70,7 +70,7 @@ def peak_of_start(
         # where the start ends and sliding begins is not seen
         error = float(np.hypot(error, height - sliding))
     error = float(np.hypot(error, sem))
-    return Peak(moment, height, error, bool(clear and height - sliding > CLEAR * error))
+    return Peak(moment, height, error, bool(clear and height - sliding > _CLEAR * error))
 
 
 def _of_top(
@@ -88,7 +88,7 @@ def _of_top(
         first = low[low < top][-1] + 1 if (low < top).any() else 0
         last = low[low > top][0] if (low > top).any() else smooth.size
         near, when = ratio[first : last + width - 1], time[first : last + width - 1]
-        if near.size < FEWEST or not np.ptp(when) > 0:
+        if near.size < FEWEST_OF_PEAK or not np.ptp(when) > 0:
             break
         moment, height, error, scatter = _parabola(when, near, noise)
         spread = _MISFIT * noise / np.sqrt(2 * max(near.size - 3, 1))

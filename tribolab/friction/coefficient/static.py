@@ -13,14 +13,14 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import belong, friction_coefficient
-from tribolab.friction.coefficient.peak import FEWEST, noise_between, peak_of_start
+from tribolab.friction.coefficient.peak import FEWEST_OF_PEAK, noise_between, peak_of_start
 from tribolab.friction.segments.stretches import name_of
 from tribolab.medians import median_of_known
 from tribolab.several import of_runs
 from tribolab.stamping import stamp
 from tribolab.units import to_si
 
-BEFORE = 0.5  # of the stroke before: how far back a rise may begin, at most
+_BEFORE = 0.5  # of the stroke before: how far back a rise may begin, at most
 _LATEST = 0.5  # of the segment: how far a rise may go on, at most
 _LONGER = 1.5  # times the readings before it, what is looked at where the force still rises
 _AT_END = 0.1  # of the readings: where their mean is the highest, the force still rises
@@ -166,9 +166,9 @@ def _starts(run: xr.Dataset, segments: xr.Dataset, reach: float | None) -> list[
         if reach is not None and speed[i] > 0:
             limit = latest = start[i] + reach / speed[i]
         # the force may rise before the velocity shows motion
-        back = max(begin[rest], start[i] - BEFORE * (stop[i] - start[i]))
+        back = max(begin[rest], start[i] - _BEFORE * (stop[i] - start[i]))
         first, last, end_of_it = np.searchsorted(time, [back, limit, max(limit, latest)])
-        if last - first >= FEWEST:
+        if last - first >= FEWEST_OF_PEAK:
             rested = _rested(run, begin, end, int(rest))
             starts.append(_Start(i, int(first), int(last), int(end_of_it), rested))
     return starts
@@ -232,7 +232,7 @@ def _taken(ratio: np.ndarray, usual: int) -> int:
     """Return how many readings belong to a start: the usual ones, more where it still rises."""
     taken = usual
     while taken < ratio.size:
-        size = max(int(_AT_END * taken), FEWEST)
+        size = max(int(_AT_END * taken), FEWEST_OF_PEAK)
         blocks = [ratio[max(end - size, 0) : end] for end in range(taken, 0, -size)]
         means = [float(np.nanmean(b)) for b in blocks if np.isfinite(b).any()]
         if means and means[0] < max(means):

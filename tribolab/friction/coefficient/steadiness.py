@@ -8,13 +8,18 @@ import numpy as np
 import xarray as xr
 
 SIGNIFICANT = 0.01  # chance of a trend below which a segment is not steady: runs have hundreds
-SUSPECT = 0.05  # of the run's typical friction: above the usual spread of repeats
-FAIL = 0.50  # of the run's typical friction: a mean over such a change has no meaning
+SUSPECT_DRIFT = 0.05  # of the run's typical friction: above the usual spread of repeats
+FAILING_DRIFT = 0.50  # of the run's typical friction: a mean over such a change has no meaning
 SAMPLES = 10.0  # fewer effective samples do not tell a trend from slow wandering
-LIMITS = {"suspect": SUSPECT, "fail": FAIL, "chance": SIGNIFICANT, "samples": SAMPLES}
+_LIMITS = {
+    "suspect": SUSPECT_DRIFT,
+    "fail": FAILING_DRIFT,
+    "chance": SIGNIFICANT,
+    "samples": SAMPLES,
+}
 
-NOT_STEADY, STEADY, UNDECIDED = 0, 1, 2
-WORDS = {NOT_STEADY: "not steady", STEADY: "steady", UNDECIDED: "undecided"}
+IS_NOT_STEADY, IS_STEADY, NOT_DECIDED = 0, 1, 2
+STEADINESS_WORDS = {IS_NOT_STEADY: "not steady", IS_STEADY: "steady", NOT_DECIDED: "undecided"}
 
 
 def undecided(
@@ -32,12 +37,12 @@ def undecided(
     chance, samples
         The line's p value, and effective samples (segment).
     limits
-        `LIMITS`, or those of the check on steadiness.
+        `_LIMITS`, or those of the check on steadiness.
 
     Examples
     --------
     >>> p, n = np.array([0.36, 0.36, 1e-4, 0.36]), np.array([2.8, 90.0, 2.8, 90.0])
-    >>> undecided(np.array([-0.2, -0.2, -0.2, -6.2]), p, n, LIMITS)
+    >>> undecided(np.array([-0.2, -0.2, -0.2, -6.2]), p, n, _LIMITS)
     array([ True, False, False,  True])
     """
     size = np.abs(change)
@@ -86,10 +91,10 @@ def judged(friction: xr.Dataset) -> xr.Dataset:
     change = relative_change(friction)
     if change is None:
         change = np.full(chance.shape, np.nan)
-    open_ = ~np.isfinite(chance) | undecided(change, chance, samples, LIMITS)
-    flag = np.where(open_, UNDECIDED, np.where(chance < SIGNIFICANT, NOT_STEADY, STEADY))
+    open_ = ~np.isfinite(chance) | undecided(change, chance, samples, _LIMITS)
+    flag = np.where(open_, NOT_DECIDED, np.where(chance < SIGNIFICANT, IS_NOT_STEADY, IS_STEADY))
     attrs = {
-        "flag_values": np.array(list(WORDS), np.int8),
-        "flag_meanings": " ".join(word.replace(" ", "_") for word in WORDS.values()),
+        "flag_values": np.array(list(STEADINESS_WORDS), np.int8),
+        "flag_meanings": " ".join(word.replace(" ", "_") for word in STEADINESS_WORDS.values()),
     }
     return friction.assign(steady=("segment", flag.astype(np.int8), attrs))

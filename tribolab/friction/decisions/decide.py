@@ -9,7 +9,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, Cure
 from tribolab.friction.decisions.bounds import with_bounds
-from tribolab.friction.decisions.decision import ACCEPT, BOUNDS, NOTE, REJECT, Decision
+from tribolab.friction.decisions.decision import ACCEPT, NEW_BOUNDS, NOTE, REJECT, Decision
 from tribolab.friction.decisions.rejected import REJECTED, rejected
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.stamping import stamp
@@ -18,7 +18,7 @@ from tribolab.untyped import Json
 DECISIONS = "decisions"  # attribute: what was decided, in plain data, with the segments it touches
 _MORE_THAN = 0.5  # of the decision's interval lies in the segment that it means
 _SHOWN = 3  # segments that are named where none was found
-WORDS = {REJECT: "rejected", ACCEPT: "accepted", BOUNDS: "bounded anew", NOTE: "noted"}
+DECISION_WORDS = {REJECT: "rejected", ACCEPT: "accepted", NEW_BOUNDS: "bounded anew", NOTE: "noted"}
 
 
 def decide(
@@ -80,7 +80,7 @@ def decide(
     _refuse_contradictions(segments, made, touched)
     result = segments.copy()
     for decision, places in zip(made, touched, strict=True):
-        if decision.action == BOUNDS:
+        if decision.action == NEW_BOUNDS:
             result = with_bounds(result, places[0], decision, run)
     count = segments.sizes["segment"]
     out = rejected(segments)
@@ -93,7 +93,9 @@ def decide(
         # what is said of the whole run is not repeated of every segment, but why it is rejected
         spoken = decision.interval is not None or decision.action == REJECT
         for place in places if spoken else ():
-            told[place].append(f"{WORDS[decision.action]} by {decision.author}: {decision.reason}")
+            told[place].append(
+                f"{DECISION_WORDS[decision.action]} by {decision.author}: {decision.reason}"
+            )
         rows.append(decision.plain() | {"segments": [place + 1 for place in places]})
     result[REJECTED] = "segment", out.astype(np.int8)
     result["decision"] = "segment", np.array(["; ".join(texts) for texts in told], dtype=object)
@@ -117,10 +119,10 @@ def _touched(segments: xr.Dataset, decision: Decision) -> list[int]:
         places = every
     else:
         places = [_found(segments, decision, *decision.interval)]
-    if "omitted" in segments.dims or decision.action not in (REJECT, BOUNDS):
+    if "omitted" in segments.dims or decision.action not in (REJECT, NEW_BOUNDS):
         return places
     # it is a result: what was computed from signals cannot be made again from it
-    if decision.action == BOUNDS:
+    if decision.action == NEW_BOUNDS:
         raise _refused(segments, decision, "new bounds want the friction computed anew")
     if len(places) < len(every) and segments.attrs.get("offset") in PAIRED:
         raise _refused(segments, decision, "the friction of the other strokes rests on it")
@@ -162,7 +164,7 @@ def _refuse_contradictions(
             first, second = sorted((other, decision), key=lambda d: d.action)
             accepted_in_part = first.interval is None and second.interval is not None
             if not common or not (
-                decision.action == other.action == BOUNDS
+                decision.action == other.action == NEW_BOUNDS
                 or (actions == {ACCEPT, REJECT} and not accepted_in_part)
             ):
                 continue

@@ -10,8 +10,8 @@ from tribolab.errors import AnalysisError, nearest, shown
 from tribolab.units import to_si
 from tribolab.untyped import Json
 
-REJECT, ACCEPT, BOUNDS, NOTE = "reject", "accept", "bounds", "note"
-ACTIONS = (REJECT, ACCEPT, BOUNDS, NOTE)
+REJECT, ACCEPT, NEW_BOUNDS, NOTE = "reject", "accept", "bounds", "note"
+ACTIONS = (REJECT, ACCEPT, NEW_BOUNDS, NOTE)
 _TIMES = ("start", "stop", "new_start", "new_stop")
 
 
@@ -75,7 +75,7 @@ class Decision:
     @property
     def moves_numbers(self) -> bool:
         """Whether friction may be another with it; notes and acceptance leave it as it is."""
-        return self.action in (REJECT, BOUNDS)
+        return self.action in (REJECT, NEW_BOUNDS)
 
     def __str__(self) -> str:
         """Say in a few words which decision this is."""
@@ -100,11 +100,12 @@ class Decision:
             if low is not None and high is not None and not low < high:
                 raise AnalysisError(f"{what} ends at {high:g} s, not after it begins at {low:g} s")
         anew = self.new_start is not None or self.new_stop is not None
-        if anew and self.action != BOUNDS:
-            raise AnalysisError(f"only '{BOUNDS}' has new bounds, not '{self.action}'")
-        if self.action == BOUNDS and (self.interval is None or not anew):
+        if anew and self.action != NEW_BOUNDS:
+            raise AnalysisError(f"only '{NEW_BOUNDS}' has new bounds, not '{self.action}'")
+        if self.action == NEW_BOUNDS and (self.interval is None or not anew):
             raise AnalysisError(
-                f"'{BOUNDS}' wants the interval that tells the segment, and a new beginning or end"
+                f"'{NEW_BOUNDS}' wants the interval that tells the segment, and a new beginning or "
+                "end"
             )
 
 

@@ -10,7 +10,7 @@ from scipy import special
 from tribolab.friction.oscillation.oscillation import CYCLES, gather
 from tribolab.friction.oscillation.survey import Survey
 
-MOST = 6
+MOST_COMPONENTS = 6
 _LEAST = 0.03  # of the strongest one's variance
 _HARMONIC = 1.3  # times a saw's harmonic: a line at a multiple that is no stronger is one
 _HIGHEST = 16  # harmonic that is looked at by itself
@@ -53,9 +53,9 @@ def components(seen: Survey) -> tuple[Component, ...]:
     strongest = 0.0
     whole, taken = seen, np.zeros(seen.fine.frequency.size, bool)
     core = taken.copy()
-    for _ in range(4 * MOST):
+    for _ in range(4 * MOST_COMPONENTS):
         strong = np.where(seen.significant & (seen.cycles >= CYCLES), seen.excess, 0.0)
-        if not strong.any() or len(lines) == MOST:
+        if not strong.any() or len(lines) == MOST_COMPONENTS:
             break
         top = int(np.argmax(strong))
         stop = seen.first[top + 1] if top + 1 < seen.first.size else seen.fine.frequency.size

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-SPIKE = 6.0  # a single sample so many noise levels off its neighbours is no slip
+_SPIKE = 6.0  # a single sample so many noise levels off its neighbours is no slip
 
 
 class Events(NamedTuple):
@@ -52,7 +52,7 @@ def without_spikes(values: np.ndarray, noise: float) -> tuple[np.ndarray, int]:
     middle = np.clip(here, np.minimum(left, right), np.maximum(left, right))
     # beside it the signal has to go on as if nothing had been: a drop is no spike
     apart = np.abs(here - middle)
-    single = (apart > SPIKE * noise) & (apart > 2 * np.abs(right - left))
+    single = (apart > _SPIKE * noise) & (apart > 2 * np.abs(right - left))
     if not single.any():
         return values, 0
     result = values.copy()

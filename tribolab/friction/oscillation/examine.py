@@ -13,7 +13,7 @@ from tribolab.friction.oscillation.mean_cycle import abrupt_drop, abrupt_rise, s
 from tribolab.friction.oscillation.noise import noise_level, quantisation_step
 from tribolab.friction.oscillation.oscillation import Oscillation, oscillation
 from tribolab.friction.oscillation.periods import ALIKE, PeriodVerdict, at_odds, period_verdict
-from tribolab.friction.oscillation.regularity import KINDS, Regularity, regularity, scatter
+from tribolab.friction.oscillation.regularity import SLIP_KINDS, Regularity, regularity, scatter
 from tribolab.friction.oscillation.spectra import EvenRecord, coarsened, make_record
 from tribolab.friction.oscillation.survey import CHANCE, Survey, survey
 from tribolab.friction.oscillation.waveform import (
@@ -24,17 +24,17 @@ from tribolab.friction.oscillation.waveform import (
 )
 from tribolab.medians import median
 
-PER_PERIOD = 36  # samples in a period that events are sought in, at least; more is averaged ...
-COARSE = 12  # the same, where noise splits drops
-QUIET = 50.0  # ... until the noise is so many times smaller than the swing
-MOST = 1 << 17  # samples that events are sought in: thousands of periods
-DESPIKED = 1 << 20  # samples; in longer records single ones hardly matter
-WANDER = 0.15  # standard deviation over the swing, of a slow wander that may hide drops
-WANDERS = 6  # periods in a record, at least, that a wander can be told beside
-PER_DEGREE, DEGREE = 3.0, 5  # periods for each degree of the drift's polynomial, and the highest
-CALMER = 0.8  # of the scatter of the periods, that is left without the wander
-STEPS = 1.5  # quantisation steps
-SLOW_FALL = 0.65  # part of a cycle that falls, above which the rise is the sharper
+_PER_PERIOD = 36  # samples in a period that events are sought in, at least; more is averaged ...
+_COARSE = 12  # the same, where noise splits drops
+_QUIET = 50.0  # ... until the noise is so many times smaller than the swing
+_MOST = 1 << 17  # samples that events are sought in: thousands of periods
+_DESPIKED = 1 << 20  # samples; in longer records single ones hardly matter
+_WANDER = 0.15  # standard deviation over the swing, of a slow wander that may hide drops
+_WANDERS = 6  # periods in a record, at least, that a wander can be told beside
+_PER_DEGREE, _DEGREE = 3.0, 5  # periods for each degree of the drift's polynomial, and the highest
+_CALMER = 0.8  # of the scatter of the periods, that is left without the wander
+_STEPS = 1.5  # quantisation steps
+_SLOW_FALL = 0.65  # part of a cycle that falls, above which the rise is the sharper
 _AGAIN = 200  # cycles that tell how much noise adds to them
 _ROUNDS = 2
 
@@ -47,7 +47,7 @@ class EventLimits(NamedTuple):
     fewest_samples: int = 16
 
 
-DEFAULT = EventLimits()
+_DEFAULT = EventLimits()
 
 
 class Examined(NamedTuple):
@@ -77,7 +77,7 @@ class View(NamedTuple):
 
 
 def examine_record(
-    time: np.ndarray, values: np.ndarray, limits: EventLimits = DEFAULT, *, force: bool = False
+    time: np.ndarray, values: np.ndarray, limits: EventLimits = _DEFAULT, *, force: bool = False
 ) -> Examined | str:
     """Look at one record; text where there is nothing to see, saying why.
 
@@ -98,7 +98,7 @@ def examine_record(
     if np.ptp(record.values[:4096]) <= least and np.ptp(record.values) <= least:
         return "the signal is constant"
     noise, spikes = noise_level(record.values[: 1 << 17]), 0
-    if n <= DESPIKED:
+    if n <= _DESPIKED:
         kept, spikes = without_spikes(record.values, noise)
         record = record._replace(values=kept)
     surveyed = survey(record)
@@ -136,12 +136,12 @@ def _settled(record: EvenRecord, surveyed: Survey, noise: float, limits: EventLi
             view = again
     # of a wander, too, what is left beside its mean over a while goes to and fro in that while
     sure = view.oscillation.false_alarm < CHANCE
-    if sure and view.regularity.kind not in KINDS[::2]:
+    if sure and view.regularity.kind not in SLIP_KINDS[::2]:
         for part in (record, _beside_wander(record, view.oscillation)):
             if part is None:
                 continue
-            again = _view(part, view.oscillation, noise, limits, COARSE)
-            less = scatter(again.regularity.periods) < CALMER * scatter(view.regularity.periods)
+            again = _view(part, view.oscillation, noise, limits, _COARSE)
+            less = scatter(again.regularity.periods) < _CALMER * scatter(view.regularity.periods)
             if less and not at_odds(again.oscillation, again.regularity):
                 view = again
     return view
@@ -150,7 +150,7 @@ def _settled(record: EvenRecord, surveyed: Survey, noise: float, limits: EventLi
 def _without_drift(record: EvenRecord, frequency: float) -> EvenRecord:
     """Take a drift off, far slower than the oscillation: it would make falls unlike rises."""
     periods = frequency * record.values.size * record.spacing
-    degree = int(np.clip(periods / PER_DEGREE, 1, DEGREE))
+    degree = int(np.clip(periods / _PER_DEGREE, 1, _DEGREE))
     series = np.polynomial.legendre
     if record.even:  # the polynomials are nearly orthogonal: their normal equations are harmless
         terms = series.legvander(np.linspace(-1, 1, record.values.size), degree)
@@ -169,11 +169,11 @@ def _beside_wander(record: EvenRecord, oscillation: Oscillation) -> EvenRecord |
     """
     size = int(round(1 / (oscillation.frequency * record.spacing)))
     n = record.values.size
-    if not 2 <= size <= n / WANDERS or not record.even:
+    if not 2 <= size <= n / _WANDERS or not record.even:
         return None
     sums = np.concatenate([[0.0], np.cumsum(record.values - record.values[0])])
     mean = (sums[size:] - sums[:-size]) / size
-    if np.std(mean) < WANDER * oscillation.swing:
+    if np.std(mean) < _WANDER * oscillation.swing:
         return None
     first = size // 2
     part = slice(first, first + mean.size)
@@ -185,21 +185,21 @@ def _view(
     oscillation: Oscillation,
     noise: float,
     limits: EventLimits,
-    fewest: int = PER_PERIOD,
+    fewest: int = _PER_PERIOD,
 ) -> View:
     """Seek the cycles of an oscillation at the scale of its period."""
     most = int(1 / (oscillation.frequency * fewest * record.spacing))
     # no more is averaged than the noise calls for: means round off what is abrupt
-    wanted = min(QUIET * noise / max(oscillation.swing, 1e-300), 1e6) ** 2
+    wanted = min(_QUIET * noise / max(oscillation.swing, 1e-300), 1e6) ** 2
     size = int(max(1, min(most, wanted)))
-    first = slice(MOST * size)
+    first = slice(_MOST * size)
     part = coarsened(EvenRecord(record.time[first], record.values[first], *record[2:]), size)
     part = _without_drift(part, oscillation.frequency)
     step = quantisation_step(record.values[: 1 << 16])
     hysteresis = max(
         limits.hysteresis * oscillation.swing,
         limits.noise_levels * noise / np.sqrt(size),
-        STEPS * step,
+        _STEPS * step,
     )
     events = find_events(part.time, part.values, hysteresis)
     if events.drop.size:  # cycles that differ have less of a line than of a drop: look at the drops
@@ -208,7 +208,7 @@ def _view(
             hysteresis = typical
             events = find_events(part.time, part.values, hysteresis)
     fall, whole = events.stop - events.peak, events.stop - events.start
-    if events.drop.size and median(fall / whole) > SLOW_FALL:  # what is sharp tells the periods
+    if events.drop.size and median(fall / whole) > _SLOW_FALL:  # what is sharp tells the periods
         turned = part._replace(values=-part.values)
         seen = regularity(turned, find_events(turned.time, turned.values, hysteresis))
     else:
@@ -236,7 +236,9 @@ def _excess(
             return mean - drop
     # of a sine, its power says best how large it is: the noise's has been taken off
     sine = float(np.clip((0.35 - oscillation.harmonic_content) / 0.2, 0.0, 1.0))
-    if view.regularity.kind == KINDS[2]:  # power is that of the trains and of the quiet between
+    if (
+        view.regularity.kind == SLIP_KINDS[2]
+    ):  # power is that of the trains and of the quiet between
         sine = 0.0
     excess = 0.0
     if sine < 1:

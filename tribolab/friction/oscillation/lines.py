@@ -7,7 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 _NEIGHBOURS = 61  # bins around a line that give its background
-LONGEST = 1 << 18  # samples of one transform; more do not make a line clearer than it must be
+LONGEST_TRANSFORM = (
+    1 << 18
+)  # samples of one transform; more do not make a line clearer than it must be
 
 
 _FEWEST = 256  # samples of a stretch whose spectrum is worth a look
@@ -48,7 +50,7 @@ def segment_lines(
     rate = (values.size - 1) / (time[-1] - time[0])
     if rate < _SLOWEST:
         return None
-    resolution = 2 * rate / min(values.size, LONGEST)
+    resolution = 2 * rate / min(values.size, LONGEST_TRANSFORM)
     return [
         line._replace(
             segment=segment,
@@ -69,7 +71,7 @@ def amplitude_spectrum(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray
     values
         (time), without missing values.
     """
-    n = min(values.size, LONGEST)
+    n = min(values.size, LONGEST_TRANSFORM)
     interval = (time[n - 1] - time[0]) / (n - 1)
     place = np.arange(n) / (n - 1) - 0.5
     part = values[:n] - values[:n].mean()

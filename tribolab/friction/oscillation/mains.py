@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.friction.oscillation.lines import LONGEST, amplitude_spectrum
+from tribolab.friction.oscillation.lines import LONGEST_TRANSFORM, amplitude_spectrum
 from tribolab.friction.oscillation.spectra import EvenRecord
 from tribolab.medians import median
 
@@ -37,7 +37,9 @@ def find_mains(record: EvenRecord) -> tuple[Mains, ...]:
     rate = 1 / record.spacing
     if not record.even or rate < _SAMPLED or n < 256:
         return ()
-    frequency, amplitude = amplitude_spectrum(record.time[:LONGEST], record.values[:LONGEST])
+    frequency, amplitude = amplitude_spectrum(
+        record.time[:LONGEST_TRANSFORM], record.values[:LONGEST_TRANSFORM]
+    )
     harmonics = []
     for true in sorted(base * k for base in (50.0, 60.0) for k in (1, 2, 3)):
         reach = _GRID * true / 50 + frequency[1]

@@ -12,7 +12,7 @@ from tribolab.friction.oscillation.mains import Mains
 from tribolab.friction.oscillation.spectra import Spectrum
 from tribolab.friction.oscillation.survey import CHANCE, Survey
 
-HARMONICS = 6
+_HARMONICS = 6
 _REACH = 0.15  # a line's power is gathered over this part of its frequency to either side
 CYCLES = 4.0  # in a record: slower oscillations cannot be told from a wander
 _HUMP = 7  # bands that a hump in the spectrum covers
@@ -154,8 +154,8 @@ def gather(fine: Spectrum, level: np.ndarray, at: int) -> tuple[float, float, np
         spread = float(np.sqrt((fine.frequency[near] - f0) ** 2 @ weight / weight.sum()))
         # a jittering line of width s over a record of n bins wanders by s / sqrt(bins it covers)
         error = spread / np.sqrt(max(spread / fine.width[at], 1.0))
-    powers = np.zeros(HARMONICS)
-    for k in range(1, HARMONICS + 1):
+    powers = np.zeros(_HARMONICS)
+    for k in range(1, _HARMONICS + 1):
         reach = min(max(_REACH * k * f0, 2.01 * fine.width[at]), 0.5 * f0)
         near = np.abs(fine.frequency - k * f0) <= reach
         powers[k - 1] = excess[near].sum()

@@ -9,9 +9,9 @@ import numpy as np
 from tribolab.friction.oscillation.components import Component
 from tribolab.friction.oscillation.few_periods import SlowWave
 from tribolab.friction.oscillation.oscillation import CYCLES, Oscillation
-from tribolab.friction.oscillation.regularity import IRREGULAR, KINDS, Regularity, scatter
+from tribolab.friction.oscillation.regularity import IRREGULAR, SLIP_KINDS, Regularity, scatter
 from tribolab.friction.oscillation.survey import CHANCE
-from tribolab.friction.oscillation.waveform import CLASSES, UNDECIDED, most_probable
+from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR, most_probable
 
 AT_ODDS = "the spectrum tells a period"  # begins the remark that drops tell another one
 ALIKE = 0.12  # a scatter of periods above which cycles may have been missed or split
@@ -97,7 +97,7 @@ def period_verdict(
     odd, significant = at_odds(oscillation, seen), oscillation.false_alarm < CHANCE
     # where two frequencies beat, periods scatter, and yet there are lines
     several = len(lines) > 1 and lines[1].swing > _STRONG * lines[0].swing
-    irregular = seen.kind == KINDS[1] and not several
+    irregular = seen.kind == SLIP_KINDS[1] and not several
     sharp = significant and oscillation.share > _SHARP
     if irregular and not sharp:  # no line in the spectrum to speak of
         frequency, error = oscillation.mean_frequency, oscillation.mean_frequency_error
@@ -106,17 +106,17 @@ def period_verdict(
         error = frequency * scatter(periods) / np.sqrt(periods.size)
     own = 1 / float(periods.mean()) if irregular else frequency
     count = own * duration
-    unclaimed = kind in (CLASSES[0], UNDECIDED)
+    unclaimed = kind in (CLASSES[0], NOT_CLEAR)
     # beside many periods of a wave, a slow one is the wander that they ride on
     few = slow is not None and count < _FASTER * slow.periods
     if slow is not None and (unclaimed or (few and abs(np.log(slow.periods / count)) > _AGREE)):
         return _withheld(f"a slow wave of some {slow.periods:.1f} periods, {_FEW}", slow.periods)
-    repeats = seen.periods.size > 0 and not odd and seen.kind != KINDS[2]
+    repeats = seen.periods.size > 0 and not odd and seen.kind != SLIP_KINDS[2]
     if kind != CLASSES[0] and not (significant or repeats) and probability[0] > _UNLIKELY:
         kind = CLASSES[0]  # neither a line nor drops that go on repeating
     if kind == CLASSES[0]:
         return PeriodVerdict(kind, np.nan, np.nan, np.nan)
-    if kind == UNDECIDED:
+    if kind == NOT_CLEAR:
         likely = CLASSES[int(np.argmax(probability))]
         return _withheld(f"{likely} is more probable, but smooth sliding not improbable")
     hum = [
@@ -143,4 +143,4 @@ _FEW = "too few to tell an oscillation from a wander: slide further at this spee
 
 
 def _withheld(why: str, periods: float = np.nan) -> PeriodVerdict:
-    return PeriodVerdict(UNDECIDED, np.nan, np.nan, periods, why)
+    return PeriodVerdict(NOT_CLEAR, np.nan, np.nan, periods, why)

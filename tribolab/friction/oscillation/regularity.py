@@ -10,7 +10,7 @@ from tribolab.friction.oscillation.events import Events
 from tribolab.friction.oscillation.spectra import EvenRecord
 from tribolab.medians import median
 
-KINDS = ("regular", "irregular", "intermittent")
+SLIP_KINDS = ("regular", "irregular", "intermittent")
 IRREGULAR = 0.18  # scatter of the periods above which they are irregular
 _PAUSE = 2.2  # usual periods between two drops, that may be a pause
 _STILL = 0.5  # of the climb or of the swing that a stick or a wave would show in a pause
@@ -23,7 +23,7 @@ class Regularity(NamedTuple):
     Parameters
     ----------
     kind
-        One of `KINDS`; empty where there are too few periods to say.
+        One of `SLIP_KINDS`; empty where there are too few periods to say.
     share
         Part of the time that oscillates.
     periods
@@ -89,8 +89,8 @@ def regularity(record: EvenRecord, events: Events) -> Regularity:
     share = float(np.clip(1 - quiet / (ends[1] - ends[0]), 0.0, 1.0))
     periods = between[~paused]
     if share < 1 - _QUIET:
-        return Regularity(KINDS[2], share, periods)
-    kind = KINDS[1] if scatter(periods) > IRREGULAR else KINDS[0]
+        return Regularity(SLIP_KINDS[2], share, periods)
+    kind = SLIP_KINDS[1] if scatter(periods) > IRREGULAR else SLIP_KINDS[0]
     return Regularity(kind, 1.0, periods)
 
 

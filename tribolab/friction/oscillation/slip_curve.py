@@ -14,12 +14,12 @@ from tribolab.friction.decisions.rejected import REJECTED, kept
 from tribolab.friction.joined import Label, grouped, joined_curves
 from tribolab.friction.oscillation.rig_waves import REPEATS
 from tribolab.friction.oscillation.slip_table import ringing
-from tribolab.friction.oscillation.waveform import CLASSES, NOT_EVALUATED, UNDECIDED, oscillating
+from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR, NOT_LOOKED_AT, oscillating
 from tribolab.medians import median_of_known
 from tribolab.stamping import stamp
 
-STEADY = CLASSES[0]
-RESONANCE = "resonance"
+STEADY_SLIDING = CLASSES[0]
+_RESONANCE = "resonance"
 FIXED_FREQUENCY = "frequency does not go with the speed: it is fixed"
 _MEANS = (
     "drop",
@@ -118,11 +118,11 @@ def stick_slip_curve(
     speed = np.concatenate([s["sliding_speed"].values for s in slips])
     kind = np.concatenate([s["waveform"].values for s in slips]).astype(object)
     own = _column(slips, "dominant_frequency")
-    named = np.concatenate([[RESONANCE in str(t) for t in s["instrument"].values] for s in slips])
+    named = np.concatenate([[_RESONANCE in str(t) for t in s["instrument"].values] for s in slips])
     # runs of one speed each show only together that a frequency ignores the speed
     rings = named.astype(bool) | ringing(kind, own, speed)
-    kind[rings] = STEADY
-    known = (kind != NOT_EVALUATED) & (speed > 0)
+    kind[rings] = STEADY_SLIDING
+    known = (kind != NOT_LOOKED_AT) & (speed > 0)
     order = np.flatnonzero(known)[np.argsort(speed[known], kind="stable")]
     edges = np.flatnonzero(np.diff(np.log(speed[order])) > np.log1p(speed_tolerance)) + 1
     groups = [group for group in np.split(order, edges) if group.size]
@@ -223,13 +223,13 @@ def _row(
     columns: dict[str, np.ndarray],
 ) -> dict[str, float | str]:
     moving = group[oscillating(kind[group])]
-    waveform, regularity, count = STEADY, "", moving.size
-    decided = int((kind[group] != UNDECIDED).sum())
+    waveform, regularity, count = STEADY_SLIDING, "", moving.size
+    decided = int((kind[group] != NOT_CLEAR).sum())
     if moving.size > 0.5 * decided:
         waveform, regularity = _commonest(kind[moving]), _commonest(regular[moving])
     else:  # what few segments show is not what the contact does
         moving = moving[:0]
-        waveform = STEADY if decided >= 0.5 * group.size else UNDECIDED
+        waveform = STEADY_SLIDING if decided >= 0.5 * group.size else NOT_CLEAR
     row = {
         "segments": group.size,
         "segments_oscillating": count,

@@ -7,11 +7,11 @@ from typing import NamedTuple, TypeGuard
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.oscillation.components import MOST
+from tribolab.friction.oscillation.components import MOST_COMPONENTS
 from tribolab.friction.oscillation.examine import Examined
 from tribolab.friction.oscillation.regularity import scatter
 from tribolab.friction.oscillation.survey import PER_DECADE
-from tribolab.friction.oscillation.waveform import CLASSES, NOT_EVALUATED, UNDECIDED
+from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR, NOT_LOOKED_AT
 from tribolab.medians import median
 
 # what is said of a segment in which nothing oscillates
@@ -28,8 +28,8 @@ _OF_NOISE = (
     "mains_amplitude",
     "periods",
 )
-SAME = 0.03  # a resonance keeps its frequency this well
-SPEEDS = 2.0  # over speeds that differ by this factor at least
+_SAME = 0.03  # a resonance keeps its frequency this well
+_SPEEDS = 2.0  # over speeds that differ by this factor at least
 
 
 def ringing(kind: np.ndarray, frequency: np.ndarray, speed: np.ndarray) -> np.ndarray:
@@ -58,11 +58,11 @@ def ringing(kind: np.ndarray, frequency: np.ndarray, speed: np.ndarray) -> np.nd
     result = np.zeros(kind.size, bool)
     order = np.flatnonzero(sine)[np.argsort(frequency[sine], kind="stable")]
     logs = np.log(frequency[order])
-    first = np.searchsorted(logs, logs - SAME, side="left")
-    last = np.searchsorted(logs, logs + SAME, side="right")
+    first = np.searchsorted(logs, logs - _SAME, side="left")
+    last = np.searchsorted(logs, logs + _SAME, side="right")
     for k, (a, b) in enumerate(zip(first, last, strict=True)):
         near = speed[order[a:b]]
-        result[order[k]] = near.max() >= SPEEDS * near.min()
+        result[order[k]] = near.max() >= _SPEEDS * near.min()
     return result
 
 
@@ -107,7 +107,7 @@ class SlipRow(NamedTuple):
 
 def class_of(examined: Examined | str) -> str:
     """Return the class of waveform, "not decided" or "not evaluated"."""
-    return NOT_EVALUATED if isinstance(examined, str) else examined.verdict.kind
+    return NOT_LOOKED_AT if isinstance(examined, str) else examined.verdict.kind
 
 
 def ranked(examined: Examined) -> list[tuple[str, float]]:
@@ -200,7 +200,7 @@ def slip_columns(
     # where nothing oscillates, the turns of the noise are neither drops nor periods
     rows = [
         nothing._replace(**{name: getattr(row, name) for name in _OF_NOISE})
-        if kind in (CLASSES[0], UNDECIDED)
+        if kind in (CLASSES[0], NOT_CLEAR)
         else row
         for row, kind in zip(rows, kinds, strict=True)
     ]
@@ -223,7 +223,7 @@ def line_table(examined: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
         What was seen, and the sliding speed [m/s] (segment).
     """
     lines = [e.lines if oscillates(e) else () for e in examined]
-    columns = {name: np.full((len(examined), MOST), np.nan) for name in _LINE}
+    columns = {name: np.full((len(examined), MOST_COMPONENTS), np.nan) for name in _LINE}
     for k, mine in enumerate(lines):
         for n, line in enumerate(mine):
             columns["line_frequency"][k, n] = line.frequency

@@ -9,11 +9,11 @@ from scipy import fft
 
 from tribolab.medians import median
 
-SHORT = 1 << 16  # samples of one transform over the whole record; longer ones are averaged
-WINDOW = 1 << 13  # samples of the stretches whose spectra are averaged, at least
-STRETCHES = 384  # that are averaged at most, evenly spread: a spectrum good to 5 %
-BATCH = 1 << 18  # samples that are worked on at a time: they fit into the cache
-UNEVEN = 0.1  # rms deviation from even moments, in sample spacings, above which sines are fitted
+_SHORT = 1 << 16  # samples of one transform over the whole record; longer ones are averaged
+_WINDOW = 1 << 13  # samples of the stretches whose spectra are averaged, at least
+_STRETCHES = 384  # that are averaged at most, evenly spread: a spectrum good to 5 %
+_BATCH = 1 << 18  # samples that are worked on at a time: they fit into the cache
+_UNEVEN = 0.1  # rms deviation from even moments, in sample spacings, above which sines are fitted
 _HANN_WIDTH = 1.5  # bins that a line takes up
 
 
@@ -52,15 +52,15 @@ def make_record(time: np.ndarray, values: np.ndarray) -> EvenRecord:
         return EvenRecord(time, values, np.nan, True)
     spacing = float(time[-1] - time[0]) / (n - 1)
     # of a long record every so many samples tell: a gap or another rate moves all that follow
-    some = max(1, n // BATCH)
+    some = max(1, n // _BATCH)
     off = time[::some] - (time[0] + spacing * np.arange(0, n, some))
-    even = bool(np.sqrt(np.mean(off * off)) < UNEVEN * spacing)
+    even = bool(np.sqrt(np.mean(off * off)) < _UNEVEN * spacing)
     if not even:  # a clock that runs a little fast is even all the same: look at the steps
         largest = max(
-            float(np.abs(np.diff(time[i : i + BATCH + 1]) - spacing).max())
-            for i in range(0, n - 1, BATCH)
+            float(np.abs(np.diff(time[i : i + _BATCH + 1]) - spacing).max())
+            for i in range(0, n - 1, _BATCH)
         )
-        even = largest < UNEVEN * spacing
+        even = largest < _UNEVEN * spacing
     return EvenRecord(time, values, spacing, even)
 
 
@@ -106,11 +106,11 @@ def spectrum(record: EvenRecord) -> Spectrum:
     .. [1] Welch (1967), IEEE Trans. Audio Electroacoust. 15, 70. doi:10.1109/TAU.1967.1161901
     """
     method = "periodogram" if record.even else "Lomb-Scargle"
-    size = int(np.ceil(record.values.size / SHORT))
+    size = int(np.ceil(record.values.size / _SHORT))
     low = _transform(coarsened(record, size))
     if size == 1:
         return Spectrum(*low, method)
-    window = max(WINDOW, 1 << int(np.ceil(np.log2(64 * size))))
+    window = max(_WINDOW, 1 << int(np.ceil(np.log2(64 * size))))
     high = _averaged(record, window)
     border = 0.25 / (size * record.spacing)
     below, above = low[0] < border, high[0] >= border
@@ -165,11 +165,11 @@ def _averaged(
     shape = 0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(window) + 0.5) / window)
     power = np.zeros(frequency.size)
     if record.even:
-        rows = max(1, BATCH // window)
+        rows = max(1, _BATCH // window)
         level, scale = _level_and_scale(record.values)
         # the fluctuation in single precision: rounding is a white noise 140 dB below it
         shape32 = (shape / scale).astype(np.float32)
-        every = -(-count // STRETCHES)
+        every = -(-count // _STRETCHES)
         stretches = record.values[: count * window].reshape(-1, window)[::every]
         count = len(stretches)
         for first in range(0, count, rows):
@@ -192,7 +192,7 @@ def _averaged(
 
 def _level_and_scale(values: np.ndarray) -> tuple[float, float]:
     """Mean and standard deviation of a long record, from a sample of it."""
-    some = values[:: max(1, values.size // BATCH)]
+    some = values[:: max(1, values.size // _BATCH)]
     spread = float(some.std())
     return float(some.mean()), spread if spread > 0 else 1.0
 

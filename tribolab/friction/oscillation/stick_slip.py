@@ -12,7 +12,7 @@ from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import belong, trimmed_slices
 from tribolab.friction.decisions.rejected import REJECTED
 from tribolab.friction.oscillation.examine import EventLimits, Examined, examine_record
-from tribolab.friction.oscillation.regularity import KINDS
+from tribolab.friction.oscillation.regularity import SLIP_KINDS
 from tribolab.friction.oscillation.rig_waves import RigMotion, RigWave, motion_of, rig_wave
 from tribolab.friction.oscillation.slip_table import (
     class_of,
@@ -25,7 +25,7 @@ from tribolab.friction.oscillation.slip_table import (
     slip_columns,
     spectra_table,
 )
-from tribolab.friction.oscillation.waveform import CLASSES, DOUBT, UNDECIDED
+from tribolab.friction.oscillation.waveform import CLASSES, DOUBT, NOT_CLEAR
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.zero.rests import unloaded_rests
 from tribolab.medians import median_of_known
@@ -60,7 +60,7 @@ _OF_SEGMENTS = (
     REJECTED,
 )
 
-REVERSED = (
+_REVERSED = (
     "friction falls slowly and rises sharply, as stick-slip does behind a sensor whose sign is "
     "turned: look at the sensor's sense, and set `sign = -1` for the friction force in the dialect "
     "if it is so"
@@ -283,7 +283,7 @@ def _remark(seen: Examined | str, cut: bool, speed: float) -> str:
     words = ["the signal is cut off at its extremes: drops are lower bounds"] if cut else []
     if not np.isfinite(speed):
         words.append("the sliding speed is not known: start, stop or rest may lie in the segment")
-    if seen.verdict.kind == UNDECIDED:
+    if seen.verdict.kind == NOT_CLEAR:
         return "; ".join([*words, f"not decided: {seen.verdict.doubt}"])
     words += _form_words(seen, speed)
     second = ranked(seen)[1]
@@ -300,12 +300,12 @@ def _form_words(examined: Examined, speed: float) -> list[str]:
         return []
     words, seen = [], examined.regularity
     if class_of(examined) == CLASSES[3]:
-        words.append(REVERSED)
+        words.append(_REVERSED)
     if class_of(examined) == CLASSES[2] and examined.oscillation.share < 0.5:
         words.append("noise and spikes hold more of the fluctuation than the oscillation")
-    if seen.kind == KINDS[2]:
+    if seen.kind == SLIP_KINDS[2]:
         words.append(f"oscillates {seen.share:.0%} of the time")
-    if seen.kind == KINDS[1] and speed > 0:
+    if seen.kind == SLIP_KINDS[1] and speed > 0:
         spectral = 1e6 * speed / examined.verdict.frequency
         apart = 1e6 * speed * float(seen.periods.mean())
         words.append(

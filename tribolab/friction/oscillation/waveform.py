@@ -89,12 +89,12 @@ CLASSES = (
     "sinus-like oscillation",
     "reversed sawtooth",
 )
-NOT_EVALUATED = "not evaluated"
-UNDECIDED = "not decided"
+NOT_LOOKED_AT = "not evaluated"
+NOT_CLEAR = "not decided"
 DOUBT = 0.2  # probability of smooth sliding above which nothing else is claimed
 
 # feature: (value where unknown, lowest, highest); what lies beyond counts as the limit
-LIMITS = {
+WAVEFORM_LIMITS = {
     "prominence": (0.0, -0.5, 4.0),  # log10 of the peak's power over the background
     "significance": (0.0, 0.0, 8.0),  # -log10 of the false-alarm probability
     "strength": (-0.3, -0.5, 1.5),  # log10 of the swing over the noise
@@ -109,8 +109,8 @@ LIMITS = {
 }
 
 # one number for each class, in the order of CLASSES
-INTERCEPT = np.array([3.52, -2.46, 1.40, -2.46])
-COEFFICIENTS = {
+_INTERCEPT = np.array([3.52, -2.46, 1.40, -2.46])
+_COEFFICIENTS = {
     "prominence": np.array([-0.57, -0.06, 0.69, -0.06]),
     "significance": np.array([-0.15, -0.07, 0.29, -0.07]),
     "strength": np.array([-0.01, -0.53, 1.08, -0.53]),
@@ -126,7 +126,7 @@ COEFFICIENTS = {
 
 
 def features(form: WaveformFeatures, oscillation: Oscillation) -> dict[str, float]:
-    """Features of the class, each within its `LIMITS`."""
+    """Features of the class, each within its `WAVEFORM_LIMITS`."""
     raw = {
         "prominence": np.log10(max(oscillation.prominence, 1e-9)),
         "significance": -np.log10(max(oscillation.false_alarm, 1e-99)),
@@ -142,7 +142,7 @@ def features(form: WaveformFeatures, oscillation: Oscillation) -> dict[str, floa
     }
     return {
         name: float(np.clip(raw[name], low, high)) if np.isfinite(raw[name]) else unknown
-        for name, (unknown, low, high) in LIMITS.items()
+        for name, (unknown, low, high) in WAVEFORM_LIMITS.items()
     }
 
 
@@ -154,7 +154,7 @@ def class_probabilities(values: dict[str, float]) -> np.ndarray:
     values
         From `features`.
     """
-    score = INTERCEPT + sum(COEFFICIENTS[name] * value for name, value in values.items())
+    score = _INTERCEPT + sum(_COEFFICIENTS[name] * value for name, value in values.items())
     weight = np.exp(score - score.max())
     return weight / weight.sum()
 
@@ -182,5 +182,5 @@ def most_probable(probability: np.ndarray) -> str:
     """
     likely = int(np.argmax(probability))
     if probability[0] > DOUBT:
-        return CLASSES[0] if likely == 0 else UNDECIDED
+        return CLASSES[0] if likely == 0 else NOT_CLEAR
     return CLASSES[1 + int(np.argmax(probability[1:]))]

@@ -28,8 +28,8 @@ from tribolab.stamping import stamp
 from tribolab.units import to_si
 
 _OF_STROKES = 5  # degree of the polynomial through the positions of a stroke
-MIDDLE = 0.5  # of each stroke that a crank drives: its speed changes there by an eighth
-LABELS = ("set_speed", "set_normal_force", "step", "cycle", "rolling_speed", "slide_roll_ratio")
+_MIDDLE = 0.5  # of each stroke that a crank drives: its speed changes there by an eighth
+_LABELS = ("set_speed", "set_normal_force", "step", "cycle", "rolling_speed", "slide_roll_ratio")
 
 
 @of_runs
@@ -155,7 +155,7 @@ def find_segments(
     if plateaus.sizes["segment"] or "stroke_m" not in run.attrs or position_range is not None:
         return plateaus
     try:  # what a crank drives is never at constant speed: each stroke has a middle
-        return _of_strokes(run, source, MIDDLE, min_samples)
+        return _of_strokes(run, source, _MIDDLE, min_samples)
     except AnalysisError:  # it does not move to and fro: why no plateau was found says more
         return plateaus
 
@@ -291,7 +291,7 @@ def measured(
         "sliding_distance": speed * (trimmed_stop - trimmed_start),
         "samples": last - first,
     }
-    for label in LABELS:
+    for label in _LABELS:
         if label in run:
             data[label] = _label(np.asarray(run[label].values, float), first, last)
     omitted = {

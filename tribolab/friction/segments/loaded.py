@@ -10,13 +10,13 @@ from tribolab.friction.segments.stretches import Stretch
 from tribolab.medians import median
 from tribolab.pieces import one_by_one
 
-NO_LOAD = "no load"
-NO_CONTACT = 0.02  # share of the run's load below which there is no contact
-UNLOADED = 0.1  # share of the load below which a rest can tell the zero of the normal force
-LOADED = 0.9  # share of a stretch's load from which on its load is there
-LOST = 0.05  # a smaller share of a segment without contact is left to its mean
-BINS = 200  # in a stretch
-MOST_CUTS = 5  # a load that is lost more often is a bouncing one, and no program
+_NO_LOAD = "no load"
+_NO_CONTACT = 0.02  # share of the run's load below which there is no contact
+_UNLOADED = 0.1  # share of the load below which a rest can tell the zero of the normal force
+_LOADED = 0.9  # share of a stretch's load from which on its load is there
+_LOST = 0.05  # a smaller share of a segment without contact is left to its mean
+_BINS = 200  # in a stretch
+_MOST_CUTS = 5  # a load that is lost more often is a bouncing one, and no program
 
 
 def loaded(run: xr.Dataset, stretches: list[Stretch], limits: ConstancyLimits) -> list[Stretch]:
@@ -46,9 +46,9 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], limits: ConstancyLimits) -
     if not usual > 0:
         return stretches
     rests = middles["at rest"]
-    rests = rests[np.abs(rests) < UNLOADED * usual]
+    rests = rests[np.abs(rests) < _UNLOADED * usual]
     zero = float(median(rests)) if rests.size else 0.0
-    least = NO_CONTACT * (usual - zero)
+    least = _NO_CONTACT * (usual - zero)
     result: list[Stretch] = []
     for stretch in one_by_one(stretches):
         if stretch.kind == "constant":
@@ -80,27 +80,27 @@ def _cut(
 ) -> list[Stretch]:
     """One stretch, cut where its load comes or goes."""
     first, last = np.searchsorted(time, [stretch.start, stretch.stop])
-    count = min(BINS, last - first)
+    count = min(_BINS, last - first)
     if count < 1:
         return [stretch]
     at = first + (last - first) * np.arange(count + 1) // count
     part = np.nan_to_num(force[first:last] - zero, copy=False)
     mean = np.add.reduceat(part, at[:-1] - first) / np.diff(at)
     bare = mean < least
-    if not bare.mean() > LOST:
+    if not bare.mean() > _LOST:
         return [stretch]
     if bare.all():
-        return [stretch._replace(kind=NO_LOAD)]
-    away = _grown(bare, mean < LOADED * float(median(mean[~bare])))
+        return [stretch._replace(kind=_NO_LOAD)]
+    away = _grown(bare, mean < _LOADED * float(median(mean[~bare])))
     edges = np.flatnonzero(np.diff(away)) + 1
-    if edges.size > 2 * MOST_CUTS:
+    if edges.size > 2 * _MOST_CUTS:
         return [stretch]
     if away.all():
-        return [stretch._replace(kind=NO_LOAD)]
+        return [stretch._replace(kind=_NO_LOAD)]
     marks = np.concatenate([[0], edges, [count]])
     result = []
     for a, b in zip(marks[:-1], marks[1:], strict=True):
-        kind = NO_LOAD if away[a] else "constant"
+        kind = _NO_LOAD if away[a] else "constant"
         if kind == "constant" and at[b] - at[a] < min_samples:
             kind = "too short"
         start = stretch.start if a == 0 else float(time[at[a]])

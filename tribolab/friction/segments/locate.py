@@ -19,16 +19,16 @@ from tribolab.friction.segments.plateaus import (
 from tribolab.friction.segments.proof import is_proven
 from tribolab.pieces import one_by_one
 
-MOST_BLOCKS = 16384  # more blocks cost time and find nothing more: leftovers are looked at again
-FEW_BLOCKS = 512  # in a second look
-PARTS = 8  # the value of a block is the median of the means of its parts, so a spike is outvoted
-KEPT = ("constant", "at rest")
-STILL = 1e-7  # of the highest speed: nothing slower is told from rest
-SLOW = 1e-5  # of the highest speed: what is slower has to get somewhere to be sliding
-SOMEWHERE = 0.01  # of the longest way of a piece
-BRIEF = 1.5  # a plateau beside a ramp longer than this many times itself has to prove itself
-PAUSE = 3.0  # a ramp that is longer than this many times a pause in it goes on
-MOVING = 8.0  # standard errors from rest: breaks pick their pieces, so that chance alone makes six
+_MOST_BLOCKS = 16384  # more blocks cost time and find nothing more: leftovers are looked at again
+_FEW_BLOCKS = 512  # in a second look
+_PARTS = 8  # the value of a block is the median of the means of its parts, so a spike is outvoted
+_KEPT = ("constant", "at rest")
+_STILL = 1e-7  # of the highest speed: nothing slower is told from rest
+_SLOW = 1e-5  # of the highest speed: what is slower has to get somewhere to be sliding
+_SOMEWHERE = 0.01  # of the longest way of a piece
+_BRIEF = 1.5  # a plateau beside a ramp longer than this many times itself has to prove itself
+_PAUSE = 3.0  # a ramp that is longer than this many times a pause in it goes on
+_MOVING = 8.0  # standard errors from rest: breaks pick their pieces, so that chance alone makes six
 
 
 class VelocityPiece(NamedTuple):
@@ -87,11 +87,11 @@ def moving(
         return pieces
     top = max(abs(p.velocity) for p in kept)
     way = [abs(p.velocity) * (time[p.last - 1] - time[p.first]) for p in pieces]
-    least = SOMEWHERE * max(d for d, p in zip(way, pieces, strict=True) if p.kind == "constant")
+    least = _SOMEWHERE * max(d for d, p in zip(way, pieces, strict=True) if p.kind == "constant")
     return _fused(
         [
             p._replace(kind="at rest")
-            if p.kind == "constant" and abs(p.velocity) <= SLOW * top and d < least
+            if p.kind == "constant" and abs(p.velocity) <= _SLOW * top and d < least
             else p
             for d, p in zip(way, pieces, strict=True)
         ],
@@ -138,7 +138,7 @@ def _beside(
             continue
         begin, end = data.time[piece.first], data.time[piece.last - 1]
         before, after = (_until_kept(data.time, pieces, i, way) for way in (-1, 1))
-        if max(before, after) <= BRIEF * (end - begin):
+        if max(before, after) <= _BRIEF * (end - begin):
             continue
         sides = before > end - begin, after > end - begin
         if not is_proven(data.readings, begin, end, limits.drift * abs(piece.velocity), sides):
@@ -149,7 +149,7 @@ def _beside(
 def _until_kept(time: np.ndarray, pieces: list[VelocityPiece], index: int, way: int) -> float:
     """Time [s] from a piece to the next plateau or rest on one side of it."""
     at = index + way
-    while 0 <= at < len(pieces) and pieces[at].kind not in KEPT:
+    while 0 <= at < len(pieces) and pieces[at].kind not in _KEPT:
         at += way
     if way < 0:
         return float(time[pieces[index].first] - time[pieces[at].last - 1 if at >= 0 else 0])
@@ -166,16 +166,16 @@ def _paused(pieces: list[VelocityPiece], limits: ConstancyLimits) -> list[Veloci
             continue
         shortest = min(before.last - before.first, after.last - after.first)
         one_way = (piece.velocity - before.velocity) * (after.velocity - piece.velocity) > 0
-        if one_way and shortest > PAUSE * (piece.last - piece.first):
+        if one_way and shortest > _PAUSE * (piece.last - piece.first):
             result[i] = piece._replace(kind="ramp")
     return _fused(result, limits)
 
 
-def block_size(samples: int, most: int = MOST_BLOCKS) -> int:
-    """Return the samples per block: 1 for small records, else a power of two, `PARTS` or more."""
+def block_size(samples: int, most: int = _MOST_BLOCKS) -> int:
+    """Return the samples per block: 1 for small records, else a power of two, `_PARTS` or more."""
     if samples <= most:
         return 1
-    return max(PARTS, 2 ** int(np.ceil(np.log2(samples / most))))
+    return max(_PARTS, 2 ** int(np.ceil(np.log2(samples / most))))
 
 
 def _blocks(time: np.ndarray, velocity: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
@@ -183,8 +183,8 @@ def _blocks(time: np.ndarray, velocity: np.ndarray, size: int) -> tuple[np.ndarr
     if size == 1:
         return time, velocity
     count = time.size // size
-    parts = velocity[: count * size].reshape(count * PARTS, size // PARTS).mean(axis=1)
-    parts = np.sort(parts.reshape(count, PARTS), axis=1)
+    parts = velocity[: count * size].reshape(count * _PARTS, size // _PARTS).mean(axis=1)
+    parts = np.sort(parts.reshape(count, _PARTS), axis=1)
     robust = parts[:, 2:-2].mean(axis=1)  # the middle half: nearly the mean's efficiency
     begin, end = time[: count * size : size], time[size - 1 : count * size : size]
     return (begin + end) / 2, robust
@@ -206,7 +206,7 @@ def _locate(
     rest_speed: float | None,
     floor: float = 0.0,
 ) -> list[VelocityPiece]:
-    size = block_size(time.size, MOST_BLOCKS if noise is None else FEW_BLOCKS)
+    size = block_size(time.size, _MOST_BLOCKS if noise is None else _FEW_BLOCKS)
     t, v = _blocks(time, velocity, size)
     if noise is None:
         noise = estimate_noise(v, floor / np.sqrt(size))
@@ -221,7 +221,7 @@ def _locate(
         rest_speed = limits.rest_speed
     if rest_speed is None:
         top = float(np.quantile(np.abs(v), 0.98))
-        rest_speed = max(STILL * top, 0.05 * single.floor)
+        rest_speed = max(_STILL * top, 0.05 * single.floor)
     if size == 1:
         v = _despiked(v, noise)
     breaks = find_breaks(v, noise, limits.resolution, rest_speed)
@@ -240,7 +240,7 @@ def _locate(
         if last - first < fewest and kind != "ramp":
             kind = "too short"
         if size > 1:
-            if kind not in KEPT and not (kind == "ramp" and last - first >= 4 * size):
+            if kind not in _KEPT and not (kind == "ramp" and last - first >= 4 * size):
                 continue
             pieces += _leftover(time, velocity, limits, single, rest_speed, pending, first)
             pending = last
@@ -277,7 +277,7 @@ def _kind(
     mean: float, change: float, error: float, change_error: float, rest_speed: float, drift: float
 ) -> str:
     sure = abs(change) - 3 * change_error
-    if abs(mean) <= max(rest_speed, MOVING * error):
+    if abs(mean) <= max(rest_speed, _MOVING * error):
         return "ramp" if sure > 2 * rest_speed else "at rest"
     return "ramp" if sure > drift * abs(mean) else "constant"
 
@@ -306,7 +306,7 @@ def _same(a: VelocityPiece, b: VelocityPiece, limits: ConstancyLimits) -> bool:
     if a.kind == b.kind and a.kind != "constant":
         return True
     short, long = sorted((a, b), key=lambda p: p.last - p.first)
-    if long.kind not in KEPT or short.kind not in (long.kind, "too short"):
+    if long.kind not in _KEPT or short.kind not in (long.kind, "too short"):
         return False
     apart = abs(a.velocity - b.velocity)
     size = max(abs(a.velocity), abs(b.velocity))

@@ -28,16 +28,16 @@ from numpy.polynomial import legendre
 
 from tribolab.friction.segments.plateaus import running_median
 
-MOST = 512  # readings of a fit; more are averaged
-WILD = 8.0  # times the usual distance from the neighbours' median
-WILD_SHARE = {False: 0.2, True: 0.02}  # of the range of velocities, of positions
-BESIDE = (0.5, 1.0)  # lengths of the piece that are looked at beside it
-CORNERS = (-0.2, -0.1, 0.0, 0.1, 0.2)  # of its length a piece's end may be off
-TURNS = np.linspace(-0.8, 0.8, 17)  # places of a turn, of half the window
-FINER = 4  # times the places of the turn are narrowed down, tenfold each
-BETTER = 10.0  # in Schwarz's criterion: very strong evidence
-KNOWN = 2.0  # standard errors of the change that have to lie within the drift
-SURE = 4.0  # standard errors by which a change is sure
+_MOST = 512  # readings of a fit; more are averaged
+_WILD = 8.0  # times the usual distance from the neighbours' median
+_WILD_SHARE = {False: 0.2, True: 0.02}  # of the range of velocities, of positions
+_BESIDE = (0.5, 1.0)  # lengths of the piece that are looked at beside it
+_CORNERS = (-0.2, -0.1, 0.0, 0.1, 0.2)  # of its length a piece's end may be off
+_TURNS = np.linspace(-0.8, 0.8, 17)  # places of a turn, of half the window
+_FINER = 4  # times the places of the turn are narrowed down, tenfold each
+_BETTER = 10.0  # in Schwarz's criterion: very strong evidence
+_KNOWN = 2.0  # standard errors of the change that have to lie within the drift
+_SURE = 4.0  # standard errors by which a change is sure
 
 
 class Readings(NamedTuple):
@@ -55,9 +55,9 @@ class Readings(NamedTuple):
         if values.size:
             off = np.abs(values - median)
             # a turn is no spike, however little noise there is
-            least = WILD_SHARE[self.is_position] * float(np.ptp(median))
-            values = np.where(off > max(WILD * float(np.mean(off)), least), median, values)
-        size = -(-time.size // MOST)
+            least = _WILD_SHARE[self.is_position] * float(np.ptp(median))
+            values = np.where(off > max(_WILD * float(np.mean(off)), least), median, values)
+        size = -(-time.size // _MOST)
         if size > 1:
             count = time.size // size
             time, values = (
@@ -145,7 +145,7 @@ def change_along(readings: Readings, begin: float, end: float) -> tuple[float, f
 def surely_changes(readings: Readings, begin: float, end: float, most: float) -> bool:
     """Whether the parabola through a piece changes by more than `most` [m/s], beyond chance."""
     change, error = change_along(readings, begin, end)
-    return bool(change > most + SURE * error)
+    return bool(change > most + _SURE * error)
 
 
 def is_proven(
@@ -169,9 +169,9 @@ def is_proven(
         Whether a ramp lies before and after the piece.
     """
     change, error = change_along(readings, begin, end)
-    if not change + KNOWN * error <= most:
+    if not change + _KNOWN * error <= most:
         return False
-    return any(_is_level(readings, begin, end, sides, beside) for beside in BESIDE)
+    return any(_is_level(readings, begin, end, sides, beside) for beside in _BESIDE)
 
 
 def _is_level(
@@ -192,8 +192,8 @@ def _is_level(
 
     levels = [fitted(*case) for case in _levels(place, corners, sides)]
     others = [fitted(*case) for case in _motions(place)]
-    turns, width = TURNS, TURNS[1] - TURNS[0]
-    for _ in range(FINER):
+    turns, width = _TURNS, _TURNS[1] - _TURNS[0]
+    for _ in range(_FINER):
         misfits = [fitted(_turn(place, at), 1) for at in turns]
         others += misfits
         best = int(np.argmin([fit.variance for fit, _ in misfits]))
@@ -208,7 +208,7 @@ def _is_level(
             for fit, free in fits
         )
 
-    return schwarz(levels) + BETTER < schwarz(others)
+    return schwarz(levels) + _BETTER < schwarz(others)
 
 
 def _levels(
@@ -217,8 +217,8 @@ def _levels(
     """Levels with a line on each side that has a ramp; their corners move a little."""
     size = corners[1] - corners[0]
     levels = []
-    for before in CORNERS if sides[0] else (None,):
-        for after in CORNERS if sides[1] else (None,):
+    for before in _CORNERS if sides[0] else (None,):
+        for after in _CORNERS if sides[1] else (None,):
             motion = [np.ones(place.size), place]
             for shift, corner, way in ((before, corners[0], -1), (after, corners[1], 1)):
                 if shift is not None:

@@ -9,15 +9,15 @@ from tribolab.medians import median
 from tribolab.pieces import pieces
 from tribolab.room import room
 
-WANTED_ERROR = 0.03  # relative error of a block's slope that the block size aims at
-FEWEST = 8  # samples in a block
-JUMP = 0.002  # of the range of positions: a smaller jump moves no segment
-FASTER = 3.0  # times the rate around it, for a single sample
-ISOLATED = 20.0  # times the scatter of the rates around it: no slider does that
-SAMPLE = 8192  # readings that suffice to find their last digit
-DUST = 0.01  # of a digit: what arithmetic adds
-ROUNDED = 0.5  # digits of noise that rounding may leave
-AROUND = 8  # samples on each side that tell the rate
+_WANTED_ERROR = 0.03  # relative error of a block's slope that the block size aims at
+FEWEST_OF_BLOCK = 8  # samples in a block
+_JUMP = 0.002  # of the range of positions: a smaller jump moves no segment
+_FASTER = 3.0  # times the rate around it, for a single sample
+_ISOLATED = 20.0  # times the scatter of the rates around it: no slider does that
+_SAMPLE = 8192  # readings that suffice to find their last digit
+_DUST = 0.01  # of a digit: what arithmetic adds
+_ROUNDED = 0.5  # digits of noise that rounding may leave
+_AROUND = 8  # samples on each side that tell the rate
 
 
 def position_noise(time: np.ndarray, position: np.ndarray) -> float:
@@ -69,15 +69,15 @@ def digit(position: np.ndarray) -> float:
     >>> digit(np.array([0.0, 2.1e-6, 7.3e-6, 1e-5, 1.17e-5, 1.5e-5, 2.44e-5, 3.3e-5]))
     0.0
     """
-    levels = np.unique(position[:: 1 + position.size // SAMPLE])
+    levels = np.unique(position[:: 1 + position.size // _SAMPLE])
     gaps = np.diff(levels)
     # what differs in the last bits only is one reading
     gaps = gaps[gaps > 1e-9 * np.abs(levels).max(initial=0.0)]
-    if gaps.size < FEWEST - 1:
+    if gaps.size < FEWEST_OF_BLOCK - 1:
         return 0.0
     least = float(gaps.min())
     times = gaps / least
-    return least if np.abs(times - np.round(times)).max() < DUST else 0.0
+    return least if np.abs(times - np.round(times)).max() < _DUST else 0.0
 
 
 def is_rounding(position: np.ndarray, noise: float) -> bool:
@@ -93,12 +93,12 @@ def is_rounding(position: np.ndarray, noise: float) -> bool:
     noise
         From `position_noise` [m].
     """
-    return is_staircase(position) or noise <= ROUNDED * digit(position)
+    return is_staircase(position) or noise <= _ROUNDED * digit(position)
 
 
 def _far(time: np.ndarray, position: np.ndarray) -> np.ndarray:
     """Return the samples behind which the position goes on far away."""
-    least = JUMP * float(np.ptp(position)) if position.size else 0.0
+    least = _JUMP * float(np.ptp(position)) if position.size else 0.0
     parts = [
         first
         + np.flatnonzero(
@@ -125,13 +125,13 @@ def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, 
 
     Notes
     -----
-    A jump is a single difference of `JUMP` of the range or more that stands off from the rates
+    A jump is a single difference of `_JUMP` of the range or more that stands off from the rates
     around it; it is replaced by what their median would give.
     """
     far = _far(time, position)
-    if far.size == 0 or position.size <= 2 * AROUND:
+    if far.size == 0 or position.size <= 2 * _AROUND:
         return position, np.zeros(0, dtype=int)
-    near = far[:, None] + np.concatenate([np.arange(-AROUND, 0), np.arange(1, AROUND + 1)])
+    near = far[:, None] + np.concatenate([np.arange(-_AROUND, 0), np.arange(1, _AROUND + 1)])
     beside = np.where((near >= 0) & (near < position.size - 1), near, far[:, None])
     around = _rates(time, position, beside)
     around[beside == far[:, None]] = np.nan
@@ -140,7 +140,7 @@ def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, 
     still = np.isnan(size).all(axis=1)
     size[still] = 0.0
     scatter = np.nanmedian(np.abs(around - usual[:, None]), axis=1)
-    limit = np.maximum(FASTER * np.nanmedian(size, axis=1), ISOLATED * scatter)
+    limit = np.maximum(_FASTER * np.nanmedian(size, axis=1), _ISOLATED * scatter)
     jump = np.abs(_rates(time, position, far) - usual) > limit
     at = far[jump]
     moved = position[at + 1] - position[at] - usual[jump] * (time[at + 1] - time[at])
@@ -193,7 +193,7 @@ def _slopes(t: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def velocity_blocks(
-    time: np.ndarray, position: np.ndarray, least: int = FEWEST
+    time: np.ndarray, position: np.ndarray, least: int = FEWEST_OF_BLOCK
 ) -> tuple[np.ndarray, np.ndarray, int, float]:
     """Velocity on blocks just long enough for a slope good to a few percent.
 
@@ -231,7 +231,7 @@ def _fine(speed: np.ndarray, error: float) -> bool:
     order = np.argsort(speed)
     share = np.cumsum(sure[order])
     usual = speed[order][np.searchsorted(share, 0.5 * share[-1])]
-    return bool(error <= WANTED_ERROR * median(speed[speed > 0.2 * usual]))
+    return bool(error <= _WANTED_ERROR * median(speed[speed > 0.2 * usual]))
 
 
 def line(time: np.ndarray, position: np.ndarray) -> tuple[float, float]:

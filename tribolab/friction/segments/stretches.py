@@ -15,7 +15,7 @@ from tribolab.friction.segments.locate import ConstancyLimits, VelocityPiece, he
 from tribolab.medians import median
 from tribolab.pieces import anywhere
 
-RESOLVED = 10.0  # errors of a block's velocity from which on its blocks are long enough
+_RESOLVED = 10.0  # errors of a block's velocity from which on its blocks are long enough
 
 
 class Stretch(NamedTuple):
@@ -82,9 +82,9 @@ def from_velocity(run: xr.Dataset, limits: ConstancyLimits, max_gap: float | Non
 def from_position(run: xr.Dataset, limits: ConstancyLimits, max_gap: float | None) -> list[Stretch]:
     """Stretches from the position, by slopes over blocks."""
     time, position = track(run)
-    if time.size < 3 * slopes.FEWEST:
+    if time.size < 3 * slopes.FEWEST_OF_BLOCK:
         return _nothing(run, time.size)
-    pieces = _by_slopes(time, position, limits, slopes.FEWEST)
+    pieces = _by_slopes(time, position, limits, slopes.FEWEST_OF_BLOCK)
     pieces = moving(time, pieces, limits)
     pieces = held(MeanVelocities(time, position=position), pieces, limits)
     pieces = [_with_slope(time, position, p) for p in pieces]
@@ -108,7 +108,7 @@ def _by_slopes(
     if error == 0:
         return pieces
     result: list[VelocityPiece] = []
-    slow = [abs(p.velocity) < RESOLVED * error for p in pieces]
+    slow = [abs(p.velocity) < _RESOLVED * error for p in pieces]
     for is_slow, some in groupby(zip(slow, pieces, strict=True), key=lambda pair: pair[0]):
         group = [piece for _, piece in some]
         first, last = group[0].first, group[-1].last

@@ -11,13 +11,13 @@ from tribolab.errors import AnalysisError, Cure
 from tribolab.friction.segments.stretches import finite, name_of
 from tribolab.medians import median
 
-HYSTERESIS = 0.25  # of the range: how far a position has to come back to be a turn
-LEAST_SPEED = 0.2  # of the usual speed: what is slower does not say which way it goes
-SHORTEST = 0.5  # of the usual length: what is shorter is no stroke
-FEWEST = 3  # strokes, the cut ones at both ends left out
+_HYSTERESIS = 0.25  # of the range: how far a position has to come back to be a turn
+_LEAST_SPEED = 0.2  # of the usual speed: what is slower does not say which way it goes
+_SHORTEST = 0.5  # of the usual length: what is shorter is no stroke
+_FEWEST = 3  # strokes, the cut ones at both ends left out
 _PAUSE = 20  # usual sample spacings: what is shorter is no pause
 _NOT_SEEN = 0.25  # of a stroke's duration
-SAME = 1e-9  # of the range, or of the usual speed: what differs by less is the same, or zero
+_SAME = 1e-9  # of the range, or of the usual speed: what differs by less is the same, or zero
 
 
 class Strokes(NamedTuple):
@@ -82,9 +82,9 @@ def find_strokes(run: xr.Dataset) -> Strokes:
             "strokes are told by the position or the signed velocity, and the run has neither",
             where=name_of(run),
         )
-    if way.size < FEWEST:
+    if way.size < _FEWEST:
         raise AnalysisError(
-            f"the slider does not move to and fro: {way.size} whole strokes, {FEWEST} are needed",
+            f"the slider does not move to and fro: {way.size} whole strokes, {_FEWEST} are needed",
             where=name_of(run),
             cure=Cure(
                 notebook="for plateaus of constant speed use find_segments without stroke_middle",
@@ -114,11 +114,11 @@ def _usual(run: xr.Dataset, first: np.ndarray, length: np.ndarray) -> np.ndarray
     """Whether a stroke is as long as those of its step are, and lies in one step (stroke)."""
     step = _settings(run)
     if step is None:
-        return length > SHORTEST * median(length)
+        return length > _SHORTEST * median(length)
     own = step[first[:-1]]
     usual = np.zeros(length.size, dtype=bool)
     for each in np.unique(own):
-        usual[own == each] = length[own == each] > SHORTEST * median(length[own == each])
+        usual[own == each] = length[own == each] > _SHORTEST * median(length[own == each])
     return usual & (own == step[first[1:] - 1])
 
 
@@ -143,7 +143,7 @@ def _filled(run: xr.Dataset, name: str) -> np.ndarray:
 def _by_position(run: xr.Dataset) -> _Parts:
     position = _filled(run, "position")
     low, high = np.percentile(position, [1, 99])
-    middle, half = (low + high) / 2, (0.5 - HYSTERESIS) * (high - low)
+    middle, half = (low + high) / 2, (0.5 - _HYSTERESIS) * (high - low)
     state = _held(position, middle - half, middle + half)
     change = np.flatnonzero(np.diff(state)) + 1
     change = change[state[change - 1] != 0]
@@ -155,7 +155,7 @@ def _by_position(run: xr.Dataset) -> _Parts:
     part = np.repeat(np.arange(side.size), np.diff(change))
     height = position[inside] * side[part]
     top = np.maximum.reduceat(height, change[:-1] - change[0])
-    at = inside[height >= top[part] - SAME * (high - low)]
+    at = inside[height >= top[part] - _SAME * (high - low)]
     turn = at[np.searchsorted(at, change[:-1])]
     way = -side[:-1]
     length = np.abs(np.diff(position[turn]))
@@ -176,7 +176,7 @@ def _by_velocity(run: xr.Dataset) -> _Parts:
     if change.size < 2:
         return _nothing(velocity.size)
     # the turn lies where the velocity last had the sign of before
-    sign = np.where(np.abs(velocity) > SAME * limit, np.sign(velocity), 0.0)
+    sign = np.where(np.abs(velocity) > _SAME * limit, np.sign(velocity), 0.0)
     same = np.flatnonzero(sign[:-1] * sign[1:] <= 0) + 1
     turn = np.unique(same[np.clip(np.searchsorted(same, change, side="right") - 1, 0, None)])
     way = np.sign(state[np.minimum(turn[1:] - 1, state.size - 1)]).astype(int)
@@ -195,10 +195,10 @@ def _limit(run: xr.Dataset, velocity: np.ndarray) -> float | np.ndarray:
     """Return the speed below which a sample does not say which way it goes [m/s]."""
     step = _settings(run)
     if step is None:
-        return LEAST_SPEED * float(np.percentile(np.abs(velocity), 90))
+        return _LEAST_SPEED * float(np.percentile(np.abs(velocity), 90))
     limit = np.zeros(velocity.size)
     for each in np.unique(step):
-        limit[step == each] = LEAST_SPEED * np.percentile(np.abs(velocity[step == each]), 90)
+        limit[step == each] = _LEAST_SPEED * np.percentile(np.abs(velocity[step == each]), 90)
     return limit
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from tribolab.friction.zero.offsets import Wander, wander
 
-STEEPEST = 2.0  # how much steeper than between the next two loops a drift may be: a jump is none
+_STEEPEST = 2.0  # how much steeper than between the next two loops a drift may be: a jump is none
 
 
 class Middles(NamedTuple):
@@ -89,7 +89,7 @@ def middles(
         if known.size > 2:  # the first and last: what the next step says
             before[0], after[-1] = step[1], step[-2]
         limit = np.where(before * after > 0, np.minimum(np.abs(before), np.abs(after)), 0.0)
-        limited = np.sign(chord) * np.minimum(np.abs(chord), STEEPEST * limit)
+        limited = np.sign(chord) * np.minimum(np.abs(chord), _STEEPEST * limit)
         slope[known] = limited
         part[known] = np.where(chord != 0, limited / np.where(chord != 0, chord, 1), 0.0)
         ends[known, 0], ends[known, 1] = known[low], known[high]

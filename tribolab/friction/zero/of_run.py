@@ -20,9 +20,9 @@ from tribolab.medians import median, median_of_known
 from tribolab.quantities import quantity
 from tribolab.units import to_si
 
-WITHOUT_SIGN = "mean of both directions: recorded without sign"
+_WITHOUT_SIGN = "mean of both directions: recorded without sign"
 # offsets that are removed from both strokes of a pair, which are then one observation
-PAIRED = ("half loop", WITHOUT_SIGN)
+PAIRED = ("half loop", _WITHOUT_SIGN)
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ def zero_of_run(
     reference = find_reference(strokes, known, settings.offset, fold, source)
     if _lost(fold):
         words = [f"recorded without sign: {text}" for text in reference.zero_from]
-        method = WITHOUT_SIGN if reference.method == "half loop" else reference.method
+        method = _WITHOUT_SIGN if reference.method == "half loop" else reference.method
         reference = replace(reference, zero_from=np.array(words, dtype=object), method=method)
     parts_of_it = of_parts(strokes) if fold.kind == "signed" and settings.rectified is None else ()
     doubts = (*of_fold(fold, bool((unfold != 1).any()), mean.size), *parts_of_it, *reference.doubts)

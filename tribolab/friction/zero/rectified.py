@@ -10,14 +10,14 @@ import numpy as np
 from tribolab.medians import median, median_of_known
 from tribolab.pieces import anywhere, one_by_one
 
-DIP = 0.5  # of the strokes' level, below which the force at a reversal is on its way through zero
-TOUCH = 5.0  # standard deviations from zero within which a force touches it
-BELOW = 1.0  # of the lower stroke's scatter: what lies deeper beneath it is on its way, too
-QUICK = 3  # readings so deep: where they are more, one of them would have come close to zero
-FEW = 0.1  # share of such turns that a spike or a slip may take below both levels
-MOST = 0.5  # share of the reversals that have to show it
-LIKE = 0.25  # of their mean: strokes that differ by less are of one level
-CLEAR = 5.0  # standard errors beyond which levels differ
+_DIP = 0.5  # of the strokes' level, below which the force at a reversal is on its way through zero
+_TOUCH = 5.0  # standard deviations from zero within which a force touches it
+_BELOW = 1.0  # of the lower stroke's scatter: what lies deeper beneath it is on its way, too
+_QUICK = 3  # readings so deep: where they are more, one of them would have come close to zero
+_FEW = 0.1  # share of such turns that a spike or a slip may take below both levels
+_MOST = 0.5  # share of the reversals that have to show it
+_LIKE = 0.25  # of their mean: strokes that differ by less are of one level
+_CLEAR = 5.0  # standard errors beyond which levels differ
 
 
 class Pressed:
@@ -174,17 +174,17 @@ def _both_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
         if beside < 0.5 * between:
             return Fold("rectified", f"{one_sign}, and rests without load do not lie between them")
     dips, below, straight, seen = _reversals(trace)
-    if dips >= MOST:
+    if dips >= _MOST:
         return Fold(
             "rectified", f"{one_sign}, and goes to zero and back at {dips:.0%} of the turns"
         )
     # of the mean over the strokes of a direction
     strokes = min(forward.size, backward.size)
     error = np.sqrt(np.nanmean(np.nan_to_num(trace.error) ** 2) / strokes)
-    differ = high - low > max(CLEAR * error, 1e-6 * high)
-    if seen and below <= FEW and differ and straight >= MOST:
+    differ = high - low > max(_CLEAR * error, 1e-6 * high)
+    if seen and below <= _FEW and differ and straight >= _MOST:
         return SIGNED
-    like = high - low < LIKE * (high + low) / 2
+    like = high - low < _LIKE * (high + low) / 2
     why = f"{one_sign}, and the turns do not show whether it passes through zero"
     return Fold("undecided: alike" if like else "undecided", why)
 
@@ -208,9 +208,9 @@ def _reversals(trace: ForceTrace) -> tuple[float, float, float, int]:
             (np.percentile(part, [5, 95]) for part in (first, second)), key=lambda e: e[0]
         )
         (low, top), (bottom, _) = ends
-        dip = bool(turn.min() < DIP * low)
+        dip = bool(turn.min() < _DIP * low)
         dips += dip
-        if dip or 0 < np.count_nonzero(turn < low - BELOW * (top - low)) <= QUICK:
+        if dip or 0 < np.count_nonzero(turn < low - _BELOW * (top - low)) <= _QUICK:
             below += 1
         elif top < bottom:
             straight += bool(((turn > top) & (turn < bottom)).any())
@@ -228,14 +228,14 @@ def _one_way(trace: ForceTrace) -> Fold:
         odd, even = np.nanmean(trace.mean[::2]), np.nanmean(trace.mean[1::2])
         error = np.sqrt(np.nanmean(np.nan_to_num(trace.error) ** 2))
         apart = abs(odd - even)
-        if apart > CLEAR * error and abs(apart - 2 * abs(trace.rest)) < 0.3 * apart:
+        if apart > _CLEAR * error and abs(apart - 2 * abs(trace.rest)) < 0.3 * apart:
             why = "strokes are by turns above and below their mean by what rests without load read"
             return Fold("rectified", why)
         return SIGNED
     stops = (_touches(trace, i) for i in range(len(trace.parts) - 1))
     touched = [touches for touches in stops if touches is not None]
     dips = sum(touched) / len(touched) if touched else 0.0
-    if dips >= MOST:
+    if dips >= _MOST:
         why = (
             f"neither speed nor force has a sign, and the force goes to zero at {dips:.0%} of the "
             "stops and never below it"
@@ -258,4 +258,4 @@ def _touches(trace: ForceTrace, number: int) -> bool | None:
     steps = np.sort(np.abs(np.diff(turn[max(lowest - 2, 0) : lowest + 3])))
     # differences between neighbours: a wave in the stroke is no noise
     noise = median(np.abs(np.diff(stroke))) / 0.954
-    return bool(turn[lowest] < max(TOUCH * noise, steps[1]))
+    return bool(turn[lowest] < max(_TOUCH * noise, steps[1]))

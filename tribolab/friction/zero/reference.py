@@ -15,8 +15,8 @@ from tribolab.friction.zero.unequal import across_speeds
 from tribolab.friction.zero.words import of_speeds, words_of
 from tribolab.medians import median_of_known
 
-ASYMMETRY = 0.05  # share of friction by which a zero may miss the middle of the loop
-MISSED = 3.0  # standard errors of the same
+_ASYMMETRY = 0.05  # share of friction by which a zero may miss the middle of the loop
+_MISSED = 3.0  # standard errors of the same
 
 _OFFSET_OF_ITSELF = 'say offset = "auto" in [friction]'
 
@@ -193,7 +193,7 @@ def _checked(
 ) -> ZeroReference:
     """Compare the middles of the loops with a zero that does not rest on them.
 
-    Where the two differ by more than their errors and by more than `ASYMMETRY` of friction,
+    Where the two differ by more than their errors and by more than `_ASYMMETRY` of friction,
     friction depends on direction, or the load tilts the zero: the other zero is used, and that is
     a doubt. Where they differ by less, the difference is carried in the error.
     """
@@ -216,11 +216,11 @@ def _checked(
     mean, friction = float(np.mean(apart[fine])), float(np.mean(np.abs(half[fine])))
     spread = float(np.std(apart[fine], ddof=1)) if fine.sum() > 1 else 0.0
     of_loops = np.nan_to_num(own[fine]).mean() / np.sqrt(fine.sum())
-    limit = MISSED * float(np.hypot(np.hypot(spread, error[fine].mean()), of_loops))
+    limit = _MISSED * float(np.hypot(np.hypot(spread, error[fine].mean()), of_loops))
     if not abs(mean) > limit:
         return loop
     share = mean / friction
-    if abs(share) < ASYMMETRY:
+    if abs(share) < _ASYMMETRY:
         carried = abs(mean) / np.sqrt(3)
         return replace(loop, error=lambda errors: np.hypot(loop.error(errors), carried))
     force = (strokes.sign * (strokes.mean - other.value)) / strokes.load
@@ -262,7 +262,7 @@ def _ambiguous(strokes: StrokeMeans, loops: Middles, loop: ZeroReference) -> Zer
         text += "is larger than friction; what part of it is an asymmetry is not known; "
     text += "their mean does not change"
     remark = doubt(text, "Measure a rest without load.", np.arange(strokes.size), "pass")
-    remark["noted"] = bool(ASYMMETRY < share < 1)
+    remark["noted"] = bool(_ASYMMETRY < share < 1)
     return replace(loop, doubts=(*loop.doubts, remark))
 
 

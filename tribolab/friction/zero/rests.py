@@ -11,8 +11,8 @@ from tribolab.friction.statistics import estimates_of
 from tribolab.medians import median
 
 UNLOADED = 0.1  # share of the load by which the zero of the normal force may move between rests
-LIGHT = 0.4  # share of the load below which a rest may turn out to be one without contact
-FEWEST = 10  # samples that an unloaded rest needs
+_LIGHT = 0.4  # share of the load below which a rest may turn out to be one without contact
+_FEWEST = 10  # samples that an unloaded rest needs
 
 
 class Zeros(NamedTuple):
@@ -105,7 +105,7 @@ def unloaded_rests(
         first, last = np.searchsorted(time, [start, stop])
         level = _level(normal, first, last, load)
         # more than the zero before may be a light load; less is none, surfaces hardly pull
-        if level.size < FEWEST or np.mean(normal[level]) - before > UNLOADED * load:
+        if level.size < _FEWEST or np.mean(normal[level]) - before > UNLOADED * load:
             continue
         before = float(np.mean(normal[level]))
         levels.append(level)
@@ -113,7 +113,7 @@ def unloaded_rests(
     told = estimates_of((time[level], signal[level]) for signal in signals for level in levels)
     when = [float(time[level].mean()) for level in levels]
     of_normal, of_friction = told[: len(levels)], told[len(levels) :]
-    known = [k for k, estimate in enumerate(of_friction) if estimate.samples >= FEWEST]
+    known = [k for k, estimate in enumerate(of_friction) if estimate.samples >= _FEWEST]
     return (
         _zeros([(when[k], of_friction[k].mean, of_friction[k].sem) for k in known]),
         _zeros([(at, own.mean, own.sem) for at, own in zip(when, of_normal, strict=True)]),
@@ -122,8 +122,8 @@ def unloaded_rests(
 
 def _level(normal: np.ndarray, first: int, last: int, load: float) -> np.ndarray:
     """Return the samples of a rest that lie at one level far below the load, if there is one."""
-    light = first + np.flatnonzero(np.abs(normal[first:last]) < LIGHT * load)
-    if light.size < FEWEST:
+    light = first + np.flatnonzero(np.abs(normal[first:last]) < _LIGHT * load)
+    if light.size < _FEWEST:
         return light
     # the load's ramp begins in the same rest: readings far from the usual one are left out
     rest = np.abs(normal[light] - median(normal[light]))

@@ -24,7 +24,7 @@ _ASTRAY = 50  # at most one row in so many goes astray in one go (or ten rows)
 
 _TICKS = [10.0**k for k in range(-9, 1)]
 # what counters hold: bits of ticks, and a day; a clock that falls by one of them has wrapped
-COUNTERS = tuple(
+_COUNTERS = tuple(
     sorted(
         {
             2.0**bits * tick
@@ -33,7 +33,7 @@ COUNTERS = tuple(
         }
     )
 )
-COUNTERS += (43_200.0, 86_400.0)
+_COUNTERS += (43_200.0, 86_400.0)
 
 
 class Start(NamedTuple):
@@ -220,7 +220,7 @@ class _Search:
         fall, interval = self._fall(row), self._interval(row)
         period = self.wrap if self.wrap and fall > 0.5 * self.wrap else 0.0
         if not period:
-            near = min(COUNTERS, key=lambda counter: abs(fall + interval - counter))
+            near = min(_COUNTERS, key=lambda counter: abs(fall + interval - counter))
             alike = abs(fall + interval - near) <= 1.5 * interval and 20 * interval < near > fall
             if alike and np.ptp(self.time[self.first : row]) <= near + interval:
                 period = near

@@ -11,7 +11,7 @@ from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import guarded
 from tribolab.io.dialects.signature import File, peek
 
-ANY = "any"
+_ANY = "any"
 _DELIMITERS = ("\t", ";", "|", ",")  # of those that part a header's line alike, the first
 _ROWS = 20  # looked at below the names
 _WIDE = (b"\xff\xfe", b"\xfe\xff")
@@ -41,7 +41,7 @@ def as_written(path: str | Path | File, dialect: Dialect) -> Dialect:
     ReadError
         If the file has no such header.
     """
-    if dialect.text.delimiter != ANY:
+    if dialect.text.delimiter != _ANY:
         return dialect
     file = path if isinstance(path, File) else peek(path)
     if file.format != "text":  # whoever reads it says so

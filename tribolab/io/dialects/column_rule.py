@@ -20,7 +20,7 @@ from tribolab.turns import Counted, reciprocal
 from tribolab.units import base_unit, to_si
 
 _TURNING = {"cycles": "Hz", "radians": "rad/s"}
-FRICTION = ("friction_force", "friction_coefficient")  # signals whose zero can be stated
+FRICTION_SIGNALS = ("friction_force", "friction_coefficient")  # signals whose zero can be stated
 
 
 class Column(Strict):
@@ -75,8 +75,10 @@ class Column(Strict):
             check_unit(self.unit, self.si_unit(self.unit), self.bare)
         stated = {"zero_uncertainty": self.zero_uncertainty, "rectified": self.rectified}
         for key, value in stated.items():
-            if value is not None and self.quantity not in FRICTION:
-                raise ValueError(f"column '{self.key}': {key} is for {' and '.join(FRICTION)} only")
+            if value is not None and self.quantity not in FRICTION_SIGNALS:
+                raise ValueError(
+                    f"column '{self.key}': {key} is for {' and '.join(FRICTION_SIGNALS)} only"
+                )
         if self.sign == "pressed" and self.quantity != "normal_force":
             raise ValueError(f"column '{self.key}': sign = 'pressed' is for normal_force only")
         if self.zero is not None and (self.symbol or self.quantity in ("time", "x", "y")):

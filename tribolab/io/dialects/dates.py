@@ -12,7 +12,7 @@ import numpy as np
 ISO, ISO_ZONE = "iso", "iso with zone"
 Epoch = Literal["unix", "excel", "labview"]
 # LabVIEW and Unix count in universal time, Excel in that of the place
-EPOCHS: dict[Epoch, dt.datetime] = {
+_EPOCHS: dict[Epoch, dt.datetime] = {
     "unix": dt.datetime(1970, 1, 1, tzinfo=dt.UTC),
     "excel": dt.datetime(1899, 12, 30),
     "labview": dt.datetime(1904, 1, 1, tzinfo=dt.UTC),
@@ -106,4 +106,4 @@ def date_of(epoch: Epoch, since: float) -> dt.datetime:
     >>> date_of("excel", 45000.5 * 86400).isoformat(), date_of("labview", 0).isoformat()
     ('2023-03-15T12:00:00', '1904-01-01T00:00:00+00:00')
     """
-    return EPOCHS[epoch] + dt.timedelta(seconds=since)
+    return _EPOCHS[epoch] + dt.timedelta(seconds=since)

@@ -21,7 +21,7 @@ from tribolab.aliases import Array
 from tribolab.errors import UnitError, nearest, shown
 from tribolab.units import base_unit, registry, to_si
 
-LONGEST = 300  # letters
+_LONGEST = 300  # letters
 _DEEPEST = 20
 _QUANTITY = re.compile(r"\s*[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*(?P<unit>.*?)\s*$")
 _TOKEN = re.compile(
@@ -87,8 +87,8 @@ def parse_formula(text: str) -> Node:
     >>> sorted(names_in(parse_formula("rotation_speed * (radius - '2 mm') / 2")))
     ['radius', 'rotation_speed']
     """
-    if len(text) > LONGEST:
-        raise UnitError(f"formula '{shown(text)}' is longer than {LONGEST} letters")
+    if len(text) > _LONGEST:
+        raise UnitError(f"formula '{shown(text)}' is longer than {_LONGEST} letters")
     reader = _Reader(text)
     node = reader.sum_of_terms(0)
     if reader.kind:

@@ -18,7 +18,7 @@ from tribolab.io.dialects.text_columns import GrowingColumns, of_one_column
 from tribolab.io.dialects.text_rows import RowParser
 from tribolab.io.dialects.text_tables import RawText, TextTable
 
-BLOCK = 4 << 20  # bytes: small, so that memory is used again; but each block costs arrow a thread
+_BLOCK = 4 << 20  # bytes: small, so that memory is used again; but each block costs arrow a thread
 _WORKERS = 2
 _DEPTH = 4  # blocks in work or waiting, so that no worker is idle while one is stored
 
@@ -84,13 +84,13 @@ def read_table(
     """
     parser = RowParser(raw, table, signals, dialect)
     long = table.stop - table.start
-    columns = GrowingColumns(signals, long, size, long // BLOCK)
+    columns = GrowingColumns(signals, long, size, long // _BLOCK)
     try:
         with _opened(raw) as file, ThreadPoolExecutor(_WORKERS) as workers:
             if hasher:
                 hasher.update(file.read(table.start))
             _pump(file, table, parser, columns, workers, hasher)
-            while hasher and (rest := file.read(BLOCK)):
+            while hasher and (rest := file.read(_BLOCK)):
                 hasher.update(rest).result()
     except OSError as error:
         raise ReadError(f"{raw.file.path}: the file cannot be read any more: {error}") from error
@@ -115,7 +115,7 @@ def _pump(
     """Pass a table on in blocks of whole lines, in a few buffers that are used in turn."""
     file.seek(table.start)
     place, left, rest = table.start, table.stop - table.start, b""
-    block = min(BLOCK, left // _WORKERS + 1)  # a small table is shared between the workers too
+    block = min(_BLOCK, left // _WORKERS + 1)  # a small table is shared between the workers too
     free: list[bytearray] = []
     waiting: deque[_Work] = deque()
 

@@ -8,13 +8,13 @@ from collections.abc import Sequence
 from typing import Literal
 
 Mark = Literal["", ".", ",", "'", " ", "\u00a0", "\u202f"]
-MARKS: tuple[Mark, ...] = (".", ",", "'", " ", "\u00a0", "\u202f")
+_MARKS: tuple[Mark, ...] = (".", ",", "'", " ", "\u00a0", "\u202f")
 _ROWS = 4000  # lines that are looked at
 _NUMBER = re.compile(r"\s*[+-]?\d[\d.,]*\s*")
 _APART = "\t;"  # delimiters that part numbers whatever marks stand in them
 _BLANK = r"[^\S\t\n]"  # of a cell: a search goes through a row of empty cells but once
 # what every number with both marks has; what every cell of a whole number with one has
-_BOTH = re.compile(rf"\d[{''.join(MARKS)}]\d{{3}}[.,]\d")
+_BOTH = re.compile(rf"\d[{''.join(_MARKS)}]\d{{3}}[.,]\d")
 _WHOLE = re.compile(
     rf"(?m)(?:^|[\t;])(?:{_BLANK}|[+-])*[1-9]\d{{0,2}}(?:[.,]\d{{3}})+{_BLANK}*(?:$|[\t;])"
 )
@@ -42,7 +42,7 @@ def find_thousands(lines: Sequence[str]) -> Mark:
         apart = any(mark in line for mark in _APART)
         if not apart and '"' not in line:
             continue
-        for mark in MARKS:
+        for mark in _MARKS:
             decimal = "," if mark == "." else r"\." if mark == "," else "[.,]"
             number = rf"\d{{1,3}}(?:{re.escape(mark)}\d{{3}})+{decimal}\d+"
             if re.search(rf'(?:^|[\t;"]){_BLANK}*[+-]?{number}{_BLANK}*(?:$|[\t;"])', line):

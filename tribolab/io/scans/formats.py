@@ -168,7 +168,7 @@ def _topography(
     if channel.unit is None:
         if x_unit is None or height_unit is None:
             raise NotSaidError(
-                f"the file states no units ({_name(reader)})", where=path, cure=cures.UNITS
+                f"the file states no units ({_name(reader)})", where=path, cure=cures.MEND_UNITS
             )
         given["unit"] = x_unit
     vertical = conversion(height_unit, "m")[0] if channel.unit is None else None

@@ -148,7 +148,7 @@ def _recognised(path: Path) -> Dialect | None:
     fitting = [d for d in known if is_scan(d)]
     if known and not fitting:
         what = f"this looks like a run ({shown(known[0].title)})"
-        raise ReadError(what, where=path, cure=cures.SIGNALS)
+        raise ReadError(what, where=path, cure=cures.MEND_SIGNALS)
     if len(fitting) > 1:
         names = ", ".join(repr(d.name) for d in fitting)
         raise ReadError(

@@ -179,7 +179,7 @@ def _pitch(path: Path, leaves: list[_Leaf], x_unit: str | None) -> float:
 def _scale(path: Path, given: str | None, said: str) -> float:
     unit = said or given
     if not unit:
-        raise NotSaidError("the XML states no units", where=path, cure=cures.UNITS)
+        raise NotSaidError("the XML states no units", where=path, cure=cures.MEND_UNITS)
     try:
         return conversion(unit, "m")[0]
     except UnitError as error:

@@ -17,7 +17,7 @@ from tribolab.io.schema_folder import schema_folder
 from tribolab.io.tables.violations import Broken, Violations
 from tribolab.units import conversion
 
-SCHEMAS = ("run", "scan")
+_SCHEMAS = ("run", "scan")
 _TYPES = {"number": "fiub", "integer": "fiub", "boolean": "b", "string": "OUST"}
 
 
@@ -37,12 +37,12 @@ def load_schema(schema: str | Path | Mapping[str, Any]) -> Mapping[str, Any]:
     if isinstance(schema, Mapping):
         _check_schema(schema, "the schema")
         return schema
-    if str(schema) in SCHEMAS:
+    if str(schema) in _SCHEMAS:
         return _load(schema_folder() / f"{schema}.schema.json")
     path = Path(schema)
     if path.suffix != ".json":
         raise ConfigError(
-            f"no schema is called '{shown(str(schema))}'{nearest(str(schema), SCHEMAS)}; one of "
+            f"no schema is called '{shown(str(schema))}'{nearest(str(schema), _SCHEMAS)}; one of "
             "your own is given by its path, ending in .json"
         )
     return _load(path)

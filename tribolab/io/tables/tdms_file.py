@@ -10,7 +10,7 @@ import numpy as np
 
 from tribolab.errors import ReadError, brief
 
-DAMAGE = (
+_DAMAGE = (
     *(ValueError, KeyError, IndexError, TypeError, OSError, EOFError, struct.error),
     *(MemoryError, OverflowError, NotImplementedError, AttributeError),
 )
@@ -98,7 +98,7 @@ def open_tdms(path: Path, how: str) -> Any:
         ) from error
     try:
         return getattr(TdmsFile, how)(str(path))
-    except DAMAGE as error:
+    except _DAMAGE as error:
         raise ReadError(
             f"{path}: the TDMS file is damaged: {brief(error)}; copy or save it again"
         ) from error

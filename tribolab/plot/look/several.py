@@ -9,12 +9,12 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, shown
 
-Label = str | float
+RunLabel = str | float
 OneOrSeveral = Mapping[str, xr.Dataset] | xr.Dataset | Sequence[xr.Dataset]
 
 
 def by_label(
-    results: OneOrSeveral, labels: Mapping[str, Sequence[Label]], known: str
+    results: OneOrSeveral, labels: Mapping[str, Sequence[RunLabel]], known: str
 ) -> dict[str, xr.Dataset]:
     """Return results by their labels.
 

@@ -32,7 +32,7 @@ from tribolab.plot.runs.reduce import envelope
 from tribolab.plot.runs.signals import Signal, Stroke, main_signal, strokes_of
 from tribolab.words import speed_text
 
-COLUMNS = 420  # pixel columns of a double-column panel: two to a typographic point
+_COLUMNS = 420  # pixel columns of a double-column panel: two to a typographic point
 _LEFT, _RIGHT, _BOTTOM, _TOP = 17.0, 3.0, 11.0, 6.0
 _WIDTH = DOUBLE_MM - _LEFT - _RIGHT
 _HEIGHTS = {"time": 44.0, "motion": 26.0, "distance": 44.0}  # mm
@@ -144,7 +144,7 @@ def _over_time(
     segments: xr.Dataset,
     friction: xr.Dataset | None,
 ) -> None:
-    x, y = envelope(time, signal.values, COLUMNS)
+    x, y = envelope(time, signal.values, _COLUMNS)
     axes.plot(x, y, color="black", linewidth=0.5, zorder=3)
     keep(figure, "time", "trace", **{column("time"): x, column(signal.name): y})
     axes.set_ylabel(_ylabel(signal.name))
@@ -167,7 +167,7 @@ def _motion(
     run: xr.Dataset,
     segments: xr.Dataset,
 ) -> None:
-    x, y = envelope(time, np.asarray(run[name], float), COLUMNS)
+    x, y = envelope(time, np.asarray(run[name], float), _COLUMNS)
     axes.plot(x, y, color="black", linewidth=0.6, zorder=3)
     keep(figure, "motion", name, **{column("time"): x, column(name): y})
     axes.set_xlim(time[0], time[-1] if time[-1] > time[0] else time[0] + 1)
@@ -210,7 +210,7 @@ def _over_distance(
 ) -> None:
     lengths = np.array([part.distance[-1] for part in parts])
     begins = np.r_[0.0, np.cumsum(lengths)[:-1]]
-    budget = max(20, COLUMNS // len(parts))
+    budget = max(20, _COLUMNS // len(parts))
     name = "sliding_distance"
     lowest, highest = [], []
     for begin, part in zip(begins, parts, strict=True):

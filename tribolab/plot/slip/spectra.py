@@ -13,7 +13,7 @@ from tribolab.errors import AnalysisError
 from tribolab.plot.look.frame import logarithmic
 from tribolab.plot.look.labels import plain
 from tribolab.plot.look.panel import Panels, name_all, several_panels
-from tribolab.plot.look.several import Label, by_label
+from tribolab.plot.look.several import RunLabel, by_label
 from tribolab.plot.look.style import (
     BLACK,
     DOUBLE_MM,
@@ -32,7 +32,7 @@ def slip_spectra(
     *,
     segment: int = 0,
     axes: Panels | None = None,
-    **labels: Sequence[Label],
+    **labels: Sequence[RunLabel],
 ) -> Figure:
     """Draw the power spectra of segments with their background and what would be significant.
 
@@ -87,7 +87,7 @@ def slip_spectra(
 def _chosen(
     slips: Mapping[str, tuple[xr.Dataset, int]] | xr.Dataset | Sequence[xr.Dataset],
     segment: int,
-    labels: Mapping[str, Sequence[Label]],
+    labels: Mapping[str, Sequence[RunLabel]],
 ) -> dict[str, tuple[xr.Dataset, int]]:
     """Return what to draw by its label."""
     if isinstance(slips, Mapping) and not isinstance(slips, xr.Dataset):

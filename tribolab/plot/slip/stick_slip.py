@@ -14,11 +14,11 @@ from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
 from tribolab.friction.oscillation.slip_curve import one_curve
-from tribolab.friction.oscillation.waveform import CLASSES, UNDECIDED
+from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR
 from tribolab.plot.look.frame import colours, logarithmic
 from tribolab.plot.look.labels import plain
 from tribolab.plot.look.panel import Panels, name_all, several_panels
-from tribolab.plot.look.several import Label, OneOrSeveral, by_label, parts
+from tribolab.plot.look.several import OneOrSeveral, RunLabel, by_label, parts
 from tribolab.plot.look.style import (
     BLACK,
     DOUBLE_MM,
@@ -45,7 +45,7 @@ _LOOK = {
     CLASSES[1]: ("^", BLACK),
     CLASSES[2]: ("o", SKY),
     CLASSES[3]: ("v", PURPLE),
-    UNDECIDED: ("s", GREY),
+    NOT_CLEAR: ("s", GREY),
 }
 
 
@@ -213,7 +213,7 @@ def slip_events(
     surfaces: Sequence[str] = (),
     *,
     axes: Panels | None = None,
-    **labels: Sequence[Label],
+    **labels: Sequence[RunLabel],
 ) -> Figure:
     """Draw how drops, recurrence distances and durations of the events are distributed.
 

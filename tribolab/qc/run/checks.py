@@ -28,9 +28,9 @@ RUN_CHECKS: dict[str, Check[RunSubject]] = {
     for check in (*RECORD_CHECKS, *RIG_CHECKS, *SLIDING_CHECKS, *READING_CHECKS, *ZERO_CHECKS)
 }
 
-SEGMENTS = "segments"
-NOTHING_EXAMINED = "every check was skipped: nothing says that this run is sound"
-EXAMINE = "Look at why each was skipped; the signals that they look at may have other names."
+_SEGMENTS = "segments"
+_NOTHING_EXAMINED = "every check was skipped: nothing says that this run is sound"
+_EXAMINE = "Look at why each was skipped; the signals that they look at may have other names."
 
 
 def check_run(
@@ -149,11 +149,11 @@ def _objections(flags: np.ndarray) -> np.ndarray:
 
 def _examined(results: dict[str, list[Result]]) -> dict[str, list[Result]]:
     """Object where every other check was skipped: that segments were found says nothing."""
-    others = [result for name, rows in results.items() if name != SEGMENTS for result in rows]
-    own = results.get(SEGMENTS, [])
+    others = [result for name, rows in results.items() if name != _SEGMENTS for result in rows]
+    own = results.get(_SEGMENTS, [])
     if any(r.status != "skipped" for r in others) or any(r.status == "suspect" for r in own):
         return results
-    return results | {SEGMENTS: [Result("suspect", "", NOTHING_EXAMINED, cure=EXAMINE)]}
+    return results | {_SEGMENTS: [Result("suspect", "", _NOTHING_EXAMINED, cure=_EXAMINE)]}
 
 
 @of_runs

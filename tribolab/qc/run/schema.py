@@ -13,8 +13,8 @@ from tribolab.io.tables.schema import load_schema
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
 from tribolab.quantities import QUANTITIES
 
-FRICTION = ("friction_force", "friction_coefficient", "shear_stress")
-SPEED = ("sliding_velocity", "position", "step", "set_speed", "shear_rate")
+_FRICTION = ("friction_force", "friction_coefficient", "shear_stress")
+_SPEED = ("sliding_velocity", "position", "step", "set_speed", "shear_rate")
 
 
 class Range(NamedTuple):
@@ -85,16 +85,16 @@ def wrong_units(run: xr.Dataset) -> dict[str, str]:
 def lacks(run: xr.Dataset) -> list[tuple[str, str]]:
     """Say what a friction run needs and this one has not, and the cure of each."""
     missing = []
-    if not any(name in run for name in FRICTION):
+    if not any(name in run for name in _FRICTION):
         missing.append(
             (
-                "no friction was recorded (none of " + ", ".join(FRICTION) + ")",
+                "no friction was recorded (none of " + ", ".join(_FRICTION) + ")",
                 "Give the log of the forces with this one if the instrument writes two; if the "
                 "file holds friction, let the dialect name its column.",
             )
         )
-    if not any(name in run for name in SPEED) and "set_speed_m_s" not in run.attrs:
-        text = "nothing tells the speed (none of " + ", ".join(SPEED) + ")"
+    if not any(name in run for name in _SPEED) and "set_speed_m_s" not in run.attrs:
+        text = "nothing tells the speed (none of " + ", ".join(_SPEED) + ")"
         cure = "Let the dialect say the speed: a column, [speed], or a value 'set_speed'."
         if "companion_missing" in run.attrs:
             other = run.attrs["companion_missing"]

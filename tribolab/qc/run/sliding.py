@@ -11,7 +11,7 @@ from tribolab.friction.coefficient import steadiness
 from tribolab.friction.coefficient.steadiness import relative_change, undecided
 from tribolab.friction.oscillation.lines import Line
 from tribolab.friction.oscillation.periods import AT_ODDS
-from tribolab.friction.oscillation.regularity import KINDS
+from tribolab.friction.oscillation.regularity import SLIP_KINDS
 from tribolab.friction.oscillation.survey import CHANCE
 from tribolab.friction.oscillation.waveform import CLASSES
 from tribolab.qc.flags import FAIL, GOOD
@@ -66,7 +66,7 @@ def _sense(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     """Friction that falls slowly and rises sharply belongs to a sensor whose sign is turned."""
     kind = subject.slip["waveform"].values
     # what varies along a track may fall slowly, too, but not again and again alike
-    reversed_ = (kind == CLASSES[3]) & (subject.slip["regularity"].values == KINDS[0])
+    reversed_ = (kind == CLASSES[3]) & (subject.slip["regularity"].values == SLIP_KINDS[0])
     if not reversed_.sum() > 0.5 * np.isin(kind, CLASSES[1:]).sum():
         return []
     first = int(np.flatnonzero(reversed_)[0])
@@ -268,7 +268,7 @@ def _periods_at_odds(subject: RunSubject, limits: Mapping[str, float]) -> list[R
     odd = np.array([AT_ODDS in str(remark) for remark in slip["remark"].values], bool)
     odd &= slip["false_alarm_probability"].values < CHANCE
     if odd.any():
-        odd &= subject.friction["steady"].values == steadiness.STEADY
+        odd &= subject.friction["steady"].values == steadiness.IS_STEADY
         odd &= subject.oscillates_strongly(limits["strength"])
     if not odd.any():
         return []
@@ -351,8 +351,10 @@ SLIDING_CHECKS = (
         "Is friction steady within each trimmed segment?",
         "Slide longer, or trim more: the mean of a trend is a mean over the run-in.",
         {
-            "suspect": Limit(steadiness.SUSPECT, "1", "5 % is above the usual spread of repeats"),
-            "fail": Limit(steadiness.FAIL, "1", "the number has no meaning as a mean"),
+            "suspect": Limit(
+                steadiness.SUSPECT_DRIFT, "1", "5 % is above the usual spread of repeats"
+            ),
+            "fail": Limit(steadiness.FAILING_DRIFT, "1", "the number has no meaning as a mean"),
             "chance": Limit(steadiness.SIGNIFICANT, "1", "so that noise is rarely called a trend"),
             "samples": Limit(
                 steadiness.SAMPLES,

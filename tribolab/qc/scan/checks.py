@@ -284,7 +284,7 @@ def _self_affine(subject: ScanSubject, limits: Mapping[str, float]) -> list[Resu
     return [Result("suspect", "height", why, 1.0)]
 
 
-PROFILE_CHECKS = (
+_PROFILE_CHECKS = (
     Check(
         "dropouts",
         1,
@@ -366,7 +366,7 @@ PROFILE_CHECKS = (
     ),
 )
 
-REPEAT_CHECKS = (
+_REPEAT_CHECKS = (
     Check(
         "repeats",
         8,
@@ -383,5 +383,5 @@ REPEAT_CHECKS = (
 )
 
 SCAN_CHECKS: dict[str, Check[ScanSubject]] = {
-    check.name: check for check in (*PROFILE_CHECKS, *INSTRUMENT_CHECKS, *REPEAT_CHECKS)
+    check.name: check for check in (*_PROFILE_CHECKS, *INSTRUMENT_CHECKS, *_REPEAT_CHECKS)
 }

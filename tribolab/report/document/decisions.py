@@ -8,7 +8,7 @@ from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import Notice, number_of
 from tribolab.words import many, number, percent, speed_text
 
-AS_FOUND = "stribeck_as_found.csv"  # table of the curves without decisions
+CURVES_AS_FOUND = "stribeck_as_found.csv"  # table of the curves without decisions
 _SPEED, _MU = "sliding_speed_m_s", "friction_coefficient"
 _ALIKE = 0.1  # relative difference of speed up to which two points are one
 
@@ -29,7 +29,7 @@ def curve_notices(curve: CurveRecord) -> list[Notice]:
         parts.append(f"leave {many(lost, 'speed')} without µ")
     what = f"decisions {' and '.join(parts)}" if parts else "decisions change what it rests on"
     members = "; ".join(curve.outcome.run_names)
-    text = f"{what}; the curve without them: tables/{AS_FOUND}"
+    text = f"{what}; the curve without them: tables/{CURVES_AS_FOUND}"
     return [Notice("note", members, curve.outcome.name, text)]
 
 

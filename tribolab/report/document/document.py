@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from tribolab.records.part_records import FigureRecord
     from tribolab.records.parts import CurveOutcome, Notice, RunOutcome, SurfaceOutcome
 
-BY_HAND = ("rejected", "accepted")  # what a person may decide on a run
+_BY_HAND = ("rejected", "accepted")  # what a person may decide on a run
 _HEAD = TypeAdapter(ReportHead)
 _INSTRUMENTS = 3  # whose ranges are told apart in the headline
 _LIBRARIES = ["numpy", "scipy", "pandas", "xarray", "netCDF4", "matplotlib"]
@@ -139,7 +139,7 @@ def verdict(
     done = [run for run in runs if run["status"] == "done"]
     failed = len(runs) - len(done)
     sound = [run for run in done if not is_bad(run)]
-    by_hand = {word: sum(run["quality"] == word for run in done) for word in BY_HAND}
+    by_hand = {word: sum(run["quality"] == word for run in done) for word in _BY_HAND}
     rejected = len(done) - len(sound) - by_hand["rejected"]
     segments = sum(run["segments_found"] for run in done)
     segments_rejected = sum(run["segments_rejected"] for run in done)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from tribolab.records.model_rows import FITTED, LABELS
+from tribolab.records.model_rows import FITTED, MODEL_LABELS
 from tribolab.records.part_records import ModelRows
 from tribolab.untyped import Json
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from tribolab.records.parts import ModelOutcome, Row
 
 _95 = 1.959963984540054
-STATISTICAL = "statistical only: the spectrum's error is not in it"
+_STATISTICAL = "statistical only: the spectrum's error is not in it"
 _FITTED = tuple(FITTED)
 BESIDE_FIT = {  # what only several models or the surface tell, and what it means
     "area_dry_over_wet": "real contact area dry over that in the medium",
@@ -36,16 +36,16 @@ BESIDE_FIT = {  # what only several models or the surface tell, and what it mean
 }
 SHEAR_STRESS = [
     "curve",
-    *LABELS,
+    *MODEL_LABELS,
     *_FITTED[:5],
     *("spectrum_error_low", "spectrum_error_high", "spectrum_error_from"),
     *("shear_stress_low_Pa", "shear_stress_high_Pa"),
     *_FITTED[5:],
     *("area_dry_over_wet", "ratio_to", "ratio", "ratio_error", "judgement"),
 ]
-CURVE = [
+_CURVE = [
     "curve",
-    *LABELS,
+    *MODEL_LABELS,
     *("sliding_speed_m_s", "friction_coefficient", "friction_coefficient_couette"),
     *("friction_coefficient_pressure", "friction_coefficient_solid", "friction_without_factors"),
     *("minimum_separation_m", "central_separation_m", "contact_area_ratio", "solid_load_share"),
@@ -63,7 +63,7 @@ SENSITIVE = {  # columns of a variation, and what they mean
     "shear_stress_change_high": "",
     "reason": "",
 }
-SENSITIVITY = ["curve", *LABELS, *SENSITIVE]
+_SENSITIVITY = ["curve", *MODEL_LABELS, *SENSITIVE]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,7 +78,7 @@ class ModelRow(ModelRows):
         """Columns that stand first in every table."""
         model = self.model
         values = model.curve, model.surface, model.medium, model.normal_force
-        return dict(zip(("curve", *LABELS), values, strict=True))
+        return dict(zip(("curve", *MODEL_LABELS), values, strict=True))
 
 
 def model_rows_of(records: Iterable[ModelRecord]) -> dict[str, ModelRow]:
@@ -117,7 +117,7 @@ def complete(rows: Sequence[ModelRow]) -> None:
             low = high = 0.0
             fit |= dict.fromkeys(("spectrum_error_low", "spectrum_error_high"))
             fit["spectrum_error_from"] = ""
-            fit["interval_says"] = f"{STATISTICAL}; {fit['interval_says']}"
+            fit["interval_says"] = f"{_STATISTICAL}; {fit['interval_says']}"
         fit["shear_stress_low_Pa"] = stress - float(np.hypot(half, stress * low))
         fit["shear_stress_high_Pa"] = stress + float(np.hypot(half, stress * high))
     for place, (model, fit) in enumerate(fitted):
@@ -170,10 +170,10 @@ def shear_stress_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
 def model_curve_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
     """Return all model curves, a row per speed."""
     points = [model.labels | row for model in rows for row in model.curve]
-    return pd.DataFrame(points, columns=CURVE)
+    return pd.DataFrame(points, columns=_CURVE)
 
 
 def sensitivity_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
     """Return what moves the curves, a row per variation."""
     varied = [model.labels | row for model in rows for row in model.sensitivity]
-    return pd.DataFrame(varied, columns=SENSITIVITY)
+    return pd.DataFrame(varied, columns=_SENSITIVITY)

@@ -27,7 +27,7 @@ from tribolab.report.tables import SEVERITIES
 from tribolab.untyped import Json
 from tribolab.words import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES
 
-SCHEMA_FILE = "report.schema.json"
+REPORT_SCHEMA_FILE = "report.schema.json"
 _DESCRIPTION = (
     "report.json: everything that report.html says. Numbers are in SI units, which stand in the "
     "names; what is not a number is null."

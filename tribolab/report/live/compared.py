@@ -8,8 +8,8 @@ from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import number_of
 from tribolab.records.wording import with_error
 from tribolab.report.live.curves import (
-    FRICTION,
-    SPEED,
+    FRICTION_AXIS,
+    SPEED_AXIS,
     FrictionOverSpeed,
     labels_of,
     system_name,
@@ -61,7 +61,7 @@ def _falling(known: FrictionOverSpeed, colours: Mapping[str, int]) -> list[LiveF
         "at 1. Filled: in a liquid; open: dry. Bars: the standard error of the point.",
         alt=f"Friction relative to its highest value over sliding speed of "
         f"{many(len(series), 'curve')}.",
-        panels=(Panel(SPEED, _SHARE),),
+        panels=(Panel(SPEED_AXIS, _SHARE),),
         series=(*series, half),
         one_load=not alone,
         width="whole",
@@ -125,7 +125,7 @@ def _every_run(known: FrictionOverSpeed, colours: Mapping[str, int]) -> LiveFigu
         "error within the run, which says nothing of the next run.",
         alt=f"Friction coefficient over sliding speed of {many(len(series), 'run')}, "
         f"µ {span(mu for drawn in series for mu in drawn.y)}.",
-        panels=(Panel(SPEED, FRICTION),),
+        panels=(Panel(SPEED_AXIS, FRICTION_AXIS),),
         series=tuple(series),
         one_load=True,
         width="whole",

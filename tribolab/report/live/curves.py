@@ -20,10 +20,10 @@ from tribolab.words import is_dry, load_text, many, number, span, speeds
 if TYPE_CHECKING:
     from tribolab.records.parts import Row
 
-SPEED = Axis("sliding speed v", "m/s", log=True)
+SPEED_AXIS = Axis("sliding speed v", "m/s", log=True)
 _UNDECIDED = 6  # a grey that no load has
 _SPEED, _MU = "sliding_speed_m_s", "friction_coefficient"  # columns
-FRICTION = Axis("friction coefficient µ", log=True)
+FRICTION_AXIS = Axis("friction coefficient µ", log=True)
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ def _card(
         note="",
         alt=f"Friction coefficient over sliding speed of {name}: {many(len(curves), 'load')}, "
         f"{speeds(every)}, µ {span(values)}.",
-        panels=(Panel(SPEED, FRICTION),),
+        panels=(Panel(SPEED_AXIS, FRICTION_AXIS),),
         series=tuple(series),
         one_load=True,
         width="card",
@@ -254,7 +254,7 @@ def model_figures(known: FrictionOverSpeed) -> list[LiveFigure]:
                 "given (viscosity, speed, load, radius, modulus) where it is stated.",
                 alt=f"Parts of the computed friction coefficient of {name} over sliding speed, "
                 "and the difference between measurement and model.",
-                panels=(Panel(SPEED, _PART), Panel(SPEED, Axis("measured − model"))),
+                panels=(Panel(SPEED_AXIS, _PART), Panel(SPEED_AXIS, Axis("measured − model"))),
                 series=tuple(series),
                 one_load=True,
             )

@@ -12,7 +12,7 @@ from tribolab.plot.runs.reduce import envelope_index
 from tribolab.plot.runs.signals import LOOKED_AT, main_signal
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.parts import CurveOutcome
-from tribolab.report.live.curves import SPEED, labels_of, system_name
+from tribolab.report.live.curves import SPEED_AXIS, labels_of, system_name
 from tribolab.report.live.figure import (
     Axis,
     LiveFigure,
@@ -110,7 +110,7 @@ def _waveforms(judged: Sequence[Judged]) -> LiveFigure:
         "Steady or stick-slip at every speed",
         "Open: steady sliding; filled: friction rises and falls.",
         "Class of waveform of each condition at each sliding speed.",
-        (Panel(SPEED, Axis("")),),
+        (Panel(SPEED_AXIS, Axis("")),),
         tuple(series),
         width="whole",
         height=140 + 26 * len(judged),
@@ -152,7 +152,7 @@ def _frequencies(judged: Sequence[Judged], colours: Mapping[str, int]) -> LiveFi
         "Where the distance from drop to drop is fixed, the frequency rises in proportion to "
         "the speed; where a resonance is excited, it stays.",
         "Dominant frequency over sliding speed.",
-        (Panel(SPEED, Axis("frequency", "Hz", log=True)),),
+        (Panel(SPEED_AXIS, Axis("frequency", "Hz", log=True)),),
         tuple(series),
     )
 
@@ -318,6 +318,6 @@ def _spectrogram(opened: Sequence[_Open]) -> LiveFigure:
         "Only what is at least twice the noise is drawn; filled: in a liquid, open: dry. Switch "
         "conditions on and off in the legend.",
         "Ratio of the power spectrum to its noise over speed and frequency.",
-        (Panel(SPEED, Axis("frequency", "Hz", log=True)),),
+        (Panel(SPEED_AXIS, Axis("frequency", "Hz", log=True)),),
         tuple(series),
     )

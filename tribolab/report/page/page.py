@@ -6,9 +6,9 @@ section.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from markupsafe import Markup
 
@@ -38,7 +38,7 @@ class Detail(NamedTuple):
 
 
 def write_page(
-    document: Mapping[str, Any],
+    document: Json,
     folder: Path,
     runs: RunDocuments,
     store: Catalogue,
@@ -83,7 +83,7 @@ def prepare_page() -> None:
 
 
 def _context(
-    document: Mapping[str, Any],
+    document: Json,
     folder: Path,
     runs: RunDocuments,
     store: Catalogue,
@@ -127,11 +127,11 @@ class Group(NamedTuple):
 
     title: str
     total: int
-    runs: list[tuple[int, Mapping[str, Any]]]
+    runs: list[tuple[int, Json]]
     head: bool
 
 
-def grouped_runs(runs: Sequence[Mapping[str, Any]]) -> list[Group]:
+def grouped_runs(runs: Sequence[Json]) -> list[Group]:
     """Return the runs of each condition, under its name.
 
     Examples
@@ -140,7 +140,7 @@ def grouped_runs(runs: Sequence[Mapping[str, Any]]) -> list[Group]:
     >>> [(one.title, [place for place, _ in one.runs]) for one in grouped_runs([run, run])]
     [('Sb-R, dry, 31 N', [1, 2])]
     """
-    groups: dict[tuple[Any, ...], list[tuple[int, Mapping[str, Any]]]] = {}
+    groups: dict[tuple[str, str, float | None], list[tuple[int, Json]]] = {}
     for place, run in enumerate(runs, start=1):
         key = run["surface"], run["medium"], run["nominal_normal_force_N"]
         groups.setdefault(key, []).append((place, run))
@@ -172,7 +172,7 @@ def parted(groups: Sequence[Group], most: int) -> tuple[list[Group], list[Group]
     return first, rest
 
 
-def grouped_findings(findings: Sequence[Mapping[str, Any]]) -> list[Json]:
+def grouped_findings(findings: Sequence[Json]) -> list[Json]:
     """Return findings, those that say the same once for all runs that they hold for.
 
     Examples
@@ -197,7 +197,7 @@ def grouped_findings(findings: Sequence[Mapping[str, Any]]) -> list[Json]:
     return list(rows.values())
 
 
-def omitted_rows(runs: Sequence[Mapping[str, Any]]) -> list[Json]:
+def omitted_rows(runs: Sequence[Json]) -> list[Json]:
     """Return what was left out of all runs, a row per reason, the longest first."""
     total = sum(run["duration_s"] or 0.0 for run in runs)
     rows: dict[str, Json] = {}

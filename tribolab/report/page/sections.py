@@ -37,7 +37,7 @@ class Section:
     key: str = ""
 
 
-SECTIONS = (
+_SECTIONS = (
     Section("answer", "What was found", "sections/answer.html.j2", "runs"),
     Section("curves", "Stribeck curves", "sections/curves.html.j2", "curves"),
     Section("uncertainty", "Uncertainty and its parts", "sections/uncertainty.html.j2", "curves"),
@@ -63,4 +63,4 @@ def shown_sections(document: Mapping[str, Any]) -> list[Section]:
     >>> [section.id for section in shown_sections({"runs": ["one"]})]
     ['answer', 'surfaces', 'runs', 'details', 'findings', 'methods', 'provenance']
     """
-    return [section for section in SECTIONS if not section.key or document.get(section.key)]
+    return [section for section in _SECTIONS if not section.key or document.get(section.key)]

@@ -10,7 +10,7 @@ import numpy as np
 from tribolab.rig.layouts.motion import MachineMotion
 from tribolab.rig.noise import slow_noise
 
-TRIM = 0.1  # of a stretch at either end: what the truth is the mean of
+_TRIM = 0.1  # of a stretch at either end: what the truth is the mean of
 _SLOWEST = 1e-9  # [m/s]: friction laws have logarithms
 
 
@@ -125,7 +125,7 @@ def recorded(
     zero = sensors.normal_offset + sensors.normal_noise * noise[1]
     means = []
     for start, stop in zip(motion.start, motion.stop, strict=True):
-        cut = TRIM * (stop - start)
+        cut = _TRIM * (stop - start)
         inside = (time >= start + cut) & (time <= stop - cut)
         means.append(np.abs(ratio[inside].mean()))
     return MeasuredRecord(
