@@ -157,6 +157,21 @@ def test_zero_measured_on_one_side_only_is_in_doubt():
     assert not doubts(cut, analysed(cut, zero_uncertainty=1.0))
 
 
+@pytest.mark.parametrize(("reads", "larger"), [(0.0, ""), (5.0, "16%"), (9.0, "29%")])
+def test_a_rest_that_may_be_the_zero_of_the_load_is_told(reads, larger):
+    run = programme([SPEED] * 3, normal_zero=lambda u: reads + 0 * u)
+    said = [row for row in doubts(run, analysed(run)) if "light load" in row["message"]]
+    assert [f"{larger} larger" in row["message"] for row in said] == [True] * bool(larger)
+    assert all('`zero = "0 s to' in row["cure"] for row in said)
+
+
+def test_a_rest_under_the_load_of_a_segment_is_no_zero():
+    run = programme([SPEED] * 4, normal_zero=lambda u: 6 + 0 * u)
+    lighter = run["normal_force"].where(run["time"] < 7, run["normal_force"] - LOAD * 0.95)
+    run = run.assign(normal_force=lighter.where(lighter > 0, 6.0))
+    assert not any("light load" in row["message"] for row in doubts(run, analysed(run)))
+
+
 # direction
 
 

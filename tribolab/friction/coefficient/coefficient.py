@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +17,8 @@ from tribolab.friction.run_out import turn_remark, turned
 from tribolab.friction.statistics import Estimate, estimates_of, student_remark
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import ZeroReference
-from tribolab.friction.zero.rests import unloaded_rests
+from tribolab.friction.zero.rests import light_rest, unloaded_rests
+from tribolab.friction.zero.words import of_light_rest
 from tribolab.medians import median
 from tribolab.pieces import one_by_one
 from tribolab.several import of_runs, over_dims
@@ -223,6 +225,8 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
     zero, signs, pair = zero_of_run(
         run, segments, "friction_force", parts, means, own_errors, held, middle, rests, settings
     )
+    if normal_rests is None and (light := light_rest(run, segments, load, pressed)):
+        zero = replace(zero, doubts=(*zero.doubts, of_light_rest(light, load, means.size)))
     turn = signs.sign * signs.unfold
     data = {
         "friction_force": turn * means - signs.sign * zero.value,

@@ -12,6 +12,7 @@ from tribolab.medians import median
 
 UNLOADED = 0.1  # share of the load by which the zero of the normal force may move between rests
 _LIGHT = 0.4  # share of the load below which a rest may turn out to be one without contact
+_LIKE = 1.5  # times what a rest reads: with a load of less than that a segment slides alike
 _FEWEST = 10  # samples that an unloaded rest needs
 
 
@@ -89,17 +90,11 @@ def unloaded_rests(
         rest tells them. The first reads less than a tenth of the load; a later one no more than
         that above the one before, so that a zero may drift further.
     """
-    if "normal_force" not in run or not load > 0 or "omitted" not in segments.dims:
+    rests = _resting(run, segments, load)
+    if rests is None:
         return None, None
-    time = run["time"].values
-    normal = run["normal_force"].values
+    time, normal, limits = rests
     friction = run["friction_force"].values if "friction_force" in run else None
-    resting = segments["omitted_reason"].values == "at rest"
-    limits = zip(
-        segments["omitted_start"].values[resting],
-        segments["omitted_stop"].values[resting],
-        strict=True,
-    )
     before, levels = 0.0, []
     for start, stop in limits:
         first, last = np.searchsorted(time, [start, stop])
@@ -118,6 +113,54 @@ def unloaded_rests(
         _zeros([(when[k], of_friction[k].mean, of_friction[k].sem) for k in known]),
         _zeros([(at, own.mean, own.sem) for at, own in zip(when, of_normal, strict=True)]),
     )
+
+
+class LightRest(NamedTuple):
+    """A rest [s] at which the normal force reads little [N]: its zero, or a light load."""
+
+    start: float
+    stop: float
+    level: float
+
+
+def light_rest(
+    run: xr.Dataset, segments: xr.Dataset, load: float, loads: np.ndarray
+) -> LightRest | None:
+    """Return the first rest that may be one without load, where none surely is.
+
+    Parameters
+    ----------
+    run, segments, load
+        As for `unloaded_rests`, that found none.
+    loads
+        Normal force of each segment [N]: so lightly loaded as one of them, a rest is under load
+        (segment).
+    """
+    rests = _resting(run, segments, load)
+    if rests is None:
+        return None
+    time, normal, limits = rests
+    for start, stop in limits:
+        first, last = np.searchsorted(time, [start, stop])
+        level = _level(normal, first, last, load)
+        if level.size < _FEWEST:
+            continue
+        reads = float(np.mean(normal[level]))
+        if not (np.abs(loads) < _LIKE * abs(reads)).any():
+            return LightRest(float(time[level[0]]), float(time[level[-1]]), reads)
+    return None
+
+
+def _resting(
+    run: xr.Dataset, segments: xr.Dataset, load: float
+) -> tuple[np.ndarray, np.ndarray, list[tuple[float, float]]] | None:
+    """Return time, normal force, and the limits of the rests [s]; None where no load is known."""
+    if "normal_force" not in run or not load > 0 or "omitted" not in segments.dims:
+        return None
+    resting = segments["omitted_reason"].values == "at rest"
+    starts, stops = (segments[name].values[resting] for name in ("omitted_start", "omitted_stop"))
+    limits = list(zip(starts.tolist(), stops.tolist(), strict=True))
+    return run["time"].values, run["normal_force"].values, limits
 
 
 def _level(normal: np.ndarray, first: int, last: int, load: float) -> np.ndarray:

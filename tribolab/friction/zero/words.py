@@ -7,6 +7,7 @@ import numpy as np
 from tribolab.friction.zero.middles import Middles
 from tribolab.friction.zero.parts import Doubt, KnownOfZero, StrokeMeans, doubt
 from tribolab.friction.zero.rectified import Fold
+from tribolab.friction.zero.rests import LightRest
 
 
 def words_of(
@@ -81,3 +82,19 @@ def of_fold(fold: Fold, unfolded: bool, size: int) -> tuple[Doubt, ...]:
     remark = doubt(f"{fold.why}; {done}", cure, np.arange(size))
     remark["check"] = "rectified"
     return (remark,)
+
+
+def of_light_rest(rest: LightRest, load: float, segments: int) -> Doubt:
+    """Doubt a load whose zero a rest may show."""
+    share = rest.level / load
+    between = f"{rest.start:.4g} s to {rest.stop:.4g} s"
+    text = (
+        f"at rest from t = {between} the normal force reads {rest.level:.3g} N, {share:.0%} of "
+        "what it reads while sliding: a light load, or, if nothing pressed there, the zero of its "
+        f"sensor, and the friction coefficient is {1 / (1 - share) - 1:.0%} larger"
+    )
+    cure = (
+        f'If nothing pressed there, state `zero = "{between}"` of the column normal_force in the '
+        "dialect; if something did, measure a rest without load."
+    )
+    return doubt(text, cure, np.arange(segments))
