@@ -70,3 +70,55 @@ def test_a_crank_s_strokes_have_middles_without_being_asked_for() -> None:
     )
     assert itself.attrs["stroke_middle"] == 0.5
     assert tl.find_segments(_crank()).sizes["segment"] == 0
+
+
+def _shuttling(place: np.ndarray, way: np.ndarray, rate: float, mu: float = 0.2) -> xr.Dataset:
+    """Position along `place` [m], and a friction force that opposes the way of each sample."""
+    rng = np.random.default_rng(7)
+    time = np.arange(place.size) / rate
+    noisy = [
+        values + size * rng.standard_normal(place.size)
+        for values, size in ((place, 2e-6), (mu * LOAD * way, 0.02), (LOAD + 0 * place, 0.01))
+    ]
+    names = ("position", "friction_force", "normal_force")
+    columns = {name: ("time", values) for name, values in zip(names, noisy, strict=True)}
+    return xr.Dataset(columns, {"time": time})
+
+
+def _sine(frequency: float, cycles: int, rate: float = 1000.0) -> tuple[np.ndarray, np.ndarray]:
+    angle = 2 * np.pi * frequency * np.arange(int(cycles / frequency * rate)) / rate
+    return 5e-3 * np.sin(angle), np.sign(np.cos(angle))
+
+
+def _rests_between(rate: float = 200.0) -> tuple[np.ndarray, np.ndarray]:
+    """Strokes of 80 samples, a fifth of them at rest at the turn."""
+    share = np.clip(np.arange(100) / 80, 0, 1)
+    there = np.concatenate([share, 1 - share])
+    way = np.repeat([1.0, -1.0], 100)
+    return 10e-3 * np.tile(there, 12), np.tile(way, 12)
+
+
+@pytest.mark.parametrize("made", [_sine(1.0, 5), _sine(5.0, 40), _rests_between()])
+def test_a_position_that_goes_stroke_after_stroke_needs_no_settings(made) -> None:
+    place, way = made
+    run = _shuttling(place, way, 200.0 if place.max() > 6e-3 else 1000.0)
+    friction = tl.friction_coefficient(run, tl.find_segments(run))
+    assert friction.sizes["segment"] >= 0.7 * np.count_nonzero(np.diff(way))
+    off = friction["friction_coefficient"] - 0.2
+    assert (np.abs(off) < 4 * friction["friction_coefficient_sem"]).all()
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        (np.zeros(20_000), np.zeros(20_000)),  # at rest: noise goes to and fro, too
+        (_sine(1.0, 10)[0], np.zeros(10_000)),  # friction that does not turn
+        (1e-3 * np.cumsum(np.random.default_rng(3).standard_normal(20_000)), np.zeros(20_000)),
+        (_sine(1.0, 2)[0], _sine(1.0, 2)[1]),  # four strokes
+        (5e-5 * np.sin(2 * np.pi * 50 * np.arange(5000) / 1000), np.zeros(5000)),  # hum
+    ],
+    ids=["rest", "no friction", "walk", "few", "hum"],
+)
+def test_what_does_not_go_stroke_after_stroke_has_no_middles(made) -> None:
+    segments = tl.find_segments(_shuttling(*made, 1000.0))
+    assert "stroke_middle" not in segments.attrs

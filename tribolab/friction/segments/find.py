@@ -20,7 +20,7 @@ from tribolab.friction.segments.stretches import (
     track,
     velocity_source,
 )
-from tribolab.friction.segments.strokes import middle_parts
+from tribolab.friction.segments.strokes import middle_parts, shuttles
 from tribolab.medians import median
 from tribolab.pieces import one_by_one
 from tribolab.several import as_stated, of_runs, over_dims
@@ -81,7 +81,8 @@ def find_segments(
         a sinusoidal stroke is within 9 % of its highest speed). Neither `trim` nor what concerns
         constant speed applies then. By default half of each stroke of a run that is never at
         constant speed and whose speed follows from a stroke and a frequency (attribute
-        ``stroke_m``), unless a `position_range` is given.
+        ``stroke_m``), or whose position and friction tell that it goes stroke after stroke, each
+        like the last; unless a `position_range` is given.
 
     Returns
     -------
@@ -152,7 +153,9 @@ def find_segments(
     ]
     stretches = loaded(run, stretches, limits)
     plateaus = measured(run, stretches, source, share, position_range)
-    if plateaus.sizes["segment"] or "stroke_m" not in run.attrs or position_range is not None:
+    if plateaus.sizes["segment"] or position_range is not None:
+        return plateaus
+    if "stroke_m" not in run.attrs and not shuttles(run):
         return plateaus
     try:  # what a crank drives is never at constant speed: each stroke has a middle
         return _of_strokes(run, source, _MIDDLE, min_samples)

@@ -17,6 +17,11 @@ _SHORTEST = 0.5  # of the usual length: what is shorter is no stroke
 _FEWEST = 3  # strokes, the cut ones at both ends left out
 _PAUSE = 20  # usual sample spacings: what is shorter is no pause
 _NOT_SEEN = 0.25  # of a stroke's duration
+_SHUTTLES = 6  # strokes, of which all but a fifth are alike
+_FEW_UNLIKE = 0.2
+_EVEN = 0.1  # of a stroke's duration, by which the next one may differ
+_SEEN = 10  # samples of a stroke, at least
+_CLEAR = 5.0  # standard errors
 _SAME = 1e-9  # of the range, or of the usual speed: what differs by less is the same, or zero
 
 
@@ -94,6 +99,48 @@ def find_strokes(run: xr.Dataset) -> Strokes:
         )
     paused = _paused(run["time"].values, first)
     return Strokes(first, way, length, place, _usual(run, first, length) & ~paused, paused)
+
+
+def shuttles(run: xr.Dataset) -> bool:
+    """Whether a run is stroke after stroke, each like the last, and friction turns with them.
+
+    As a crank or a shaker drives it: such a run has no plateau of constant speed to be found.
+
+    Parameters
+    ----------
+    run
+        With ``position`` and a friction signal (time).
+    """
+    names = [name for name in ("friction_force", "friction_coefficient") if name in run]
+    if "position" not in run or not names or not np.isfinite(run["position"].values).any():
+        return False
+    try:
+        strokes = find_strokes(run)
+    except AnalysisError:
+        return False
+    usual = strokes.usual
+    lasted = np.diff(run["time"].values[strokes.first])[usual]
+    if lasted.size < max(_SHUTTLES, (1 - _FEW_UNLIKE) * usual.size):
+        return False
+    unlike = np.abs(np.diff(np.log(lasted))) > _EVEN
+    if unlike.mean() > _FEW_UNLIKE or median(np.diff(strokes.first)) < _SEEN:
+        return False
+    return _turns_with(strokes, run[names[0]].values)
+
+
+def _turns_with(strokes: Strokes, friction: np.ndarray) -> bool:
+    """Whether friction differs clearly between the two ways."""
+    number = strokes.number
+    inside = (number >= 0) & (np.abs(strokes.place - 0.5) < 0.25) & np.isfinite(friction)
+    count = np.bincount(number[inside], minlength=strokes.way.size)
+    total = np.bincount(number[inside], friction[inside], minlength=strokes.way.size)
+    known = strokes.usual & (count > 0)
+    mean = total[known] / count[known]
+    ways = [mean[strokes.way[known] == way] for way in (1, -1)]
+    if min(own.size for own in ways) < 2:
+        return False
+    error = np.sqrt(sum(own.var(ddof=1) / own.size for own in ways))
+    return bool(abs(ways[0].mean() - ways[1].mean()) > _CLEAR * error)
 
 
 def _paused(time: np.ndarray, first: np.ndarray) -> np.ndarray:
