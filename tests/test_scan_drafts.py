@@ -252,3 +252,10 @@ def test_columns_whose_names_differ_by_a_number_are_profiles_side_by_side(tmp_pa
     path = written(tmp_path, f"{head}\nForce 1 [N]\tForce 2 [N]\tForce 3 [N]\n{rows}\n")
     with pytest.raises(TribolabError):
         read_scans(path)
+
+
+def test_a_unit_that_is_not_known_is_named_in_the_guess(tmp_path):
+    heights = "\n".join(f"{np.sin(k / 9):.4f}" for k in range(500))
+    (tmp_path / "a.txt").write_text(f"Pitch: 0.5 um\nHeight [foo]\n{heights}\n")
+    with pytest.raises(TribolabError, match="height is in um, for 'foo' is no unit that is known"):
+        read_scans(tmp_path / "a.txt")

@@ -214,7 +214,7 @@ def _run_said(file: Path, dialect: Path) -> str:
     # late: starting stays quick
     from tribolab.friction.coefficient.coefficient import friction_coefficient
     from tribolab.friction.reversals import reversals
-    from tribolab.friction.segments.find import find_segments
+    from tribolab.friction.segments.find import find_segments, why_no_segment
     from tribolab.io.runs import read_run
 
     run = read_run(file, dialect, pair=False)
@@ -226,6 +226,8 @@ def _run_said(file: Path, dialect: Path) -> str:
     except TribolabError as error:
         why = error.told("terminal").removeprefix(f"{file.name}: ")
         return f"{said}; no friction coefficient: {why}"
+    if why := why_no_segment(segments):
+        return f"{said}; {why}"
     said += f", {Count(segments.sizes['segment']):segment|segments}"
     if "friction_coefficient" not in friction:
         return f"{said}, a friction force without a load: no friction coefficient"

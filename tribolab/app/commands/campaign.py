@@ -208,7 +208,12 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
         say(crash, to_stderr=True)
     nothing = bool(outcome.campaign.run) and not outcome.segments
     if nothing:
-        say("tribolab: no segment of constant speed was found in any run", to_stderr=True)
+        say(
+            "tribolab: no segment of constant speed was found in any run; in [segments], `drift` "
+            "and `min_samples` say what is constant, and `stroke_middle = 0.5` takes half of each "
+            "stroke that a crank drives",
+            to_stderr=True,
+        )
     spoilt = (
         outcome.failed
         or outcome.lost_decisions

@@ -15,6 +15,7 @@ from tribolab.quantities import quantity
 Bare = tuple[str, str | None, bool]  # a name without its unit, the unit, whether it is to be said
 FORCES = {"friction_force", "normal_force", "friction_coefficient"}  # what a coefficient is made of
 _NOISE = 0.1  # of the highest load, what a sensor without a load shows
+_BRACKETS = re.compile(r"[\[(]\s*([^\W\d][^\])]{0,19})[\])]\s*$")  # a unit stands there, if any
 _FACTOR = re.compile(
     r"[x×*·]?\s?\b10\s?\^\s?-?\d+|[x×*·]\s?1(?:0+|[eE][+-]?\d+)(?!\d)", re.IGNORECASE
 )
@@ -67,13 +68,15 @@ def filled_in(
         fill_in = f"what one count of '{shown(column.label)}' ({option.quantity}) is, e.g. "
         fill_in += f'"0.5 m{si_unit}"'
     elif unit is None and si_unit not in ("", "1"):
+        stands = _BRACKETS.search(column.label)
+        why = f", for '{shown(stands[1])}' is no unit that is known" if stands else ""
         if option.quantity == "time":
             written = time_unit(values)
-            guessed.append(f"time is in {written}")
+            guessed.append(f"time is in {written}{why}")
             options = other_units("s", written)
         elif kind == "scan":
             written = "mm" if option.quantity in ("x", "y") else "um"
-            guessed.append(f"{option.quantity} is in {written}")
+            guessed.append(f"{option.quantity} is in {written}{why}")
             options = other_units("m", written)
         else:
             fill_in = f"the unit of '{shown(column.label)}' ({option.quantity}), e.g. \"{si_unit}\""
