@@ -25,7 +25,7 @@ class Segments(Table):
     stroke_middle: MiddleShare | None = None
     """Of a slider that moves to and fro without a constant speed: the share of each stroke's length
     about its middle that is used, e.g. "40 %"; by default half where the instrument states stroke
-    and frequency."""
+    and frequency, or the position tells that each stroke is like the last."""
     resolution: Annotated[float, Field(gt=0, lt=1)] | None = None
     """Relative difference of speed that separates two neighbouring plateaus."""
     drift: Annotated[float, Field(gt=0)] | None = None
