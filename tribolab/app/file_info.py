@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tribolab.app.ranges import range_of
 from tribolab.campaign.engine.stage import Stage
+from tribolab.draft.dialect.questions import how_to_keep
 from tribolab.draft.on_the_fly import holds_run, read_run
 from tribolab.errors import AnalysisError, ReadError, TribolabError, shown, told
 from tribolab.io.companion import CompanionFacts, describe_companion
@@ -143,7 +144,7 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
     lines.append(f"  height  {1e6 * low:.6g} to {1e6 * high:.6g} um")
     if missing := int(scan["height"].isnull().sum()):
         lines.append(f"  {Count(missing):point|points} without a height")
-    return lines + _roughness_lines(scan) + _attribute_lines(scan.attrs)
+    return lines + _roughness_lines(scan) + _attribute_lines(scan.attrs, path)
 
 
 def _roughness_lines(scan: xr.Dataset) -> list[str]:
@@ -176,11 +177,13 @@ def _results_lines(path: Path) -> list[str]:
     for name, values in results.data_vars.items():
         unit = quantity(str(name)).unit
         lines.append(f"  {name}  {float(values):.6g}{'' if unit == '1' else f' {unit}'}")
-    return lines + _attribute_lines(results.attrs)
+    return lines + _attribute_lines(results.attrs, path)
 
 
-def _attribute_lines(attrs: Mapping[str, Any]) -> list[str]:
+def _attribute_lines(attrs: Mapping[str, Any], path: str | Path) -> list[str]:
     told = {key: value for key, value in attrs.items() if key not in _PROVENANCE | _TOLD_ABOVE}
+    if "to_keep_it" in told:  # to be typed where `info` was
+        told["to_keep_it"] = how_to_keep(str(path))
     return [f"  {key}: {shown(_said(value), _LONGEST)}" for key, value in told.items()]
 
 
@@ -222,7 +225,7 @@ def run_lines(facts: FileFacts) -> list[str]:
         lines.append(f"  {name:<{width}}  {span}{label}")
     if facts["not_used"]:
         lines.append(f"  not used: {', '.join(map(shown, facts['not_used']))}")
-    lines += _attribute_lines(facts["metadata"])
+    lines += _attribute_lines(facts["metadata"], facts["file"])
     return lines
 
 

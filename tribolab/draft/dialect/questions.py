@@ -175,10 +175,12 @@ def _aligned(asked: Sequence[Question]) -> list[str]:
     return lines
 
 
-def how_to_keep(path: Path) -> str:
-    """Return the command that writes down what is drafted from a file.
+def how_to_keep(path: Path | str) -> str:
+    """Return the command that writes down what is drafted from a file, by its name or as given.
 
     >>> how_to_keep(Path("raw/odd one.csv"))
     "tribolab dialect 'odd one.csv'"
+    >>> how_to_keep("raw/odd one.csv")
+    "tribolab dialect 'raw/odd one.csv'"
     """
-    return f"tribolab dialect {shlex.quote(path.name)}"
+    return f"tribolab dialect {shlex.quote(path.name if isinstance(path, Path) else path)}"
