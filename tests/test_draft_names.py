@@ -19,6 +19,13 @@ TABLES = {
     "German": "Zeit [s];Reibkraft [N];Anpresskraft [N];Gleitgeschwindigkeit [mm/s];Weg [mm]",
     "symbols": "t [s];Ftan [N];Fn [N];Vx [mm/s];enc [mm]",
     "devices": "DAQ.Time [s];DAQ.Fx [N];DAQ.Fz [N];Stage.Velocity [mm/s];Stage.X [mm]",
+    "Polish": "Czas [s];Siła tarcia [N];Siła nacisku [N];Prędkość [mm/s];Położenie [mm]",
+    "Portuguese": "Tempo [s];Força de atrito [N];Força normal [N];Velocidade [mm/s];Posição [mm]",
+    "Russian": "Время, с;Сила трения, Н;Нагрузка, Н;Скорость, мм/с;Перемещение, мм",
+    "Korean": "시간 [s];마찰력 [N];수직하중 [N];속도 [mm/s];변위 [mm]",
+    "Turkish": "Zaman [s];Sürtünme kuvveti [N];Normal kuvvet [N];Hız [mm/s];Konum [mm]",
+    "Czech": "Čas [s];Třecí síla [N];Normálová síla [N];Rychlost [mm/s];Poloha [mm]",
+    "Swedish": "Tid [s];Friktionskraft [N];Normalkraft [N];Hastighet [mm/s];Förskjutning [mm]",
 }
 QUANTITIES = ["time", "friction_force", "normal_force", "sliding_velocity", "position"]
 
@@ -71,7 +78,8 @@ def test_marks_of_kana_stay_and_accents_go():
 
 @pytest.mark.parametrize(
     ("language", "encoding"),
-    [("Chinese", "gbk"), ("Chinese", "gb18030"), ("Japanese", "shift_jis"), ("French", "latin-1")],
+    [("Chinese", "gbk"), ("Chinese", "gb18030"), ("Japanese", "shift_jis"), ("French", "latin-1")]
+    + [("Russian", "cp1251"), ("Korean", "cp949")],
 )
 def test_a_header_is_read_in_the_encoding_of_the_place(language, encoding, tmp_path):
     file = tmp_path / "table.txt"

@@ -1,4 +1,4 @@
-"""The one vocabulary of column names in seven languages, from which quantities are proposed."""
+"""The one vocabulary of column names in many languages, from which quantities are proposed."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ def _words(text: str) -> tuple[str, ...]:
 RUN_WORDS = (
     Word(
         "time",
-        _words("t time zeit ts xvalue dt deltat δt interval intervall"),
+        _words("t time zeit ts xvalue dt deltat δt interval intervall cas tid"),
         _words(
             "steptime testtime elapsedtime timestamp time zeit elapsed dauer uhr seconds sekunden "
             "temps duree tiempo tempo durata clock tijd runtime laufzeit stopwatch "
-            "时间 時間 经过时间 経過時間 時刻"
+            "czas zaman время 시간 时间 時間 经过时间 経過時間 時刻"
         ),
     ),
     Word(
@@ -46,16 +46,19 @@ RUN_WORDS = (
             "forcedefrottement efforttangentiel forcetangentielle frottement "
             "fuerzadefriccion fuerzaderozamiento fuerzatangencial friccion rozamiento "
             "forzadiattrito forzadattrito forzatangenziale attrito "
-            "摩擦力 切向力 剪切力 せん断力 接線力"
+            "forcadeatrito forcatangencial atrito silatarcia tarcie trecisila friktionskraft "
+            "kitkavoima surlodasiero suertuenmekuvveti suertuenme "
+            "силатрения тангенциальнаясила 마찰력 접선력 摩擦力 切向力 剪切力 せん断力 接線力"
         ),
         _words(
             "standardkraft pruefkraft "
-            "force kraft loadcell kraftmessdose kraftaufnehmer effort fuerza forza 力 测力"
+            "force kraft loadcell kraftmessdose kraftaufnehmer effort fuerza forza forca kuvvet "
+            "сила 力 测力"
         ),
     ),
     Word(
         "normal_force",
-        _words("fn fz fnorm fnormal w l nf fv"),
+        _words("fn fz fnorm fnormal w l nf fv normal"),
         _words(
             "normalforce normalload axialforce axialload verticalforce verticalload "
             "balload ballload "
@@ -64,6 +67,9 @@ RUN_WORDS = (
             "appliedload contactforce normalkraft axialkraft anpresskraft auflast normallast "
             "load last belastung forcez zforce forcenormale effortnormal charge "
             "fuerzanormal carga forzanormale carico "
+            "forcanormal silanacisku silanormalna nacisk obciazenie normalovasila pritlacnasila "
+            "zatizeni normaalivoima normalero nyomoero normalkuvvet normalyuek yuek "
+            "нормальнаясила нагрузка 수직하중 수직력 하중 "
             "法向力 正压力 法向载荷 载荷 載荷 负荷 负载 加载力 垂直荷重 法線力 垂直力 荷重"
         ),
         _words("loadcell"),
@@ -79,17 +85,21 @@ RUN_WORDS = (
             "coefficientdefrottement coeffdefrottement coeffrottement frottement "
             "coeficientedefriccion coeficientederozamiento friccion rozamiento "
             "coefficientediattrito coefficientedattrito coeffdiattrito coeffdattrito attrito "
+            "coeficientedeatrito coefdeatrito wspolczynniktarcia koeficienttreni souciniteltreni "
+            "friktionskoefficient kitkakerroin suertuenmekatsayisi коэффициенттрения 마찰계수 "
             "摩擦系数 摩擦係數 摩擦因数 摩擦係数"
         ),
     ),
     Word(
         "sliding_velocity",
-        _words("v vx vel us"),
+        _words("v vx vel us hiz"),
         _words(
             "slidingspeed slidingvelocity slipspeed linearspeed linearvelocity "
             "gleitgeschwindigkeit velocity geschwindigkeit speed "
             "vitessedeglissement vitesselineaire vitesse velocidaddedeslizamiento velocidadlineal "
             "velocidad velocitadiscorrimento velocitadistrisciamento velocitalineare velocita "
+            "predkoscslizgania predkosc rychlost glidhastighet hastighet nopeus sebesseg "
+            "kaymahizi hizi скоростьскольжения скорость 미끄럼속도 속도 "
             "滑动速度 滑動速度 线速度 すべり速度 滑り速度 摺動速度 速度"
         ),
     ),
@@ -102,6 +112,8 @@ RUN_WORDS = (
             "distance verschiebung auslenkung gleitweg traversenweg standardweg strecke weg hub "
             "travel encoder "
             "deplacement course posicion desplazamiento recorrido posizione spostamento corsa "
+            "posicao deslocamento przemieszczenie polozenie poloha posunuti foerskjutning "
+            "yerdegistirme konum перемещение положение 변위 위치 "
             "位移 位置 行程 滑动距离 変位 ストローク 摺動距離"
         ),
         _words("lvdt"),
@@ -133,9 +145,13 @@ RUN_WORDS = (
             "rotation drehzahl rotary spindle spindel toerental "
             "angularspeed angularvelocity rotationalspeed "
             "vitessederotation velocidaddegiro velocidadderotacion giri velocitadirotazione "
-            "转速 轉速 回転数 回転速度"
+            "velocidadederotacao rotacao predkoscobrotowa obroty otacky varvtal devir "
+            "частотавращения обороты 회전수 회전속도 转速 轉速 回転数 回転速度"
         ),
-        _words("speed velocity geschwindigkeit vitesse velocidad velocita 速度"),
+        _words(
+            "speed velocity geschwindigkeit vitesse velocidad velocita predkosc rychlost hastighet "
+            "hizi скорость 속도 速度"
+        ),
     ),
     Word(
         "normal_stress",
@@ -153,7 +169,8 @@ RUN_WORDS = (
         "temperature",
         _words("t temp theta"),
         _words(
-            "lubetemp lubertdtemp contacttemp temperature temperatur temp temperatura 温度 溫度"
+            "lubetemp lubertdtemp contacttemp temperature temperatur temp temperatura teplota "
+            "sicaklik температура 온도 温度 溫度"
         ),
     ),
     Word(

@@ -12,7 +12,17 @@ from tribolab.draft.file.header import converts, is_unit
 from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS, WEIGHTS, Word
 from tribolab.quantities import quantity
 
-_SPELT = {"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "ø": "oe", "µ": "mu", "μ": "mu"}
+_SPELT = {
+    "ä": "ae",
+    "ö": "oe",
+    "ü": "ue",
+    "ß": "ss",
+    "ø": "oe",
+    "ł": "l",
+    "ı": "i",
+    "µ": "mu",
+    "μ": "mu",
+}
 _SPELT |= {"τ": "tau", "ω": "omega", "η": "eta", "θ": "theta", "ϑ": "theta", "σ": "sigma"}
 _LETTERS = str.maketrans(_SPELT)
 _ACCENTS = re.compile("[\u0300-\u036f]")  # not the marks that make one kana of another
@@ -32,6 +42,9 @@ _UNIT_WORDS = {
     **dict.fromkeys(("millisekunden", "millisecondes", "milisegundos"), "ms"),
     **dict.fromkeys(("minuten", "minutos", "minuti"), "min"),
     **dict.fromkeys(("mikrometer", "micromètres", "micras"), "um"),
+    **{"с": "s", "сек": "s", "мс": "ms", "мин": "min", "об/мин": "rpm"},
+    **{"мм": "mm", "мкм": "um", "м": "m", "мм/с": "mm/s", "мкм/с": "um/s", "м/с": "m/s"},
+    **{"н": "N", "мн": "mN", "кн": "kN"},
 }
 COUNTS = "counts"
 # units in which nothing else is measured, whatever the name

@@ -11,7 +11,7 @@ from tribolab.draft.vocabulary import EASTERN_WORDS
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.signature import HEAD
 
-_EASTERN = ("gb18030", "cp932", "big5")
+_EASTERN = ("gb18030", "cp932", "big5", "cp949", "cp1251")
 _BLANKS = 1.02  # by how much blanks have to part the lines better than a mark
 _VOTERS = 300  # lines at the start and at the end that decide on the delimiter
 DELIMITERS = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar", "whitespace": "blanks"}
@@ -110,14 +110,15 @@ def find_encoding(head: bytes) -> tuple[str, list[str]]:
 
 
 def _eastern(head: bytes) -> str:
-    """Return the Chinese or Japanese encoding in which a file says known words; "" for none."""
+    """Return the East Asian or Cyrillic encoding in which a file says known words; "" for none."""
     known: dict[str, int] = {}
     for name in _EASTERN:
         try:
             text = codecs.getincrementaldecoder(name)().decode(head, final=len(head) < HEAD)
         except UnicodeDecodeError:
             continue
-        known[name] = sum(word in text for word in EASTERN_WORDS)
+        written = "".join(text.lower().split())  # as words are in the vocabulary
+        known[name] = sum(word in written for word in EASTERN_WORDS)
     best = max(known, key=lambda name: known[name], default="")
     return best if best and known[best] else ""
 
