@@ -169,7 +169,11 @@ def test_of_several_tables_alike_it_is_asked_which_is_meant(tmp_path):
 
 @pytest.mark.parametrize(
     ("label", "parts"),
-    [("Ff_N", ("Ff", "N")), ("t_s", ("t", "s")), ("F/Fn", ("F/Fn", None)), ("F_N", ("F_N", None))],
+    [
+        *[("Ff_N", ("Ff", "N")), ("t_s", ("t", "s")), ("F_N", ("F_N", None))],
+        *[("F/Fn", ("F/Fn", None)), ("F_R/F_N", ("F_R/F_N", None)), ("Ft/W", ("Ft/W", None))],
+        *[("Ff/N", ("Ff", "N")), ("F / N", ("F", "N")), ("Fn/N", ("Fn", "N"))],
+    ],
 )
 def test_a_symbol_and_its_unit_make_no_other_symbol(label, parts):
     """Ff in N, read as the coefficient F/Fn, would be a wrong one."""

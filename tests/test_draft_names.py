@@ -42,6 +42,26 @@ def test_a_header_is_understood_without_a_guess_in_any_of_the_languages(language
     np.testing.assert_allclose(data.position, [n / 2000 for n in range(30)])
 
 
+@pytest.mark.parametrize(
+    ("head", "quantity", "guesses"),
+    [
+        ("t/s;Ff/N;Fn/N;v/(mm/s)", "friction_force", 0),
+        ("t [s];Ff/N;Fn [N];v [mm/s]", "friction_force", 1),
+        ("t [s];F_R/F_N;Fn [N];v [mm/s]", "friction_coefficient", 0),
+        ("t [s];F/N [-];Fn [N];v [mm/s]", "friction_coefficient", 0),
+    ],
+)
+def test_a_stroke_parts_a_unit_or_divides_by_the_load(head, quantity, guesses, tmp_path):
+    """Ff/N is the force in newton beside t/s; alone it may be the coefficient, and is asked."""
+    file = tmp_path / "table.txt"
+    ratio = quantity == "friction_coefficient"
+    rows = "\n".join(f"{n / 10};{0.3 if ratio else 9 + n % 2};30;5" for n in range(30))
+    file.write_text(f"{head}\n{rows}\n")
+    _, draft = drafted(file, tmp_path)
+    assert draft.understood.columns[1].quantity == quantity
+    assert (len(draft.guesses), dict(draft.to_fill_in)) == (guesses, {})
+
+
 def test_the_axes_of_a_stage_are_no_sliding_position_where_something_turns(tmp_path):
     file = tmp_path / "disc.csv"
     head = "Time [s],DAQ.Ft [N],DAQ.Fn [N],Stage.X [mm],Rotary.Velocity [rpm]"

@@ -146,6 +146,34 @@ def test_a_sample_rate_before_the_table_is_its_clock(said, tmp_path):
         tl.read(file)
 
 
+@pytest.mark.parametrize(
+    ("settings", "speed"),
+    [
+        ("Stroke=12\nStroke unit=mm\nMode=Sine", "stroke"),
+        ("Stroke [mm]=12\nWaveform=sinusoidal", "stroke"),
+        ("Stroke=12\nMode=Sine", "none"),
+    ],
+)
+def test_settings_are_used_with_their_units_and_told_without(settings, speed, tmp_path):
+    file = tmp_path / "wiper.dat"
+    rows = "\n".join(f"{n};{3 * np.cos(0.8 * np.pi * n / 100):.3f}" for n in range(1000))
+    head = f"Logger rate=100 S/s\nFrequency (Hz)=0.4\nLoad=15 N\n{settings}"
+    file.write_text(f"{head}\nsample;Ff [N]\n{rows}\n")
+    run = tl.read(file)
+    assert run.attrs["speed_from"] == speed
+    assert run.attrs.get("without_unit") == ("Stroke=12" if speed == "none" else None)
+    if speed == "stroke":
+        assert float(run.sliding_velocity.max()) == pytest.approx(0.4 * np.pi * 0.012, rel=1e-3)
+
+
+def test_a_distance_of_heights_without_a_unit_is_told(tmp_path):
+    file = tmp_path / "trace.txt"
+    heights = "\n".join(f"{n % 7}" for n in range(200))
+    file.write_text(f"# spacing: 0.8\n# heights in nm\n\n{heights}\n")
+    with pytest.raises(tl.TribolabError, match="of '# spacing: 0.8' the unit is not said"):
+        tl.read_scans(file)
+
+
 def test_a_rotation_and_a_radius_in_the_header_make_the_speed(tmp_path):
     file = tmp_path / "disc.csv"
     rows = "\n".join(f"{n / 10},{5 + n % 3},30,{60 if n < 50 else 120}" for n in range(100))

@@ -328,3 +328,20 @@ def test_a_speed_without_sign_beside_a_signed_force_is_told_with_what_to_state()
     # and that is right: the force tells the direction, and the loop its zero
     stated = check_run(run.rename(sliding_velocity="set_speed"))
     assert stated.status == "pass"
+
+
+@pytest.mark.parametrize("in_sliding", [False, True])
+def test_zeros_before_the_sliding_are_no_end_of_the_range(in_sliding):
+    """Each step of a disc starts without torque; what is cut off is cut off in sliding, too."""
+    rng = np.random.default_rng(2)
+    speed = np.tile(np.concatenate([np.linspace(0, 1e-3, 10), np.full(400, 1e-3)]), 8)
+    force = np.abs(3 + 0.01 * rng.standard_normal(speed.size))
+    force[speed == 0] = 0.0
+    if in_sliding:
+        force[300::410] = 0.0
+    run = xr.Dataset(
+        {"sliding_velocity": ("time", speed), "friction_force": ("time", force)},
+        {"time": np.arange(speed.size) / 20},
+    )
+    found = check_run(run)
+    assert ("end of the range" in message(found, "saturation")) == in_sliding

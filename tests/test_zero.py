@@ -389,3 +389,19 @@ def test_turns_within_a_sample_do_not_prove_a_sign(lost, kind):
         force, Pressed(None, parts, 0.5), parts, mean, np.full(8, 1e-3), sign, np.nan
     )
     assert folded(trace).kind.startswith(kind)
+
+
+@pytest.mark.parametrize(("speeds", "kind"), [("equal", "rectified"), ("steps", "signed")])
+def test_steps_of_speed_that_start_from_rest_have_lost_no_sign(speeds, kind):
+    """Torque is zero before each step of a disc that turns one way."""
+    rng = np.random.default_rng(5)
+    stroke = np.concatenate([np.linspace(0, 2, 11)[:-1], np.full(90, 2.0), np.linspace(2, 0, 11)])
+    force = np.tile(stroke, 6) + 0.01 * rng.random(6 * stroke.size)
+    parts = [slice(stroke.size * i + 15, stroke.size * i + 95) for i in range(6)]
+    mean = np.array([force[part].mean() for part in parts])
+    speed = np.full(6, 1e-3) if speeds == "equal" else 1e-3 * 2.0 ** np.arange(6)
+    pressed = Pressed(None, parts, 0.5)
+    trace = ForceTrace(
+        force, pressed, parts, mean, np.full(6, 1e-3), np.ones(6), np.nan, speed=speed
+    )
+    assert folded(trace).kind == kind

@@ -38,8 +38,8 @@ def read_run(
     Returns
     -------
     xarray.Dataset
-        As from `tribolab.read`. Of what was drafted, ``instrument`` says so, and ``to_keep_it``
-        how to write it down.
+        As from `tribolab.read`. Of what was drafted, ``instrument`` says so, ``to_keep_it``
+        how to write it down, and ``without_unit`` what could not be used for want of a unit.
 
     Raises
     ------
@@ -69,8 +69,8 @@ def holds_run(path: Path, *, by_name: bool = True) -> bool:
 def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     """Return the dialect that a file's own header makes; else say what it leaves open."""
     # late: starting stays quick
-    from tribolab.draft.dialect.draft import HEIGHTS
     from tribolab.draft.dialect.questions import (
+        HEIGHTS,
         GuessedError,
         lacks_friction,
         missing_words,
@@ -78,7 +78,7 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     )
 
     draft = draft_of(path)
-    if draft is not None and draft.answer == HEIGHTS:
+    if draft is not None and draft.answer.startswith(HEIGHTS):
         raise ReadError(draft.answer, where=path, cure=error.cure) from error
     if draft is None or draft.kind == "table":
         raise error
@@ -113,6 +113,9 @@ def _draft_as_it_was(path: Path, size: int, changed: int) -> Draft:
 
 def _told(path: Path) -> dict[str, str]:
     # late: starting stays quick
-    from tribolab.draft.dialect.questions import how_to_keep
+    from tribolab.draft.dialect.questions import how_to_keep, without_unit_and_missed
 
-    return {"instrument": DRAFTED, "to_keep_it": how_to_keep(path)}
+    told = {"instrument": DRAFTED, "to_keep_it": how_to_keep(path)}
+    draft = draft_of(path)
+    missed = without_unit_and_missed(draft) if draft is not None else []
+    return {**told, "without_unit": "; ".join(missed)} if missed else told

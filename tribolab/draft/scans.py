@@ -12,7 +12,7 @@ from typing import Literal, overload
 import xarray as xr
 
 from tribolab.aliases import PathLike
-from tribolab.draft.dialect.draft import HEIGHTS, holds_heights
+from tribolab.draft.dialect.draft import holds_heights
 from tribolab.draft.dialect.questions import GuessedError, how_to_keep, questions
 from tribolab.draft.on_the_fly import DRAFTED, draft_of
 from tribolab.errors import ReadError
@@ -157,7 +157,7 @@ def _drafted(file: Path, error: ReadError) -> Dialect | None:
         return None
     if draft.kind == "table" and holds_heights(draft):
         raise ReadError(
-            HEIGHTS, where=file, cure=cures.unknown_instrument(file, cures.SURFACE)
+            draft.answer, where=file, cure=cures.unknown_instrument(file, cures.SURFACE)
         ) from error
     if draft.kind != "scan":
         return None

@@ -19,7 +19,7 @@ from tribolab.draft.columns.lengths import (
     find_point_density,
     find_profile_length,
 )
-from tribolab.draft.columns.ratio import disagreement
+from tribolab.draft.columns.ratio import disagreement, force_or_ratio
 from tribolab.draft.columns.sampling import find_sampling
 from tribolab.draft.columns.words import COUNTS, Match, is_count, matches, split_unit
 from tribolab.draft.file.header import converts, measures_something
@@ -64,7 +64,7 @@ def understand(layout: Layout) -> Understood:
 
         kind, columns, behaving = by_behaviour(columns, numbers)
         guesses += behaving
-    columns = told_by_load(layout, columns, numbers) if kind == "run" else columns
+    columns = told_by_load(layout, force_or_ratio(columns), numbers) if kind == "run" else columns
     guesses += disagreement(columns, numbers) if kind == "run" else []
     columns = _dated(columns, layout, numbers, text)
     columns = [
@@ -246,6 +246,8 @@ def _bare(column: DraftColumn) -> Bare:
         return name, column.file_unit, column.name is None
     if column.counted:
         return name, COUNTS, False
+    if split_name(column.label)[1] in _PURE:
+        return name, None, False
     name, unit = split_unit(name)
     return name, unit, unit is not None
 

@@ -33,6 +33,7 @@ _DRIVE = re.compile(
 )
 _SINE = re.compile(r"crank|sine|sinus|sinoid|kurbel|eccentric|exzenter|manivelle|scotch")
 _EVEN = re.compile(r"triang|constant|linear|konstant|dreieck")
+_MODE = re.compile(r"^(?:test|sliding)?mode$|^modus$|^betriebsart$|^modo$|模式$|モード$")
 _SAYS_SPEED = {"sliding_velocity", "position", "set_speed"}
 SAYS_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
@@ -222,6 +223,8 @@ def _with_speed(
         return before if turning else _with_set_speed(before, values)
     settings = of_strokes.settings
     said = [text.lower() for key, text in words if _DRIVE.search(squeezed(key))]
+    modes = [text.lower() for key, text in words if _MODE.search(squeezed(key))]
+    said += [text for text in modes if _SINE.search(text)]  # a constant load is a mode, too
     drive, guess = understood.drive or "crank", ""
     options: tuple[str, ...] = ()
     if not understood.drive and any(_EVEN.search(text) for text in said):

@@ -1,11 +1,13 @@
-"""Whether a coefficient of friction that a file holds agrees with its forces."""
+"""Whether a coefficient of friction that a file holds agrees with its forces, or may be one."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
 
+from tribolab.draft.columns.words import split_unit
 from tribolab.draft.model import DraftColumn
 from tribolab.io.force_ratio import doubt_about
 from tribolab.quantities import unit_conversion
@@ -13,6 +15,7 @@ from tribolab.quantities import unit_conversion
 _APART = 1.5  # times: filters and zeros that the instrument took off make less
 _FEW = 20  # rows under load that tell
 _LOADED = 0.5  # of the largest load
+_OVER_N = re.compile(r"\w{1,3}\s*/\s*N")  # a symbol and its unit, or divided by the normal force
 
 
 def disagreement(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[str]:
@@ -53,6 +56,35 @@ def disagreement(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[st
         f"the forces are right, whose ratio is {sizes[1]:.3g}; column "
         f"{held['friction_coefficient'].place} states {sizes[0]:.3g}"
     ]
+
+
+def force_or_ratio(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
+    """Make a guess of 'Ff/N' where no other name has its unit behind a stroke, as 't/s' would.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    """
+    if any(_has_unit_behind_stroke(column.label) for column in columns):
+        return list(columns)
+    return [
+        column._replace(
+            guessed=(*column.guessed, "'/N' says its unit, and not that a load was divided by"),
+            options=(*column.options, "friction_coefficient"),
+        )
+        if column.used
+        and column.quantity == "friction_force"
+        and _OVER_N.fullmatch(column.label.strip())
+        else column
+        for column in columns
+    ]
+
+
+def _has_unit_behind_stroke(label: str) -> bool:
+    name, unit = split_unit(label.strip())
+    behind = label.strip()[len(name) :].lstrip().startswith("/")
+    return unit is not None and behind and not _OVER_N.fullmatch(label.strip())
 
 
 def _si(column: DraftColumn, numbers: np.ndarray) -> np.ndarray:

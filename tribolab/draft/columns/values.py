@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from tribolab.draft.columns.sentences import Phrase, phrases
@@ -12,6 +13,7 @@ from tribolab.draft.columns.stated_words import (
     INTERVAL,
     LOAD,
     PITCH,
+    PROFILE_LENGTH,
     RADIUS,
     RATE,
     TURNING,
@@ -31,6 +33,7 @@ _SAID = (
 )
 _SAYS = re.compile(_SAID.format(mark="", digits=","), re.IGNORECASE)
 _IN_CELLS = re.compile(_SAID.format(mark=",", digits=""), re.IGNORECASE)  # "Dead weight,500,g"
+_UNIT_OF = re.compile(r"^(?P<key>.+?)(?:units?|einheit|unite|unidad|unita|eenheid|单位|単位)$")
 _WORDS = re.compile(r"\W*(?P<key>[^\W\d][^:=\t;]*?)\s*[:=\t;]\s*(?P<text>[^\W\d].*)$")
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]")
 _IN_NAME = re.compile(r"(?:^|_)(?P<number>\d+(?:\.\d+)?)(?P<unit>N|mN)(?=_|$)")
@@ -88,13 +91,14 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
             values[value.name] = value
     above = layout.blocks[0].start if bare and layout.blocks else 0
     stop = layout.heading.names if layout.heading else above
+    units = _units_apart(layout, bare=bare)
     for line in layout.lines[:stop]:
         said = _said(line.rstrip())
         # a digit before the colon: a time of day
         if len(values) >= _MOST:
             break
         if said and not said["key"][-1].isdigit():
-            _keep(values, _value(said))
+            _keep(values, _value(said, units))
         else:
             strokes = False
             for phrase in phrases(line):
@@ -167,11 +171,18 @@ def _said(line: str) -> re.Match[str] | None:
     return _SAYS.match(line) or _IN_CELLS.match(line)
 
 
-def _value(said: re.Match[str]) -> DraftValue:
+def _units_apart(layout: Layout, *, bare: bool) -> dict[str, str]:
+    """Return units that stand in lines of their own, by whose they are: "Stroke unit: mm"."""
+    said = [(_UNIT_OF.match(squeezed(key)), text) for key, text in words_said(layout, bare=bare)]
+    return {match["key"]: text.strip(" []()") for match, text in said if match}
+
+
+def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:
     key, unit = said["key"], (said["unit"] or "").strip("[]()") or None
     bracket = _BRACKETS.search(key)
     if unit is None and bracket and is_unit(bracket[1]):
         unit, key = bracket[1], key[: bracket.start()]
+    unit = unit or units.get(squeezed(key))
     digits = r"[-+\d.eE]+" if said.re is _IN_CELLS else r"[-+\d.,eE]+"
     pattern = r"^\s*" + escaped(said["before"].strip()) + rf"\s*({digits})"
     line = said.string.strip()
@@ -186,6 +197,24 @@ def _value(said: re.Match[str]) -> DraftValue:
             read_as = options[0].unit or unit
             return DraftValue(quantity, pattern, read_as, None, line, own_unit=unit, key=plain)
     return DraftValue(_name(key), pattern, unit, dimension, line, own_unit=unit, key=plain)
+
+
+def without_unit(layout: Layout, *, bare: bool = False) -> list[str]:
+    """Return the lines that state a length, a load or how often strokes come, but no unit of it.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    bare
+        Whether heights are meant: lines that state how far they lie apart, or how long they are.
+    """
+    wanted = (PITCH, PROFILE_LENGTH) if bare else (RADIUS, DIAMETER, ARM, STROKE, FREQUENCY, LOAD)
+    return [
+        value.text
+        for value in find_values(layout, bare=bare)
+        if value.own_unit is None and any(words.search(value.key) for words in wanted)
+    ]
 
 
 def _of_phrase(phrase: Phrase) -> DraftValue | None:

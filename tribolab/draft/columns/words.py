@@ -114,7 +114,7 @@ def split_unit(label: str) -> tuple[str, str | None]:
     wide = _WIDE_BRACKETS.match(label.strip())
     if wide and is_unit(wide["unit"].strip()):
         return wide["name"], wide["unit"].strip()
-    if squeezed(label) in _SYMBOLS:
+    if squeezed(label) in _SYMBOLS or _is_ratio(label):
         return _symbol_and_unit(label) or (label, None)
     for gap in re.finditer(r"\s+in\s+|[\s_/,]+", label.strip()):
         name, unit = label.strip()[: gap.start()], label.strip()[gap.end() :]
@@ -131,9 +131,16 @@ def split_unit(label: str) -> tuple[str, str | None]:
 def _symbol_and_unit(label: str) -> tuple[str, str] | None:
     """Separate the unit from a symbol with which it happens to make another: Ff_N is no F/Fn.
 
+    Behind a stroke stands the unit, as the standards on quantities write it (ISO 80000-1).
+
     >>> _symbol_and_unit("Ff_N"), _symbol_and_unit("F_N"), _symbol_and_unit("t_s")
     (('Ff', 'N'), None, ('t', 's'))
+    >>> _symbol_and_unit("Ff/N"), _symbol_and_unit("F / N"), _symbol_and_unit("Fx/Fz")
+    (('Ff', 'N'), ('F', 'N'), None)
     """
+    name, _, unit = (part.strip() for part in label.rpartition("/"))
+    if name and is_unit(unit) and not converts(unit, "1"):
+        return name, unit
     name, _, unit = label.strip().rpartition("_")
     meant = [word.quantity for word in RUN_WORDS if squeezed(name) in word.symbols]
     fits = any(converts(unit, quantity(q).unit) for q in meant if quantity(q).unit != "1")
@@ -167,7 +174,7 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     >>> matches("Reibkraft", "N")[0].quantity, matches("T", "degC")[0].quantity
     ('friction_force', 'temperature')
     """
-    text = squeezed(name)
+    text = "mu" if _is_ratio(name) else squeezed(name)
     own = squeezed(device_of(name)[1]) if "." in name else ""
     if not text or _NUMBERED.fullmatch(name.strip()):
         return []
@@ -195,6 +202,17 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     for match in sorted(options, key=lambda match: -match.score):
         best.setdefault(match.quantity, match)
     return list(best.values())
+
+
+def _is_ratio(name: str) -> bool:
+    """Whether a name divides a symbol of the friction force by one of the normal force.
+
+    >>> _is_ratio("F_R/F_N"), _is_ratio("F / W"), _is_ratio("v/s")
+    (True, True, False)
+    """
+    force, _, load = (squeezed(part) for part in name.partition("/"))
+    over = {word.quantity: word.symbols for word in RUN_WORDS}
+    return force in (*over["friction_force"], "f") and load in (*over["normal_force"], "n")
 
 
 @functools.lru_cache(maxsize=256)

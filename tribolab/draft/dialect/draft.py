@@ -12,6 +12,7 @@ from tribolab.aliases import PathLike
 from tribolab.draft.columns.columns import first_cells_of, understand
 from tribolab.draft.columns.words import matches
 from tribolab.draft.dialect.drafted import SHOWN, Drafted
+from tribolab.draft.dialect.questions import unsaid_distance
 from tribolab.draft.dialect.show import draft_html
 from tribolab.draft.dialect.toml import dialect_toml
 from tribolab.draft.file.layout import Layout, find_layout
@@ -21,11 +22,6 @@ from tribolab.io.dialects.cells import split_name
 from tribolab.io.dialects.find import recognise
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, is_results, is_surftest_results, named_values, peek
-
-HEIGHTS = (
-    "heights without positions, of which the file does not say how far they lie apart: that is to "
-    'be filled in, pitch = "(a length)"'
-)
 
 
 class Draft(Drafted):
@@ -91,7 +87,11 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
     )
     if toml:
         _validate(draft)
-    return draft._replace(answer=HEIGHTS) if not toml and holds_heights(draft) else draft
+    return (
+        draft._replace(answer=unsaid_distance(draft))
+        if not toml and holds_heights(draft)
+        else draft
+    )
 
 
 def _understood(file: File) -> tuple[Layout, Understood]:

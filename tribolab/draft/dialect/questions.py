@@ -10,11 +10,16 @@ from typing import NamedTuple
 
 from tribolab.draft.columns.follows import Follows, lacking, unknown_of, what_follows
 from tribolab.draft.columns.turning import torque_of
+from tribolab.draft.columns.values import without_unit
 from tribolab.draft.dialect.drafted import Drafted
 from tribolab.draft.model import NO_NUMBERS, DraftColumn, Understood
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
 
+HEIGHTS = (
+    "heights without positions, of which the file does not say how far they lie apart: that is to "
+    'be filled in, pitch = "(a length)"'
+)
 _OF_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 _WANTED = {*_OF_FRICTION, "normal_force", "normal_stress", "sliding_velocity", "position", "time"}
 _LIKE_NUMBER = re.compile(r"[<>~]?\s*[+-]?\d[\d.,' ]*(?:[eE][+-]?\d+)?\s*[A-Za-z%µ°/]{0,6}")
@@ -127,7 +132,39 @@ def missing_words(draft: Drafted) -> list[str]:
     """
     if draft.layout is None or draft.understood is None or draft.kind != "run":
         return []
-    return lacking(draft.understood, what_follows(draft.layout, draft.understood))
+    lacks = lacking(draft.understood, what_follows(draft.layout, draft.understood))
+    return lacks + [f"the unit of '{line}', which is not used" for line in _unused(draft, lacks)]
+
+
+def without_unit_and_missed(draft: Drafted) -> list[str]:
+    """Return the lines that may say what a run lacks, had they a unit: 'Stroke=12'.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.draft.dialect.draft.draft_dialect`.
+    """
+    if draft.layout is None or draft.understood is None or draft.kind != "run":
+        return []
+    return _unused(draft, lacking(draft.understood, what_follows(draft.layout, draft.understood)))
+
+
+def _unused(draft: Drafted, lacks: Sequence[str]) -> list[str]:
+    lines = without_unit(draft.layout) if draft.layout and lacks else []
+    return [shown(line, 40) for line in lines]
+
+
+def unsaid_distance(draft: Drafted) -> str:
+    """Return what heights without positions leave open, with the line that says too little of it.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.draft.dialect.draft.draft_dialect`; its answer is `HEIGHTS`.
+    """
+    lines = without_unit(draft.layout, bare=True) if draft.layout else []
+    said = ", ".join(f"'{shown(line, 40)}'" for line in lines)
+    return f"{HEIGHTS}; of {said} the unit is not said" if lines else HEIGHTS
 
 
 class GuessedError(ReadError):

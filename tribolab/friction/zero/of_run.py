@@ -194,4 +194,5 @@ def _fold(
     rest = float(median(rests.value)) if rests is not None else float("nan")
     normal = run["normal_force"].values if "normal_force" in run and parts else None
     pressed = Pressed(normal, parts, max(0.5, UNLOADED))
-    return folded(ForceTrace(run[name].values, pressed, parts, mean, error, direction, rest))
+    force, speed = run[name].values, segments["sliding_speed"].values
+    return folded(ForceTrace(force, pressed, parts, mean, error, direction, rest, speed=speed))

@@ -18,6 +18,7 @@ _FEW = 0.1  # share of such turns that a spike or a slip may take below both lev
 _MOST = 0.5  # share of the reversals that have to show it
 _LIKE = 0.25  # of their mean: strokes that differ by less are of one level
 _CLEAR = 5.0  # standard errors beyond which levels differ
+_ONE_SPEED = 0.2  # of the faster one: strokes whose speeds differ by less may be to and fro
 
 
 class Pressed:
@@ -72,6 +73,8 @@ class ForceTrace(NamedTuple):
         Reading of the force in rests without load, NaN without one.
     turned
         By what the force is multiplied.
+    speed
+        [m/s] Speed of each segment (segment), if it is known.
     """
 
     force: np.ndarray
@@ -82,6 +85,7 @@ class ForceTrace(NamedTuple):
     sign: np.ndarray
     rest: float
     turned: float = 1.0
+    speed: np.ndarray | None = None
 
     def within(self, part: slice) -> np.ndarray:
         """Return the finite readings of a stretch."""
@@ -91,6 +95,13 @@ class ForceTrace(NamedTuple):
     def is_below(self, part: slice) -> bool:
         """Whether all readings of a stretch are below zero."""
         return bool(np.nanmax(self.turned * self.force[part]) < 0)
+
+    def alike(self, number: int) -> bool:
+        """Whether a segment and the next may be strokes to and fro: at one speed."""
+        if self.speed is None:
+            return True
+        slow, fast = sorted(np.abs(self.speed[number : number + 2]).tolist())
+        return bool(slow >= (1 - _ONE_SPEED) * fast)
 
     def between(self, number: int) -> np.ndarray:
         """Return the finite readings under load from a segment to the next."""
@@ -232,7 +243,9 @@ def _one_way(trace: ForceTrace) -> Fold:
             why = "strokes are by turns above and below their mean by what rests without load read"
             return Fold("rectified", why)
         return SIGNED
-    stops = (_touches(trace, i) for i in range(len(trace.parts) - 1))
+    # what starts anew at another speed stands still first, and turns round no more than before
+    turns = (i for i in range(len(trace.parts) - 1) if trace.alike(i))
+    stops = (_touches(trace, i) for i in turns)
     touched = [touches for touches in stops if touches is not None]
     dips = sum(touched) / len(touched) if touched else 0.0
     if dips >= _MOST:
