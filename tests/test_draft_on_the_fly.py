@@ -1,5 +1,6 @@
 """Files that no dialect knows: read by what they say themselves, or asked about all at once."""
 
+import json
 import pickle
 import re
 import tomllib
@@ -10,6 +11,7 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
+from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.draft.dialect.questions import GuessedError
 from tribolab.errors import ReadError
 
@@ -164,6 +166,68 @@ def test_settings_are_used_with_their_units_and_told_without(settings, speed, tm
     assert run.attrs.get("without_unit") == ("Stroke=12" if speed == "none" else None)
     if speed == "stroke":
         assert float(run.sliding_velocity.max()) == pytest.approx(0.4 * np.pi * 0.012, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "clock", "epoch", "recorded"),
+    [
+        ("timestamp", lambda t: np.round(1.7726e12 + 1e3 * t), "unix", "2026-03-04"),
+        ("timestamp", lambda t: 1.7726e9 + t, "unix", "2026-03-04"),
+        ("Time [s]", lambda t: 3.8554512e9 + t, "labview", "2026-03-04"),
+        ("Date", lambda t: 46085.25 + t / 86400, "excel", "2026-03-04"),
+        ("millis", lambda t: np.round(5e3 + 1e3 * t), None, None),
+        ("micros", lambda t: np.round(5e6 + 1e6 * t), None, None),
+    ],
+)
+def test_a_clock_says_by_its_numbers_since_when_it_counts(name, clock, epoch, recorded, tmp_path):
+    time = np.arange(200) / 50
+    file = tmp_path / "logger.csv"
+    rows = "\n".join(f"{c:.12f};{5 + n % 3};30;2" for n, c in enumerate(clock(time)))
+    file.write_text(f"{name};Ff [N];Fn [N];v [mm/s]\n{rows}\n")
+    run = tl.read(file)
+    np.testing.assert_allclose(run.time, time, atol=1e-5)
+    assert str(run.attrs.get("recorded_at"))[:10] == str(recorded)
+    draft = draft_dialect(file)
+    assert draft.dialect.time.epoch == epoch
+
+
+def test_seconds_since_the_start_of_a_counter_are_no_date(tmp_path):
+    """A counter of milliseconds that has run for a fortnight has the size of seconds since 1970."""
+    file = tmp_path / "logger.csv"
+    rows = "\n".join(f"{1_200_000_000 + 20 * n};{5 + n % 3};30;2" for n in range(200))
+    file.write_text(f"timestamp;Ff [N];Fn [N];v [mm/s]\n{rows}\n")
+    with pytest.raises(GuessedError, match="time is in ms"):
+        tl.read(file)
+
+
+def test_turns_and_a_radius_make_the_way(tmp_path):
+    file = tmp_path / "disc.csv"
+    rows = "\n".join(f"{n / 10},{5 + n % 3},30,{n / 40}" for n in range(100))
+    file.write_text(f"Track radius: 20 mm\nTime [s],Ft [N],Fn [N],Revolutions\n{rows}\n")
+    run = tl.read(file)
+    np.testing.assert_allclose(run.position, 2 * np.pi * 0.02 * np.arange(100) / 40)
+    rows = "\n".join(f"{n / 10},{5 + n % 3},30,{n // 40}" for n in range(100))  # counted
+    file.write_text(f"Track radius: 20 mm\nTime [s],Ft [N],Fn [N],Revolutions\n{rows}\n")
+    assert "position" not in tl.read(file)
+
+
+@pytest.mark.parametrize("name", ["Stage X", "x_axis", "Slider pos", "X stage"])
+def test_the_place_of_a_stage_is_the_position_where_nothing_turns(name, tmp_path):
+    file = tmp_path / "stage.csv"
+    rows = "\n".join(f"{n / 10},{5 + n % 3},30,{n / 40}" for n in range(100))
+    file.write_text(f"Time [s],Ft [N],Fn [N],{name} [mm]\n{rows}\n")
+    np.testing.assert_allclose(tl.read(file).position, 1e-3 * np.arange(100) / 40)
+
+
+def test_json_is_no_table_but_may_stand_above_one(tmp_path):
+    file = tmp_path / "run.json"
+    rows = "\n".join(f"{n / 10},{5 + n % 3},30,2" for n in range(100))
+    about = {"operator": "me", "gain": [1, 2]}
+    file.write_text(json.dumps({"time": list(range(5000)), "force": [1.0] * 5000}))
+    with pytest.raises(tl.TribolabError, match="this is JSON"):
+        tl.read(file)
+    file.write_text(f"{json.dumps(about, indent=1)}\nTime [s],Ft [N],Fn [N],v [mm/s]\n{rows}\n")
+    assert tl.read(file).sizes["time"] == 100
 
 
 def test_a_distance_of_heights_without_a_unit_is_told(tmp_path):

@@ -345,3 +345,23 @@ def test_zeros_before_the_sliding_are_no_end_of_the_range(in_sliding):
     )
     found = check_run(run)
     assert ("end of the range" in message(found, "saturation")) == in_sliding
+
+
+@pytest.mark.parametrize(("factor", "status"), [(1.0, "pass"), (1.2, "suspect")])
+def test_a_recorded_coefficient_that_its_forces_do_not_give_is_told(factor, status):
+    """The arm of a lever may be right in one of both alone."""
+    rng = np.random.default_rng(4)
+    sign = np.repeat(np.tile([1.0, -1.0], 4), 400)
+    force = 7 * sign + 0.5 + 0.02 * rng.standard_normal(sign.size)  # an offset is none of it
+    run = xr.Dataset(
+        {
+            "sliding_velocity": ("time", 1e-3 * sign),
+            "friction_force": ("time", force),
+            "normal_force": ("time", 20 + 0.01 * rng.standard_normal(sign.size)),
+            "friction_coefficient": ("time", factor * np.abs(force) / 20),
+        },
+        {"time": np.arange(sign.size) / 50},
+    )
+    rows = [row for row in check_run(run).rows if row["check"] == "said_elsewhere"]
+    assert [row["status"] for row in rows] == [status]
+    assert f"records a coefficient of {0.35 * factor:.2g}" in rows[0]["message"]

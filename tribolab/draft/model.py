@@ -21,7 +21,8 @@ class DraftColumn(NamedTuple):
     has to say; `file_unit` what the file says. Only a column with ``used`` is read.
     `group` is that of a TDMS channel. A converter's counts are `counted`: what one is worth is to
     be said.
-    `options` is what it may be instead, where something is guessed; `form` that of its dates.
+    `options` is what it may be instead, where something is guessed; `form` that of its dates;
+    `epoch` the moment that a column of time counts from.
     """
 
     place: int
@@ -39,6 +40,7 @@ class DraftColumn(NamedTuple):
     note: str = ""
     fill_in: str = ""
     form: str = ""
+    epoch: str = ""
     group: str = ""
     counted: bool = False
 

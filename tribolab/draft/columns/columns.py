@@ -11,6 +11,7 @@ import pandas as pd
 from tribolab.draft.columns.assign import SIGNALS, assigned
 from tribolab.draft.columns.bridges import calibrated_forces
 from tribolab.draft.columns.either import told_by_load
+from tribolab.draft.columns.epochs import DATES, counted_from
 from tribolab.draft.columns.factors import missing_factors
 from tribolab.draft.columns.fill_in import Bare
 from tribolab.draft.columns.lengths import (
@@ -21,7 +22,7 @@ from tribolab.draft.columns.lengths import (
 )
 from tribolab.draft.columns.ratio import disagreement, force_or_ratio
 from tribolab.draft.columns.sampling import find_sampling
-from tribolab.draft.columns.words import COUNTS, Match, is_count, matches, split_unit
+from tribolab.draft.columns.words import COUNTS, Match, is_count, matches, split_unit, squeezed
 from tribolab.draft.file.header import converts, measures_something
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.lvm import units_above
@@ -321,6 +322,11 @@ def _timed(bare: list[Bare], run: list[list[Match]], numbers: np.ndarray) -> lis
     """Take the one column in a unit of time that rises for time, where no name says which it is."""
     if any(options and options[0].quantity == "time" for options in run):
         return run
+    for place, (name, unit, _) in enumerate(bare):
+        dated = squeezed(name) in DATES and not run[place]
+        if dated and counted_from(numbers[:, place], unit, dated=True):
+            named = [Match("time", 1.0, None)]
+            return [named if index == place else options for index, options in enumerate(run)]
     rising = [
         place
         for place, (_, unit, _) in enumerate(bare)

@@ -6,8 +6,9 @@ import re
 
 import numpy as np
 
+from tribolab.draft.columns.epochs import DATES, counted_from
 from tribolab.draft.columns.roles import role_of
-from tribolab.draft.columns.words import KNOWN_WORD, Match, is_count
+from tribolab.draft.columns.words import KNOWN_WORD, Match, is_count, squeezed
 from tribolab.draft.model import DraftColumn, Kind, other_units, time_unit
 from tribolab.errors import shown
 from tribolab.quantities import quantity
@@ -59,6 +60,12 @@ def filled_in(
         written = option.unit
         guessed.append(f"'{shown(unit)}' means {option.unit}")
     fill_in = ""
+    dated = squeezed(bare[0]) in DATES
+    counted = (
+        counted_from(values, unit, dated=dated)
+        if option.quantity == "time" and not column.counted
+        else None
+    )
     if role_of(bare[0]) == "extreme" and option.quantity in FORCES:
         guessed.append("by its name it is not the signal but its extremes or scatter")
     factor = _FACTOR.search(column.label)
@@ -70,7 +77,9 @@ def filled_in(
     elif unit is None and si_unit not in ("", "1"):
         stands = _BRACKETS.search(column.label)
         why = f", for '{shown(stands[1])}' is no unit that is known" if stands else ""
-        if option.quantity == "time":
+        if counted is not None:
+            written = counted.unit
+        elif option.quantity == "time":
             written = time_unit(values)
             guessed.append(f"time is in {written}{why}")
             options = other_units("s", written)
@@ -102,4 +111,5 @@ def filled_in(
         options=options,
         note=note or ("" if finite.size else "no value in this file"),
         fill_in=fill_in,
+        epoch=counted.epoch if counted is not None else "",
     )

@@ -17,7 +17,7 @@ from tribolab.draft.columns.strokes import (
     is_frequency,
     is_length,
 )
-from tribolab.draft.columns.turning import angle_of, radius_of, torque_of
+from tribolab.draft.columns.turning import angle_of, radius_of, torque_of, turns_of
 from tribolab.draft.columns.values import DraftValue, find_values, words_said
 from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.header import converts
@@ -208,7 +208,7 @@ def _with_speed(
             "sliding_velocity", "rotation_speed * radius", "turns and a radius"
         )
         return _and(before, formula, (), track.symbols)._replace(speed=SpeedBy("none"))
-    angle = None if turning or not track.formula else angle_of(understood.columns)
+    angle = None if turning or not track.formula else _angle(understood)
     if angle is not None:
         formula = DraftedFormula("position", f"angle * {track.formula}", "an angle and a radius")
         symbols = (("angle", angle), *track.symbols)
@@ -241,12 +241,18 @@ def _with_speed(
     )
 
 
+def _angle(understood: Understood) -> DraftColumn | None:
+    columns = understood.columns
+    return angle_of(columns) or turns_of(columns, understood.numbers)
+
+
 def _with_set_speed(before: Follows, values: Sequence[DraftValue]) -> Follows:
     """Let the speed that the text states be that of the run, which is asked about."""
     stated = [value for value in values if value.name == "set_speed"]
     if len(stated) != 1:
         return before
-    guess = f"'{stated[0].text}' is the sliding speed all along"
+    each = stated[0].source == "step"
+    guess = f"'{stated[0].text}' is the sliding speed {'of its step' if each else 'all along'}"
     return before._replace(
         speed=SpeedBy("set speed", guess=guess, options=("not known",)),
         values=(*before.values, stated[0]),

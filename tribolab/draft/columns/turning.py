@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 
+import numpy as np
+
 from tribolab.draft.columns.stated_words import is_radius
 from tribolab.draft.columns.words import split_unit, squeezed
 from tribolab.draft.file.header import converts
@@ -17,6 +19,11 @@ _TORQUE = re.compile(
 )
 _TORQUE_UNIT = re.compile(r"[cmkuµμ]?N\s?[·⋅*.]?\s?[cmuµμ]?m")  # and no J
 _ANGLE = re.compile(r"angle|winkel|angolo|angulo|角|phi|^(?:theta|rotation)$")
+_TURNS = re.compile(
+    r"^(?:number|no|nr|n)?(?:of)?(?:revolution|turn|rev|rotation|umdrehung)(?:s|en)?$"
+)
+_UNITS_OF_TURNS = {"", "-", "1", "rev", "revs", "turn", "turns", "U", "revolutions"}
+_WHOLE = 0.5  # share of whole numbers from which a count goes on by whole turns
 
 
 def torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
@@ -42,6 +49,27 @@ def angle_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
         The columns as they are understood.
     """
     return _only_column(columns, _ANGLE.search, "rad")
+
+
+def turns_of(columns: Sequence[DraftColumn], numbers: np.ndarray) -> DraftColumn | None:
+    """Return the one column that counts turns and parts of them, which is an angle.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    numbers
+        Their numbers (rows, columns) as written: whole ones are counted cycles.
+    """
+    fitting = []
+    for column in columns:
+        name, unit = _name_and_unit(column)
+        turns = numbers[:, column.place - 1]
+        parts = np.isfinite(turns).all() and np.mean(turns == np.round(turns)) < _WHOLE
+        called = _TURNS.search(squeezed(name)) and unit in _UNITS_OF_TURNS
+        if called and parts and not column.used:
+            fitting.append(column._replace(unit="turn"))
+    return fitting[0] if len(fitting) == 1 else None
 
 
 def radius_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:

@@ -31,6 +31,15 @@ _OF_DEVICE = 0.98
 KNOWN_WORD = 0.7  # a name of which so much is a known word is no guess
 # "Stage.X", "DAQ.Fz": letters on both sides of the last point
 _DEVICE = re.compile(r"(?P<device>.*[^\W\d]\w*)\.(?P<name>[^\W\d].*)$")
+_STAGE = re.compile(
+    r"(?P<device>(?:stage|axis|slider|carriage|motor|achse|schlitten|tisch|platine)s?)[\s_-]+"
+    r"(?P<name>x|pos(?:ition)?)",
+    re.IGNORECASE,
+)
+_OF_STAGE = re.compile(
+    r"(?P<name>x)[\s_-]*(?P<device>stage|axis|slider|carriage|motor|achse|schlitten|tisch|platine)",
+    re.IGNORECASE,
+)
 _LONGEST = 1000  # characters of a name that are looked at: searches take their square
 _AXIS = re.compile(r"stage|axis|achse|carriage|table|tisch|slider|schlitten|motor|gantry|platine")
 _WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［］【】]+)[）］】]$")
@@ -47,6 +56,9 @@ _UNIT_WORDS = {
     **{"н": "N", "мн": "mN", "кн": "kN"},
 }
 COUNTS = "counts"
+# columns of time that are called by their unit, as the clocks of microcontrollers are
+_CLOCKS = {"millis": "ms", "msec": "ms", "msecs": "ms", "ms": "ms", "micros": "us", "usec": "us"}
+_CLOCKS |= {"usecs": "us", "mus": "us", "sec": "s", "secs": "s"}
 # units in which nothing else is measured, whatever the name
 _TURNS = re.compile(r"rpm|(?:rev|r|U|tr|ot|obr|giri|omw)\.?/\s?(?:min|s)", re.IGNORECASE)
 _NUMBERED = re.compile(r"#?\s*(?:N[°ºr]|No|№)\.?", re.IGNORECASE)  # rows, and not how fast it turns
@@ -82,8 +94,13 @@ def device_of(name: str) -> tuple[str, str]:
 
     >>> device_of("DAQ.Fz"), device_of("Coeff. of friction"), device_of("Fz")
     (('DAQ', 'Fz'), ('', 'Coeff. of friction'), ('', 'Fz'))
+    >>> device_of("Stage X"), device_of("x_axis")
+    (('Stage', 'X'), ('axis', 'x'))
     """
-    parts = _DEVICE.match(name.strip()) if len(name) <= _LONGEST else None
+    parts = None
+    if len(name) <= _LONGEST:
+        plain = name.strip()
+        parts = _DEVICE.match(plain) or _STAGE.fullmatch(plain) or _OF_STAGE.fullmatch(plain)
     return (parts["device"], parts["name"]) if parts else ("", name)
 
 
@@ -114,6 +131,8 @@ def split_unit(label: str) -> tuple[str, str | None]:
     wide = _WIDE_BRACKETS.match(label.strip())
     if wide and is_unit(wide["unit"].strip()):
         return wide["name"], wide["unit"].strip()
+    if squeezed(label) in _CLOCKS:
+        return "time", _CLOCKS[squeezed(label)]
     if squeezed(label) in _SYMBOLS or _is_ratio(label):
         return _symbol_and_unit(label) or (label, None)
     for gap in re.finditer(r"\s+in\s+|[\s_/,]+", label.strip()):
@@ -175,7 +194,8 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     ('friction_force', 'temperature')
     """
     text = "mu" if _is_ratio(name) else squeezed(name)
-    own = squeezed(device_of(name)[1]) if "." in name else ""
+    device, of_device = device_of(name)
+    own = squeezed(of_device) if device else ""
     if not text or _NUMBERED.fullmatch(name.strip()):
         return []
     options = []

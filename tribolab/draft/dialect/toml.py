@@ -182,6 +182,8 @@ def _time_table(understood: Understood) -> str:
             if not has_day(column.form):
                 hours = "%H" in column.form or "%I" in column.form
                 lines.append(f'wrap = "{"24 h" if hours else "60 min"}"')
+        elif column.used and column.epoch:
+            lines.append(f"epoch = {quoted(column.epoch)}    # tells when it was recorded")
     timed = any(c.used and c.quantity == "time" for c in understood.columns)
     if understood.period:
         lines.append('source = "period"    # the column holds what has passed since the row before')

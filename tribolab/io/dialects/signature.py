@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import zipfile
 from pathlib import Path
@@ -26,6 +27,7 @@ _MAGIC = {
     b"FEA1": "feather",
     b"\xd0\xcf\x11\xe0": "excel",
 }
+_JSON = re.compile(rb'(?:\xef\xbb\xbf)?\s*(?:\{\s*"[^"]*"\s*:|\[\s*[\[{])')
 _SAME = {("netcdf", "hdf5"), ("text", "binary")}  # what else a file of a format may be
 _FOREIGN = {
     b"PK\x03\x04": "a zip or Office file; export a table as text (csv)",
@@ -88,6 +90,18 @@ def fits_format(format_of_file: str, format_of_dialect: str) -> bool:
     return format_of_file == format_of_dialect or (format_of_file, format_of_dialect) in _SAME
 
 
+def _is_json(head: bytes) -> bool:
+    """Whether a file is JSON as a whole, and no table below a line of it."""
+    if not _JSON.match(head):
+        return False
+    text = head.decode("utf-8-sig", errors="replace").lstrip()
+    try:
+        end = json.JSONDecoder().raw_decode(text)[1]
+    except ValueError:  # it goes on beyond what is looked at
+        return True
+    return not text[end:].strip(" \t\r\n,") or text[end:].lstrip()[0] in "{[,"
+
+
 def _format(path: Path, head: bytes, *, binary: bool) -> str:
     for magic, name in _MAGIC.items():
         if head.startswith(magic):
@@ -108,6 +122,9 @@ def _format(path: Path, head: bytes, *, binary: bool) -> str:
             where=path,
             cure=cures.PERHAPS_PROFILE,
         )
+    if _is_json(head):
+        cure = "write its columns as a table, e.g. in Python pandas.DataFrame(...).to_csv(...)"
+        raise ReadError("this is JSON, of which no table is read", where=path, cure=cure)
     return "text"
 
 

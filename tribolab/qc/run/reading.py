@@ -71,9 +71,45 @@ def _said_elsewhere(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
         text = "not in the file, and taken as the instrument's description has it: "
         text += str(attrs["assumed"]).replace("_", " ")
         results.append(Result("pass", "settings", text, noted=True))
+    results += _recorded_coefficient(subject, limits)
     if results:
         return results
     raise Skip("nothing that the file does not say was taken for it")
+
+
+def _recorded_coefficient(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    """Compare the coefficient that a file records with that of its forces, in the segments."""
+    run = subject.run
+    if not ({"friction_coefficient", "friction_force"} <= set(run.variables) and subject.sliding):
+        return []
+    if "normal_force" not in run or "friction_coefficient" not in subject.friction:
+        return []
+    recorded = np.abs(subject.segment_means("friction_coefficient"))
+    # neither the zeros that are taken off here nor those that the instrument took off differ
+    raw = np.abs(subject.segment_means("friction_force"))
+    raw = raw / np.abs(subject.segment_means("normal_force"))
+    found = np.abs(subject.friction["friction_coefficient"].values)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        apart = np.minimum(np.abs(recorded / raw - 1), np.abs(recorded / found - 1))
+    known = np.isfinite(apart) & (recorded > 0)
+    if not known.any():
+        return []
+    middle = float(median(apart[known]))
+    levels = (float(median(values[known])) for values in (recorded, found))
+    text = "the file records a coefficient of {:.4g}, its forces give {:.4g}".format(*levels)
+    if middle <= limits["apart"]:
+        return [Result("pass", "friction_coefficient", text, middle)]
+    return [
+        Result(
+            "suspect",
+            "friction_coefficient",
+            f"{text}, which is used",
+            middle,
+            cure="See which is right: a gain, the arm of a lever or the load that was set may be "
+            "in one of them alone. To use what the file records, name no column of "
+            "'friction_force' in the instrument's description.",
+        )
+    ]
 
 
 READING_CHECKS = (
@@ -93,10 +129,10 @@ READING_CHECKS = (
     Check(
         "said_elsewhere",
         27,
-        "Is what the file does not say itself right for it?",
+        "Is what the file does not say itself right for it, and does what it says twice agree?",
         "State what holds for this machine in a copy of the instrument's description: the default "
         "of its [[value]].",
-        {},
+        {"apart": Limit(0.1, "1", "an instrument's own filter and zero make less")},
         _said_elsewhere,
     ),
 )

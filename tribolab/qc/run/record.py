@@ -153,9 +153,16 @@ def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
             told += "measured, or its sensor is dead; call a set load set_normal_force"
             results.append(Result("suspect", name, told, 0.0, flags=good))
             continue
-        flags = signals.stuck(values, limits["chance"])
+        flags = _without_rests(subject, values, signals.stuck(values, limits["chance"]))
         results.append(sample_result(name, flags, subject.time, text, fail_share=limits["fail"]))
     return results
+
+
+def _without_rests(subject: RunSubject, values: np.ndarray, flags: np.ndarray) -> np.ndarray:
+    """Take back flags of zeros beside the sliding: what nothing loads yet reads none."""
+    if not (subject.sliding and (flags == SUSPECT).any()):
+        return flags
+    return np.where((values == 0) & ~subject.in_segments, np.int8(GOOD), flags)
 
 
 def _is_set(subject: RunSubject, load: np.ndarray) -> bool:
@@ -169,10 +176,7 @@ def _is_set(subject: RunSubject, load: np.ndarray) -> bool:
 def _saturation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = []
     for name, values in one_by_one(subject.force_signals.items()):
-        flags = signals.saturation(values)
-        if subject.sliding and (flags == SUSPECT).any():
-            # a sensor that nothing loads yet reads none: what is cut off is cut off in sliding, too
-            flags = np.where((values == 0) & ~subject.in_segments, np.int8(GOOD), flags)
+        flags = _without_rests(subject, values, signals.saturation(values))
         ends = f"{np.nanmax(values):.6g} or {np.nanmin(values):.6g} {subject.unit(name)}"
         text = f"{{count:sample lies|samples lie}} at the end of the range ({ends}): "
         text += "cut off there, {where}"
