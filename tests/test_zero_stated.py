@@ -55,6 +55,30 @@ def test_runs_of_a_campaign_lend_their_zeros_to_one_that_has_none(tmp_path):
     assert set(friction["zero_from"].values) == {"zeros of 2 other runs on this instrument"}
 
 
+@pytest.mark.parametrize("layout", ["the same", "another"])
+def test_of_drafted_files_only_those_of_one_layout_lend_a_zero(tmp_path, layout):
+    """Two programs' files are two rigs' where nobody says otherwise."""
+    runs = {f"{i}.csv": programme(BOTH, loaded_rests=True, seed=i) for i in range(2)}
+    runs["one_way.csv"] = programme([SPEED, None, SPEED], loaded_rests=True, seed=9)
+    write_campaign(tmp_path, runs)
+    for file in (tmp_path / "raw").iterdir():
+        ours = "time [s];speed [m/s];Fx [N];Fz [N]"
+        theirs = "Zeit [s];Geschwindigkeit [m/s];Reibkraft [N];Normalkraft [N]"
+        other = layout == "another" and file.name == "one_way.csv"
+        rows = file.read_text("utf-8").splitlines()[1:]
+        text = "\n".join([theirs if other else ours, *(row.replace(",", ";") for row in rows)])
+        file.write_text(text, "utf-8")
+    text = (tmp_path / "campaign.toml").read_text("utf-8")
+    text = text.replace('instrument = "one_rig.toml"\n', "")
+    (tmp_path / "campaign.toml").write_text(text, "utf-8")
+    outcome = process(load_campaign(tmp_path / "campaign.toml"), tmp_path / "results")
+    [run] = [run for run in outcome.runs if run.name == "one_way"]
+    friction = read_netcdf(tmp_path / "results" / run.data_file, group="friction")
+    lent = str(friction.attrs["offset"]) == "other runs"
+    assert lent == (layout == "the same")
+    assert (run.quality == "suspect") == (not lent)
+
+
 @pytest.mark.parametrize("entry", ["", 'zero_uncertainty = "1 N"\n', "rectified = true\n"])
 def test_what_the_campaign_file_states_of_the_zero_reaches_the_result(tmp_path, entry):
     run = programme([SPEED, None, SPEED], zero=lambda u: 0.5 + 0 * u, loaded_rests=True)

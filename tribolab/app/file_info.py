@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
+_PROVENANCE |= {"drafted_layout"}
 _LARGEST = 2_000_000  # heights of a scan whose roughness is told at once
 _LONGEST = 300  # letters of what a file says of itself
 _TOLD_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}

@@ -6,6 +6,7 @@ The face of `tribolab.io.runs` for whoever does not know beforehand what wrote a
 from __future__ import annotations
 
 import functools
+import hashlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
@@ -39,7 +40,8 @@ def read_run(
     -------
     xarray.Dataset
         As from `tribolab.read`. Of what was drafted, ``instrument`` says so, ``to_keep_it``
-        how to write it down, and ``without_unit`` what could not be used for want of a unit.
+        how to write it down, ``without_unit`` what could not be used for want of a unit, and
+        ``drafted_layout`` is one checksum for files of one layout.
 
     Raises
     ------
@@ -117,5 +119,15 @@ def _told(path: Path) -> dict[str, str]:
 
     told = {"instrument": DRAFTED, "to_keep_it": how_to_keep(path)}
     draft = draft_of(path)
-    missed = without_unit_and_missed(draft) if draft is not None else []
-    return {**told, "without_unit": "; ".join(missed)} if missed else told
+    if draft is None:
+        return told
+    missed = without_unit_and_missed(draft)
+    told |= {"without_unit": "; ".join(missed)} if missed else {}
+    return {**told, "drafted_layout": _checksum(draft)}
+
+
+def _checksum(draft: Draft) -> str:
+    """Return what files of one layout have in common: the draft, but for names and remarks."""
+    lines = (line for line in draft.toml.splitlines() if not line.startswith(("#", "title =")))
+    body = "\n".join(line for line in lines if line != f'name = "{draft.name}"')
+    return hashlib.sha256(body.encode()).hexdigest()[:16]

@@ -250,7 +250,7 @@ def process_run(task: RunTask) -> RunAnswer:
         segments_rejected=int(rejected(segments).sum()),
         quality_as_found=analysed.quality_as_found,
     )
-    zero = zero_of(friction.attrs, str(signals.attrs.get("instrument", "")), run.instrument)
+    zero = zero_of(friction.attrs, signals.attrs, run.instrument)
     sources = sources_of_run(run, signals.attrs)
     record = RunRecord(outcome, sources, zero, facts, (*notices, *why), rows, starts)
     return RunAnswer(record, trace)

@@ -33,18 +33,20 @@ def attributes(friction: xr.Dataset, lent: Iterable[float]) -> dict[str, str | f
     return {}
 
 
-def zero_of(attrs: Mapping[str, Any], recorded: str, stated: str | None) -> RunZero:
+def zero_of(attrs: Mapping[str, Any], run: Mapping[str, Any], stated: str | None) -> RunZero:
     """Return what the attributes of a friction result say of its zero.
 
     Parameters
     ----------
     attrs
         Of the friction result.
-    recorded
-        Name of the instrument that the file was read as.
+    run
+        Attributes of the run: the instrument that the file was read as, and its layout where that
+        was drafted from the file.
     stated
         Dialect that the campaign names: two files of one name may be two instruments.
     """
+    recorded = f"{run.get('instrument', '')} {run.get('drafted_layout', '')}".strip()
     instrument = stated if stated and stated.endswith(".toml") else recorded
     own = attrs.get(_OWN)
     lent = attrs.get(_LENT)
