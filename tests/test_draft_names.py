@@ -109,3 +109,35 @@ def test_a_header_is_read_in_the_encoding_of_the_place(language, encoding, tmp_p
     assert [column.quantity for column in draft.understood.columns] == QUANTITIES
     np.testing.assert_allclose(data.friction_force, [n % 3 for n in range(30)])
     np.testing.assert_array_equal(tl.read(file).position, data.position)
+
+
+def test_laps_without_a_clock_have_the_stated_speed_and_not_that_of_their_rows(tmp_path):
+    file = tmp_path / "laps.txt"
+    rows = "\n".join(
+        f"{n};{n * 2 * np.pi * 0.01:.4f};{0.3 + 0.01 * (n % 3)}" for n in range(1, 200)
+    )
+    file.write_text(f"Linear speed: 5 cm/s\nLap;Distance [m];COF\n{rows}\n")
+    data, draft = drafted(file, tmp_path)
+    assert any("rows are counted as seconds" in line for line in draft.toml.splitlines())
+    assert any("is the sliding speed all along" in guess for guess in draft.guesses)
+    [speed] = tl.find_segments(data).sliding_speed.values
+    assert speed == pytest.approx(0.05)
+
+
+def test_of_a_cell_of_six_axes_the_larger_force_is_proposed(tmp_path):
+    """Across the motion a cell shows noise and cross-talk; which one is meant is asked."""
+    file = tmp_path / "cell.csv"
+    rows = "\n".join(f"{n / 10},{0.02 * (n % 2)},{7 + n % 2},30,5" for n in range(50))
+    file.write_text(f"Time [s],Fx [N],Fy [N],Fz [N],v [mm/s]\n{rows}\n")
+    _, draft = drafted(file, tmp_path)
+    [column] = [c for c in draft.understood.columns if c.quantity == "friction_force" and c.used]
+    assert column.label == "Fy [N]" and draft.guesses
+
+
+def test_a_coefficient_stands_under_the_load_that_the_text_states(tmp_path):
+    file = tmp_path / "cof.txt"
+    rows = "\n".join(f"{n / 10};2;0.3" for n in range(50))
+    file.write_text(f"Normal load: 5 N\nTime [s];Speed [mm/s];COF\n{rows}\n")
+    data, draft = drafted(file, tmp_path)
+    assert data.attrs["set_normal_force_N"] == 5 and not draft.guesses
+    assert "normal_force" not in data

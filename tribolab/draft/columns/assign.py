@@ -32,6 +32,7 @@ _NEAR = 0.05  # scores of names that suit a quantity about as well
 _STILL = 0.9  # of the score: a load that never moves is the one that was meant to be
 _ACROSS = {"fy"}
 _EITHER = ("friction_force", "normal_force")  # what a load cell may measure
+_CROSSTALK = 5.0  # times: the force along the motion is so much larger than one across it
 _APART = 0.01  # relative difference of two columns that do not hold the same
 
 
@@ -151,9 +152,14 @@ def _contested(rivals: list[_Proposal], numbers: np.ndarray, bare: list[Bare]) -
 
     if not size(best):
         return rivals
+
+    def larger(rival: _Proposal, top: float) -> float:
+        along = rival.option.quantity == "friction_force" and size(rival) > _CROSSTALK * size(best)
+        return top + 0.6 * _NEAR if along else top
+
     top = best.rank[0] - 0.5 * _NEAR
     return [
-        rival._replace(rank=(max(top, rival.rank[0]), *rival.rank[1:]))
+        rival._replace(rank=(max(larger(rival, top), rival.rank[0]), *rival.rank[1:]))
         if is_rival(rival)
         else rival
         for rival in rivals

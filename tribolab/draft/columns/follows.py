@@ -86,7 +86,10 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     values = find_values(layout)
     track = _track(values, understood)
     result = Follows()
-    if not names & _SAYS_SPEED:
+    timed = "time" in names or understood.rate_pattern
+    # rows that are counted as seconds make no speed of a position
+    says_speed = _SAYS_SPEED if timed else _SAYS_SPEED - {"position"}
+    if not names & says_speed:
         result = _with_speed(result, names, values, understood, words_said(layout), track)
     torque = torque_of(understood.columns)
     if not names & SAYS_FRICTION and torque is not None:
@@ -111,6 +114,8 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     if load is not None and names & SAYS_FRICTION and not names & SAYS_LOAD:
         about = f"nothing measures it: '{load.text}' is taken for all of the run"
         result = _and(result, DraftedFormula("normal_force", load.name, about), [load])
+    elif load is not None and not names & {"normal_force", "normal_stress", "set_normal_force"}:
+        result = result._replace(values=(*result.values, load))  # under which a coefficient stands
     return result
 
 

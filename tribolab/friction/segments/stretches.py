@@ -34,15 +34,19 @@ def name_of(run: xr.Dataset) -> str:
 
 def velocity_source(run: xr.Dataset) -> str:
     """Say what tells the speed of the run: the best of what it has."""
+    stated = "set_speed" in run or "set_speed_m_s" in run.attrs
+    clocked = run.attrs.get("time_source") != "row number"
     for name, source in (("sliding_velocity", "recorded"), ("position", "position")):
+        if name == "position" and stated and not clocked:
+            continue  # rows that are counted as seconds make no speed of it
         if name in run and anywhere(np.isfinite, run[name].values):
             return source
     if "step" in run:
         return "step"
-    if "sliding_velocity" in run or "position" in run:
+    if "sliding_velocity" in run or ("position" in run and (clocked or not stated)):
         # nothing but NaN: an empty result that says so
         return "recorded" if "sliding_velocity" in run else "position"
-    if "set_speed" in run or "set_speed_m_s" in run.attrs:
+    if stated:
         return "set speed"
     turns = 'it turns, so the radius of the track would do (radius = "25 mm" under [speed] of its '
     turns = f"{turns}description); " if "rotation_speed" in run else ""
