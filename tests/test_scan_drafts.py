@@ -259,3 +259,66 @@ def test_a_unit_that_is_not_known_is_named_in_the_guess(tmp_path):
     (tmp_path / "a.txt").write_text(f"Pitch: 0.5 um\nHeight [foo]\n{heights}\n")
     with pytest.raises(TribolabError, match="height is in um, for 'foo' is no unit that is known"):
         read_scans(tmp_path / "a.txt")
+
+
+def test_points_of_a_map_that_are_left_out_are_missing_heights(tmp_path):
+    """Instruments leave out what they could not measure."""
+    rng = np.random.default_rng(3)
+    heights = rng.standard_normal((30, 40))
+    left_out = rng.random(heights.shape) < 0.2
+    file = tmp_path / "map.csv"
+    rows = (f"{2 * j};{2 * i};{1e3 * heights[i, j]:.3f}" for i, j in np.argwhere(~left_out))
+    file.write_text("x_um;y_um;z_nm\n" + "\n".join(rows) + "\n")
+    scan = read_scans(file)
+    assert (np.isnan(scan.height.values) == left_out).all()
+    np.testing.assert_allclose(scan.height.values[~left_out], 1e-6 * heights[~left_out], atol=1e-12)
+    few = "\n".join(f"{2 * j};{2 * i};1" for i, j in np.argwhere(rng.random((30, 40)) < 0.3))
+    file.write_text(f"x_um;y_um;z_nm\n{few}\n")
+    with pytest.raises(TribolabError, match="do not fill a grid"):
+        read_scans(file)
+
+
+@pytest.mark.parametrize("along", ["x", "y"])
+def test_points_of_one_line_are_a_profile(along, tmp_path):
+    heights = np.sin(np.arange(200) / 9)
+    places = ("{0};5" if along == "x" else "5;{0}").format
+    file = tmp_path / "line.csv"
+    rows = "\n".join(f"{places(2 * n)};{h:.6f}" for n, h in enumerate(heights))
+    file.write_text(f"X [um];Y [um];Z [um]\n{rows}\n")
+    scan = read_scans(file)
+    assert scan.attrs["pitch_m"] == pytest.approx(2e-6)
+    np.testing.assert_allclose(scan.height.values[0], 1e-6 * heights, atol=1e-12)
+
+
+def test_profiles_side_by_side_behind_their_positions_are_scans(tmp_path):
+    file = tmp_path / "two.txt"
+    rows = "\n".join(f"{n / 1000:.4f}\t{n % 7}\t{n % 5}" for n in range(300))
+    file.write_text(f"x [mm]\tz1 [um]\tz2 [um]\n{rows}\n")
+    scan = read_scans(file)
+    assert scan.sizes == {"scan": 2, "x": 300} and scan.attrs["pitch_m"] == pytest.approx(1e-6)
+    np.testing.assert_allclose(scan.height.values[1], [1e-6 * (n % 5) for n in range(300)])
+
+
+def test_heights_in_counts_are_asked_about_and_never_taken_for_lengths(tmp_path):
+    file = tmp_path / "counts.txt"
+    heights = "\n".join(str(n % 9) for n in range(300))
+    file.write_text(f"Spacing: 0.5 um\nHeight [counts]\n{heights}\n")
+    with pytest.raises(TribolabError, match="does not say how much one is"):
+        read_scans(file)
+    assert not draft_dialect(file).toml
+    file.write_text(f"Spacing: 0.5 um\nResolution: 10 nm/count\nHeight [counts]\n{heights}\n")
+    with pytest.raises(TribolabError, match="one count is 10 nm"):
+        read_scans(file)
+    named = save_draft(draft_dialect(file), tmp_path / "counts.toml")
+    scan = read_scans(file, instrument=named)
+    np.testing.assert_allclose(scan.height.values[0], [1e-8 * (n % 9) for n in range(300)])
+
+
+def test_a_length_in_a_sentence_is_that_of_the_profile(tmp_path):
+    file = tmp_path / "line.txt"
+    heights = "\n".join(str(n % 9) for n in range(300))
+    file.write_text(f"Scan length 0.15 mm, 300 points\nz/nm\n{heights}\n")
+    with pytest.raises(TribolabError, match="the heights lie evenly over"):
+        read_scans(file)
+    named = save_draft(draft_dialect(file), tmp_path / "line.toml")
+    assert read_scans(file, instrument=named).attrs["pitch_m"] == pytest.approx(0.5e-6)

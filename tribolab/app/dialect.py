@@ -11,7 +11,7 @@ import numpy as np
 from tribolab.draft.columns.follows import lacking, what_follows
 from tribolab.draft.columns.stated_load import stated_number
 from tribolab.draft.dialect.answers import column_of, corrected, fits, written
-from tribolab.draft.dialect.draft import Draft, as_profile, holds_heights
+from tribolab.draft.dialect.draft import Draft, as_profile, holds_counts, holds_heights
 from tribolab.draft.file.header import converts, is_unit
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn, Understood, other_units
@@ -61,7 +61,7 @@ def ask_about(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft:
     """
     if draft.layout is None or draft.understood is None:
         return draft
-    if draft.kind == "table" and holds_heights(draft):
+    if draft.kind == "table" and (holds_heights(draft) or holds_counts(draft)):
         return _ask_for_pitch(draft, ask, say)
     for name, words in (_SCAN if draft.kind == "scan" else _RUN).items():
         draft = _ask_for(draft, name, words, ask, say)
@@ -105,11 +105,17 @@ def _ask_for_pitch(draft: Draft, ask: Ask, say: Callable[[str], None]) -> Draft:
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
         return draft
-    question = "how far do neighbouring heights lie apart, with its unit?"
-    pitch = _ask_amount(question, "pitch", "m", _NONE, ask, say)
-    if not pitch:
+    pitch = ""
+    if not understood.pitched:
+        question = "how far do neighbouring heights lie apart, with its unit?"
+        pitch = _ask_amount(question, "pitch", "m", _NONE, ask, say)
+    if not (pitch or understood.pitched):
         return draft
-    return as_profile(draft, pitch, _ask_unit(understood.columns[0], "height", ask))
+    if not holds_counts(draft):
+        return as_profile(draft, pitch, _ask_unit(understood.columns[0], "height", ask))
+    question = "how much is one count, with its unit (e.g. 0.5 nm)?"
+    count = _ask_amount(question, "count", "m", _NONE, ask, say)
+    return as_profile(draft, pitch, count) if count else draft
 
 
 def _ask_amount(

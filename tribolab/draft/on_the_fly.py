@@ -72,6 +72,7 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     """Return the dialect that a file's own header makes; else say what it leaves open."""
     # late: starting stays quick
     from tribolab.draft.dialect.questions import (
+        COUNTED,
         HEIGHTS,
         GuessedError,
         lacks_friction,
@@ -80,7 +81,7 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     )
 
     draft = draft_of(path)
-    if draft is not None and draft.answer.startswith(HEIGHTS):
+    if draft is not None and draft.answer.startswith((HEIGHTS, COUNTED)):
         raise ReadError(draft.answer, where=path, cure=error.cure) from error
     if draft is None or draft.kind == "table":
         raise error

@@ -12,7 +12,7 @@ from typing import Literal, overload
 import xarray as xr
 
 from tribolab.aliases import PathLike
-from tribolab.draft.dialect.draft import holds_heights
+from tribolab.draft.dialect.draft import holds_counts, holds_heights
 from tribolab.draft.dialect.questions import GuessedError, how_to_keep, questions
 from tribolab.draft.on_the_fly import DRAFTED, draft_of
 from tribolab.errors import ReadError
@@ -155,7 +155,7 @@ def _drafted(file: Path, error: ReadError) -> Dialect | None:
     draft = draft_of(file)
     if draft is None or draft.known or is_own_text(file):
         return None
-    if draft.kind == "table" and holds_heights(draft):
+    if draft.kind == "table" and (holds_heights(draft) or holds_counts(draft)):
         raise ReadError(
             draft.answer, where=file, cure=cures.unknown_instrument(file, cures.SURFACE)
         ) from error

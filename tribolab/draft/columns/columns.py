@@ -12,7 +12,7 @@ from tribolab.draft.columns.assign import SIGNALS, assigned
 from tribolab.draft.columns.bridges import calibrated_forces
 from tribolab.draft.columns.either import told_by_load
 from tribolab.draft.columns.epochs import DATES, counted_from
-from tribolab.draft.columns.factors import missing_factors
+from tribolab.draft.columns.factors import missing_factors, with_worth
 from tribolab.draft.columns.fill_in import Bare
 from tribolab.draft.columns.lengths import (
     find_height_unit,
@@ -57,6 +57,8 @@ def understand(layout: Layout) -> Understood:
     kind: Kind
     if apart and (layout.width == 1 and not _say_something(columns) or _side_by_side(columns)):
         kind, columns = "scan", [_heights(column, stated=bool(unit)) for column in columns]
+    elif (beside := _beside_x(columns)) is not None:
+        kind, columns = "scan", beside
     elif _say_something(columns):
         kind, columns = _by_name(columns, numbers, placed=apart)
     else:
@@ -67,7 +69,7 @@ def understand(layout: Layout) -> Understood:
         guesses += behaving
     columns = told_by_load(layout, force_or_ratio(columns), numbers) if kind == "run" else columns
     guesses += disagreement(columns, numbers) if kind == "run" else []
-    columns = _dated(columns, layout, numbers, text)
+    columns = _dated(with_worth(layout, columns), layout, numbers, text)
     columns = [
         column._replace(
             used=False,
@@ -285,6 +287,33 @@ def _side_by_side(columns: list[DraftColumn]) -> bool:
     alike = {re.sub(r"\d+", "", name).strip() for name in names}
     lengths = all(unit is None or converts(unit, "m") for unit in units)
     return len(set(names)) == len(names) > 1 and len(alike) == 1 and lengths
+
+
+def _beside_x(columns: list[DraftColumn]) -> list[DraftColumn] | None:
+    """Return positions and the profiles side by side behind them: x [mm], z1 [um], z2 [um]."""
+    if len(columns) < 3 or not _side_by_side(columns[1:]):
+        return None
+    name, unit, say = _bare(columns[0])
+    along = matches(name, unit, scan=True)
+    bare = [_bare(column) for column in columns[1:]]
+    numberless = [re.sub(r"[\W_]*\d+$", "", name) for name, _, _ in bare]
+    heights = [
+        matches(name, unit, scan=True) for name, (_, unit, _) in zip(numberless, bare, strict=True)
+    ]
+    if not along or along[0].quantity != "x" or unit is None:
+        return None
+    if not all(options and options[0].quantity == "height" for options in heights):
+        return None
+    if any(unit is None for _, unit, _ in bare):
+        return None
+    x = columns[0]._replace(quantity="x", unit=unit if say else None, used=True)
+    return [
+        x,
+        *(
+            column._replace(quantity="height", unit=unit if say else column.unit, used=True)
+            for column, (_, unit, say) in zip(columns[1:], bare, strict=True)
+        ),
+    ]
 
 
 def _heights(column: DraftColumn, *, stated: bool) -> DraftColumn:

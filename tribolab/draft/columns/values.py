@@ -168,7 +168,9 @@ def words_said(layout: Layout, *, bare: bool = False) -> list[tuple[str, str]]:
 
 
 def _said(line: str) -> re.Match[str] | None:
-    return _SAYS.match(line) or _IN_CELLS.match(line)
+    said = _SAYS.match(line) or _IN_CELLS.match(line)
+    # "Scan length 1.5 mm, 3000 points": a sentence
+    return None if said and phrases(said["key"]) else said
 
 
 def _units_apart(layout: Layout, *, bare: bool) -> dict[str, str]:
@@ -242,7 +244,7 @@ _SPEED = re.compile(
     r"|^velocita|速度$|snelheid$"
 )
 _WANTED = {
-    "m": (RADIUS, DIAMETER, _R, ARM, STROKE, HALF_STROKE, PITCH, TURNING),
+    "m": (RADIUS, DIAMETER, _R, ARM, STROKE, HALF_STROKE, PITCH, TURNING, PROFILE_LENGTH),
     "s": (INTERVAL,),
     "m/s": (_SPEED,),
     "1/s": (RATE, FREQUENCY),

@@ -10,9 +10,9 @@ from pathlib import Path
 
 from tribolab.aliases import PathLike
 from tribolab.draft.columns.columns import first_cells_of, understand
-from tribolab.draft.columns.words import matches
+from tribolab.draft.columns.words import matches, split_unit
 from tribolab.draft.dialect.drafted import SHOWN, Drafted
-from tribolab.draft.dialect.questions import unsaid_distance
+from tribolab.draft.dialect.questions import COUNTED, unsaid_distance
 from tribolab.draft.dialect.show import draft_html
 from tribolab.draft.dialect.toml import dialect_toml
 from tribolab.draft.file.layout import Layout, find_layout
@@ -73,6 +73,8 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
     if is_results(file.head):
         return _results(file, name)
     layout, understood = _understood(file)
+    if understood.kind == "scan" and not any(column.used for column in understood.columns):
+        understood = understood._replace(kind="table")
     toml = dialect_toml(name, layout, understood) if understood.kind != "table" else ""
     draft = Draft(
         path=file.path,
@@ -87,11 +89,11 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
     )
     if toml:
         _validate(draft)
-    return (
-        draft._replace(answer=unsaid_distance(draft))
-        if not toml and holds_heights(draft)
-        else draft
-    )
+    if not toml and holds_counts(draft):
+        return draft._replace(answer=f"{COUNTED} ('tribolab dialect' asks for it in a terminal)")
+    if not toml and holds_heights(draft):
+        return draft._replace(answer=unsaid_distance(draft))
+    return draft
 
 
 def _understood(file: File) -> tuple[Layout, Understood]:
@@ -184,10 +186,22 @@ def _validate(draft: Draft) -> None:
 
 def holds_heights(draft: Drafted) -> bool:
     """Whether a table is one column that is named as heights are, without positions."""
+    return _is_heights(draft) and not holds_counts(draft)
+
+
+def holds_counts(draft: Drafted) -> bool:
+    """Whether heights alone are counts of a converter, of which it is not known what one is."""
+    columns = draft.understood.columns if draft.understood else ()
+    return _is_heights(draft) and columns[0].counted and columns[0].unit is None
+
+
+def _is_heights(draft: Drafted) -> bool:
     columns = draft.understood.columns if draft.understood else ()
     if len(columns) != 1 or not columns[0].label:
         return False
     name, unit = split_name(columns[0].label)
+    if unit is None and columns[0].file_unit is None:
+        name, unit = split_unit(name)
     options = matches(name, columns[0].file_unit or unit, scan=True)
     return bool(options) and options[0].quantity == "height"
 

@@ -16,6 +16,7 @@ from tribolab.draft.model import NO_NUMBERS, DraftColumn, Understood
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
 
+COUNTED = "heights in counts, of which the file does not say how much one is"
 HEIGHTS = (
     "heights without positions, of which the file does not say how far they lie apart: that is to "
     'be filled in, pitch = "(a length)"'

@@ -118,10 +118,14 @@ def measures_something(text: str) -> bool:
     return not letter and any(converts(text, dimension) for dimension in _FURTHER)
 
 
+# what is counted, and a length to printers alone
+_COUNTED = frozenset({"point", "points", "pixel", "pixels", "dot", "dots", "line", "lines"})
+
+
 @functools.lru_cache(maxsize=4096)  # a failed conversion is not remembered elsewhere
 def converts(text: str, si_unit: str, bare: Counted | None = None) -> bool:
     """Whether a text is a unit that can be turned into an SI unit (`bare`: see `conversion`)."""
-    if not text or re.fullmatch(r"[\d.,+]+", text):
+    if not text or re.fullmatch(r"[\d.,+]+", text) or text.lower() in _COUNTED:
         return False
     try:
         conversion(text, si_unit, bare)

@@ -11,6 +11,7 @@ from tribolab.medians import median
 _JITTER = 0.01  # largest deviation from an even grid, in pitches, that changes nothing
 _LARGEST = 1e4  # m
 _SMALLEST = 1e-15  # m, a nucleus
+_FILLED = 0.5  # share of a grid's places from which on the others are missing heights
 _ROUNDED = 0.6  # in units of the last digit
 
 
@@ -96,10 +97,14 @@ def _last_digit(x: np.ndarray) -> float:
 def gridded(where: str, x: np.ndarray, y: np.ndarray, height: np.ndarray) -> xr.Dataset:
     """Make a map (y, x) of rows of x, y and height [m], in whatever order they come.
 
+    Places of the grid for which no row stands are missing heights (NaN): instruments leave out
+    what they could not measure.
+
     Raises
     ------
     ReadError
-        If the points do not fill a rectangular grid of even steps once each.
+        If the points do not fill the better half of a rectangular grid of even steps, once each,
+        or end in the middle of its last line.
     """
     if not (np.isfinite(x).all() and np.isfinite(y).all()):
         raise ReadError(f"{where}: a point has no place: x or y is missing or no number")
@@ -122,11 +127,17 @@ def gridded(where: str, x: np.ndarray, y: np.ndarray, height: np.ndarray) -> xr.
         axes.append((pitch, number, index))
     (dx, nx, column), (dy, ny, row) = axes
     place = row * nx + column
-    if x.size != nx * ny or np.unique(place).size != nx * ny:
+    if not _FILLED * nx * ny <= x.size <= nx * ny or np.unique(place).size != x.size:
         raise ReadError(
             f"{where}: {x.size} points do not fill a grid of {nx} x {ny} points once each"
         )
-    grid = np.empty(nx * ny)
+    for order in (place, column * ny + row):
+        if x.size < nx * ny and order[-1] == x.size - 1 and (np.diff(order) == 1).all():
+            raise ReadError(
+                f"{where}: {x.size} points do not fill a grid of {nx} x {ny} points: the last line "
+                "of it ends early; is the file cut short?"
+            )
+    grid = np.full(nx * ny, np.nan)
     grid[place] = height
     return xr.Dataset(
         {"height": (("y", "x"), grid.reshape(ny, nx))},

@@ -196,9 +196,12 @@ def _scan(
     path: Path, columns: Mapping[str, np.ndarray], attrs: Json, dialect: Dialect
 ) -> xr.Dataset:
     """Return the scan that one table is."""
-    if "y" in columns:
+    line = _line_of(columns)
+    if "y" in columns and line is None:
         scan = gridded(str(path), columns["x"], columns["y"], columns["height"])
         return scan.assign_attrs(attrs)
+    if line is not None:
+        columns = {"x": columns[line], "height": columns["height"]}
     if "x" not in columns:
         height = columns["height"]
         if height.size < 2:
@@ -209,6 +212,14 @@ def _scan(
     pitch, height, evened = even(str(path), columns["x"], columns["height"])
     x = pitch * np.arange(height.size, dtype=float)
     return xr.Dataset({"height": ("x", height)}, {"x": x}, {**attrs, **evened})
+
+
+def _line_of(columns: Mapping[str, np.ndarray]) -> str | None:
+    """Return the axis along which points of a map lie that are one line: the other stands still."""
+    if "y" not in columns or not columns["height"].size > 1:
+        return None
+    still = [name for name in ("x", "y") if np.ptp(columns[name]) == 0]
+    return {"x": "y", "y": "x"}[still[0]] if len(still) == 1 else None
 
 
 def _stated_pitch(
