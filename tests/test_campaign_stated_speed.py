@@ -1,12 +1,18 @@
 """A speed or load that no file records, said in the campaign file, reaches friction and curve."""
 
+import json
+import shutil
+
 import numpy as np
 import pytest
 from dialects import dialect_of
+from typer.testing import CliRunner
 
+from tribolab import cli
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.io.netcdf import read_netcdf
+from tribolab.report.page.answer import cards
 
 DIALECT = dialect_of("plain", time="t", friction_force="F", normal_force="N")
 CAMPAIGN = """
@@ -90,3 +96,14 @@ def test_a_column_of_the_set_load_is_the_load_where_none_was_measured(tmp_path):
     outcome = analysed(tmp_path, dialect)
     friction = read_netcdf(outcome.folder / outcome.runs[0].data_file, group="friction")
     assert friction.friction_coefficient.values == pytest.approx([3 / 10], abs=0.001)
+
+
+def test_a_load_of_many_digits_is_that_of_its_curve(tmp_path):
+    """1.02 kg weigh 10.002783 N; run and curve are filed under one load, and none is missing."""
+    stated = CAMPAIGN + 'normal_force = "1.02 kgf"\nsurface = "rock"\n[[surface]]\nname = "rock"\n'
+    analysed(tmp_path, campaign=stated)
+    shutil.rmtree(tmp_path / "results")
+    assert CliRunner().invoke(cli.app, ["run", str(tmp_path)]).exit_code == 0
+    told = json.loads((tmp_path / "results" / "report.json").read_text("utf-8"))
+    assert [of["nominal_normal_force_N"] for of in (*told["runs"], *told["curves"])] == [10.0] * 2
+    assert [card.missing for card in cards(told)] == [()]

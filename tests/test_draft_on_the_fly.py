@@ -153,6 +153,7 @@ def test_a_sample_rate_before_the_table_is_its_clock(said, tmp_path):
     [
         ("Stroke=12\nStroke unit=mm\nMode=Sine", "stroke"),
         ("Stroke [mm]=12\nWaveform=sinusoidal", "stroke"),
+        ("stroke_mm=12\nreciprocating rig, crank drive", "stroke"),
         ("Stroke=12\nMode=Sine", "none"),
     ],
 )

@@ -198,3 +198,20 @@ def test_a_campaign_with_a_run_in_which_nothing_could_be_measured_is_not_complet
     assert (whole.status, whole.without_value) == ("complete", 0)
     assert (part.status, part.without_value) == ("incomplete", 1)
     assert "2 of 2 runs done; 1 without a friction value; 4 segments" in part.text
+
+
+def test_runs_of_neither_surface_nor_medium_are_told_one_by_one():
+    """Each is a curve of its own, whatever its load; nothing is said to be missing of another."""
+    one = report([])
+    first = one["curves"][0]
+    names = [f"run_{place}" for place in range(8)]
+    nameless = {"surface": "", "medium": "", "load_from": "stated"}
+    one["curves"] = [
+        first | nameless | {"name": name, "runs": [name], "nominal_normal_force_N": 10.0 + place}
+        for place, name in enumerate(names)
+    ]
+    one["runs"] = [run(name, 10.0) | {"surface": "", "medium": ""} for name in [*names, "other"]]
+    (card,) = cards(one)
+    assert (card.name, card.missing, card.thin) == ("8 runs", (), ())
+    assert [at.title for at in card.at_loads[:2]] == ["run_0, 10 N", "run_1, 11 N"]
+    assert (len(card.at_loads), card.more) == (6, "2 more curves: see all points")

@@ -77,6 +77,15 @@ def force_text(force: float | None) -> str:
 LOAD_STATED, LOAD_MEASURED, LOAD_VARIES = "stated", "measured", "varies"
 
 
+def load_label(load: float | None) -> float | None:
+    """Return the load [N] that runs and their curve are filed under: to four digits.
+
+    >>> load_label(14.709975), load_label(None)
+    (14.71, None)
+    """
+    return load and float(f"{load:.4g}")
+
+
 def load_text(load: float | None, load_from: str) -> str:
     """Return the load [N] of a run or curve, with the word that it was not stated but measured.
 

@@ -24,7 +24,7 @@ from tribolab.records.part_records import CurveRecord, Origin
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome
 from tribolab.records.wording import plain_value
 from tribolab.stamping import stamp
-from tribolab.words import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES, explain
+from tribolab.words import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES, explain, load_label
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -269,15 +269,11 @@ def _conditions(run: RunOutcome) -> list[Condition]:
     """Return what runs of one curve have in common: each load that a run was measured under."""
     alone = "" if run.surface or run.medium else run.name
     loads = dict.fromkeys(run.load_levels or (run.normal_force,))
-    return [(run.surface, run.medium, _label(load), alone) for load in loads]
-
-
-def _label(load: float | None) -> float | None:
-    return load and float(f"{load:.4g}")
+    return [(run.surface, run.medium, load_label(load), alone) for load in loads]
 
 
 def _levels(run: RunOutcome, load: float | None) -> _Levels:
-    wanted = tuple(_label(level) == load for level in run.load_levels)
+    wanted = tuple(load_label(level) == load for level in run.load_levels)
     return _Levels(run.measured_levels, wanted)
 
 

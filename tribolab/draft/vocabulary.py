@@ -39,7 +39,7 @@ RUN_WORDS = (
         _words("fx ff fr ft freib ffric fq ftan ftang lf flat ffriction fs fh fy"),
         _words(
             "frictionforce frictionalforce fricforce tangentialforce tangforce lateralforce "
-            "horizontalforce horizontalload "
+            "horizontalforce horizontalload latforce "
             "tractionforce shearforce dragforce drag lateral tangential wrijvingskracht wrijving "
             "reibkraft reibungskraft tangentialkraft querkraft friction traction reibung "
             "forcex xforce sledforce pullforce pullingforce zugkraft "

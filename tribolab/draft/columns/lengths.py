@@ -21,6 +21,7 @@ from tribolab.draft.columns.stated_words import (
     RATE,
     TRAVERSE_SPEED,
     TURNING,
+    UNIT,
 )
 from tribolab.draft.columns.values import DraftValue, find_values, words_said
 from tribolab.draft.columns.words import squeezed
@@ -75,7 +76,8 @@ def find_height_unit(layout: Layout) -> str:
         From `tribolab.draft.file.layout.find_layout`.
     """
     for key, text in words_said(layout, bare=True):
-        if HEIGHT_UNIT.search(squeezed(key)) and converts(text.strip(" []()."), "m"):
+        alone = layout.width == 1 and UNIT.search(squeezed(key))
+        if (alone or HEIGHT_UNIT.search(squeezed(key))) and converts(text.strip(" []()."), "m"):
             return text.strip(" []().")
     return ""
 

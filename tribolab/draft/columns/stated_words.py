@@ -75,6 +75,9 @@ POINTS = re.compile(
     r"(?:points?|puntos?|punti|pontos?|mesures|valores|valori|echantillons|muestras)$"
     r"|^(?:点数|采样点数|数据点数|データ点数|測定点数)$"
 )
+UNIT = re.compile(
+    r"^(?:unit|units|einheit|einheiten|unite|unites|unidad|unidades|unita|unidade|eenheid|单位|単位)$"
+)
 HEIGHT_UNIT = re.compile(
     r"^(?:z|height|hoehe?n?|profile?|amplitude|hauteur|altura|altezza|hoogte|ordinate|data|value)s?"
     r"(?:axis|achse|values?|werte?|data)?(?:unit|units|einheit|unite|unidad|unita|unidade|eenheid|in)$"

@@ -19,7 +19,7 @@ from tribolab.draft.columns.stated_words import (
     TURNING,
 )
 from tribolab.draft.columns.strokes import FREQUENCY, HALF_STROKE, STROKE
-from tribolab.draft.columns.words import matches, squeezed
+from tribolab.draft.columns.words import matches, split_unit, squeezed
 from tribolab.draft.file.header import DIMENSIONS, converts, escaped, is_unit
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.vocabulary import WEIGHTS
@@ -35,6 +35,14 @@ _SAYS = re.compile(_SAID.format(mark="", digits=","), re.IGNORECASE)
 _IN_CELLS = re.compile(_SAID.format(mark=",", digits=""), re.IGNORECASE)  # "Dead weight,500,g"
 _UNIT_OF = re.compile(r"^(?P<key>.+?)(?:units?|einheit|unite|unidad|unita|eenheid|单位|単位)$")
 _WORDS = re.compile(r"\W*(?P<key>[^\W\d][^:=\t;]*?)\s*[:=\t;]\s*(?P<text>[^\W\d].*)$")
+_LONGEST = 200  # characters of a line that are looked at
+_DRIVEN = re.compile(  # "reciprocating rig, crank drive"
+    r"\b(?:crank|scotch[- ]yoke|eccentric|kurbel|exzenter)"
+    r"[- ]?(?:driv\w*|(?:an)?trieb\w*|mechanism)"
+    r"|\b(?:sinusoidal|sinusf[oö]rmige?|triangular|constant[- ]speed)"
+    r" (?:motion|strokes?|bewegung)",
+    re.IGNORECASE,
+)
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]")
 _IN_NAME = re.compile(r"(?:^|_)(?P<number>\d+(?:\.\d+)?)(?P<unit>N|mN)(?=_|$)")
 _RADIUS_IN_NAME = re.compile(
@@ -164,7 +172,9 @@ def words_said(layout: Layout, *, bare: bool = False) -> list[tuple[str, str]]:
     above = layout.blocks[0].start if bare and layout.blocks else 0
     stop = layout.heading.names if layout.heading else above
     said = (_WORDS.match(line.strip()) for line in layout.lines[:stop])
-    return [(match["key"], match["text"]) for match in said if match]
+    told = [(match["key"], match["text"]) for match in said if match]
+    drives = (_DRIVEN.search(line[:_LONGEST]) for line in layout.lines[:stop])
+    return told + [("drive", match[0]) for match in drives if match]
 
 
 def _said(line: str) -> re.Match[str] | None:
@@ -185,6 +195,8 @@ def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:
     if unit is None and bracket and is_unit(bracket[1]):
         unit, key = bracket[1], key[: bracket.start()]
     unit = unit or units.get(squeezed(key))
+    if unit is None and "_" in key:  # "stroke_mm=8"
+        key, unit = split_unit(key)
     digits = r"[-+\d.eE]+" if said.re is _IN_CELLS else r"[-+\d.,eE]+"
     pattern = r"^\s*" + escaped(said["before"].strip()) + rf"\s*({digits})"
     line = said.string.strip()

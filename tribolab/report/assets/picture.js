@@ -2,6 +2,7 @@
 // One figure as the library wants it: from what it shows, its traces and its layout.
 report.Picture = (() => {
   const { HUES, DARKER, SYMBOLS, DASHES, FONT, PAPER, HALF, THIRD, isOneOfMany, still, state, isDark, text, lines, force, axis, heightOf } = report.drawing;
+  const MOST_LABELS = 8; // in the legend of a card
 
   return class {
     constructor(figure) {
@@ -144,7 +145,7 @@ report.Picture = (() => {
       const layout = {
         width: this.width, height: this.height, paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
         font: { family: FONT, size: small ? 10 : 13, color: ink }, hovermode: "closest", dragmode: still ? false : "zoom",
-        margin: { l: 64, r: 14, t: 10, b: 48 }, showlegend: this.legend().length > 1,
+        margin: { l: 64, r: 14, t: 10, b: 48 }, showlegend: this.written > 1,
         hoverlabel: { align: "left", bgcolor: dark ? "#1d2329" : "#ffffff", bordercolor: grid, font: { color: ink, size: narrow ? 12 : 13 } },
         legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", font: { size: small ? 9 : narrow ? 11 : 12 }, maxheight: this.sizes.cut ? this.sizes.legend : undefined, groupclick: "togglegroup", itemsizing: "constant" },
         shapes: this.shapes?.() ?? [],
@@ -165,6 +166,8 @@ report.Picture = (() => {
         const x = side("x", panel.x, this.along), y = side("y", panel.y, this.range("y", row));
         if (y.type === "category") Object.assign(y, { tickmode: "linear", dtick: 1, ticks: "" });
         if (y.type !== "log" || this.data.panels[row].y.unit === "") y.exponentformat = "none";
+        // all nine of a decade do not fit beside each other
+        if (x.minorloglabels === "complete" && x.range[1] - x.range[0] > 0.5) Object.assign(x, { tickmode: "linear", tick0: 0, dtick: "D2" });
         x.anchor = axis("y", row);
         if (row) x.matches = "x";
         if (!last && count > 1) x.showticklabels = false;
@@ -193,7 +196,13 @@ report.Picture = (() => {
       return Math.max(260, this.place.clientWidth);
     }
 
-    get sizes() { return heightOf(this.place, this.width, this.data.panels.length, this.legend().length); }
+    // a card has no room for many names: a point says its own, and the whole window shows all
+    get written() {
+      const labels = this.legend().length;
+      return this.place.closest(".cards") && !this.full && labels > MOST_LABELS ? 0 : labels;
+    }
+
+    get sizes() { return heightOf(this.place, this.width, this.data.panels.length, this.written); }
 
     get height() {
       if (this.full) return innerHeight - 110;

@@ -30,7 +30,7 @@ from tribolab.report.document.schema import (
     SourceFile,
 )
 from tribolab.untyped import Json
-from tribolab.words import many, span
+from tribolab.words import load_label, many, span
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
@@ -50,7 +50,7 @@ def labels(what: RunOutcome | CurveOutcome) -> Row:
     return {
         "surface": what.surface,
         "medium": what.medium,
-        "nominal_normal_force_N": what.normal_force,
+        "nominal_normal_force_N": load_label(what.normal_force),
     }
 
 

@@ -15,6 +15,7 @@ from tribolab.report.document.schema import (
     ReportedRun,
     ReportedSurface,
 )
+from tribolab.words import load_label
 
 if TYPE_CHECKING:
     from tribolab.records.mode_record import ModeRecord
@@ -34,7 +35,7 @@ def run_document(record: RunRecord) -> Json:
         **_part(run),
         surface=run.surface,
         medium=run.medium,
-        nominal_normal_force_N=run.normal_force,
+        nominal_normal_force_N=load_label(run.normal_force),
         load_from=run.load_from,
         files=run.files,
         segments_found=len(record.facts.segments),

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from tribolab.records.parts import Row
 
 SPEED_AXIS = Axis("sliding speed v", "m/s", log=True)
+_MOST_NAMED = 3  # runs that a title names
 _UNDECIDED = 6  # a grey that no load has
 _SPEED, _MU = "sliding_speed_m_s", "friction_coefficient"  # columns
 FRICTION_AXIS = Axis("friction coefficient µ", log=True)
@@ -64,7 +65,10 @@ def systems(known: FrictionOverSpeed) -> dict[tuple[str, str], list[CurveRecord]
 
 def system_name(surface: str, medium: str, runs: Sequence[str] = ()) -> str:
     """Return surface and medium in words; runs that name neither stand for themselves."""
-    return ", ".join(filter(None, (surface, medium))) or listed(list(runs)[:3]) or "runs"
+    named = ", ".join(filter(None, (surface, medium)))
+    if named or not runs:
+        return named or "runs"
+    return listed(list(runs)) if len(runs) <= _MOST_NAMED else f"{len(runs)} runs"
 
 
 def card_figures(known: FrictionOverSpeed) -> list[LiveFigure]:
@@ -93,7 +97,8 @@ def _card(
             series += _modelled(known, model, curve, number_, "model")
         series.append(_measured(known, curve, number_, curve_label(curve.outcome, curves)))
         series += _as_found(curve)
-    name = system_name(surface, medium, curves[0].outcome.run_names)
+    all_runs = dict.fromkeys(run for curve in curves for run in curve.outcome.run_names)
+    name = system_name(surface, medium, list(all_runs))
     rows = [row for curve in curves for row in curve.points]
     values, every = ([number_of(row, name) for row in rows] for name in (_MU, _SPEED))
     return LiveFigure(

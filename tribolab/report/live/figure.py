@@ -7,7 +7,7 @@ nothing of how.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Any, Literal, TypedDict
 
@@ -16,6 +16,7 @@ import numpy as np
 Style = Literal["points", "line", "dashed", "dotted", "dashdot", "band", "bars", "heat"]
 Width = Literal["card", "half", "whole"]
 Values = Sequence[Any] | np.ndarray
+_MOST_LABELS = 8  # in the legend of a card, as in `assets/picture.js`
 _DIGITS = 6  # more than any screen resolves
 
 
@@ -159,6 +160,11 @@ class LiveFigure:
 def only(names: set[str]) -> str:
     """Return the name that there is; "" where there are several."""
     return min(names) if len(names) == 1 else ""
+
+
+def written_labels(figure: LiveFigure, labels: Collection[str]) -> int:
+    """Return how many labels the legend shows: a card has no room for many, points say theirs."""
+    return 0 if figure.width == "card" and len(labels) > _MOST_LABELS else len(labels)
 
 
 def legend(series: Iterable[Series]) -> dict[str, Series]:

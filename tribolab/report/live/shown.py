@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from tribolab.records.packed import deflated
 from tribolab.records.traces import script_json
-from tribolab.report.live.figure import LiveFigure, legend, plain_data
-from tribolab.report.live.still import still
+from tribolab.report.live.figure import LiveFigure, legend, plain_data, written_labels
+from tribolab.report.live.still import first_series, still
 from tribolab.words import force_text
 
 
@@ -66,7 +66,7 @@ def _shown(figure: LiveFigure) -> ShownFigure:
         figure.medium,
         tuple(map(force_text, figure.loads)),
         len(figure.panels),
-        len(legend(figure.series)),
+        written_labels(figure, legend(first_series(figure))),
         deflated(script_json(plain_data(figure)).encode()),
         still(figure),
     )

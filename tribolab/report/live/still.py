@@ -16,7 +16,16 @@ from markupsafe import escape
 
 from tribolab.report.live import marks
 from tribolab.report.live.axes import Scale, scales, ticks
-from tribolab.report.live.figure import Axis, LiveFigure, Series, Width, legend, plain_data, thinned
+from tribolab.report.live.figure import (
+    Axis,
+    LiveFigure,
+    Series,
+    Width,
+    legend,
+    plain_data,
+    thinned,
+    written_labels,
+)
 from tribolab.report.live.marks import PlacedPoint, coordinate
 from tribolab.words import MINUS, number
 
@@ -58,7 +67,8 @@ def still(figure: LiveFigure) -> str:
     width = _WIDTHS[figure.width]
     series, seen = first_view(figure)
     labels = legend(series)
-    rows = math.ceil(len(labels) / _columns(width, labels)) if len(labels) > 1 else 0
+    written = written_labels(figure, labels)
+    rows = math.ceil(written / _columns(width, labels)) if written > 1 else 0
     top = _TOP + rows * _LINE
     height = (figure.height or _HEIGHTS[len(figure.panels) - 1]) + rows * _LINE
     parts = list(_legend(labels, width)) if rows else []
@@ -73,7 +83,7 @@ def still(figure: LiveFigure) -> str:
 
 def first_view(figure: LiveFigure) -> tuple[list[Series], list[tuple[Scale, Scale]]]:
     """Return the series of a figure before anything was chosen, and what is seen of each panel."""
-    series = _first(figure)
+    series = first_series(figure)
     seen = [scales(panel, place, series) for place, panel in enumerate(figure.panels)]
     if len(seen) > 1:  # panels below each other share what lies along them
         low, high = min(x.low for x, _ in seen), max(x.high for x, _ in seen)
@@ -81,7 +91,7 @@ def first_view(figure: LiveFigure) -> tuple[list[Series], list[tuple[Scale, Scal
     return series, seen
 
 
-def _first(figure: LiveFigure) -> list[Series]:
+def first_series(figure: LiveFigure) -> list[Series]:
     """Return what is seen at first, its values as plain numbers."""
     shown = []
     for curve in figure.series:

@@ -12,6 +12,7 @@ from tribolab.report.page.in_words import friction_in_words, model_in_words, sen
 from tribolab.words import force_text, load_text, many
 
 _GRAVE = ("fail", "error", "suspect")
+_MOST_NAMELESS = 6  # curves of neither surface nor medium that a card tells
 _MOST_FINDINGS = 2  # on a card; all of them stand among the findings
 _LONGEST = 160  # characters of a finding on a card
 
@@ -33,8 +34,8 @@ class AtLoad:
 class Card:
     """One surface in one medium: what was found at each load, what is missing, what to look at.
 
-    `figure` is the address of its figure, "" where no curve is known; `thin` are the runs that its
-    curves had to do without, each with what is said of it.
+    `more` says how many curves are left out. `figure` is the address of its figure, "" where no
+    curve is known; `thin` are the runs that its curves had to do without, each with what is said.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Card:
     medium: str
     figure: str
     at_loads: tuple[AtLoad, ...]
+    more: str
     thin: tuple[tuple[str, str], ...]
     missing: tuple[str, ...]
     findings: tuple[tuple[str, str], ...]
@@ -80,16 +82,21 @@ def _card(
 ) -> Card:
     surface, medium = key
     runs = [run for run in document["runs"] if (run["surface"], run["medium"]) == key]
-    thin = tuple(_thin(curves, runs))
+    named = bool(surface or medium)  # else each run is a curve of its own
+    thin = tuple(_thin(curves, runs)) if named else ()
     names = {run["name"] for run in runs} - {name for name, _ in thin}
+    all_runs = list(dict.fromkeys(run for curve in curves for run in curve["runs"]))
+    at_loads = [_at_load(document, curve) for curve in curves]
+    more = 0 if named else len(at_loads) - _MOST_NAMELESS
     return Card(
-        name=system_name(surface, medium, curves[0]["runs"] if curves else ()),
+        name=system_name(surface, medium, all_runs),
         surface=surface,
         medium=medium,
         figure=figure,
-        at_loads=tuple(_at_load(document, curve) for curve in curves),
+        at_loads=tuple(at_loads[:_MOST_NAMELESS] if more > 0 else at_loads),
+        more=f"{many(more, 'more curve')}: see all points" if more > 0 else "",
         thin=thin,
-        missing=tuple(_missing(system_name(surface, medium), curves, runs)),
+        missing=tuple(_missing(system_name(surface, medium), curves, runs)) if named else (),
         findings=tuple(_findings(document["findings"], names)),
     )
 
@@ -105,7 +112,8 @@ def _at_load(document: Mapping[str, Any], curve: Mapping[str, Any]) -> AtLoad:
         sentences += model_in_words(model["fit"])
     elif model is not None and model["status"] != "skipped":
         sentences.append(sentence(f"no model: {model['reason'] or 'see the findings'}"))
-    title = load_text(load, curve["load_from"])
+    alone = "" if curve["surface"] or curve["medium"] else system_name("", "", curve["runs"])
+    title = ", ".join(filter(None, (alone, load_text(load, curve["load_from"]))))
     return AtLoad(load, force_text(load), title, tuple(sentences))
 
 
