@@ -215,3 +215,10 @@ def test_runs_of_neither_surface_nor_medium_are_told_one_by_one():
     assert (card.name, card.missing, card.thin) == ("8 runs", (), ())
     assert [at.title for at in card.at_loads[:2]] == ["run_0, 10 N", "run_1, 11 N"]
     assert (len(card.at_loads), card.more) == (6, "2 more curves: see all points")
+
+
+def test_the_roughness_of_surfaces_stands_above_the_cards():
+    one = report([])
+    row = {"Rq_m": 0.68e-6, "Rq_sem_m": None, "Rq_gap_error_m": None, "lambda_c_m": 4e-4}
+    one["surfaces"] = [{"name": "Sb-R", "roughness": row}, {"name": "no scan", "roughness": None}]
+    assert in_short(one)[-1] == "Rq (cut-off 0.4 mm): Sb-R 0.68 µm"

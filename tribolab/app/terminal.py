@@ -15,9 +15,9 @@ from tribolab.app.ranges import range_of
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.errors import harmless
 from tribolab.records.part_records import CurveRecord, SurfaceRecord
-from tribolab.records.parts import CurveOutcome, Row, RunOutcome, number_of
+from tribolab.records.parts import CurveOutcome, Row, RunOutcome
+from tribolab.records.roughness_words import roughness_in_words
 from tribolab.records.run_record import RunRecord
-from tribolab.records.wording import with_error
 from tribolab.words import LOAD_MEASURED, LOAD_VARIES, Count, load_text
 
 if TYPE_CHECKING:
@@ -205,22 +205,12 @@ def _computed(outcome: Outcome) -> str:
 
 def _roughness(outcome: Outcome) -> list[str]:
     """Say the roughness of surfaces as drawings and instruments state it, with its cut-off."""
-    told: dict[str, list[str]] = {}
+    rows = []
     for surface in outcome.surfaces:
         entry = outcome.store.get("surface", surface.name, SurfaceRecord)
-        row = entry.record.rows.roughness if entry and entry.record.rows else None
-        if not row or (rq := number_of(row, "Rq_m")) is None:
-            continue
-        cut = number_of(row, "lambda_c_m")
-        by = "no cut-off" if cut is None else f"cut-off {1e3 * cut:.3g} mm"
-        error = max(number_of(row, f"Rq_{what}_m") or 0.0 for what in ("sem", "gap_error"))
-        said = with_error(1e6 * rq, 1e6 * error) if error else f"{1e6 * rq:.3g}"
-        told.setdefault(by, []).append(f"{surface.name} {said} µm")
-    return [
-        f"Rq ({by}): {', '.join(names[:_HANDFUL])}"
-        + (f" and {len(names) - _HANDFUL} more" if len(names) > _HANDFUL else "")
-        for by, names in told.items()
-    ]
+        if entry and entry.record.rows and entry.record.rows.roughness:
+            rows.append((surface.name, entry.record.rows.roughness))
+    return roughness_in_words(rows)
 
 
 def foreign_lines(outcome: Outcome) -> list[str]:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from tribolab.records.model_words import is_described
+from tribolab.records.roughness_words import roughness_in_words
 from tribolab.report.page.in_words import by_speed, conditions, half_speed
 from tribolab.report.plain import listed, plain_speed
 from tribolab.words import force_text, is_dry, many
@@ -20,7 +21,7 @@ class Fall(NamedTuple):
 
 
 def in_short(document: Mapping[str, Any]) -> list[str]:
-    """Return which surface lifts off last in each medium, and which curves no model describes.
+    """Return which surface lifts off last, which curves no model describes, and roughness.
 
     Parameters
     ----------
@@ -38,7 +39,8 @@ def in_short(document: Mapping[str, Any]) -> list[str]:
     >>> said.partition(", ")[0], said.partition(": ")[2]
     ('In oil at 31 N', 'rough needs the highest speed to lift off.')
     """
-    return [*_falls(document["curves"]), *_models(document)]
+    rough = ((s["name"], s["roughness"]) for s in document.get("surfaces", ()) if s["roughness"])
+    return [*_falls(document["curves"]), *_models(document), *roughness_in_words(rough)]
 
 
 def _falls(curves: Iterable[Mapping[str, Any]]) -> Iterable[str]:

@@ -1,0 +1,39 @@
+"""The roughness of surfaces in a line, as drawings and instruments state it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from tribolab.records.parts import Row, number_of
+from tribolab.records.wording import with_error
+
+_MOST = 5  # surfaces that are named
+
+
+def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
+    """Return Rq of surfaces, a line for each cut-off.
+
+    Parameters
+    ----------
+    rows
+        Name of a surface and its roughness, as in the table of that name.
+
+    Examples
+    --------
+    >>> roughness_in_words([("fine", {"Rq_m": 1e-7}), ("rough", {"Rq_m": 2e-6, "Rq_sem_m": 1e-7})])
+    ['Rq (no cut-off): fine 0.1 µm, rough 2.00 ± 0.10 µm']
+    """
+    told: dict[str, list[str]] = {}
+    for name, row in rows:
+        if (rq := number_of(row, "Rq_m")) is None:
+            continue
+        cut = number_of(row, "lambda_c_m")
+        by = "no cut-off" if cut is None else f"cut-off {1e3 * cut:.3g} mm"
+        error = max(number_of(row, f"Rq_{what}_m") or 0.0 for what in ("sem", "gap_error"))
+        said = with_error(1e6 * rq, 1e6 * error) if error else f"{1e6 * rq:.3g}"
+        told.setdefault(by, []).append(f"{name} {said} µm")
+    return [
+        f"Rq ({by}): {', '.join(names[:_MOST])}"
+        + (f" and {len(names) - _MOST} more" if len(names) > _MOST else "")
+        for by, names in told.items()
+    ]
