@@ -27,6 +27,7 @@ TABLES = {
     "Czech": "Čas [s];Třecí síla [N];Normálová síla [N];Rychlost [mm/s];Poloha [mm]",
     "Swedish": "Tid [s];Friktionskraft [N];Normalkraft [N];Hastighet [mm/s];Förskjutning [mm]",
 }
+STAGES = ((1, 10), (2, 30), (3, 100))
 QUANTITIES = ["time", "friction_force", "normal_force", "sliding_velocity", "position"]
 
 
@@ -141,3 +142,48 @@ def test_a_coefficient_stands_under_the_load_that_the_text_states(tmp_path):
     data, draft = drafted(file, tmp_path)
     assert data.attrs["set_normal_force_N"] == 5 and not draft.guesses
     assert "normal_force" not in data
+
+
+@pytest.mark.parametrize(
+    ("text", "quantity", "unit"),
+    [
+        ("TIME(S),POSITION(CM),FRICTION(N)", "position", "cm"),
+        ("Encoder: 500 counts/mm\nTime [s],Encoder [counts],Fx [N]", "position", "0.002 mm"),
+        ("Friction 0.5 N/count\nLoad 2 N/count\nt [s],Load [counts],Ff [counts]",)
+        + ("normal_force", "2 N"),
+        ("Sled weight: 3 kg\nTime [s],Load [N],Extension [mm]", "friction_force", "N"),
+    ],
+)
+def test_units_and_forces_are_told_by_what_stands_around_them(text, quantity, unit, tmp_path):
+    file = tmp_path / "table.csv"
+    rows = "\n".join(f"{n / 10},{9 + n % 3},{5 + n % 2}" for n in range(60))
+    file.write_text(f"{text}\n{rows}\n")
+    _, draft = drafted(file, tmp_path)
+    column = draft.understood.columns[1]
+    assert (column.quantity, column.read_unit, column.used) == (quantity, unit, True)
+
+
+def test_n_is_the_number_of_the_row_where_it_goes_on_by_one(tmp_path):
+    file = tmp_path / "table.csv"
+    rows = "\n".join(f"{n},{n / 10},5,{9 + n % 3}" for n in range(60))
+    file.write_text(f"n,Time [s],v [mm/s],Ff [N]\n{rows}\n")
+    assert not drafted(file, tmp_path)[1].guesses
+
+
+def test_a_stated_rotation_and_radius_make_the_speed_of_each_step(tmp_path):
+    file = tmp_path / "stages.csv"
+    rows = "\n".join(f"{n / 10},{9 + n % 3}" for n in range(100))
+    parts = (f"*** STAGE {k} SPEED {rpm} RPM ***\nTime [s],Ff [N]\n{rows}" for k, rpm in STAGES)
+    file.write_text("Track dia 24 mm\nLoad 30 N\n" + "\n".join(parts) + "\n")
+    data, draft = drafted(file, tmp_path)
+    assert any("is how fast it turns of its step" in guess for guess in draft.guesses)
+    speeds = [2 * np.pi * rpm / 60 * 0.012 for _, rpm in STAGES]
+    np.testing.assert_allclose(tl.find_segments(data).sliding_speed, speeds, rtol=1e-6)
+
+
+def test_a_table_of_results_is_told_from_a_record(tmp_path):
+    file = tmp_path / "results.csv"
+    rows = "\n".join(f"{2**n},20,{0.4 - 0.03 * n}" for n in range(8))
+    file.write_text(f"Speed (mm/s),Load (N),COF\n{rows}\n")
+    with pytest.raises(tl.TribolabError, match="each row is of another speed: 8 results"):
+        tl.read(file)

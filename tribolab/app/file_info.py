@@ -231,7 +231,7 @@ def run_lines(facts: FileFacts) -> list[str]:
 
 
 def missing_lines(facts: FileFacts) -> list[str]:
-    """Say what a run that has friction lacks for a friction coefficient over the sliding speed.
+    """Say what a run that has a force lacks for a friction coefficient over the sliding speed.
 
     Parameters
     ----------
@@ -239,8 +239,9 @@ def missing_lines(facts: FileFacts) -> list[str]:
         From `tribolab.io.file_facts.file_facts`.
     """
     names = set(facts["columns"])
-    if not names & {"friction_force", "friction_coefficient", "shear_stress"}:
-        return []
+    forces = {"friction_force", "friction_coefficient", "shear_stress", "normal_force"}
+    if not names & forces:
+        return []  # of a log of the motion nothing else is expected
     if "set_speed_m_s" in facts["metadata"]:
         names.add("set_speed")
     return [f"  missing: {lack}" for lack in missing_of(names)]

@@ -64,6 +64,7 @@ def assigned(
     kind
         What the file is.
     """
+    matched = _without_rows(bare, numbers, matched)
     matched = _without_lengths(bare, _without_axes(bare, matched))
     has_units = any(unit is not None for _, unit, _ in bare)
     filled = (np.isfinite(numbers) & (numbers != 0)).any(axis=0)
@@ -247,6 +248,18 @@ def _without_axes(bare: list[Bare], matched: list[list[Match]]) -> list[list[Mat
         if is_axis(name) and options and options[0].quantity == "position"
         else options
         for (name, _, _), options in zip(bare, matched, strict=True)
+    ]
+
+
+def _without_rows(
+    bare: list[Bare], numbers: np.ndarray, matched: list[list[Match]]
+) -> list[list[Match]]:
+    """Take "n" for the number of the row where it goes on by one."""
+    return [
+        []
+        if squeezed(name) == "n" and unit is None and (np.diff(numbers[:, place]) == 1).all()
+        else options
+        for place, ((name, unit, _), options) in enumerate(zip(bare, matched, strict=True))
     ]
 
 

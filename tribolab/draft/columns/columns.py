@@ -21,9 +21,10 @@ from tribolab.draft.columns.lengths import (
     find_profile_length,
 )
 from tribolab.draft.columns.ratio import disagreement, force_or_ratio
+from tribolab.draft.columns.results_table import results_told
 from tribolab.draft.columns.sampling import find_sampling
 from tribolab.draft.columns.words import COUNTS, Match, is_count, matches, split_unit, squeezed
-from tribolab.draft.file.header import converts, measures_something
+from tribolab.draft.file.header import converts, is_unit, measures_something
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.lvm import units_above
 from tribolab.draft.model import NO_NUMBERS, DraftColumn, Kind, Understood, other_units
@@ -68,7 +69,8 @@ def understand(layout: Layout) -> Understood:
         kind, columns, behaving = by_behaviour(columns, numbers)
         guesses += behaving
     columns = told_by_load(layout, force_or_ratio(columns), numbers) if kind == "run" else columns
-    guesses += disagreement(columns, numbers) if kind == "run" else []
+    if kind == "run":
+        guesses += disagreement(columns, numbers) + results_told(columns, numbers)
     columns = _dated(with_worth(layout, columns), layout, numbers, text)
     columns = [
         column._replace(
@@ -217,6 +219,9 @@ def _labelled(layout: Layout) -> list[DraftColumn]:
     seen: dict[str, int] = {}
     for place, cell in enumerate(cells, start=1):
         name, unit = split_name(cell)
+        said = ""
+        if unit is not None and not is_unit(unit) and unit.isupper() and is_unit(unit.lower()):
+            said = unit = unit.lower()  # TIME (S), POSITION (MM)
         if unit in _PURE or not (unit is None or measures_something(unit) or is_count(unit)):
             unit = None  # brackets around something else
         if heading and heading.units is not None:
@@ -232,8 +237,8 @@ def _labelled(layout: Layout) -> list[DraftColumn]:
                 cell,
                 known,
                 seen[name] if known else 1,
-                file_unit=unit,
-                unit=above.get(place) if unit is None else None,
+                file_unit=None if said else unit,
+                unit=above.get(place) if unit is None else said or None,
                 counted=counted,
             )
         )

@@ -14,6 +14,7 @@ from tribolab.errors import shown
 from tribolab.quantities import unit_conversion
 
 _LOADED = 0.4  # of the largest reading
+_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 _SAME = (0.75, 1.33)  # times the stated load: a reading of the load itself
 
 
@@ -32,6 +33,9 @@ def told_by_load(
         Their numbers (rows, columns) as written.
     """
     open_ones = [c for c in columns if c.fill_in == WHICH_FORCE.format(shown(c.label))]
+    held = {c.quantity for c in columns if c.used}
+    if not open_ones and not held & _FRICTION:  # "Load" of a machine that pulls a sled
+        open_ones = [c for c in columns if c.used and c.quantity == "normal_force"]
     load = find_load(find_values(layout)) if len(open_ones) == 1 else None
     if load is None:
         return list(columns)
@@ -47,6 +51,8 @@ def _guessed(column: DraftColumn, load: DraftValue, values: np.ndarray) -> Draft
     if not 0 < share < _SAME[1]:
         return column
     pressed = share > _SAME[0]
+    if pressed and not column.fill_in:
+        return column
     if pressed:
         name, other = "normal_force", "friction_force"
         why = f"it is the normal force: it reads what '{load.text}' says"

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tribolab.draft.columns.words import squeezed
+from tribolab.draft.columns.words import matches, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
@@ -69,9 +69,18 @@ def with_worth(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftColu
     for column in columns:
         si_unit = quantity(column.quantity).unit if column.quantity else ""
         mine = [worth for worth in stated if si_unit and converts(worth.unit, si_unit)]
+        named = [worth for worth in mine if _is_named(worth.line, str(column.quantity))]
+        mine = named if len(mine) > 1 else mine
         fits = column.counted and column.fill_in and len(mine) == 1
         result.append(column if not fits else _worth_of(column, mine[0]))
     return result
+
+
+def _is_named(line: str, name: str) -> bool:
+    """Whether a line's first words are of a quantity: "Friction channel: 0.002 N/count"."""
+    said = re.split(r"[:=]|\d", line, maxsplit=1)[0]
+    told = (matches(words, None) for words in (said, *said.split()))
+    return next((options[0].quantity for options in told if options), "") == name
 
 
 class _Worth(NamedTuple):

@@ -34,6 +34,8 @@ _DRIVE = re.compile(
 _SINE = re.compile(r"crank|sine|sinus|sinoid|kurbel|eccentric|exzenter|manivelle|scotch")
 _EVEN = re.compile(r"triang|constant|linear|konstant|dreieck")
 _MODE = re.compile(r"^(?:test|sliding)?mode$|^modus$|^betriebsart$|^modo$|模式$|モード$")
+_SPEED_OF_TURNS = re.compile(r"(?:speed|velocity|rotation|rpm|drehzahl|vitesse|giri|velocidad)$")
+_PER_MINUTE = re.compile(r"rpm|1/min|min-1|(?:rev|r|U|tr|ot|obr|giri)\.?/\s?min", re.IGNORECASE)
 _SAYS_SPEED = {"sliding_velocity", "position", "set_speed"}
 SAYS_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
@@ -225,7 +227,7 @@ def _with_speed(
     by_values = _of_values(values)
     of_strokes = by_values or _of_columns(understood)
     if of_strokes is None or (by_values is None and "rotation_speed" in names):
-        return before if turning else _with_set_speed(before, values)
+        return before if turning else _with_set_speed(before, values, track)
     settings = of_strokes.settings
     said = [text.lower() for key, text in words if _DRIVE.search(squeezed(key))]
     modes = [text.lower() for key, text in words if _MODE.search(squeezed(key))]
@@ -246,18 +248,34 @@ def _with_speed(
     )
 
 
+def _how_long(value: DraftValue) -> str:
+    return " of its step" if value.source == "step" else " all along"
+
+
+def _is_rotation(value: DraftValue) -> bool:
+    named = _SPEED_OF_TURNS.search(value.key) is not None
+    return named and _PER_MINUTE.fullmatch(value.own_unit or "") is not None
+
+
 def _angle(understood: Understood) -> DraftColumn | None:
     columns = understood.columns
     return angle_of(columns) or turns_of(columns, understood.numbers)
 
 
-def _with_set_speed(before: Follows, values: Sequence[DraftValue]) -> Follows:
+def _with_set_speed(before: Follows, values: Sequence[DraftValue], track: _Track) -> Follows:
     """Let the speed that the text states be that of the run, which is asked about."""
     stated = [value for value in values if value.name == "set_speed"]
+    turns = [value for value in values if _is_rotation(value)]
+    if not stated and len(turns) == 1 and track.values:
+        about = f"'{turns[0].text}' and the radius of the track"
+        rate = turns[0]._replace(to="rad/s", name="rotation")
+        formula = DraftedFormula("sliding_velocity", f"rotation * {track.formula}", about)
+        guess = f"'{turns[0].text}' is how fast it turns{_how_long(turns[0])}"
+        speed = SpeedBy("none", guess=guess, options=("not known",))
+        return _and(before, formula, (rate, *track.values))._replace(speed=speed)
     if len(stated) != 1:
         return before
-    each = stated[0].source == "step"
-    guess = f"'{stated[0].text}' is the sliding speed {'of its step' if each else 'all along'}"
+    guess = f"'{stated[0].text}' is the sliding speed{_how_long(stated[0])}"
     return before._replace(
         speed=SpeedBy("set speed", guess=guess, options=("not known",)),
         values=(*before.values, stated[0]),

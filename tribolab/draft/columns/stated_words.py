@@ -17,7 +17,7 @@ _OFTEN = (
 RATE = re.compile(
     rf"^(?:rate|fs|daqrate)$|{_TAKEN}.*{_OFTEN}|{_OFTEN}.*{_TAKEN}"
     r"|abtastrate|cadence|echantillonnage|muestreo|campionamento|采样|サンプリング"
-    r"|^(?:sampled|logged|recorded|acquired|abgetastet|aufgezeichnet)$"
+    r"|^(?:sampling|acquisition|logging|abtastung|aufzeichnung|sampled|logged|recorded|acquired|abgetastet|aufgezeichnet)$"
 )
 # what passes from one sample to the next
 INTERVAL = re.compile(

@@ -255,12 +255,14 @@ _SPEED = re.compile(
     r"^(?:sliding|test|belt|disc|set|linear)?(?:speed|velocity)$|geschwindigkeit$|^vitesse|^velocidad"
     r"|^velocita|速度$|snelheid$"
 )
+_TURNS = re.compile(r"(?:speed|rotation|drehzahl)$")
 _WANTED = {
     "m": (RADIUS, DIAMETER, _R, ARM, STROKE, HALF_STROKE, PITCH, TURNING, PROFILE_LENGTH),
     "s": (INTERVAL,),
     "m/s": (_SPEED,),
-    "1/s": (RATE, FREQUENCY),
-    "Hz": (RATE, FREQUENCY),
+    "rad/s": (FREQUENCY, _TURNS),
+    "1/s": (RATE, FREQUENCY, _TURNS),
+    "Hz": (RATE, FREQUENCY, _TURNS),
     "N": (LOAD,),
 }
 
