@@ -397,3 +397,17 @@ def test_the_last_bits_of_times_and_velocities_move_no_end_of_a_segment(noise, s
     ):
         assert same.sizes == told.sizes
         xr.testing.assert_allclose(told, same, rtol=1e-10)
+
+
+@pytest.mark.parametrize("rate", [10, 20, 50])
+def test_a_position_as_it_was_told_has_no_coarse_last_digit(rate):
+    """Each sample goes on by the same step, which is no step of the sensor."""
+    speed, stroke = 1e-3, 10.0
+    v = np.concatenate(
+        [np.r_[np.zeros(rate), np.full(int(stroke * rate), (-1) ** k * speed)] for k in range(6)]
+    )
+    time = np.round(np.arange(v.size) / rate, 3)
+    run = xr.Dataset({"position": ("time", np.cumsum(v) / rate)}, {"time": time})
+    found = find_segments(run)
+    assert found.direction.values.tolist() == [1, -1] * 3
+    np.testing.assert_allclose(found.sliding_speed, speed, rtol=1e-3)

@@ -65,8 +65,8 @@ RUN_WORDS = (
             "pressingforce pressforce clampingforce downforce appliedforce "
             "normaalkracht aandrukkracht belasting "
             "appliedload contactforce normalkraft axialkraft anpresskraft auflast normallast "
-            "load last belastung forcez zforce forcenormale effortnormal charge "
-            "fuerzanormal carga forzanormale carico "
+            "load last belastung forcez zforce forcenormale effortnormal chargenormale charge "
+            "fuerzanormal carganormal carga forzanormale cariconormale carico "
             "forcanormal silanacisku silanormalna nacisk obciazenie normalovasila pritlacnasila "
             "zatizeni normaalivoima normalero nyomoero normalkuvvet normalyuek yuek "
             "нормальнаясила нагрузка 수직하중 수직력 하중 "
@@ -108,7 +108,7 @@ RUN_WORDS = (
         _words("x s pos xpos enc disp"),
         _words(
             "horizontaldisplacement horizontalposition "
-            "position displacement displ extension crosshead stroke slidingdistance "
+            "strokeposition position displacement displ extension crosshead stroke slidingdistance "
             "distance verschiebung auslenkung gleitweg traversenweg standardweg strecke weg hub "
             "travel encoder "
             "deplacement course posicion desplazamiento recorrido posizione spostamento corsa "

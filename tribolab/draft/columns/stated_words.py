@@ -31,7 +31,7 @@ LOAD = re.compile(
     r"^(?:normal|applied|dead|sled|schlitten|test|axial|static|set)?"
     r"(?:load(?:ed|set)?|force|weight|mass|gewicht|masse|kraft|last)+$"
     r"|^(?:normalkraft|auflast|normallast|belastet|belastung|chargenormale|charge|forcenormale"
-    r"|effortnormal|carganormal|carga|fuerzanormal|carico|caricato|forzanormale|peso|poids"
+    r"|effortnormal|carganormal|carga|fuerzanormal|cariconormale|carico|caricato|forzanormale|peso|poids"
     r"|法向载荷|载荷|负载|荷重|垂直荷重|載荷)$"
 )
 # the distance of a profile's points by its name

@@ -16,6 +16,7 @@ _FASTER = 3.0  # times the rate around it, for a single sample
 _ISOLATED = 20.0  # times the scatter of the rates around it: no slider does that
 _SAMPLE = 8192  # readings that suffice to find their last digit
 _DUST = 0.01  # of a digit: what arithmetic adds
+_TOLD = 0.02  # of the steps of a motion that is told, those at its ends may differ
 _ROUNDED = 0.5  # digits of noise that rounding may leave
 _AROUND = 8  # samples on each side that tell the rate
 
@@ -77,7 +78,26 @@ def digit(position: np.ndarray) -> float:
         return 0.0
     least = float(gaps.min())
     times = gaps / least
-    return least if np.abs(times - np.round(times)).max() < _DUST else 0.0
+    if np.abs(times - np.round(times)).max() >= _DUST:
+        return 0.0
+    return 0.0 if _is_commanded(position, least) else least
+
+
+def _is_commanded(position: np.ndarray, step: float) -> bool:
+    """Whether a position goes on by the same step at every sample, as it was told to, or rests.
+
+    Readings that are rounded to their last digit stand still now and then in the middle of a
+    motion, or go on by another number of digits.
+    """
+    moves = others = alone = 0
+    for first, last in pieces(0, position.size - 1):
+        steps = np.abs(np.diff(position[first : last + 1]))
+        still = steps <= _DUST * step
+        one = np.abs(steps - step) < _DUST * step
+        moves += int(np.count_nonzero(one))
+        others += int(np.count_nonzero(~one & ~still))
+        alone += int(np.count_nonzero(still[1:-1] & ~still[:-2] & ~still[2:]))
+    return moves > 0 and others + alone <= _TOLD * moves
 
 
 def is_rounding(position: np.ndarray, noise: float) -> bool:
