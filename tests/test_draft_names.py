@@ -187,3 +187,59 @@ def test_a_table_of_results_is_told_from_a_record(tmp_path):
     file.write_text(f"Speed (mm/s),Load (N),COF\n{rows}\n")
     with pytest.raises(tl.TribolabError, match="each row is of another speed: 8 results"):
         tl.read(file)
+
+
+ASIDE = {
+    "a set speed beside what turns": (
+        "Track radius: 10 mm\nTime [s];Speed [rpm];Set speed [mm/s];Ft [N];Fn [N]",
+        lambda n: (n / 10, 60, 5, 3 + n % 2, 10),
+        2 * np.pi * 0.01,
+    ),
+    "a set speed beside strokes": (
+        "Stroke: 10 mm\nFrequency: 0.5 Hz\nDrive: crank\nLoad: 10 N\n"
+        "Time [s];Set speed [mm/s];Ff [N]",
+        lambda n: (n / 50, 5, round(3.5 * np.cos(np.pi * n / 50), 3)),
+        None,
+    ),
+    "a force across beside a torque": (
+        "Track radius: 10 mm\nTime [s];Speed [rpm];Fy [N];Torque [N mm];Fn [N]",
+        lambda n: (n / 10, 60, 0.1 * (n % 2), 35 + n % 2, 10),
+        2 * np.pi * 0.01,
+    ),
+    "a force across beside a coefficient": (
+        "Time [s];Speed [mm/s];Fy [N];COF",
+        lambda n: (n / 10, 5, 0.1 * (n % 2), 0.35 + 0.01 * (n % 2)),
+        5e-3,
+    ),
+    "a preload above the load": (
+        "Preload: 1 N\nLoad: 10 N\nTime [s];Speed [mm/s];Ff [N]",
+        lambda n: (n / 10, 5, 3 + n % 2),
+        5e-3,
+    ),
+    "a displacement sensor": (
+        "Load: 10 N\nTime [s];Speed [mm/s];Ff [N];LVDT [mm]",
+        lambda n: (n / 10, 5, 3 + n % 2, 0.1 * (n % 2)),
+        5e-3,
+    ),
+    "a mean coefficient": (
+        "Load: 10 N\nTime [s];Speed [mm/s];Ff [N];Mean COF",
+        lambda n: (n / 10, 5, 3 + n % 2, 0.5),
+        5e-3,
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", ASIDE)
+def test_what_stands_beside_friction_load_and_speed_changes_none_of_them(kind, tmp_path):
+    head, row, speed = ASIDE[kind]
+    file = tmp_path / "run.txt"
+    rows = "\n".join(";".join(f"{cell}" for cell in row(n)) for n in range(400))
+    file.write_text(f"{head}\n{rows}\n")
+    run = tl.read(file)
+    segments = tl.find_segments(run)
+    found = tl.friction_coefficient(run, segments).friction_coefficient
+    assert float(found.mean()) == pytest.approx(0.355, abs=0.035)
+    if speed is not None:
+        np.testing.assert_allclose(segments.sliding_speed, speed, rtol=1e-6)
+    else:
+        assert segments.sizes["segment"] > 5

@@ -65,6 +65,7 @@ def assigned(
         What the file is.
     """
     matched = _without_rows(bare, numbers, matched)
+    matched = _without_weak(columns, bare, _across_if_moved(bare, matched))
     matched = _without_lengths(bare, _without_axes(bare, matched))
     has_units = any(unit is not None for _, unit, _ in bare)
     filled = (np.isfinite(numbers) & (numbers != 0)).any(axis=0)
@@ -260,6 +261,48 @@ def _without_rows(
         if squeezed(name) == "n" and unit is None and (np.diff(numbers[:, place]) == 1).all()
         else options
         for place, ((name, unit, _), options) in enumerate(zip(bare, matched, strict=True))
+    ]
+
+
+def _across_if_moved(bare: list[Bare], matched: list[list[Match]]) -> list[list[Match]]:
+    """Take a sensor of either displacement for that across, where the motion is told otherwise."""
+    told = {"rotation_speed", "sliding_velocity", "position"}
+    surely = {o.quantity for options in matched for o in options[:1] if o.score >= KNOWN_WORD}
+    if not surely & told:
+        return matched
+    either = {"position", "height_displacement"}
+    return [
+        [Match("height_displacement", KNOWN_WORD, None)]
+        if options and options[0].score < KNOWN_WORD and either == {o.quantity for o in options}
+        else options
+        for options in matched
+    ]
+
+
+def _without_weak(
+    columns: list[DraftColumn], bare: list[Bare], matched: list[list[Match]]
+) -> list[list[Match]]:
+    """Leave out names that barely mean friction where another column surely does.
+
+    A torque is friction, and a force across the motion or a maximum beside it is none; where the
+    friction force is recorded, a mean coefficient of an instrument's own adds nothing.
+    """
+    surely = {o.quantity for options in matched for o in options[:1] if o.score >= KNOWN_WORD}
+    torque = torque_of(columns) is not None
+    forces = {"friction_force", "normal_force"} <= surely
+
+    def is_weak(name: str, options: list[Match]) -> bool:
+        if not options:
+            return False
+        role, of = role_of(name), options[0].quantity
+        if of == "friction_force":
+            across = squeezed(name) in _ACROSS and (torque or "friction_coefficient" in surely)
+            return across or (torque and role == "extreme")
+        return forces and of == "friction_coefficient" and role in ("derived", "extreme")
+
+    return [
+        [] if is_weak(name, options) else options
+        for (name, _, _), options in zip(bare, matched, strict=True)
     ]
 
 

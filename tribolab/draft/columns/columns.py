@@ -10,7 +10,7 @@ import pandas as pd
 
 from tribolab.draft.columns.assign import SIGNALS, assigned
 from tribolab.draft.columns.bridges import calibrated_forces
-from tribolab.draft.columns.either import told_by_load
+from tribolab.draft.columns.either import told_by_load, without_means
 from tribolab.draft.columns.epochs import DATES, counted_from
 from tribolab.draft.columns.factors import missing_factors, with_worth
 from tribolab.draft.columns.fill_in import Bare
@@ -70,6 +70,7 @@ def understand(layout: Layout) -> Understood:
         guesses += behaving
     columns = told_by_load(layout, force_or_ratio(columns), numbers) if kind == "run" else columns
     if kind == "run":
+        columns = without_means(layout, columns)
         guesses += disagreement(columns, numbers) + results_told(columns, numbers)
     columns = _dated(with_worth(layout, columns), layout, numbers, text)
     columns = [

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tribolab.draft.columns.roles import role_of
 from tribolab.draft.columns.stated_load import find_load, stated_number
 from tribolab.draft.columns.values import DraftValue, find_values
 from tribolab.draft.file.layout import Layout
@@ -15,6 +16,7 @@ from tribolab.quantities import unit_conversion
 
 _LOADED = 0.4  # of the largest reading
 _FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
+_WORKED_OUT = ("derived", "extreme")
 _SAME = (0.75, 1.33)  # times the stated load: a reading of the load itself
 
 
@@ -41,6 +43,29 @@ def told_by_load(
         return list(columns)
     guessed = _guessed(open_ones[0], load, numbers[:, open_ones[0].place - 1])
     return [guessed if column.place == guessed.place else column for column in columns]
+
+
+def without_means(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftColumn]:
+    """Leave out a mean coefficient of the instrument's own, where the forces give one.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    columns
+        The columns as they are understood.
+    """
+    held = {c.quantity for c in columns if c.used}
+    means = [c for c in columns if c.used and c.guessed and c.quantity == "friction_coefficient"]
+    if not means or "friction_force" not in held or role_of(means[0].label) not in _WORKED_OUT:
+        return list(columns)
+    if "normal_force" not in held and find_load(find_values(layout)) is None:
+        return list(columns)
+    note = "worked out by the instrument; the forces give it"
+    return [
+        c._replace(used=False, guessed=(), options=(), note=note) if c in means else c
+        for c in columns
+    ]
 
 
 def _guessed(column: DraftColumn, load: DraftValue, values: np.ndarray) -> DraftColumn:

@@ -91,7 +91,7 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     timed = "time" in names or understood.rate_pattern
     # rows that are counted as seconds make no speed of a position
     says_speed = _SAYS_SPEED if timed else _SAYS_SPEED - {"position"}
-    if not names & says_speed:
+    if not names & (says_speed - {"set_speed"}):  # what is set gives way to what turns or drives
         result = _with_speed(result, names, values, understood, words_said(layout), track)
     torque = torque_of(understood.columns)
     if not names & SAYS_FRICTION and torque is not None:
@@ -227,7 +227,8 @@ def _with_speed(
     by_values = _of_values(values)
     of_strokes = by_values or _of_columns(understood)
     if of_strokes is None or (by_values is None and "rotation_speed" in names):
-        return before if turning else _with_set_speed(before, values, track)
+        known = turning or "set_speed" in names
+        return before if known else _with_set_speed(before, values, track)
     settings = of_strokes.settings
     said = [text.lower() for key, text in words if _DRIVE.search(squeezed(key))]
     modes = [text.lower() for key, text in words if _MODE.search(squeezed(key))]

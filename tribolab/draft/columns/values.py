@@ -207,7 +207,8 @@ def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:
     options = matches(key, unit)
     if options and options[0].score > 0.5:
         quantity = _SET.get(options[0].quantity, options[0].quantity)
-        if quantity.startswith("set_"):
+        other = quantity == "set_normal_force" and not LOAD.search(plain)  # a preload is none
+        if quantity.startswith("set_") and not other:
             read_as = options[0].unit or unit
             return DraftValue(quantity, pattern, read_as, None, line, own_unit=unit, key=plain)
     return DraftValue(_name(key), pattern, unit, dimension, line, own_unit=unit, key=plain)

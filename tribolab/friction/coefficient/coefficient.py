@@ -141,7 +141,9 @@ def friction_coefficient(
 
 
 def _of_segments(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
-    if "friction_force" in run:
+    # of a force under a load that nobody knows a recorded coefficient says more
+    alone = "normal_force" not in run and "friction_coefficient" in run
+    if "friction_force" in run and not alone:
         result = _from_forces(run, segments, settings)
     elif "friction_coefficient" in run:
         result = _from_ratio(run, segments, settings)
