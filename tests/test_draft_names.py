@@ -243,3 +243,16 @@ def test_what_stands_beside_friction_load_and_speed_changes_none_of_them(kind, t
         np.testing.assert_allclose(segments.sliding_speed, speed, rtol=1e-6)
     else:
         assert segments.sizes["segment"] > 5
+
+
+@pytest.mark.parametrize(
+    "name", ["mu / %", "COF in %", "COF (%)", "µ %", "Friction coefficient [%]"]
+)
+def test_a_coefficient_in_percent_is_read_so_however_it_is_written(name, tmp_path):
+    file = tmp_path / "cof.txt"
+    rows = "\n".join(f"{n / 10};2;{30 + n % 2}" for n in range(50))
+    file.write_text(f"Time [s];Speed [mm/s];{name}\n{rows}\n", encoding="utf-8")
+    assert float(tl.read(file).friction_coefficient.mean()) == pytest.approx(0.305)
+    file.write_text(f"Time [s];Speed [mm/s];COF\n{rows}\n")
+    with pytest.raises(tl.TribolabError, match="is it written in percent"):
+        tl.read(file)

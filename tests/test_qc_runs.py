@@ -365,3 +365,17 @@ def test_a_recorded_coefficient_that_its_forces_do_not_give_is_told(factor, stat
     rows = [row for row in check_run(run).rows if row["check"] == "said_elsewhere"]
     assert [row["status"] for row in rows] == [status]
     assert f"records a coefficient of {0.35 * factor:.2g}" in rows[0]["message"]
+
+
+@pytest.mark.parametrize("size", [1e-5, 0.3, 30.0])
+def test_a_coefficient_that_no_contact_has_is_told(size):
+    rng = np.random.default_rng(4)
+    run = xr.Dataset(
+        {
+            "sliding_velocity": ("time", np.full(400, 1e-3)),
+            "friction_coefficient": ("time", size * (1 + 0.01 * rng.standard_normal(400))),
+        },
+        {"time": np.arange(400) / 50},
+    )
+    told = message(check_run(run), "said_elsewhere")
+    assert ("which no contact has" in told) == (size != 0.3)

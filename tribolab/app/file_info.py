@@ -16,7 +16,7 @@ from tribolab.io.companion import CompanionFacts, describe_companion
 from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.dialects.signature import peek
 from tribolab.io.file_facts import FileFacts, file_facts
-from tribolab.io.force_ratio import doubt_about
+from tribolab.io.force_ratio import doubt_about, doubt_about_coefficient
 from tribolab.io.kinds import kind_of
 from tribolab.io.missing import missing_of
 from tribolab.io.runs import read_run as known_run
@@ -248,7 +248,10 @@ def missing_lines(facts: FileFacts) -> list[str]:
 
 
 def _doubts(run: xr.Dataset) -> list[str]:
-    """Say what cannot be: forces whose ratio is no friction coefficient."""
+    """Say what cannot be: forces whose ratio is no friction coefficient, or such a coefficient."""
+    if "friction_coefficient" in run and "friction_force" not in run:
+        doubt = doubt_about_coefficient(run["friction_coefficient"].to_numpy())
+        return [f"  doubtful: {doubt}"] if doubt else []
     if not {"friction_force", "normal_force"} <= set(run.data_vars):
         return []
     doubt = doubt_about(run["friction_force"].to_numpy(), run["normal_force"].to_numpy())

@@ -226,7 +226,13 @@ WEIGHTS = {"g": "gf", "kg": "kgf", "lb": "lbf", "lbs": "lbf", "oz": "ozf"}
 
 SCAN_WORDS = (
     Word(
-        "x", ("x",), _words("lateral position distance messweg weg strecke laenge length abstand")
+        "x",
+        ("x",),
+        _words(
+            "lateral position distance messweg weg strecke laenge length abstand longueur "
+            "distancia distanza posicion posizione posicao longitud lunghezza recorrido "
+            "位置 距离 距離"
+        ),
     ),
     Word("y", ("y",), ()),
     Word(
@@ -234,7 +240,7 @@ SCAN_WORDS = (
         _words("z h"),
         _words(
             "height hoehe profile profil totalprofile rawprofile amplitude topography depth tiefe "
-            "raw hauteur altura "
+            "raw hauteur altura perfil profilo profondeur profundidad profondita ordonnee ordenada "
             "elevation relief ordinate hoogte "
             "altezza vyska wysokosc hojd hoyde hojde korkeus magassag visina yukseklik 高度 高さ"
         ),

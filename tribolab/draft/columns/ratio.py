@@ -9,7 +9,7 @@ import numpy as np
 
 from tribolab.draft.columns.words import split_unit
 from tribolab.draft.model import DraftColumn
-from tribolab.io.force_ratio import doubt_about
+from tribolab.io.force_ratio import doubt_about, doubt_about_coefficient
 from tribolab.quantities import unit_conversion
 
 _APART = 1.5  # times: filters and zeros that the instrument took off make less
@@ -38,6 +38,9 @@ def disagreement(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[st
     if "friction_coefficient" not in held and all(name in held for name in names[1:]):
         doubt = doubt_about(*(_si(held[name], numbers) for name in names[1:]))
         return [f"{doubt} they are read as named"] if doubt else []
+    if "friction_coefficient" in held and "friction_force" not in held:
+        doubt = doubt_about_coefficient(_si(held["friction_coefficient"], numbers))
+        return [f"{doubt} it is read as it stands"] if doubt else []
     if any(name not in held for name in names):
         return []
     stated, friction, load = (_si(held[name], numbers) for name in names)

@@ -27,14 +27,14 @@ from tribolab.draft.vocabulary import WEIGHTS
 _MOST = 12  # a long preamble is not repeated in the dialect
 # "# rate: 10 Hz", "Set Force = -200", "Disc track radius used (mm)<tab>21.232"
 _SAID = (
-    r"(?P<before>\W*(?P<key>[^\W\d][^:=\t;{mark}]*?)\s*[:=\t;{mark}]\s*)"
+    r"(?P<before>\W*(?P<key>[^\W\d][^:：=\t;{mark}]*?)\s*[:：=\t;{mark}]\s*)"
     r"(?P<number>[-+]?\d[\d.{digits}]*(?:e[-+]?\d+)?)[\s;{mark}]*(?P<unit>[^\s\d;,][^\s;,]*)?"
     r"\s*[;,\t]*\s*(?:\(.*\))?$"
 )
 _SAYS = re.compile(_SAID.format(mark="", digits=","), re.IGNORECASE)
 _IN_CELLS = re.compile(_SAID.format(mark=",", digits=""), re.IGNORECASE)  # "Dead weight,500,g"
 _UNIT_OF = re.compile(r"^(?P<key>.+?)(?:units?|einheit|unite|unidad|unita|eenheid|单位|単位)$")
-_WORDS = re.compile(r"\W*(?P<key>[^\W\d][^:=\t;]*?)\s*[:=\t;]\s*(?P<text>[^\W\d].*)$")
+_WORDS = re.compile(r"\W*(?P<key>[^\W\d][^:：=\t;]*?)\s*[:：=\t;]\s*(?P<text>[^\W\d].*)$")
 _LONGEST = 200  # characters of a line that are looked at
 _DRIVEN = re.compile(  # "reciprocating rig, crank drive"
     r"\b(?:crank|scotch[- ]yoke|eccentric|kurbel|exzenter)"

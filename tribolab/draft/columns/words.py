@@ -156,7 +156,12 @@ def _symbol_and_unit(label: str) -> tuple[str, str] | None:
     (('Ff', 'N'), None, ('t', 's'))
     >>> _symbol_and_unit("Ff/N"), _symbol_and_unit("F / N"), _symbol_and_unit("Fx/Fz")
     (('Ff', 'N'), ('F', 'N'), None)
+    >>> _symbol_and_unit("mu / %"), _symbol_and_unit("COF in %")
+    (('mu', '%'), ('COF', '%'))
     """
+    percent = re.fullmatch(r"(.*?[^\s/])\s*(?:/|\bin\b)?\s*%", label.strip())
+    if percent:
+        return percent[1], "%"
     name, _, unit = (part.strip() for part in label.rpartition("/"))
     if name and is_unit(unit) and not converts(unit, "1"):
         return name, unit

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping
 
 import numpy as np
 
+from tribolab.io.force_ratio import LARGEST, SMALLEST
 from tribolab.medians import median
 from tribolab.qc.register import Check, Limit, Result, Skip
 from tribolab.qc.run.subject import RunSubject
@@ -71,10 +73,26 @@ def _said_elsewhere(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
         text = "not in the file, and taken as the instrument's description has it: "
         text += str(attrs["assumed"]).replace("_", " ")
         results.append(Result("pass", "settings", text, noted=True))
-    results += _recorded_coefficient(subject, limits)
+    with contextlib.suppress(Skip):  # there is no friction of which to speak
+        results += _recorded_coefficient(subject, limits) + _out_of_question(subject)
     if results:
         return results
     raise Skip("nothing that the file does not say was taken for it")
+
+
+def _out_of_question(subject: RunSubject) -> list[Result]:
+    """Tell a friction coefficient of a size that no contact has."""
+    if not subject.sliding or "friction_coefficient" not in subject.friction:
+        return []
+    values = np.abs(subject.friction["friction_coefficient"].values)
+    known = values[np.isfinite(values)]
+    size = float(median(known)) if known.size else 0.0
+    if size == 0 or SMALLEST <= size <= LARGEST:
+        return []
+    text = f"the friction coefficient is {size:.3g}, which no contact has"
+    cure = "See that friction and load are not swapped, that their units are right, and that a "
+    cure += "recorded coefficient is not in percent."
+    return [Result("suspect", "friction_coefficient", text, size, cure=cure)]
 
 
 def _recorded_coefficient(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
