@@ -256,3 +256,14 @@ def test_a_coefficient_in_percent_is_read_so_however_it_is_written(name, tmp_pat
     file.write_text(f"Time [s];Speed [mm/s];COF\n{rows}\n")
     with pytest.raises(tl.TribolabError, match="is it written in percent"):
         tl.read(file)
+
+
+@pytest.mark.parametrize("name", ["Z position [mm]", "Position [mm]", "pos_z [mm]"])
+def test_on_a_disc_no_axis_is_the_way(name, tmp_path):
+    file = tmp_path / "disc.txt"
+    rows = "\n".join(f"{n / 10};60;3;10;{12 + 0.1 * (n % 3)}" for n in range(200))
+    head = f"Track radius: 10 mm\nTime [s];Speed [rpm];Ft [N];Fn [N];{name}"
+    file.write_text(f"{head}\n{rows}\n")
+    run = tl.read(file)
+    assert run.attrs["speed_from"] == "rotation"
+    np.testing.assert_allclose(tl.find_segments(run).sliding_speed, 2 * np.pi * 0.01, rtol=1e-6)

@@ -91,7 +91,10 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     timed = "time" in names or understood.rate_pattern
     # rows that are counted as seconds make no speed of a position
     says_speed = _SAYS_SPEED if timed else _SAYS_SPEED - {"position"}
-    if not names & (says_speed - {"set_speed"}):  # what is set gives way to what turns or drives
+    # what is set, and a way of whatever, give way to what turns; what is set to what drives, too
+    turned = "rotation_speed" in names and bool(track.formula)
+    says_speed = says_speed - ({"set_speed", "position"} if turned else {"set_speed"})
+    if not names & says_speed:
         result = _with_speed(result, names, values, understood, words_said(layout), track)
     torque = torque_of(understood.columns)
     if not names & SAYS_FRICTION and torque is not None:

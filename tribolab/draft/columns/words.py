@@ -40,6 +40,8 @@ _OF_STAGE = re.compile(
     r"(?P<name>x)[\s_-]*(?P<device>stage|axis|slider|carriage|motor|achse|schlitten|tisch|platine)",
     re.IGNORECASE,
 )
+_ACROSS = re.compile(r"(?:^|[\s_.\-])z(?:$|[\s_.\-])", re.IGNORECASE)
+_INSTEAD = {"position": "height_displacement"}
 _LONGEST = 1000  # characters of a name that are looked at: searches take their square
 _AXIS = re.compile(r"stage|axis|achse|carriage|table|tisch|slider|schlitten|motor|gantry|platine")
 _WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［］【】]+)[）］】]$")
@@ -223,6 +225,8 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
             options.append(Match(held, score, read_as))
     if not scan and role != "set" and _TURNS.fullmatch(unit or ""):
         options.append(Match("rotation_speed", KNOWN_WORD, None))
+    if not scan and _ACROSS.search(name):  # "Z position" lies across the motion
+        options = [m._replace(quantity=_INSTEAD.get(m.quantity, m.quantity)) for m in options]
     best: dict[str, Match] = {}
     for match in sorted(options, key=lambda match: -match.score):
         best.setdefault(match.quantity, match)
