@@ -7,6 +7,7 @@ from drafts import drafted
 import tribolab as tl
 from tribolab.draft.columns.words import squeezed
 from tribolab.draft.dialect.draft import draft_dialect
+from tribolab.draft.dialect.questions import questions
 from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS
 
 TABLES = {
@@ -267,3 +268,32 @@ def test_on_a_disc_no_axis_is_the_way(name, tmp_path):
     run = tl.read(file)
     assert run.attrs["speed_from"] == "rotation"
     np.testing.assert_allclose(tl.find_segments(run).sliding_speed, 2 * np.pi * 0.01, rtol=1e-6)
+
+
+@pytest.mark.parametrize("title", ["Step {k}: speed {rpm} rpm", "Stufe {k}: {rpm} U/min"])
+@pytest.mark.parametrize("header", ["each", "first"])
+def test_titles_that_state_a_rotation_are_used_for_their_steps_or_not_at_all(
+    title, header, tmp_path
+):
+    file = tmp_path / "steps.csv"
+    rows = "\n".join(f"{n / 10};{9 + n % 3}" for n in range(100))
+    parts = []
+    for k, rpm in STAGES:
+        head = "Time [s];Ff [N]\n" if header == "each" or k == 1 else ""
+        parts.append(f"{title.format(k=k, rpm=rpm)}\n{head}{rows}")
+    file.write_text("Track radius: 12 mm\nLoad: 30 N\n" + "\n".join(parts) + "\n")
+    data, draft = drafted(file, tmp_path)
+    if header == "first":
+        asked = [question.guess for question in questions(draft)]
+        assert "sliding_velocity" not in data and "the table goes on below" in asked
+        return
+    assert any("is how fast it turns of its step" in guess for guess in draft.guesses)
+    speeds = [2 * np.pi * rpm / 60 * 0.012 for _, rpm in STAGES]
+    np.testing.assert_allclose(tl.find_segments(data).sliding_speed, speeds, rtol=1e-6)
+
+
+def test_bare_titles_between_the_rows_are_passed_over_without_a_question(tmp_path):
+    file = tmp_path / "steps.csv"
+    rows = "\n".join(f"{n / 10};{9 + n % 3};5" for n in range(100))
+    file.write_text(f"Paso 1\nTime [s];Ff [N];v [mm/s]\n{rows}\nPaso 2\n{rows}\nPaso 3\n{rows}\n")
+    assert tl.read(file).sizes["time"] == 300

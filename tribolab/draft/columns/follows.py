@@ -22,6 +22,7 @@ from tribolab.draft.columns.values import DraftValue, find_values, words_said
 from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
+from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.model import WHICH_FORCE, DraftColumn, Understood
 from tribolab.errors import shown
 from tribolab.io.dialects.cells import split_name
@@ -35,6 +36,7 @@ _SINE = re.compile(r"crank|sine|sinus|sinoid|kurbel|eccentric|exzenter|manivelle
 _EVEN = re.compile(r"triang|constant|linear|konstant|dreieck")
 _MODE = re.compile(r"^(?:test|sliding)?mode$|^modus$|^betriebsart$|^modo$|模式$|モード$")
 _SPEED_OF_TURNS = re.compile(r"(?:speed|velocity|rotation|rpm|drehzahl|vitesse|giri|velocidad)$")
+_STEP = re.compile(rf"^{STEP_WORD}\d*$")
 _PER_MINUTE = re.compile(r"rpm|1/min|min-1|(?:rev|r|U|tr|ot|obr|giri)\.?/\s?min", re.IGNORECASE)
 _SAYS_SPEED = {"sliding_velocity", "position", "set_speed"}
 SAYS_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
@@ -257,7 +259,8 @@ def _how_long(value: DraftValue) -> str:
 
 
 def _is_rotation(value: DraftValue) -> bool:
-    named = _SPEED_OF_TURNS.search(value.key) is not None
+    step = value.source == "step" and _STEP.search(value.key) is not None
+    named = step or _SPEED_OF_TURNS.search(value.key) is not None
     return named and _PER_MINUTE.fullmatch(value.own_unit or "") is not None
 
 

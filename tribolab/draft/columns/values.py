@@ -22,6 +22,7 @@ from tribolab.draft.columns.strokes import FREQUENCY, HALF_STROKE, STROKE
 from tribolab.draft.columns.words import matches, split_unit, squeezed
 from tribolab.draft.file.header import DIMENSIONS, converts, escaped, is_unit
 from tribolab.draft.file.layout import Layout
+from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.vocabulary import WEIGHTS
 
 _MOST = 12  # a long preamble is not repeated in the dialect
@@ -115,7 +116,19 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
                 if stated := _of_phrase(phrase):
                     _keep(values, stated)
                 strokes = STROKE.search(phrase.key) is not None
-    return [_of_steps(value, layout) for value in values.values()]
+    return [_of_steps(value, layout) for value in values.values() if _holds_on(value, layout)]
+
+
+def _holds_on(value: DraftValue, layout: Layout) -> bool:
+    """Whether no line between the rows states another: "Step 2: 30 rpm" below "Step 1: 10 rpm"."""
+    if layout.skip_lines is None or value.source != "preamble":
+        return True
+    skipped = re.compile(layout.skip_lines)
+    inside = [line for block in layout.blocks for line in layout.lines[block.start : block.stop]]
+    texts = "\n".join(line for line in inside if line.strip() and skipped.match(line))
+    said = {match[1] for match in re.finditer(value.pattern, texts, re.MULTILINE)}
+    first = re.search(value.pattern, value.text)
+    return not said - {first[1] if first else ""}
 
 
 def _of_steps(value: DraftValue, layout: Layout) -> DraftValue:
@@ -256,7 +269,7 @@ _SPEED = re.compile(
     r"^(?:sliding|test|belt|disc|set|linear)?(?:speed|velocity)$|geschwindigkeit$|^vitesse|^velocidad"
     r"|^velocita|速度$|snelheid$"
 )
-_TURNS = re.compile(r"(?:speed|rotation|drehzahl)$")
+_TURNS = re.compile(rf"(?:speed|rotation|drehzahl)$|^{STEP_WORD}\d*$")
 _WANTED = {
     "m": (RADIUS, DIAMETER, _R, ARM, STROKE, HALF_STROKE, PITCH, TURNING, PROFILE_LENGTH),
     "s": (INTERVAL,),

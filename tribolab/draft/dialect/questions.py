@@ -12,6 +12,8 @@ from tribolab.draft.columns.follows import Follows, lacking, unknown_of, what_fo
 from tribolab.draft.columns.turning import torque_of
 from tribolab.draft.columns.values import without_unit
 from tribolab.draft.dialect.drafted import Drafted
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.file.marks import is_numbered
 from tribolab.draft.model import NO_NUMBERS, DraftColumn, Understood
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
@@ -55,7 +57,7 @@ def questions(draft: Drafted) -> list[Question]:
     if layout is None or understood is None:
         return []
     asked = [Question("table", guess) for guess in (*layout.guesses, *understood.guesses)]
-    if layout.skip_lines:
+    if layout.skip_lines and not _are_titles(layout):
         asked.append(Question("lines of text", "the table goes on below", ("it ends there",)))
     if (
         understood.kind == "run"
@@ -70,6 +72,19 @@ def questions(draft: Drafted) -> list[Question]:
         if column.guessed or column.fill_in:
             asked.append(_of_column(column))
     return asked
+
+
+def _are_titles(layout: Layout) -> bool:
+    """Whether all lines of text between the rows are titles of steps that are counted on."""
+    skipped = re.compile(layout.skip_lines or "$^")
+    return is_numbered(
+        [
+            line
+            for block in layout.blocks
+            for line in layout.lines[block.start : block.stop]
+            if line.strip() and skipped.match(line)
+        ]
+    )
 
 
 def _of_texts(understood: Understood) -> list[Question]:

@@ -9,6 +9,12 @@ from typing import NamedTuple
 from tribolab.draft.file.header import Heading
 from tribolab.draft.file.lines import Grammar
 
+# what steps of a programme are called
+STEP_WORD = (
+    r"(?:step|stage|segment|block|interval|phase|schritt|stufe|abschnitt|intervall|[eé]tape|palier"
+    r"|phase|etapa|paso|fase|passo|krok|etap|stap|шаг|этап|단계|步骤|步驟|阶段|段|ステップ)"
+)
+_TITLE = re.compile(rf"\W*{STEP_WORD}\W{{0,4}}(?P<number>\d+)\W*", re.IGNORECASE)
 _FEW = 5  # rows below a mark that are more than a line of results
 _SHARE = 0.01  # of the longest part
 
@@ -67,6 +73,18 @@ def without_marks(
     return [whole if block is first else block for block in blocks if block not in parts[1:]], (
         pattern
     )
+
+
+def is_numbered(lines: Sequence[str]) -> bool:
+    """Whether lines are titles of steps that are counted on and say no more: "Step 2", "Step 3".
+
+    >>> is_numbered(["Step 2", "- Step 3 -"]), is_numbered(["Step 2: 10 rpm", "Step 3: 30 rpm"])
+    (True, False)
+    """
+    titles = [_TITLE.fullmatch(line.strip()) for line in lines]
+    numbers = [int(title["number"]) for title in titles if title]
+    rising = all(b == a + 1 for a, b in zip(numbers, numbers[1:], strict=False))
+    return bool(numbers) and len(numbers) == len(lines) and rising
 
 
 def _goes_on(lines: Sequence[str], parts: list[Block], grammar: Grammar) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from tribolab.draft.file.header import escaped, first_cells
 from tribolab.draft.file.lines import Grammar
-from tribolab.draft.file.marks import Block
+from tribolab.draft.file.marks import STEP_WORD, Block
 from tribolab.io.dialects.mended import line_feeds
 from tribolab.io.dialects.signature import HEAD, File
 
@@ -45,9 +45,7 @@ def step_pattern(lines: tuple[str, ...], blocks: list[Block]) -> str | None:
         done = block.stop
     tried: set[str] = set()
     for line in texts[0]:
-        told = re.match(
-            r"(?i)(\W*(?:[a-z]+ ?- ?|(?:step|schritt|segment|stage)\D{0,5}))(\d+)\b", line
-        )
+        told = re.match(rf"(?i)(\W*(?:[a-z]+ ?- ?|{STEP_WORD}\D{{0,5}}))(\d+)\b", line)
         told = told or re.match(r"(.* - )(\d+)$", line)
         if not told:
             continue
