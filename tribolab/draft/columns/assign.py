@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.draft.columns.fill_in import FORCES, Bare, filled_in
+from tribolab.draft.columns.meant import ACROSS, meant
 from tribolab.draft.columns.roles import Role, role_of
-from tribolab.draft.columns.strokes import is_frequency, lengths_beside_frequencies
 from tribolab.draft.columns.turning import torque_of
-from tribolab.draft.columns.words import KNOWN_WORD, Match, is_axis, is_count, squeezed
+from tribolab.draft.columns.words import KNOWN_WORD, Match, is_count, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import UNKNOWN_NAME, WHICH_FORCE, DraftColumn, Kind
 from tribolab.errors import shown
@@ -30,7 +30,6 @@ _DECIDING = FORCES | {"sliding_velocity", "rotation_speed"}
 _WEIGHT: dict[Role, float] = {"": 1.0, "measured": 1.1, "derived": 0.6, "set": 0.5, "extreme": 0.4}
 _NEAR = 0.05  # scores of names that suit a quantity about as well
 _STILL = 0.9  # of the score: a load that never moves is the one that was meant to be
-_ACROSS = {"fy"}
 _EITHER = ("friction_force", "normal_force")  # what a load cell may measure
 _CROSSTALK = 5.0  # times: the force along the motion is so much larger than one across it
 _APART = 0.01  # relative difference of two columns that do not hold the same
@@ -64,9 +63,7 @@ def assigned(
     kind
         What the file is.
     """
-    matched = _without_rows(bare, numbers, matched)
-    matched = _without_weak(columns, bare, _across_if_moved(bare, matched))
-    matched = _without_lengths(bare, _without_axes(bare, matched))
+    matched = meant(columns, bare, matched, numbers)
     has_units = any(unit is not None for _, unit, _ in bare)
     filled = (np.isfinite(numbers) & (numbers != 0)).any(axis=0)
     proposals: dict[str, list[_Proposal]] = {}
@@ -149,7 +146,7 @@ def _contested(rivals: list[_Proposal], numbers: np.ndarray, bare: list[Bare]) -
         plain = not role_of(bare[rival.place][0])
         here = rival is not best and plain and rival.option.score >= KNOWN_WORD
         # across the motion a sensor shows some cross-talk: the larger force is along it
-        across = squeezed(bare[rival.place][0]) in _ACROSS and size(rival) < size(best)
+        across = squeezed(bare[rival.place][0]) in ACROSS and size(rival) < size(best)
         return here and not across and size(rival) > 0 and _apart(size(rival), size(best))
 
     if not size(best):
@@ -238,83 +235,6 @@ def _take_the_other(
         if sure:
             option = rivals[0].option._replace(quantity=name, score=KNOWN_WORD)
             proposals[name] = [rivals[0]._replace(option=option)]
-
-
-def _without_axes(bare: list[Bare], matched: list[list[Match]]) -> list[list[Match]]:
-    """Where something turns, the axes of the machine's stage are no sliding position."""
-    if not any(options and options[0].quantity == "rotation_speed" for options in matched):
-        return matched
-    return [
-        [option for option in options if option.quantity != "position"]
-        if is_axis(name) and options and options[0].quantity == "position"
-        else options
-        for (name, _, _), options in zip(bare, matched, strict=True)
-    ]
-
-
-def _without_rows(
-    bare: list[Bare], numbers: np.ndarray, matched: list[list[Match]]
-) -> list[list[Match]]:
-    """Take "n" for the number of the row where it goes on by one."""
-    return [
-        []
-        if squeezed(name) == "n" and unit is None and (np.diff(numbers[:, place]) == 1).all()
-        else options
-        for place, ((name, unit, _), options) in enumerate(zip(bare, matched, strict=True))
-    ]
-
-
-def _across_if_moved(bare: list[Bare], matched: list[list[Match]]) -> list[list[Match]]:
-    """Take a sensor of either displacement for that across, where the motion is told otherwise."""
-    told = {"rotation_speed", "sliding_velocity", "position"}
-    surely = {o.quantity for options in matched for o in options[:1] if o.score >= KNOWN_WORD}
-    if not surely & told:
-        return matched
-    either = {"position", "height_displacement"}
-    return [
-        [Match("height_displacement", KNOWN_WORD, None)]
-        if options and options[0].score < KNOWN_WORD and either == {o.quantity for o in options}
-        else options
-        for options in matched
-    ]
-
-
-def _without_weak(
-    columns: list[DraftColumn], bare: list[Bare], matched: list[list[Match]]
-) -> list[list[Match]]:
-    """Leave out names that barely mean friction where another column surely does.
-
-    A torque is friction, and a force across the motion or a maximum beside it is none; where the
-    friction force is recorded, a mean coefficient of an instrument's own adds nothing.
-    """
-    surely = {o.quantity for options in matched for o in options[:1] if o.score >= KNOWN_WORD}
-    torque = torque_of(columns) is not None
-    forces = {"friction_force", "normal_force"} <= surely
-
-    def is_weak(name: str, options: list[Match]) -> bool:
-        if not options:
-            return False
-        role, of = role_of(name), options[0].quantity
-        if of == "friction_force":
-            across = squeezed(name) in _ACROSS and (torque or "friction_coefficient" in surely)
-            return across or (torque and role == "extreme")
-        return forces and of == "friction_coefficient" and role in ("derived", "extreme")
-
-    return [
-        [] if is_weak(name, options) else options
-        for (name, _, _), options in zip(bare, matched, strict=True)
-    ]
-
-
-def _without_lengths(bare: list[Bare], matched: list[list[Match]]) -> list[list[Match]]:
-    """Beside a frequency the length of strokes is no position, and the frequency no turning."""
-    lengths = lengths_beside_frequencies([(name, unit) for name, unit, _ in bare])
-    if not lengths:
-        return matched
-    return [
-        [] if place in lengths or is_frequency(name, unit) else options
-        for place, ((name, unit, _), options) in enumerate(zip(bare, matched, strict=True))
-    ]
 
 
 def _told_by(unit: str, si_unit: str) -> bool:

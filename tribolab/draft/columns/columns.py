@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import re
 
 import numpy as np
 import pandas as pd
@@ -14,6 +13,8 @@ from tribolab.draft.columns.either import told_by_load, without_means
 from tribolab.draft.columns.epochs import DATES, counted_from
 from tribolab.draft.columns.factors import missing_factors, with_worth
 from tribolab.draft.columns.fill_in import Bare
+from tribolab.draft.columns.heights import as_heights, beside_x, in_stated_unit, side_by_side
+from tribolab.draft.columns.labels import bare_name, labelled
 from tribolab.draft.columns.lengths import (
     find_height_unit,
     find_pitch,
@@ -23,15 +24,14 @@ from tribolab.draft.columns.lengths import (
 from tribolab.draft.columns.ratio import disagreement, force_or_ratio
 from tribolab.draft.columns.results_table import results_told
 from tribolab.draft.columns.sampling import find_sampling
-from tribolab.draft.columns.words import COUNTS, Match, is_count, matches, split_unit, squeezed
-from tribolab.draft.file.header import converts, is_unit, measures_something
+from tribolab.draft.columns.words import Match, matches, squeezed
+from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
-from tribolab.draft.file.lvm import units_above
-from tribolab.draft.model import NO_NUMBERS, DraftColumn, Kind, Understood, other_units
+from tribolab.draft.model import NO_NUMBERS, DraftColumn, Kind, Understood
 from tribolab.errors import ReadError, brief, shown
 from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.model import LARGEST
-from tribolab.io.dialects.cells import split_name, split_row
+from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.dates import seconds
 
 _RISES = 0.9  # share of the steps from row to row; a clock may start anew
@@ -49,16 +49,16 @@ def understand(layout: Layout) -> Understood:
     """
     numbers, text, missing = _numbers(layout)
     unit = find_height_unit(layout)
-    columns = _in_stated_unit(_labelled(layout), unit)
+    columns = in_stated_unit(labelled(layout), unit)
     pitch = find_pitch(layout)
     density = "" if pitch is not None else find_point_density(layout)
     length = None if pitch is not None or density else find_profile_length(layout)
     apart = pitch is not None or bool(density) or length is not None
     guesses = missing_factors(layout)
     kind: Kind
-    if apart and (layout.width == 1 and not _say_something(columns) or _side_by_side(columns)):
-        kind, columns = "scan", [_heights(column, stated=bool(unit)) for column in columns]
-    elif (beside := _beside_x(columns)) is not None:
+    if apart and (layout.width == 1 and not _say_something(columns) or side_by_side(columns)):
+        kind, columns = "scan", [as_heights(column, stated=bool(unit)) for column in columns]
+    elif (beside := beside_x(columns)) is not None:
         kind, columns = "scan", beside
     elif _say_something(columns):
         kind, columns = _by_name(columns, numbers, placed=apart)
@@ -209,137 +209,16 @@ def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
     return numbers, text, missing
 
 
-def _labelled(layout: Layout) -> list[DraftColumn]:
-    """Columns with their names and units as the header says them."""
-    heading = layout.heading
-    cells = list(heading.cells if heading else ())[: layout.width]
-    cells += [""] * (layout.width - len(cells))
-    row = list(heading.unit_cells if heading else ()) + [""] * layout.width
-    columns: list[DraftColumn] = []
-    above = units_above(layout)
-    seen: dict[str, int] = {}
-    for place, cell in enumerate(cells, start=1):
-        name, unit = split_name(cell)
-        said = ""
-        if unit is not None and not is_unit(unit) and unit.isupper() and is_unit(unit.lower()):
-            said = unit = unit.lower()  # TIME (S), POSITION (MM)
-        if unit in _PURE or not (unit is None or measures_something(unit) or is_count(unit)):
-            unit = None  # brackets around something else
-        if heading and heading.units is not None:
-            name, unit = cell, row[place - 1].strip("[]() ") or None
-            unit = None if unit in _PURE else unit
-        counted = unit is not None and is_count(unit)
-        unit = None if counted else unit
-        seen[name] = seen.get(name, 0) + 1
-        known = name if name and heading and heading.aligned else None
-        columns.append(
-            DraftColumn(
-                place,
-                cell,
-                known,
-                seen[name] if known else 1,
-                file_unit=None if said else unit,
-                unit=above.get(place) if unit is None else said or None,
-                counted=counted,
-            )
-        )
-    return columns
-
-
-def _bare(column: DraftColumn) -> Bare:
-    """Name without its unit, the unit, and whether the dialect has to say it."""
-    name = split_name(column.label)[0] if column.name is None else column.name
-    if column.unit is not None:
-        return name, column.unit, True
-    if column.file_unit is not None:
-        return name, column.file_unit, column.name is None
-    if column.counted:
-        return name, COUNTS, False
-    if split_name(column.label)[1] in _PURE:
-        return name, None, False
-    name, unit = split_unit(name)
-    return name, unit, unit is not None
-
-
-def _in_stated_unit(columns: list[DraftColumn], unit: str) -> list[DraftColumn]:
-    """Give the heights without a unit the one that the text before the table states."""
-    if not unit:
-        return columns
-    return [
-        column._replace(unit=unit)
-        if _bare(column)[1] is None and _may_be_heights(column)
-        else column
-        for column in columns
-    ]
-
-
-def _may_be_heights(column: DraftColumn) -> bool:
-    if not column.label:
-        return True
-    options = matches(_bare(column)[0], None, scan=True)
-    return bool(options) and options[0].quantity == "height"
-
-
 def _say_something(columns: list[DraftColumn]) -> bool:
     """Whether the header says more than 'Channel 1, Channel 2'."""
-    bare = [_bare(column)[:2] for column in columns if column.label]
+    bare = [bare_name(column)[:2] for column in columns if column.label]
     return any(unit is not None or matches(name, unit) for name, unit in bare)
-
-
-def _side_by_side(columns: list[DraftColumn]) -> bool:
-    """Whether columns are profiles side by side: their names differ by a number alone."""
-    names = [_bare(column)[0] for column in columns]
-    units = {column.file_unit or column.unit for column in columns}
-    alike = {re.sub(r"\d+", "", name).strip() for name in names}
-    lengths = all(unit is None or converts(unit, "m") for unit in units)
-    return len(set(names)) == len(names) > 1 and len(alike) == 1 and lengths
-
-
-def _beside_x(columns: list[DraftColumn]) -> list[DraftColumn] | None:
-    """Return positions and the profiles side by side behind them: x [mm], z1 [um], z2 [um]."""
-    if len(columns) < 3 or not _side_by_side(columns[1:]):
-        return None
-    name, unit, say = _bare(columns[0])
-    along = matches(name, unit, scan=True)
-    bare = [_bare(column) for column in columns[1:]]
-    numberless = [re.sub(r"[\W_]*\d+$", "", name) for name, _, _ in bare]
-    heights = [
-        matches(name, unit, scan=True) for name, (_, unit, _) in zip(numberless, bare, strict=True)
-    ]
-    if not along or along[0].quantity != "x" or unit is None:
-        return None
-    if not all(options and options[0].quantity == "height" for options in heights):
-        return None
-    if any(unit is None for _, unit, _ in bare):
-        return None
-    x = columns[0]._replace(quantity="x", unit=unit if say else None, used=True)
-    return [
-        x,
-        *(
-            column._replace(quantity="height", unit=unit if say else column.unit, used=True)
-            for column, (_, unit, say) in zip(columns[1:], bare, strict=True)
-        ),
-    ]
-
-
-def _heights(column: DraftColumn, *, stated: bool) -> DraftColumn:
-    """Take a column without a known name for heights: what a pitch before it is of."""
-    unit = column.file_unit or column.unit
-    guess = "it is the height" + ("" if unit else " in um")
-    guessed = () if stated and column.unit else (guess,)
-    return column._replace(
-        quantity="height",
-        unit=column.unit if unit else "um",
-        used=True,
-        guessed=guessed,
-        options=() if unit else other_units("m", "um"),
-    )
 
 
 def _by_name(
     columns: list[DraftColumn], numbers: np.ndarray, *, placed: bool = False
 ) -> tuple[Kind, list[DraftColumn]]:
-    bare = [_bare(column) for column in columns]
+    bare = [bare_name(column) for column in columns]
     run = [matches(name, unit) for name, unit, _ in bare]
     scan = [matches(name, unit, scan=True) for name, unit, _ in bare]
     run = _timed(bare, run, numbers)

@@ -12,8 +12,10 @@ from tribolab.units import conversion
 
 _DAY = 86400.0  # [s]
 # [s] since 1970 and since 1904: from the year 2000 to that of 2050
-_UNIX = (946_684_800.0, 2_524_608_000.0)
-_SINCE_1904 = (3_029_529_600.0, 4_607_452_800.0)
+_SECONDS: tuple[tuple[Epoch, float, float], ...] = (
+    ("unix", 946_684_800.0, 2_524_608_000.0),
+    ("labview", 3_029_529_600.0, 4_607_452_800.0),
+)
 _EXCEL = (36_526.0, 54_789.0)  # [d] the same years
 _LONGEST_STEP = 5.0  # [s] beyond which a counter of something smaller is as likely
 _LONGEST_RUN = 400.0  # [d]
@@ -60,7 +62,7 @@ def counted_from(values: np.ndarray, unit: str | None, *, dated: bool = False) -
         return Counted("excel", unit or "d") if inside and not whole else None
     units = _SMALLER if unit is None else {unit: conversion(unit, "s")[0]}
     for name, scale in units.items():
-        for epoch, (first, last) in (("unix", _UNIX), ("labview", _SINCE_1904)):
+        for epoch, first, last in _SECONDS:
             if first <= scale * low and scale * high <= last and scale * step <= _LONGEST_STEP:
-                return Counted("unix" if epoch == "unix" else "labview", name)
+                return Counted(epoch, name)
     return None

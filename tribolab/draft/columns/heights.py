@@ -1,0 +1,79 @@
+"""Columns of heights: alone, side by side, or behind their positions."""
+
+from __future__ import annotations
+
+import re
+
+from tribolab.draft.columns.labels import bare_name
+from tribolab.draft.columns.words import matches
+from tribolab.draft.file.header import converts
+from tribolab.draft.model import DraftColumn, other_units
+
+
+def in_stated_unit(columns: list[DraftColumn], unit: str) -> list[DraftColumn]:
+    """Give the heights without a unit the one that the text before the table states."""
+    if not unit:
+        return columns
+    return [
+        column._replace(unit=unit)
+        if bare_name(column)[1] is None and _may_be_heights(column)
+        else column
+        for column in columns
+    ]
+
+
+def _may_be_heights(column: DraftColumn) -> bool:
+    if not column.label:
+        return True
+    options = matches(bare_name(column)[0], None, scan=True)
+    return bool(options) and options[0].quantity == "height"
+
+
+def side_by_side(columns: list[DraftColumn]) -> bool:
+    """Whether columns are profiles side by side: their names differ by a number alone."""
+    names = [bare_name(column)[0] for column in columns]
+    units = {column.file_unit or column.unit for column in columns}
+    alike = {re.sub(r"\d+", "", name).strip() for name in names}
+    lengths = all(unit is None or converts(unit, "m") for unit in units)
+    return len(set(names)) == len(names) > 1 and len(alike) == 1 and lengths
+
+
+def beside_x(columns: list[DraftColumn]) -> list[DraftColumn] | None:
+    """Return positions and the profiles side by side behind them: x [mm], z1 [um], z2 [um]."""
+    if len(columns) < 3 or not side_by_side(columns[1:]):
+        return None
+    name, unit, say = bare_name(columns[0])
+    along = matches(name, unit, scan=True)
+    bare = [bare_name(column) for column in columns[1:]]
+    numberless = [re.sub(r"[\W_]*\d+$", "", name) for name, _, _ in bare]
+    heights = [
+        matches(name, unit, scan=True) for name, (_, unit, _) in zip(numberless, bare, strict=True)
+    ]
+    if not along or along[0].quantity != "x" or unit is None:
+        return None
+    if not all(options and options[0].quantity == "height" for options in heights):
+        return None
+    if any(unit is None for _, unit, _ in bare):
+        return None
+    x = columns[0]._replace(quantity="x", unit=unit if say else None, used=True)
+    return [
+        x,
+        *(
+            column._replace(quantity="height", unit=unit if say else column.unit, used=True)
+            for column, (_, unit, say) in zip(columns[1:], bare, strict=True)
+        ),
+    ]
+
+
+def as_heights(column: DraftColumn, *, stated: bool) -> DraftColumn:
+    """Take a column without a known name for heights: what a pitch before it is of."""
+    unit = column.file_unit or column.unit
+    guess = "it is the height" + ("" if unit else " in um")
+    guessed = () if stated and column.unit else (guess,)
+    return column._replace(
+        quantity="height",
+        unit=column.unit if unit else "um",
+        used=True,
+        guessed=guessed,
+        options=() if unit else other_units("m", "um"),
+    )

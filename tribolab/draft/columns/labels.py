@@ -1,0 +1,65 @@
+"""Names and units of the columns of an unknown table, as its header says them."""
+
+from __future__ import annotations
+
+from tribolab.draft.columns.fill_in import Bare
+from tribolab.draft.columns.words import COUNTS, is_count, split_unit
+from tribolab.draft.file.header import is_unit, measures_something
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.file.lvm import units_above
+from tribolab.draft.model import DraftColumn
+from tribolab.io.dialects.cells import split_name
+
+_PURE = ("1", "-")  # what stands for the unit of a pure number
+
+
+def labelled(layout: Layout) -> list[DraftColumn]:
+    """Columns with their names and units as the header says them."""
+    heading = layout.heading
+    cells = list(heading.cells if heading else ())[: layout.width]
+    cells += [""] * (layout.width - len(cells))
+    row = list(heading.unit_cells if heading else ()) + [""] * layout.width
+    columns: list[DraftColumn] = []
+    above = units_above(layout)
+    seen: dict[str, int] = {}
+    for place, cell in enumerate(cells, start=1):
+        name, unit = split_name(cell)
+        said = ""
+        if unit is not None and not is_unit(unit) and unit.isupper() and is_unit(unit.lower()):
+            said = unit = unit.lower()  # TIME (S), POSITION (MM)
+        if unit in _PURE or not (unit is None or measures_something(unit) or is_count(unit)):
+            unit = None  # brackets around something else
+        if heading and heading.units is not None:
+            name, unit = cell, row[place - 1].strip("[]() ") or None
+            unit = None if unit in _PURE else unit
+        counted = unit is not None and is_count(unit)
+        unit = None if counted else unit
+        seen[name] = seen.get(name, 0) + 1
+        known = name if name and heading and heading.aligned else None
+        columns.append(
+            DraftColumn(
+                place,
+                cell,
+                known,
+                seen[name] if known else 1,
+                file_unit=None if said else unit,
+                unit=above.get(place) if unit is None else said or None,
+                counted=counted,
+            )
+        )
+    return columns
+
+
+def bare_name(column: DraftColumn) -> Bare:
+    """Name without its unit, the unit, and whether the dialect has to say it."""
+    name = split_name(column.label)[0] if column.name is None else column.name
+    if column.unit is not None:
+        return name, column.unit, True
+    if column.file_unit is not None:
+        return name, column.file_unit, column.name is None
+    if column.counted:
+        return name, COUNTS, False
+    if split_name(column.label)[1] in _PURE:
+        return name, None, False
+    name, unit = split_unit(name)
+    return name, unit, unit is not None

@@ -1,0 +1,110 @@
+"""What names of columns can mean beside each other: an axis where something turns is no way."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tribolab.draft.columns.fill_in import Bare
+from tribolab.draft.columns.roles import role_of
+from tribolab.draft.columns.strokes import is_frequency, lengths_beside_frequencies
+from tribolab.draft.columns.turning import torque_of
+from tribolab.draft.columns.words import KNOWN_WORD, Match, is_axis, squeezed
+from tribolab.draft.model import DraftColumn
+
+ACROSS = {"fy"}  # names of a force across the motion
+
+
+def meant(
+    columns: list[DraftColumn], bare: list[Bare], matched: list[list[Match]], numbers: np.ndarray
+) -> list[list[Match]]:
+    """Leave out what the names of columns cannot mean beside the others.
+
+    Parameters
+    ----------
+    columns, bare
+        The columns, and their names without units.
+    matched
+        For each the quantities that its name may stand for, the likeliest first.
+    numbers
+        Their numbers (rows, columns) as written.
+    """
+    matched = _without_rows(bare, numbers, matched)
+    matched = _without_weak(columns, bare, _across_if_moved(bare, matched))
+    return _without_lengths(bare, _without_axes(bare, matched))
+
+
+def _without_rows(
+    bare: list[Bare], numbers: np.ndarray, matched: list[list[Match]]
+) -> list[list[Match]]:
+    """Take "n" for the number of the row where it goes on by one."""
+    return [
+        []
+        if squeezed(name) == "n" and unit is None and (np.diff(numbers[:, place]) == 1).all()
+        else options
+        for place, ((name, unit, _), options) in enumerate(zip(bare, matched, strict=True))
+    ]
+
+
+def _across_if_moved(bare: list[Bare], matched: list[list[Match]]) -> list[list[Match]]:
+    """Take a sensor of either displacement for that across, where the motion is told otherwise."""
+    told = {"rotation_speed", "sliding_velocity", "position"}
+    surely = {o.quantity for options in matched for o in options[:1] if o.score >= KNOWN_WORD}
+    if not surely & told:
+        return matched
+    either = {"position", "height_displacement"}
+    return [
+        [Match("height_displacement", KNOWN_WORD, None)]
+        if options and options[0].score < KNOWN_WORD and either == {o.quantity for o in options}
+        else options
+        for options in matched
+    ]
+
+
+def _without_weak(
+    columns: list[DraftColumn], bare: list[Bare], matched: list[list[Match]]
+) -> list[list[Match]]:
+    """Leave out names that barely mean friction where another column surely does.
+
+    A torque is friction, and a force across the motion or a maximum beside it is none; where the
+    friction force is recorded, a mean coefficient of an instrument's own adds nothing.
+    """
+    surely = {o.quantity for options in matched for o in options[:1] if o.score >= KNOWN_WORD}
+    torque = torque_of(columns) is not None
+    forces = {"friction_force", "normal_force"} <= surely
+
+    def is_weak(name: str, options: list[Match]) -> bool:
+        if not options:
+            return False
+        role, of = role_of(name), options[0].quantity
+        if of == "friction_force":
+            across = squeezed(name) in ACROSS and (torque or "friction_coefficient" in surely)
+            return across or (torque and role == "extreme")
+        return forces and of == "friction_coefficient" and role in ("derived", "extreme")
+
+    return [
+        [] if is_weak(name, options) else options
+        for (name, _, _), options in zip(bare, matched, strict=True)
+    ]
+
+
+def _without_lengths(bare: list[Bare], matched: list[list[Match]]) -> list[list[Match]]:
+    """Beside a frequency the length of strokes is no position, and the frequency no turning."""
+    lengths = lengths_beside_frequencies([(name, unit) for name, unit, _ in bare])
+    if not lengths:
+        return matched
+    return [
+        [] if place in lengths or is_frequency(name, unit) else options
+        for place, ((name, unit, _), options) in enumerate(zip(bare, matched, strict=True))
+    ]
+
+
+def _without_axes(bare: list[Bare], matched: list[list[Match]]) -> list[list[Match]]:
+    """Where something turns, the axes of the machine's stage are no sliding position."""
+    if not any(options and options[0].quantity == "rotation_speed" for options in matched):
+        return matched
+    return [
+        [option for option in options if option.quantity != "position"]
+        if is_axis(name) and options and options[0].quantity == "position"
+        else options
+        for (name, _, _), options in zip(bare, matched, strict=True)
+    ]
