@@ -146,9 +146,7 @@ def missing_words(draft: Drafted) -> list[str]:
     draft
         From `tribolab.draft.dialect.draft.draft_dialect`.
     """
-    if draft.layout is None or draft.understood is None or draft.kind != "run":
-        return []
-    lacks = lacking(draft.understood, what_follows(draft.layout, draft.understood))
+    lacks = _lacks(draft)
     return lacks + [f"the unit of '{line}', which is not used" for line in _unused(draft, lacks)]
 
 
@@ -160,9 +158,13 @@ def without_unit_and_missed(draft: Drafted) -> list[str]:
     draft
         From `tribolab.draft.dialect.draft.draft_dialect`.
     """
+    return _unused(draft, _lacks(draft))
+
+
+def _lacks(draft: Drafted) -> list[str]:
     if draft.layout is None or draft.understood is None or draft.kind != "run":
         return []
-    return _unused(draft, lacking(draft.understood, what_follows(draft.layout, draft.understood)))
+    return lacking(draft.understood, what_follows(draft.layout, draft.understood))
 
 
 def _unused(draft: Drafted, lacks: Sequence[str]) -> list[str]:
