@@ -227,6 +227,9 @@ def test_json_is_no_table_but_may_stand_above_one(tmp_path):
     file.write_text(json.dumps({"time": list(range(5000)), "force": [1.0] * 5000}))
     with pytest.raises(tl.TribolabError, match="this is JSON"):
         tl.read(file)
+    file.write_text("[[" * 100_000)
+    with pytest.raises(tl.TribolabError, match="this is JSON"):
+        tl.read(file)
     file.write_text(f"{json.dumps(about, indent=1)}\nTime [s],Ft [N],Fn [N],v [mm/s]\n{rows}\n")
     assert tl.read(file).sizes["time"] == 100
 

@@ -97,7 +97,7 @@ def _is_json(head: bytes) -> bool:
     text = head.decode("utf-8-sig", errors="replace").lstrip()
     try:
         end = json.JSONDecoder().raw_decode(text)[1]
-    except ValueError:  # it goes on beyond what is looked at
+    except (ValueError, RecursionError):  # it goes on beyond what is looked at, or too deep
         return True
     return not text[end:].strip(" \t\r\n,") or text[end:].lstrip()[0] in "{[,"
 
