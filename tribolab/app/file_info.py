@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 _PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
 _PROVENANCE |= {"drafted_layout"}
 _LARGEST = 2_000_000  # heights of a scan whose roughness is told at once
+_OTHER_FORM = 0.02  # of the roughness, from which on it matters which form was taken off
 _LONGEST = 300  # letters of what a file says of itself
 _TOLD_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
 
@@ -159,6 +161,7 @@ def _roughness_lines(scan: xr.Dataset) -> list[str]:
     try:
         flat = remove_form(scan, "polynomial" if scan.sizes.get("y", 1) > 1 else "circle")
         iso = roughness_parameters(flat)
+        level = 1e6 * float(primary_roughness(remove_form(scan, "tilt")).mean())
     except AnalysisError:  # a check of the scan says why
         return []
     told = {name: f"{1e6 * float(iso[name].mean()):.3g} um" for name in ("Rq", "Ra")}
@@ -166,9 +169,14 @@ def _roughness_lines(scan: xr.Dataset) -> list[str]:
     cut = iso.attrs.get("lambda_c_m")
     by = " by the instrument" if iso.attrs["filtered_by"] == "instrument" else ""
     filtered = f"waves longer than {1e3 * cut:.3g} mm filtered out{by}" if cut else "no cut-off"
+    radius = flat.attrs.get("form_radius_m", math.inf)
+    form = f"circle of R = {radius:.3g} m" if math.isfinite(radius) else "form"
+    beside = ""
+    if abs(level / all_waves - 1) > _OTHER_FORM:
+        beside = f"; with the tilt alone taken off {level:.3g} um (form of a [[surface]])"
     return [
-        f"  Rq      {told['Rq']}, Ra {told['Ra']}: form taken off, {filtered} (ISO 4287)",
-        f"  Pq      {all_waves:.3g} um: form taken off, waves of every length",
+        f"  Rq      {told['Rq']}, Ra {told['Ra']}: {form} taken off, {filtered} (ISO 4287)",
+        f"  Pq      {all_waves:.3g} um: {form} taken off, waves of every length{beside}",
     ]
 
 
@@ -191,7 +199,7 @@ def _attribute_lines(attrs: Mapping[str, Any], path: str | Path) -> list[str]:
 def _said(value: object) -> str:
     if isinstance(value, Mapping):
         return "; ".join(f"{name} = {text}" for name, text in value.items())
-    return str(value)
+    return f"{value:.9g}" if isinstance(value, float) else str(value)
 
 
 def _titled(name: str, instrument: str | Path | None) -> str:

@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 _SPEED_TOLERANCE = 0.1
 
+_SPEED_FROM = {"stroke": "stroke and frequency", "rotation": "rotation and radius"}
+
 
 def facts_of(
     run: xr.Dataset,
@@ -131,11 +133,12 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
     scatter = scatter[np.isfinite(scatter)]
     sem = values_of(friction, f"{of}_sem", value.size)
     alone = independent(friction)
+    middle = friction.attrs.get("stroke_middle")
     return RunFacts(
         quantity=name,
         offset=str(friction.attrs.get("offset", "")),
-        trim=plain_value(friction.attrs.get("trim")),
-        velocity_source=str(friction.attrs.get("velocity_source", "")),
+        trim=plain_value(friction.attrs.get("trim")) if middle is None else None,
+        velocity_source=_speed_told(friction.attrs),
         sliding_speed_min_m_s=plain_value(np.nanmin(speed, initial=np.inf)),
         sliding_speed_max_m_s=plain_value(np.nanmax(speed, initial=-np.inf)),
         value_min=plain_value(value[finite].min()) if finite.any() else None,
@@ -145,6 +148,16 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
         unsteady_segments=int((values_of(friction, "steady", value.size) == 0).sum()),
         highlights=tuple(_highlights(speed, value, std, sem, alone)),
     )
+
+
+def _speed_told(attrs: Mapping[str, Any]) -> str:
+    """Say what the speed is from, and which part of each stroke was used where that was chosen."""
+    source = str(attrs.get("velocity_source", ""))
+    if source == "recorded":
+        source = _SPEED_FROM.get(str(attrs.get("speed_from", "")), source)
+    middle = attrs.get("stroke_middle")
+    used = f"; of each whole stroke the middle {float(middle):.0%} is used" if middle else ""
+    return f"{source}{used}"
 
 
 def inertia_said(attrs: Mapping[str, Any]) -> str:

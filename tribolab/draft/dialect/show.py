@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from tribolab.draft.columns.follows import Follows, what_follows
 from tribolab.draft.dialect.drafted import Drafted
 from tribolab.draft.dialect.sparks import BARS, PLAIN, sparks
 from tribolab.draft.model import DraftColumn
@@ -129,6 +130,8 @@ def _columns_table(draft: Drafted) -> Table:
     if draft.understood is None:
         return table
     filled = np.isfinite(draft.understood.numbers).any(axis=0)
+    follows = what_follows(draft.layout, draft.understood) if draft.layout else Follows()
+    used_as = {column.place: symbol for symbol, column in follows.symbols}
     named = [c for c in draft.understood.columns if c.label or filled[c.place - 1]]
     for number, column in enumerate(named):
         if number < _LISTED or column.quantity:
@@ -139,7 +142,7 @@ def _columns_table(draft: Drafted) -> Table:
                 escape(cut(column.label)),
                 escape(unit),
                 meaning,
-                escape(_remark(column)),
+                escape(_remark(column, used_as.get(column.place, ""))),
             )
     left = sum(1 for column in named[_LISTED:] if not column.quantity)
     if left:
@@ -147,7 +150,9 @@ def _columns_table(draft: Drafted) -> Table:
     return table
 
 
-def _remark(column: DraftColumn) -> str:
+def _remark(column: DraftColumn, used_as: str) -> str:
+    if used_as:
+        return f"used as {used_as}"
     if column.used:
         return "guessed" if column.guessed else column.note
     return f"fill in {column.fill_in}" if column.fill_in else f"not used: {column.note}"

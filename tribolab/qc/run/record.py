@@ -111,7 +111,8 @@ def _restarts(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
         return told or [Result("pass", "step", "one step", 1.0)]
     text = f"the file holds {changes.size + 1} steps, each with its own header or clock"
     where = ", ".join(f"t = {subject.time[c]:.6g} s" for c in changes[:5])
-    text += f"; they begin at {where}" + (" ..." if changes.size > 5 else "")
+    where += " ..." if changes.size > 5 else ""
+    text += f"; the first goes over to the others at {where}"
     return [Result("pass", "step", text, float(changes.size + 1), where=where, noted=True), *told]
 
 
@@ -187,6 +188,9 @@ def _saturation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
 def _quantisation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = []
     for name, values in one_by_one(subject.force_signals.items()):
+        if np.nanmin(values) == np.nanmax(values):
+            results.append(Result("pass", name, "one value for all of the run", 0.0))
+            continue
         step, noise = quantisation_step(values), subject.noise(name)
         if step == 0:
             text = "values do not repeat: no step to be seen"

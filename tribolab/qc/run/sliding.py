@@ -94,6 +94,8 @@ def _sign(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 def _opposes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     if subject.segments.attrs.get("velocity_source") not in ("recorded", "position"):
         raise Skip("the direction of sliding was not recorded")
+    if subject.run.attrs.get("speed_from") == "stroke":
+        raise Skip("which way a stroke goes was told by the sign of friction")
     friction, signal = subject.friction, _signal(subject)
     name = "friction_coefficient" if "friction_coefficient" in friction else "friction_force"
     values, error = friction[name].values, np.nan_to_num(friction[f"{name}_sem"].values)

@@ -62,7 +62,11 @@ def _length(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     if (odd := _implausible(subject, limits)) is not None:
         results.append(odd)
     if not results and attrs.get("stated_length_m") is None:
-        return [Result("skipped", "length", "the file states neither length nor pitch")]
+        return [
+            Result(
+                "skipped", "length", "the file states no length and no pitch beside its positions"
+            )
+        ]
     return results
 
 
