@@ -1,13 +1,17 @@
 """Names of columns in seven languages, and those that programs make of devices and channels."""
 
+import io
+
 import numpy as np
 import pytest
 from drafts import drafted
+from rich.console import Console
 
 import tribolab as tl
 from tribolab.draft.columns.words import squeezed
 from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.draft.dialect.questions import questions
+from tribolab.draft.dialect.show import print_draft
 from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS
 
 TABLES = {
@@ -297,3 +301,13 @@ def test_bare_titles_between_the_rows_are_passed_over_without_a_question(tmp_pat
     rows = "\n".join(f"{n / 10};{9 + n % 3};5" for n in range(100))
     file.write_text(f"Paso 1\nTime [s];Ff [N];v [mm/s]\n{rows}\nPaso 2\n{rows}\nPaso 3\n{rows}\n")
     assert tl.read(file).sizes["time"] == 300
+
+
+def test_a_torque_that_makes_the_friction_is_not_shown_as_left_out(tmp_path):
+    file = tmp_path / "disc.txt"
+    rows = "\n".join(f"{n / 10};60;{35 + n % 2}" for n in range(50))
+    head = "Track radius: 10 mm\nLoad: 10 N\nTime [s];Speed [rpm];Mz [N mm]"
+    file.write_text(f"{head}\n{rows}\n")
+    shown = io.StringIO()
+    print_draft(draft_dialect(file), Console(file=shown, width=120))
+    assert "used as torque" in shown.getvalue() and "not used" not in shown.getvalue()

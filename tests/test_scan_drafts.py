@@ -324,3 +324,16 @@ def test_a_length_in_a_sentence_is_that_of_the_profile(tmp_path):
         read_scans(file)
     named = save_draft(draft_dialect(file), tmp_path / "line.toml")
     assert read_scans(file, instrument=named).attrs["pitch_m"] == pytest.approx(0.5e-6)
+
+
+def test_the_form_that_was_taken_off_is_named_where_it_matters(tmp_path):
+    rng = np.random.default_rng(2)
+    x = np.arange(800) * 1e-6
+    height = 0.01e-6 * rng.standard_normal(x.size) + (x - x.mean()) ** 2 / (2 * 0.2)
+    rows = "\n".join(f"{1e3 * a:.4f};{1e6 * b:.5f}" for a, b in zip(x, height, strict=True))
+    [told] = [
+        line
+        for line in file_lines(written(tmp_path, f"X [mm];Z [um]\n{rows}\n"))
+        if line.startswith("  Pq")
+    ]
+    assert "circle of R = 0.2 m taken off" in told and "with the tilt alone taken off" in told
