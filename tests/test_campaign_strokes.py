@@ -83,3 +83,14 @@ def test_a_blank_run_tells_the_zero_and_a_new_one_is_read(folder, said_by):
 def test_a_zero_that_is_no_place_is_told_by_its_line(folder, zero):
     with pytest.raises(ConfigError, match=r"zero"):
         campaign_of(folder, entry=f'zero = "{zero}"')
+
+
+def test_what_lies_before_the_first_and_after_the_last_turn_is_told(folder):
+    run, _ = results(campaign_of(folder), folder / "results")
+    segments = read_netcdf(folder / "results" / run.data_file, group="segments")
+    reasons = segments["omitted_reason"].values.tolist()
+    assert reasons[-2:] == ["before the first turn", "after the last turn"]
+    covered = float((segments["stop"] - segments["start"]).sum())
+    covered += float((segments["omitted_stop"] - segments["omitted_start"]).sum())
+    whole = read_netcdf(folder / "results" / run.data_file, group="run")["time"].values
+    assert covered == pytest.approx(whole[-1] - whole[0], rel=1e-9)

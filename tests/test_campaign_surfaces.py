@@ -422,3 +422,38 @@ def test_mistakes_in_the_campaign_file_are_told(campaign, tmp_path, old, new, sa
     mine.write_text(mine.read_text().replace(old, new, 1))
     with pytest.raises(ConfigError, match=said):
         load_campaign(mine)
+
+
+def test_a_circle_that_may_be_waviness_is_told_and_one_of_the_part_is_not(tmp_path):
+    """A cylinder of 7 cm rises far above its roughness; a flat part's own waves do not."""
+    scan, round_ = rig.scans("Smooth", 1, seed=2, length=5e-3), tmp_path / "round.csv"
+    round_.write_bytes(scan_file(scan.x.values, scan.height.values[0]))
+    clear = recorded(tmp_path, [round_], contact=NOTHING_KNOWN, lowest_force=None)
+    assert not any("circle" in message for message in said(clear.outcome, "note"))
+    assert clear.rows.roughness["form_removed"] == "circle"
+    assert clear.rows.roughness["form_radius_m"] == pytest.approx(0.07, rel=0.02)
+    x = 1e-6 * np.arange(4000)
+    rng = np.random.default_rng(8)
+    height = 1e-6 * np.cumsum(rng.standard_normal(x.size)) / 25
+    flat = tmp_path / "flat.csv"
+    rows = np.column_stack([1e3 * x, 1e6 * height])
+    np.savetxt(flat, rows, "%.6g", ",", header="x [mm],height [um]", comments="")
+    settings = {"contact": NOTHING_KNOWN, "lowest_force": None}
+    doubtful = recorded(tmp_path, [flat], **settings)
+    (told,) = (text for text in said(doubtful.outcome, "note") if "circle" in text)
+    level = recorded(tmp_path, [flat], **settings, roughness={"form": "tilt"}).rows.roughness
+    bent = doubtful.rows.roughness
+    assert f"{1e6 * level['Pq_m']:.3g} um with the tilt alone" in told
+    assert level["Pq_m"] > bent["Pq_m"] and 'form = "tilt"' in told
+    assert level["form_removed"] == "tilt" and level["form_radius_m"] is None
+
+
+def test_the_cut_off_of_roughness_can_be_chosen(tmp_path, profiles):
+    settings = {"contact": NOTHING_KNOWN, "lowest_force": None}
+    rows = {
+        cut: recorded(tmp_path, profiles[:1], **settings, roughness=chosen).rows.roughness
+        for cut, chosen in ((0.8e-3, {}), (0.25e-3, {"lambda_c": 0.25e-3}))
+    }
+    for cut, row in rows.items():
+        assert row["lambda_c_m"] == cut and 0 < row["Rq_sem_m"] < row["Rq_m"]
+    assert rows[0.25e-3]["Rq_m"] < rows[0.8e-3]["Rq_m"] < rows[0.8e-3]["Pq_m"]

@@ -63,7 +63,7 @@ def test_a_card_says_shape_stress_mode_and_what_the_model_misses():
     (found,) = card.at_loads
     # half of 1.1 lies between the last two points: 100 um/s * 100^((1.07 - 0.55) / 0.87)
     assert found.sentences == (
-        "Plateau of µ = 1.100 ± 0.010 up to 100 µm/s; half of it at 1.6 mm/s; lowest "
+        "Plateau of µ = 1.100 ± 0.010 up to 100 µm/s; half of it at about 1.6 mm/s; lowest "
         "0.200 ± 0.010 at 10 mm/s, the fastest speed (± between runs).",
         "Steady sliding, no stick-slip at any speed.",
         "Shear stress 0.880 MPa (95 %: 0.800 to 0.950 MPa).",

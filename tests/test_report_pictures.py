@@ -148,3 +148,16 @@ def test_a_picture_of_any_kind_has_the_limits_of_the_live_figure(browser, result
                 drawing.format(json.dumps(plain_data(figure)), LIMITS.format("place"))
             )
             assert_seen_alike(replace(figure, id=kind), limits)
+
+
+@pytest.mark.parametrize(
+    ("y", "low", "high"),
+    [([0.32004], 0.15, 0.7), ([0.32, 0.3200006], 0.15, 0.7), ([0.3199, 0.3201], 0.26, 0.4)],
+)
+def test_one_point_or_noise_in_a_last_digit_does_not_fill_an_axis(y, low, high):
+    points = Series("a", [1e-3] * len(y), y, style="points", error=[6e-5] * len(y))
+    axes = (Axis("v", log=True), Axis("mu", log=True))
+    figure = LiveFigure("one", "one", "", "", "", (Panel(*axes),), (points,))
+    across, up = first_view(figure)[1][0]
+    assert 10**across.low < 0.6e-3 and 10**across.high > 1.6e-3
+    assert low < 10**up.low < 0.3 and 0.34 < 10**up.high < high

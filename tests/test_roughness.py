@@ -148,3 +148,21 @@ def test_info_tells_the_roughness_with_the_cut_off_and_with_none(tmp_path):
     assert float(said["Rq"].split()[1]) == pytest.approx(np.sqrt((1 + 4 * left**2) / 2), rel=0.01)
     assert "longer than 0.8 mm" in said["Rq"]
     assert float(said["Pq"].split()[1]) == pytest.approx(np.sqrt((1 + 4) / 2), rel=0.03)
+
+
+def test_the_scatter_of_sampling_lengths_is_the_error_of_one_profile():
+    """Of many profiles of one surface the parameters scatter by what each says of itself."""
+    rng = np.random.default_rng(5)
+    q = np.fft.rfftfreq(X.size, PITCH)
+    amplitude = np.maximum(q, 5e3) ** -1.3 * (q > 0)
+    phases = np.exp(2j * np.pi * rng.random((120, q.size))) * rng.rayleigh(size=(120, q.size))
+    height = np.fft.irfft(amplitude * phases, X.size)
+    scans = xr.Dataset({"height": (("scan", "x"), height)}, {"x": X})
+    found = roughness_parameters(scans)
+    assert found.attrs["sampling_lengths"] == 24
+    for name in ("Ra", "Rq", "Rz"):
+        own = np.sqrt(float((found[f"{name}_sem"] ** 2).mean()))
+        assert own == pytest.approx(float(found[name].std(ddof=1)), rel=0.2), name
+    assert "Rdq_sem" not in found
+    assert "Rq_sem" not in roughness_parameters(scans, lambda_c=None)
+    assert "Rq_sem" not in roughness_parameters(scans, lambda_c="8 mm")  # two lengths are too few

@@ -405,3 +405,19 @@ def test_steps_of_speed_that_start_from_rest_have_lost_no_sign(speeds, kind):
         force, pressed, parts, mean, np.full(6, 1e-3), np.ones(6), np.nan, speed=speed
     )
     assert folded(trace).kind == kind
+
+
+def test_an_uncertainty_of_the_zero_may_be_a_torque_where_one_was_measured():
+    run = programme([SPEED] * 3, zero=lambda u: 0.5 + 0 * u, loaded_rests=True)
+    stated = analysed(run, zero_uncertainty="0.5 N")
+    for attrs in (
+        {"derived": {"friction_force": "torque / disc_radius"}, "disc_radius_m": 0.02},
+        {"derived": {"friction_force": "torque / '20 mm'"}},
+    ):
+        turned = analysed(run.assign_attrs(attrs), zero_uncertainty="10 N mm")
+        xr.testing.assert_allclose(turned["friction_coefficient"], stated["friction_coefficient"])
+        xr.testing.assert_allclose(
+            turned["friction_coefficient_sem"], stated["friction_coefficient_sem"]
+        )
+    with pytest.raises(AnalysisError, match="is a torque, and"):
+        analysed(run, zero_uncertainty="10 N mm")

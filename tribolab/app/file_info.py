@@ -153,8 +153,13 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
 def _roughness_lines(scan: xr.Dataset) -> list[str]:
     """Say how rough it is: with the cut-off that instruments apply, and with none."""
     # late: starting stays quick
+    from tribolab.records.wording import with_error
     from tribolab.surface.form import remove_form
-    from tribolab.surface.roughness import primary_roughness, roughness_parameters
+    from tribolab.surface.roughness import (
+        STANDARD_CUTOFF,
+        primary_roughness,
+        roughness_parameters,
+    )
 
     if scan["height"].size > _LARGEST:
         return []
@@ -169,13 +174,20 @@ def _roughness_lines(scan: xr.Dataset) -> list[str]:
     cut = iso.attrs.get("lambda_c_m")
     by = " by the instrument" if iso.attrs["filtered_by"] == "instrument" else ""
     filtered = f"waves longer than {1e3 * cut:.3g} mm filtered out{by}" if cut else "no cut-off"
+    if cut and not by and cut < STANDARD_CUTOFF:
+        filtered += f" (a fifth of the scan, which is short of {5e3 * STANDARD_CUTOFF:.3g} mm)"
+    for name in told:
+        if (error := f"{name}_sem") in iso:
+            value, known = (1e6 * float(iso[each].mean()) for each in (name, error))
+            told[name] = f"{with_error(value, known)} um"
     radius = flat.attrs.get("form_radius_m", math.inf)
     form = f"circle of R = {radius:.3g} m" if math.isfinite(radius) else "form"
     beside = ""
     if abs(level / all_waves - 1) > _OTHER_FORM:
-        beside = f"; with the tilt alone taken off {level:.3g} um (form of a [[surface]])"
+        beside = f'; with the tilt alone taken off {level:.3g} um (form = "tilt" in [roughness])'
     return [
-        f"  Rq      {told['Rq']}, Ra {told['Ra']}: {form} taken off, {filtered} (ISO 4287)",
+        f"  Rq      {told['Rq']}, Ra {told['Ra']}: {form} taken off, {filtered}; means over "
+        "sampling lengths (ISO 4287)",
         f"  Pq      {all_waves:.3g} um: {form} taken off, waves of every length{beside}",
     ]
 

@@ -61,16 +61,20 @@ class ModeRecord:
     moves: bool = False
 
 
+_MOST_NAMED = 3  # runs
+
+
 def condition(curve: CurveOutcome | ModelOutcome) -> str:
     """Name a curve or its model by its surface, medium and load.
 
-    A curve whose runs name none of them is called by its own name.
+    A curve whose runs name neither surface nor medium is called by them.
     """
     words = curve.surface
     if curve.medium:
         words += f" {curve.medium}" if curve.medium == "dry" else f" in {curve.medium}"
     if not words.strip():
-        return curve.name
+        runs = curve.run_names if isinstance(curve, CurveOutcome) else ()
+        words = ", ".join(runs) if 0 < len(runs) <= _MOST_NAMED else curve.name
     if curve.normal_force is not None:
         words += f" at {curve.normal_force:g} N"
     return words.strip()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +27,9 @@ from tribolab.words import duration, many, percent
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+_NUMBER = re.compile(r"\d[\d.]*")
 
 
 def notices_of(
@@ -67,6 +71,8 @@ def notices_of(
         if largest:
             text += f", at most {percent(largest)} of the typical friction"
         say("note", "friction", text)
+    for text in _remarks(friction):
+        say("note", "friction", text)
     if str(friction.attrs.get("offset", "")).startswith("none"):
         say("note", "friction", f"offset of the force: {friction.attrs['offset']}")
     if (track := position_range(segments)) is not None:
@@ -80,6 +86,22 @@ def notices_of(
     if unused := str(run.attrs.get("columns_not_used", "")):
         say("note", "columns", f"not used: {unused}")
     return notices
+
+
+def _remarks(friction: xr.Dataset) -> list[str]:
+    """Return what is remarked of single segments, what differs by its numbers alone once."""
+    if "remark" not in friction:
+        return []
+    alike: dict[str, list[tuple[int, str]]] = {}
+    remarks = friction["remark"].values.astype(str)
+    numbers = friction["segment"].values if "segment" in friction.coords else range(remarks.size)
+    for number, said in zip(numbers, remarks, strict=True):
+        for text in filter(None, said.split("; ")):
+            alike.setdefault(_NUMBER.sub("", text), []).append((int(number) + 1, text))
+    return [
+        f"segment {first}: {text}" + (f" (and {many(count, 'more segment')})" if count else "")
+        for (first, text), count in ((rows[0], len(rows) - 1) for rows in alike.values())
+    ]
 
 
 def _of_check(name: str, row: Mapping[str, Any]) -> Notice:

@@ -31,7 +31,7 @@ ROUGHNESS = [
     *("measured_rms_roughness_m", "measured_rms_slope"),
     *("hurst_exponent", "hurst_exponent_standard_error", "rolloff_wavenumber_1_m"),
     *("wavenumber_low_1_m", "measured_low_1_m", "measured_high_1_m", "wavenumber_high_1_m"),
-    *("form_radius_m", "tip_radius_m", "lambda_c_m"),
+    *("form_removed", "form_radius_m", "tip_radius_m", "lambda_c_m"),
 ]
 
 
@@ -84,7 +84,7 @@ def _roughness(moments: xr.Dataset, psd: xr.Dataset) -> Row:
     rough = dict.fromkeys(ROUGHNESS)
     for name in _ISO:
         rough[column(name)] = float(moments[name].mean())
-        rough[column(f"{name}_sem")] = _error_over_scans(moments[name])
+        rough[column(f"{name}_sem")] = _error_over_scans(moments, name)
         if (error := f"{name}_gap_error") in moments:
             rough[column(error)] = _error_of_mean(moments[error])
     rough["Pq_m"] = float(moments["Pq"].mean()) if "Pq" in moments else None
@@ -99,10 +99,13 @@ def _roughness(moments: xr.Dataset, psd: xr.Dataset) -> Row:
     return rough
 
 
-def _error_over_scans(values: xr.DataArray) -> float | None:
-    """Return the standard error of a mean over scans from their scatter; None of a single scan."""
+def _error_over_scans(moments: xr.Dataset, name: str) -> float | None:
+    """Return the standard error of a mean over scans, of a single one from its own parts."""
+    values = moments[name]
     scans = values.mean("y") if "y" in values.dims else values
-    return float(scans.std(ddof=1)) / np.sqrt(scans.size) if scans.size > 1 else None
+    if scans.size > 1:
+        return float(scans.std(ddof=1)) / np.sqrt(scans.size)
+    return float(moments[f"{name}_sem"].mean()) if f"{name}_sem" in moments else None
 
 
 def _error_of_mean(error: xr.DataArray) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,10 @@ from tribolab.surface.level import level_rows, refuse_level, rounding_only
 from tribolab.surface.moments import cumulative, spectrum_arrays
 from tribolab.surface.tails import long_holes, tails
 from tribolab.units import positive, to_si
+
+STANDARD_CUTOFF = 0.8e-3  # m, the cut-off of most surfaces (ISO 21920-3)
+_LENGTHS = 5  # cut-offs that a shorter profile is long
+_FEWEST_LENGTHS = 3  # sampling lengths whose scatter says how well their mean is known
 
 
 def roughness_parameters(
@@ -48,8 +53,10 @@ def roughness_parameters(
     -------
     xarray.Dataset
         ``Ra``, ``Rq``, ``Rz`` [m], ``Rsk``, ``Rku``, ``Rdq`` [1], with the dims of the heights
-        but x. The attributes say which cut-offs were applied and over which length. Where heights
-        are missing, ``Ra_gap_error`` and so on are the standard errors that the gaps bring.
+        but x. The attributes say which cut-offs were applied and over which length. Of profiles of
+        three sampling lengths or more, ``Ra_sem`` and so on are the standard errors of the means
+        over these, from their scatter. Where heights are missing, ``Ra_gap_error`` and so on are
+        the standard errors that the gaps bring.
 
     Raises
     ------
@@ -90,11 +97,15 @@ def roughness_parameters(
     if missing is not None:
         given = given.copy(data=bridged(given.values, missing, is_map=is_map))
     evaluation = _Evaluation(pitch, cut, filtered, fine, sampling_lengths)
-    values = evaluation.parameters(scans.assign(height=given))
+    values, by_length = evaluation.parameters(scans.assign(height=given))
     dims = given.dims[:-1]
     data = xr.Dataset({name: (dims, value) for name, value in values.items()})
     if missing is not None:
         data = _corrected(data, scans.assign(height=given), missing, evaluation)
+    if not is_map:  # the rows of a map are not independent of each other
+        data = data.assign(
+            {f"{name}_sem": (dims, error) for name, error in _errors(by_length).items()}
+        )
     applied = {"lambda_c_m": cut, "lambda_s_m": fine}
     length, lengths = evaluation.lengths(points)
     return stamp(
@@ -175,8 +186,8 @@ class _Evaluation(NamedTuple):
             height = rough.isel(x=slice(self.edge, points - self.edge))
         return np.asarray(height.values)
 
-    def parameters(self, scans: xr.Dataset) -> dict[str, np.ndarray]:
-        """Return the parameters of profiles without gaps."""
+    def parameters(self, scans: xr.Dataset) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+        """Return the parameters of profiles without gaps, and those of each sampling length."""
         pitch, cut, points = self.pitch, self.cut, scans.sizes["x"]
         rows = self.profile(scans)
         parts = self.parts(rows)
@@ -196,14 +207,24 @@ class _Evaluation(NamedTuple):
                 ),
                 function="roughness_parameters",
             )
-        return {
-            "Ra": np.abs(deviation).mean(-1).mean(-1),
-            "Rq": np.sqrt(square).mean(-1),
-            "Rz": np.ptp(parts, axis=-1).mean(-1),
-            "Rsk": (np.mean(deviation**3, -1) / square**1.5).mean(-1),
-            "Rku": (np.mean(deviation**4, -1) / square**2).mean(-1),
-            "Rdq": np.sqrt(np.mean(slope**2, -1)),
+        by_length = {
+            "Ra": np.abs(deviation).mean(-1),
+            "Rq": np.sqrt(square),
+            "Rz": np.ptp(parts, axis=-1),
+            "Rsk": np.mean(deviation**3, -1) / square**1.5,
+            "Rku": np.mean(deviation**4, -1) / square**2,
         }
+        values = {name: of.mean(-1) for name, of in by_length.items()}
+        return values | {"Rdq": np.sqrt(np.mean(slope**2, -1))}, by_length
+
+
+def _errors(by_length: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the standard errors of means over the sampling lengths, where there are enough."""
+    return {
+        name: of.std(-1, ddof=1) / np.sqrt(of.shape[-1])
+        for name, of in by_length.items()
+        if of.shape[-1] >= _FEWEST_LENGTHS
+    }
 
 
 def _corrected(
@@ -219,7 +240,7 @@ def _corrected(
 
     def parameters(height: np.ndarray) -> np.ndarray:
         same = scans.assign(height=scans.height.copy(data=height.reshape(shape)))
-        values = np.stack(list(evaluation.parameters(same).values()))
+        values = np.stack(list(evaluation.parameters(same)[0].values()))
         values[factors] = np.log(values[factors])
         return values.reshape(len(values), -1, *grid[:-1])
 
@@ -274,7 +295,7 @@ def _long_cutoff(
         return positive(lambda_c, "m", "lambda_c"), False
     if "lambda_c_m" in scans.attrs:
         return float(scans.attrs["lambda_c_m"]), True
-    return min(0.8e-3, length / 5), False
+    return min(STANDARD_CUTOFF, length / _LENGTHS), False
 
 
 def _slope(rows: np.ndarray, pitch: float) -> np.ndarray:

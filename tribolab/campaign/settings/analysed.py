@@ -53,7 +53,11 @@ class Roughness(Table):
     """How the power spectrum is made from the scans."""
 
     form: Literal["auto", "none", "mean", "tilt", "circle", "polynomial"] = "auto"
-    """What is taken away from the scans first; by default a circle from profiles."""
+    """What is taken away from the scans first; by default a circle from profiles, a polynomial of
+    the second degree from maps."""
+    lambda_c: Annotated[float, PositiveSi("m", "0.8 mm")] | None = None
+    """Cut-off of Ra, Rq and the like; by default none where the instrument filtered, else 0.8 mm,
+    or a fifth of a shorter scan."""
     q_low: Annotated[float, PositiveSi("1/m", "423 1/m")] | None = None
     """Smallest wavenumber; by default pi over the Hertz width at the lowest load."""
     q_high: Annotated[float, PositiveSi("1/m", "3.14e9 1/m")] | None = None

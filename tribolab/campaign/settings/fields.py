@@ -167,14 +167,15 @@ ZeroPlace = Annotated[str, BeforeValidator(_place), Field(examples=["first 2 s"]
 
 
 def _spread(value: Any) -> str:
-    """Check an uncertainty of a force, or of a coefficient where only that was recorded."""
+    """Check an uncertainty of a force or torque, or of a coefficient that alone was recorded."""
     if isinstance(value, str):
-        for unit in ("N", "1"):
+        for unit in ("N", "1", "N m"):
             with contextlib.suppress(UnitError):
                 if to_si(value, unit, name="") >= 0:
                     return value
     raise ValueError(
-        f"{shown(repr(value))} is no force and no pure number; write e.g. '0.2 N' or '2 %'"
+        f"{shown(repr(value))} is no force, torque or pure number; write e.g. '0.2 N', '5 N mm' or "
+        "'2 %'"
     )
 
 
@@ -182,5 +183,7 @@ def _spread(value: Any) -> str:
 Spread = Annotated[
     str,
     BeforeValidator(_spread),
-    WithJsonSchema({"type": "string", "pattern": _NUMBER_WITH_UNIT, "examples": ["0.2 N", "2 %"]}),
+    WithJsonSchema(
+        {"type": "string", "pattern": _NUMBER_WITH_UNIT, "examples": ["0.2 N", "5 N mm", "2 %"]}
+    ),
 ]

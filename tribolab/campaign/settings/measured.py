@@ -123,7 +123,8 @@ class RunEntry(Table):
     instrument: SomeText | None = None
     """Name of a dialect, or a dialect's TOML file; left out, the files tell by themselves."""
     zero_uncertainty: Spread | None = None
-    """Standard uncertainty of the zero of the friction force, where no stroke or rest tells it."""
+    """Standard uncertainty of the zero of the friction signal, where no stroke or rest tells it: a
+    force, a torque where one was measured, or a pure number of a coefficient."""
     zero: ZeroPlace | None = None
     """Where the zero of the friction signal is read: "first 200 samples", "first 2 s",
     "1.5 s to 3 s", or "file blank.csv", a run without contact in the raw folder."""

@@ -19,6 +19,7 @@ from tribolab.surface.form import fill_dropouts, remove_form
 from tribolab.surface.moments import band, rms_roughness, rms_slope
 from tribolab.surface.psd import psd_1d, psd_2d
 from tribolab.surface.roughness import primary_roughness, roughness_parameters, spectral_roughness
+from tribolab.words import number
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 _FAILED = ("fail", "error")
 # shares of the mean square slope that come from extrapolation, from which on that is said
 _NOTED, _SUSPECT = 0.5, 0.8
+# Pq with a circle over Pq without it: between these it matters, and may be waviness
+_CIRCLE_COUNTS, _CIRCLE_CLEAR = 1.02, 2.0
 
 
 class CheckedScans(NamedTuple):
@@ -200,6 +203,8 @@ def spectra_of_scans(
     if form == "auto":
         form = "polynomial" if is_map else "circle"
     flat = scans if form == "none" else remove_form(scans, form)
+    if form == "circle" and (doubt := _doubtful_circle(scans, flat)):
+        findings.append(Finding("note", doubt))
     tip = options.get("tip_radius")
     if is_map:
         measured = psd_2d(flat)
@@ -213,7 +218,8 @@ def spectra_of_scans(
     part = band(psd, float(seen[0]), float(seen[-1]))
     share = (rms_slope(part) / float(whole.rms_slope)) ** 2
     groups["psd"] = psd
-    iso = roughness_parameters(flat).assign(Pq=primary_roughness(flat))
+    cut = options.get("lambda_c", "auto")
+    iso = roughness_parameters(flat, lambda_c=cut).assign(Pq=primary_roughness(flat))
     groups["roughness"] = iso.merge(whole, combine_attrs="drop_conflicts")
     groups["roughness"].attrs |= {
         "measured_rms_roughness_m": rms_roughness(part),
@@ -228,3 +234,18 @@ def spectra_of_scans(
         text = f"{100 * (1 - share):.0f} % of the mean square slope is extrapolated, not measured"
         findings.append(Finding("suspect" if share < 1 - _SUSPECT else "note", text))
     return groups, findings
+
+
+def _doubtful_circle(scans: xr.Dataset, flat: xr.Dataset) -> str:
+    """Say that a circle which was taken off may as well be waviness; "" if it is clear or small."""
+    with_it, without = (
+        float(primary_roughness(each).mean()) for each in (remove_form(scans, "tilt"), flat)
+    )
+    if not _CIRCLE_COUNTS < with_it / without < _CIRCLE_CLEAR:
+        return ""
+    radius = flat.attrs["form_radius_m"]
+    return (
+        f"a circle of R = {number(radius)} m was taken off, which may be of the part or of its "
+        f"waviness: Pq is {number(1e6 * without)} um without it and {number(1e6 * with_it)} um "
+        'with the tilt alone taken off (form = "tilt" in [roughness], for a flat part)'
+    )

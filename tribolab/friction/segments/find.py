@@ -79,7 +79,8 @@ def find_segments(
         For a slider that moves to and fro and never at constant speed, as a crank drives it: each
         stroke is a segment, and of it this share of its length about the middle counts ("40 %" of
         a sinusoidal stroke is within 9 % of its highest speed). Neither `trim` nor what concerns
-        constant speed applies then. By default half of each stroke of a run that is never at
+        constant speed applies then; what lies before the first and after the last turn is
+        omitted. By default half of each stroke of a run that is never at
         constant speed and whose speed follows from a stroke and a frequency (attribute
         ``stroke_m``), or whose position and friction tell that it goes stroke after stroke, each
         like the last; unless a `position_range` is given.
@@ -232,6 +233,11 @@ def _of_strokes(run: xr.Dataset, source: str, share: float, min_samples: int) ->
         Stretch(float(a), float(b), str(what), float(v))
         for a, b, what, v in zip(start, stop, kind, speed, strict=True)
     ]
+    ends = (
+        (time[0], start[0], "before the first turn"),
+        (stop[-1], time[-1], "after the last turn"),
+    )
+    stretches += [Stretch(float(a), float(b), why, np.nan) for a, b, why in ends if b > a]
     result = measured(run, stretches, source, 0.0, None, (begin[good], end[good]))
     return result.assign_attrs(stroke_middle=share)
 

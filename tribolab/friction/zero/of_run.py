@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 
+from tribolab.errors import AnalysisError, UnitError
 from tribolab.friction.zero.offsets import pair_strokes
 from tribolab.friction.zero.part_folded import of_parts
 from tribolab.friction.zero.parts import KnownOfZero, StrokeMeans, ZeroReference
@@ -20,6 +22,7 @@ from tribolab.medians import median, median_of_known
 from tribolab.quantities import quantity
 from tribolab.units import to_si
 
+_FROM_TORQUE = re.compile(r"\s*\w+\s*/\s*(?:(?P<arm>\w+)|'(?P<length>[^']+)')\s*")
 _WITHOUT_SIGN = "mean of both directions: recorded without sign"
 # offsets that are removed from both strokes of a pair, which are then one observation
 PAIRED = ("half loop", _WITHOUT_SIGN)
@@ -36,7 +39,8 @@ class Settings:
     pair_tolerance
         Largest relative difference of speed between the two strokes of a pair.
     zero_uncertainty
-        Standard uncertainty of the friction signal's zero, in its unit or as text with one; None
+        Standard uncertainty of the friction signal's zero, in its unit or as text with one, which
+        may be a torque where the force was made from one and an arm; None
         where only the run's attribute ``<signal>_zero_uncertainty`` may say it.
     rectified
         Whether the signal was recorded without sign; None where the run's attribute
@@ -150,7 +154,37 @@ def _stated(run: xr.Dataset, name: str, given: str | float | None) -> float:
     if given is None:
         ending = "" if unit == "1" else f"_{unit}"
         return float(run.attrs.get(f"{name}_zero_uncertainty{ending}", np.nan))
-    return abs(to_si(given, unit, name="zero_uncertainty"))
+    try:
+        return abs(to_si(given, unit, name="zero_uncertainty"))
+    except UnitError:
+        torque = _torque(given)
+        if torque is None or unit != "N":
+            raise
+        return torque / _arm(run, name)
+
+
+def _torque(given: str | float) -> float | None:
+    try:
+        return abs(to_si(given, "N m", name="zero_uncertainty"))
+    except UnitError:
+        return None
+
+
+def _arm(run: xr.Dataset, name: str) -> float:
+    """Return the arm [m] with which the friction force was made from a torque."""
+    formula = str(dict(run.attrs.get("derived", {})).get(name, ""))
+    made = _FROM_TORQUE.fullmatch(formula)
+    arm = float("nan")
+    if made is not None:
+        stated = run.attrs.get(f"{made['arm']}_m")
+        arm = to_si(made["length"], "m", "arm") if made["length"] else float(stated or "nan")
+    if not arm > 0:
+        raise AnalysisError(
+            "zero_uncertainty is a torque, and the friction force of this run is not a torque over "
+            "an arm that is known; state a force, e.g. '0.2 N'",
+            where=str(run.attrs.get("source", "run")),
+        )
+    return arm
 
 
 def _numbers(segments: xr.Dataset) -> np.ndarray:

@@ -183,6 +183,7 @@ def verdict(
         done=len(done),
         failed=failed,
         rejected=rejected,
+        suspect=doubtful,
         without_value=empty,
         rejected_by_hand=by_hand["rejected"],
         accepted_by_hand=by_hand["accepted"],

@@ -41,8 +41,9 @@ _VALIDITY = "limits of the theory that the results leave, and what to do; empty 
 _QUALITY = "gravest finding of the checks on the scans that were used; empty if there are none"
 _ROUGHNESS = (
     "a row of tables/roughness.csv: ISO parameters are means over the scans, *_sem their "
-    "standard errors from the scatter of the scans, *_gap_error what missing heights bring, rms_* "
-    "moments of the extrapolated spectrum"
+    "standard errors from the scatter of the scans (of a single profile, of its sampling lengths), "
+    "*_gap_error what missing heights bring, rms_* moments of the extrapolated spectrum "
+    "of an isotropic surface"
 )
 _CONTACT = (
     "a row of tables/contact.csv: without adhesion, at one load; at one pressure where no load is "
@@ -221,6 +222,9 @@ class CampaignVerdict:
     done: Natural
     failed: Natural
     rejected: Natural
+    suspect: Annotated[
+        Natural, means("runs whose numbers are used, and of which a check doubts them")
+    ]
     without_value: Annotated[Natural, means("sound runs in which no friction could be measured")]
     rejected_by_hand: Annotated[Natural, means("runs that a person rejected")]
     accepted_by_hand: Annotated[

@@ -9,6 +9,9 @@ from dataclasses import dataclass, replace
 from tribolab.report.live.figure import Axis, Panel, Series
 
 _ROOM = 0.06  # of the span, on both sides
+_SAME = 1e-5  # of the size, or decades: values that differ by less are one
+_LEAST_DECADES = 0.1  # that a logarithmic axis shows
+_LEAST_SHARE = 0.02  # of the size, that a linear axis shows
 _BELOW = 20  # on a logarithmic axis a bar is followed down to its value over this
 
 
@@ -106,9 +109,20 @@ def _scale(axis: Axis, values: Iterator[float], *, level: bool) -> Scale:
             low = max(low, high - axis.decades)
     elif level and 0 < low < 0.6 * high:
         low = 0.0
-    spare = 0.3 if axis.log else abs(high) * 0.5 or 0.5
-    room = (high - low) * _ROOM if high > low else spare
+    low, high = _apart(low, high, axis.log)
+    room = (high - low) * _ROOM
     return Scale(low if low == 0 and not axis.log else low - room, high + room, axis.log)
+
+
+def _apart(low: float, high: float, log: bool) -> tuple[float, float]:
+    """Return the ends of what is seen, so far apart that no noise in a last digit fills it."""
+    largest = max(abs(low), abs(high))
+    alone = high - low <= (_SAME if log else _SAME * largest)
+    least = 0.6 if log else largest or 1.0
+    if not alone:
+        least = _LEAST_DECADES if log else _LEAST_SHARE * largest
+    wider = max(0.0, (least - (high - low)) / 2)
+    return low - wider, high + wider
 
 
 def ticks(scale: Scale, most: int) -> list[tuple[float, float]]:

@@ -14,6 +14,7 @@ from tribolab.report.live.curves import (
     labels_of,
     system_name,
     systems,
+    told_apart,
 )
 from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, SeriesLabels, places
 from tribolab.report.live.points import RunPoint, of_curve
@@ -58,7 +59,8 @@ def _falling(known: FrictionOverSpeed, colours: Mapping[str, int]) -> list[LiveF
         section="curves",
         title="At which speed friction falls",
         note="Each curve over its own highest friction, so that plateaus of different height stand "
-        "at 1. Filled: in a liquid; open: dry. Bars: the standard error of the point.",
+        "at 1. Bars: the standard error of the point. "
+        + told_apart([curve.outcome.medium for curve in known.curves], "filled", "open"),
         alt=f"Friction relative to its highest value over sliding speed of "
         f"{many(len(series), 'curve')}.",
         panels=(Panel(SPEED_AXIS, _SHARE),),
@@ -121,8 +123,9 @@ def _every_run(known: FrictionOverSpeed, colours: Mapping[str, int]) -> LiveFigu
         id="curves-runs",
         section="curves",
         title="Every run of the repeats",
-        note="A point for each run and speed. Filled: in a liquid; open: dry. Bars: the standard "
-        "error within the run, which says nothing of the next run.",
+        note="A point for each run and speed. Bars: the standard error within the run, which says "
+        "nothing of the next run. "
+        + told_apart([curve.medium for curve in series], "filled", "open"),
         alt=f"Friction coefficient over sliding speed of {many(len(series), 'run')}, "
         f"µ {span(mu for drawn in series for mu in drawn.y)}.",
         panels=(Panel(SPEED_AXIS, FRICTION_AXIS),),

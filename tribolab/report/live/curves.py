@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -69,6 +69,28 @@ def system_name(surface: str, medium: str, runs: Sequence[str] = ()) -> str:
     if named or not runs:
         return named or "runs"
     return listed(list(runs)) if len(runs) <= _MOST_NAMED else f"{len(runs)} runs"
+
+
+def told_apart(media: Collection[str], in_liquid: str, dry: str) -> str:
+    """Return how dry and wet are told apart in a figure; "" where it shows one of them alone.
+
+    Parameters
+    ----------
+    media
+        What it shows.
+    in_liquid, dry
+        How each is drawn, in a word.
+
+    Examples
+    --------
+    >>> told_apart(["glycerol", "dry"], "filled", "open"), told_apart(["dry"], "full", "dashed")
+    ('Filled: in a liquid; open: dry.', '')
+    """
+    wet = [medium for medium in media if not is_dry(medium)]
+    if not wet or len(wet) == len(media):
+        return ""
+    unnamed = " or a medium that is not named" if "" in wet else ""
+    return f"{in_liquid[:1].upper()}{in_liquid[1:]}: in a liquid{unnamed}; {dry}: dry."
 
 
 def card_figures(known: FrictionOverSpeed) -> list[LiveFigure]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -12,7 +12,7 @@ from tribolab.plot.runs.reduce import envelope_index
 from tribolab.plot.runs.signals import LOOKED_AT, main_signal
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.parts import CurveOutcome
-from tribolab.report.live.curves import SPEED_AXIS, labels_of, system_name
+from tribolab.report.live.curves import SPEED_AXIS, labels_of, system_name, told_apart
 from tribolab.report.live.figure import (
     Axis,
     LiveFigure,
@@ -28,11 +28,14 @@ from tribolab.report.live.record import LiveRecord
 from tribolab.report.live.shown import shown_figures
 from tribolab.report.plain import plain_speed
 from tribolab.report.slowest import Slow, lowest_loads
-from tribolab.words import force_text, number
+from tribolab.words import force_text, is_dry, number
 
 if TYPE_CHECKING:
     import xarray as xr
 
+_UNDECIDED = "not decided"
+_STEADY = frozenset({"smooth sliding", _UNDECIDED})
+_APART = 1.2  # of two speeds, from which on they are not one
 _MOST_EVENTS = 300
 _EXCERPT = 800  # points of a slow trace
 # Of what is looked at and of what stands beside it: in a liquid, and dry, in the same colour.
@@ -61,7 +64,7 @@ def record_of_sliding(
     folder
         The results folder with the data files of the runs.
     """
-    colours = places([*surfaces, *(contact.curve.surface for contact in judged)])
+    colours = _colours(judged, surfaces)
     by_name = {contact.curve.name: contact for contact in judged}
     lowest = [by_name[curve.name] for curve in lowest_loads(contact.curve for contact in judged)]
     opened = [_opened(contact, colours, folder) for contact in lowest if contact.slow is not None]
@@ -74,6 +77,18 @@ def record_of_sliding(
         _spectrogram(opened),
     ]
     return LiveRecord(shown_figures(figures))
+
+
+def _colours(judged: Sequence[Judged], surfaces: Sequence[str]) -> dict[str, int]:
+    """Return the colour of each curve: its surface's, or its own if that does not tell it."""
+    curves = [contact.curve for contact in judged]
+    # of one surface one load is opened, dry and in a liquid by their lines
+    drawn = {(curve.surface, is_dry(curve.medium), _system(curve)) for curve in curves}
+    if len({key[:2] for key in drawn}) == len(drawn):
+        of_surface = places([*surfaces, *(curve.surface for curve in curves)])
+        return {curve.name: of_surface[curve.surface] for curve in curves}
+    own = places(_system(curve) for curve in curves)
+    return {curve.name: own[_system(curve)] for curve in curves}
 
 
 def _system(curve: CurveOutcome) -> str:
@@ -101,14 +116,14 @@ def _waveforms(judged: Sequence[Judged]) -> LiveFigure:
                     colour=colours[waveform],
                     told=[_seen(contact, row) for row in rows],
                     goes_to=(contact.curve.run_names[0],),
-                    **(labels_of(contact.curve) | {"open": waveform == "smooth sliding"}),
+                    **(labels_of(contact.curve) | {"open": waveform in _STEADY}),
                 )
             )
     return LiveFigure(
         "sliding-waveforms",
         "sliding",
         "Steady or stick-slip at every speed",
-        "Open: steady sliding; filled: friction rises and falls.",
+        _waveform_note(colours),
         "Class of waveform of each condition at each sliding speed.",
         (Panel(SPEED_AXIS, Axis("")),),
         tuple(series),
@@ -116,6 +131,13 @@ def _waveforms(judged: Sequence[Judged]) -> LiveFigure:
         height=140 + 26 * len(judged),
         rows=True,
     )
+
+
+def _waveform_note(waveforms: Collection[str]) -> str:
+    if set(waveforms) <= _STEADY:
+        return "Of each condition, at each speed."
+    undecided = " or not decided" if _UNDECIDED in waveforms else ""
+    return f"Open: steady sliding{undecided}; filled: friction rises and falls."
 
 
 def _seen(contact: Judged, row: Mapping[str, Any]) -> str:
@@ -139,7 +161,7 @@ def _frequencies(judged: Sequence[Judged], colours: Mapping[str, int]) -> LiveFi
                     [row["sliding_speed_m_s"] for row in rows],
                     [row["dominant_frequency_Hz"] for row in rows],
                     style="points",
-                    colour=colours[contact.curve.surface],
+                    colour=colours[contact.curve.name],
                     told=[_seen(contact, row) for row in rows],
                     goes_to=(contact.curve.run_names[0],),
                     **labels_of(contact.curve),
@@ -205,7 +227,7 @@ def _opened(contact: Judged, colours: Mapping[str, int], folder: Path) -> _Open:
     )
     labels = labels_of(contact.curve)
     labels |= {"load": None, "runs": (contact.slow.run,)}
-    colour = colours[contact.curve.surface]
+    colour = colours[contact.curve.name]
     first = contact.slow.segments[0][0]
     return _Open(_name(contact.curve), labels, colour, contact.slow.run, traces, slip, first)
 
@@ -224,6 +246,24 @@ def _trace(
     return distance[kept], sign * values[kept]
 
 
+def _media(opened: Sequence[_Open]) -> list[str]:
+    return [contact.labels["medium"] for contact in opened]
+
+
+def _by_line(opened: Sequence[_Open], first: str, second: str) -> str:
+    """Say what the lines are: of what is looked at, and of what stands beside it."""
+    wet, dry = (
+        f"{looked}: {first}; {beside}: {second}"
+        for looked, beside in (("full", "dotted"), ("dashed", "dots and dashes"))
+    )
+    media = _media(opened)
+    if not told_apart(media, "", ""):
+        alone = dry if media and is_dry(media[0]) else wet
+        return f"{alone[:1].upper()}{alone[1:]}."
+    unnamed = " or a medium that is not named" if "" in media else ""
+    return f"In a liquid{unnamed}, {wet}. Dry, {dry}."
+
+
 def _traces(opened: Sequence[_Open]) -> LiveFigure:
     series = []
     for contact in opened:
@@ -236,8 +276,8 @@ def _traces(opened: Sequence[_Open]) -> LiveFigure:
         "sliding-traces",
         "sliding",
         "Friction over sliding distance at the slowest speeds",
-        "At the lowest load of each surface and medium. The slowest speed: full in a liquid, "
-        "dashed dry; the next: dotted in a liquid, dots and dashes dry.",
+        _by_line(opened, "the slowest speed", "the next")
+        + " At the lowest load of each surface and medium.",
         "Friction over sliding distance, a line for each condition and speed.",
         (Panel(Axis("sliding distance", "µm"), Axis("friction coefficient µ")),),
         tuple(series),
@@ -261,8 +301,8 @@ def _spectra(opened: Sequence[_Open]) -> LiveFigure:
         "sliding-spectra",
         "sliding",
         "Spectra of friction at the slowest speed",
-        "Full: in a liquid; dashed: dry. Dotted, and dots and dashes: the power that noise exceeds "
-        "anywhere in one spectrum of a thousand. What rises above it is an oscillation.",
+        _by_line(opened, "the power", "what noise exceeds in one spectrum of a thousand")
+        + " What rises above that is an oscillation.",
         "Power spectrum of the friction coefficient over frequency.",
         (Panel(Axis("frequency", "Hz", log=True), Axis("power spectrum of µ", "1/Hz", log=True)),),
         tuple(series),
@@ -284,8 +324,8 @@ def _events(opened: Sequence[_Open]) -> LiveFigure:
         "sliding-events",
         "sliding",
         "How far friction drops",
-        "Share of the drops, at all speeds of a run, that are smaller than a value. Full: in a "
-        "liquid; dashed: dry.",
+        "Share of the drops, at all speeds of a run, that are smaller than a value. "
+        + told_apart(_media(opened), "full", "dashed"),
         "Cumulative distribution of the drops of friction.",
         (Panel(Axis("drop of µ", log=True), Axis("share of drops below")),),
         tuple(series),
@@ -293,8 +333,9 @@ def _events(opened: Sequence[_Open]) -> LiveFigure:
 
 
 def _spectrogram(opened: Sequence[_Open]) -> LiveFigure:
-    """Return power over that of noise, for every speed and frequency."""
-    series = []
+    """Return power over that of noise, for every speed and frequency; nothing of one speed."""
+    series: list[Series] = []
+    low, high = np.inf, 0.0
     for contact in opened:
         slip = contact.slip
         if not slip.sizes.get("frequency", 0):
@@ -309,15 +350,24 @@ def _spectrogram(opened: Sequence[_Open]) -> LiveFigure:
         # below the noise there is nothing to see
         kept = np.isfinite(level) & (level > 0.3)
         values = [float(f"{v:.3g}") for v in level[kept]]
+        low, high = (end(speed[kept], initial=was) for end, was in ((np.min, low), (np.max, high)))
         drawn = contact.series(contact.name, speed[kept], f[kept], "heat", high=values)
         series += [drawn] if values else []
     return LiveFigure(
         "sliding-spectrogram",
         "sliding",
         "Power over that of noise, at every speed and frequency",
-        "Only what is at least twice the noise is drawn; filled: in a liquid, open: dry. Switch "
-        "conditions on and off in the legend.",
+        " ".join(
+            filter(
+                None,
+                (
+                    "Only what is at least twice the noise is drawn.",
+                    told_apart(_media(opened), "filled", "open"),
+                    "Switch conditions on and off in the legend." if len(series) > 1 else "",
+                ),
+            )
+        ),
         "Ratio of the power spectrum to its noise over speed and frequency.",
         (Panel(SPEED_AXIS, Axis("frequency", "Hz", log=True)),),
-        tuple(series),
+        tuple(series) if high > _APART * low else (),
     )

@@ -68,6 +68,11 @@ GLOSSARY: dict[str, str] = {
     "Suspect": "A check found something that may spoil the numbers; they are used.",
 }
 
+# What a campaign of surfaces alone speaks of.
+OF_SURFACES = frozenset(
+    ("A/A₀", "Pull-off force", "h rms", "Rq", "Pq", "Slope rms", "Hurst exponent", "Roll-off")
+)
+
 # Words in the sentences of the first screen that are explained where they stand.
 TERMS: dict[str, str] = {
     "lift off": GLOSSARY["Lift-off"],

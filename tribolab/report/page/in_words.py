@@ -44,8 +44,8 @@ def friction_in_words(points: Sequence[Mapping[str, Any]]) -> str:
     ...     return {"sliding_speed_m_s": v, "friction_coefficient": mu,
     ...             "friction_coefficient_sem": 0.01, "runs": 2}
     >>> friction_in_words([row(1e-6, 1.1), row(1e-5, 1.08), row(1e-3, 0.7), row(1e-2, 0.2)])
-    'Plateau of µ = 1.100 ± 0.010 up to 10 µm/s; half of it at 2 mm/s; lowest 0.200 ± 0.010 at \
-10 mm/s, the fastest speed (± between runs).'
+    'Plateau of µ = 1.100 ± 0.010 up to 10 µm/s; half of it at about 2 mm/s; lowest 0.200 ± \
+0.010 at 10 mm/s, the fastest speed (± between runs).'
     >>> friction_in_words([row(1e-6, 1.1), row(1e-2, 1.05)])
     'µ falls by 4.5 % with speed: from 1.100 ± 0.010 at 1 µm/s to 1.050 ± 0.010 at 10 mm/s (± \
 between runs).'
@@ -117,7 +117,7 @@ def _as_high(row: Mapping[str, Any], high: Mapping[str, Any]) -> bool:
 
 def _half(known: Sequence[Mapping[str, Any]], high: Mapping[str, Any]) -> str:
     speed = half_speed(known[known.index(high) :])
-    return "" if speed is None else f"half of it at {plain_speed(speed)}"
+    return "" if speed is None else f"half of it at about {plain_speed(speed)}"
 
 
 def half_speed(falling: Sequence[Mapping[str, Any]]) -> float | None:
@@ -177,8 +177,11 @@ def conditions(of: Sequence[Mapping[str, Any]]) -> str:
     """
     grouped: dict[str, list[float | None]] = {}
     for curve in of:
-        loads = grouped.setdefault(system_name(curve["surface"], curve["medium"]), [])
-        loads.append(curve["nominal_normal_force_N"])
+        if not (curve["surface"] or curve["medium"]) and "condition" in curve:
+            grouped[curve["condition"]] = [None]  # the load is in it
+            continue
+        name = system_name(curve["surface"], curve["medium"], curve.get("runs", ()))
+        grouped.setdefault(name, []).append(curve["nominal_normal_force_N"])
     return "; ".join(
         name if loads == [None] else f"{name}, at {listed(list(map(force_text, loads)))}"
         for name, loads in grouped.items()

@@ -21,8 +21,9 @@ from tribolab.records import judgement, wording
 from tribolab.records.hurst_words import hurst_verdict, is_steep
 from tribolab.records.model_words import is_described, stress_interval
 from tribolab.records.packed import deflated
+from tribolab.records.roughness_words import form_in_words
 from tribolab.report.live.points import run_error
-from tribolab.report.page.glossary import GLOSSARY, HEADS, TERMS
+from tribolab.report.page.glossary import GLOSSARY, HEADS, OF_SURFACES, TERMS
 from tribolab.report.page.in_words import conditions, oscillation_text
 from tribolab.report.page.sections import Section
 from tribolab.report.plain import plain_speed, plain_speeds, without_exponents
@@ -164,10 +165,12 @@ def environment(folder: Path) -> jinja2.Environment:
         "oscillating": oscillation_text,
         "is_described": is_described,
         "is_steep": is_steep,
+        "form_in_words": form_in_words,
         "hurst_verdict": hurst_verdict,
         "run_error": run_error,
         "HEADS": HEADS,
         "GLOSSARY": GLOSSARY,
+        "OF_SURFACES": OF_SURFACES,
         "explained": explained,
         "UNITS": wording.UNITS,
         "SYMBOLS": wording.SYMBOLS,
