@@ -75,7 +75,7 @@ _WEIGHTS |= {"lbf": "force_pound", "ozf": "force_ounce", "kgf": "force_kilogram"
 _WEIGHTS |= {"gf": "force_gram", "kp": "force_kilogram", "lbs": "force_pound"}
 _ARM = r"(?P<arm>mm|cm|m|in|inch|ft)"
 _WEIGHT = rf"(?P<weight>{'|'.join(sorted(_WEIGHTS, key=len, reverse=True))})"
-_TIMES = r"\s?[-·⋅.* ]?\s?"
+_TIMES = r"\s?[-·⋅・∙•.* ]?\s?"
 _TORQUES = tuple(
     re.compile(form) for form in (rf"{_WEIGHT}{_TIMES}{_ARM}", rf"{_ARM}{_TIMES}{_WEIGHT}")
 )

@@ -96,7 +96,7 @@ def registry() -> pint.UnitRegistry[float]:
 _SIGNS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−\u00a0", "0123456789-- ", "")
 _TIMES = re.compile(r"^[x×*·]\s?(?=\d\S*\s+[^\W\d_])")  # "x 1e-4 N", not the x1000 of a name
 _RAISED = re.compile(r"(?<=10)([⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
-_PRODUCT = re.compile(r"(?<!\s)\s*[·⋅]\s*")  # tried once for each row of blanks
+_PRODUCT = re.compile(r"(?<!\s)\s*[·⋅・∙•]\s*")  # tried once for each row of blanks
 
 
 def as_pint_writes(unit: str) -> str:

@@ -60,7 +60,7 @@ RUN_WORDS = (
         "normal_force",
         _words("fn fz fnorm fnormal w l nf fv normal"),
         _words(
-            "normalforce normalload axialforce axialload verticalforce verticalload "
+            "normalforce normalload normload normforce axialforce axialload verticalforce verticalload "
             "balload ballload "
             "pressingforce pressforce clampingforce downforce appliedforce "
             "normaalkracht aandrukkracht belasting "
@@ -70,7 +70,7 @@ RUN_WORDS = (
             "forcanormal silanacisku silanormalna nacisk obciazenie normalovasila pritlacnasila "
             "zatizeni normaalivoima normalero nyomoero normalkuvvet normalyuek yuek "
             "нормальнаясила нагрузка 수직하중 수직력 하중 "
-            "法向力 正压力 法向载荷 载荷 載荷 负荷 负载 加载力 垂直荷重 法線力 垂直力 荷重"
+            "试验力 试验载荷 試験荷重 法向力 正压力 法向载荷 载荷 載荷 负荷 负载 加载力 垂直荷重 法線力 垂直力 荷重"
         ),
         _words("loadcell"),
     ),
@@ -108,7 +108,7 @@ RUN_WORDS = (
         _words("x s pos xpos enc disp"),
         _words(
             "horizontaldisplacement horizontalposition "
-            "strokeposition position displacement displ extension crosshead stroke slidingdistance "
+            "strokeposition strokepos position displacement displ extension crosshead stroke slidingdistance "
             "distance verschiebung auslenkung gleitweg traversenweg standardweg strecke weg hub "
             "travel encoder "
             "deplacement course posicion desplazamiento recorrido posizione spostamento corsa "

@@ -45,6 +45,8 @@ def find_form(texts: Sequence[str]) -> tuple[str, str]:
     filled = [text for text in texts if text]
     fitting = [form for form in _FORMS if filled[:_TRIED] and _fits(filled[:_TRIED], form)]
     fitting = [form for form in fitting if _fits(filled, form)]
+    if ISO in fitting:  # without a zone there is none to be read
+        fitting = [form for form in fitting if form != ISO_ZONE]
     return (fitting[0] if fitting else "", fitting[1] if len(fitting) > 1 else "")
 
 

@@ -141,6 +141,8 @@ def lacking(understood: Understood, follows: Follows) -> list[str]:
         names |= {"friction_force", "normal_force"}  # it is asked which of both
     if follows.speed is not None and follows.speed.source != "none":
         names.add("sliding_velocity")
+    if any(value.name == "set_normal_force" for value in follows.values):
+        names.add("normal_force")
     if torque_of(understood.columns) is not None:
         names.add("torque")
     elif unknown_of(understood.columns):
@@ -255,7 +257,7 @@ def _with_speed(
 
 
 def _how_long(value: DraftValue) -> str:
-    return " of its step" if value.source == "step" else " all along"
+    return " in its step" if value.source == "step" else " all along"
 
 
 def _is_rotation(value: DraftValue) -> bool:
@@ -275,7 +277,7 @@ def _with_set_speed(before: Follows, values: Sequence[DraftValue], track: _Track
     turns = [value for value in values if _is_rotation(value)]
     if not stated and len(turns) == 1 and track.values:
         about = f"'{turns[0].text}' and the radius of the track"
-        rate = turns[0]._replace(to="rad/s", name="rotation")
+        rate = turns[0]._replace(unit="rpm", to="rad/s", name="rotation")
         formula = DraftedFormula("sliding_velocity", f"rotation * {track.formula}", about)
         guess = f"'{turns[0].text}' is how fast it turns{_how_long(turns[0])}"
         speed = SpeedBy("none", guess=guess, options=("not known",))

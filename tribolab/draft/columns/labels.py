@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import re
+
 from tribolab.draft.columns.fill_in import Bare
-from tribolab.draft.columns.words import COUNTS, is_count, split_unit
+from tribolab.draft.columns.values import words_said
+from tribolab.draft.columns.words import COUNTS, is_count, matches, split_unit, squeezed
 from tribolab.draft.file.header import is_unit, measures_something
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.lvm import units_above
@@ -17,6 +20,8 @@ def labelled(layout: Layout) -> list[DraftColumn]:
     """Columns with their names and units as the header says them."""
     heading = layout.heading
     cells = list(heading.cells if heading else ())[: layout.width]
+    if heading is None and layout.width == 1:
+        cells = [_named_above(layout)]
     cells += [""] * (layout.width - len(cells))
     row = list(heading.unit_cells if heading else ()) + [""] * layout.width
     columns: list[DraftColumn] = []
@@ -48,6 +53,29 @@ def labelled(layout: Layout) -> list[DraftColumn]:
             )
         )
     return columns
+
+
+_SIGNAL = re.compile(
+    r"^(?:signal|segnale|senal|sinal|sygnal|signaal|channel|kanal|canal|canale|voie|column|spalte|colonna"
+    r"|columna|colonne|kolumna|measured|measurand|messgroesse|messwerte?|grandezza|magnitud|grandeur"
+    r"|quantity|data|daten|values?|信号|通道|測定量|データ|сигнал|канал)$"
+)
+_UNIT_IN = re.compile(r"[\[(]\s*([^\[\]()]+?)\s*[\])]")
+
+
+def _named_above(layout: Layout) -> str:
+    """Return what a line above a single column calls it, with its unit; "" if none does.
+
+    "Signal: friction force [N], zero not corrected" names it as a header does.
+    """
+    for key, text in words_said(layout, bare=True):
+        unit = _UNIT_IN.search(text)
+        if unit is None or not is_unit(unit[1]) or not _SIGNAL.search(squeezed(key)):
+            continue
+        name = text[: unit.start()].strip()
+        if name and matches(name, unit[1]):
+            return f"{name} [{unit[1]}]"
+    return ""
 
 
 def bare_name(column: DraftColumn) -> Bare:

@@ -32,7 +32,10 @@ LOAD = re.compile(
     r"(?:load(?:ed|set)?|force|weight|mass|gewicht|masse|kraft|last)+$"
     r"|^(?:normalkraft|auflast|normallast|belastet|belastung|chargenormale|charge|forcenormale"
     r"|effortnormal|carganormal|carga|fuerzanormal|cariconormale|carico|caricato|forzanormale|peso|poids"
-    r"|法向载荷|载荷|负载|荷重|垂直荷重|載荷)$"
+    r"|nacisk|obciazenie|zatizeni|zatez|nagruzka|нагрузка|нормальнаясила|belasting|kuorma|terheles|yuek"
+    r"|试验力|法向力|法向载荷|载荷|负载|荷重|垂直荷重|試験荷重|載荷|하중)$"
+    r"|^(?:carga|peso|massa|carico|charge|fuerza|forza|forca)(?:normale?)?"
+    r"(?:do|da|de|del|della|des|du|aplicada|appliquee|applicato)\w{0,12}$"
 )
 # the distance of a profile's points by its name
 PITCH = re.compile(
@@ -97,10 +100,12 @@ _TRACK = "track|wear|spur|laufbahn|reib|friction|path|piste|traccia|pista|slidin
 DIAMETER = re.compile(
     rf"(?:{_TRACK}).*(?:dia|durchmesser|直径)|(?:dia(?:m\w*)?|durchmesser).*(?:{_TRACK})"
 )
-ACROSS = re.compile(r"dia|durchmesser|直径|^(?:ø|oe|⌀)$|^d$")
+ACROSS = re.compile(r"dia|durchmesser|diametr|srednica|直径|外径|내경|외경|^(?:ø|oe|⌀)$|^d$")
 ON_TRACK = re.compile(_TRACK)
 # what turns may be wider than the track on it
-TURNING = re.compile(r"dis[ck]|scheibe|ring|plate|platte|disque|disco|specimen|sample|盘|円板")
+TURNING = re.compile(
+    r"dis[ck]|scheibe|ring|plate|platte|disque|disco|anneau|anello|anillo|pierscien|specimen|sample|盘|環|环|円板|リング|ディスク|디스크"
+)
 
 
 def is_radius(name: str) -> bool:

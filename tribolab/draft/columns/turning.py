@@ -17,7 +17,7 @@ _TORQUE = re.compile(
     r"torque|drehmoment|reibmoment|moment|couple|coppia|momento|binario|koppel|扭矩|转矩|力矩|トルク"
     r"|parmotor|^(?:m|mr|mf|md|tq|par)$"
 )
-_TORQUE_UNIT = re.compile(r"[cmkuµμ]?N\s?[·⋅*.]?\s?[cmuµμ]?m")  # and no J
+_TORQUE_UNIT = re.compile(r"[cmkuµμ]?N\s?[·⋅・∙•*.]?\s?[cmuµμ]?m")  # and no J
 _ANGLE = re.compile(r"angle|winkel|angolo|angulo|角|phi|^(?:theta|rotation)$")
 _TURNS = re.compile(
     r"^(?:number|no|nr|n)?(?:of)?(?:revolution|turn|rev|rotation|umdrehung)(?:s|en)?$"

@@ -103,10 +103,10 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
     units = _units_apart(layout, bare=bare)
     for line in layout.lines[:stop]:
         said = _said(line.rstrip())
-        # a digit before the colon: a time of day
         if len(values) >= _MOST:
             break
-        if said and not said["key"][-1].isdigit():
+        # a digit before the colon: a time of day, if it is not the number of a step
+        if said and (not said["key"][-1].isdigit() or _STEP_TITLE.match(said["key"])):
             _keep(values, _value(said, units))
         else:
             strokes = False
@@ -211,7 +211,10 @@ def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:
     if unit is None and "_" in key:  # "stroke_mm=8"
         key, unit = split_unit(key)
     digits = r"[-+\d.eE]+" if said.re is _IN_CELLS else r"[-+\d.,eE]+"
-    pattern = r"^\s*" + escaped(said["before"].strip()) + rf"\s*({digits})"
+    before = escaped(said["before"].strip())
+    if _STEP_TITLE.match(key):  # the next step has another number
+        before = re.sub(r"\d+", r"\\d+", before)
+    pattern = r"^\s*" + before + rf"\s*({digits})"
     line = said.string.strip()
     plain = squeezed(_BRACKETS.sub("", key))
     dimension = next((d for d in DIMENSIONS if unit and converts(unit, d)), None)
@@ -264,12 +267,15 @@ def _of_phrase(phrase: Phrase) -> DraftValue | None:
     )
 
 
+_STEP_TITLE = re.compile(rf"\W*{STEP_WORD}\W*\d", re.IGNORECASE)
 _R = re.compile(r"^(?:r|d|ø|⌀)$")
 _SPEED = re.compile(
     r"^(?:sliding|test|belt|disc|set|linear)?(?:speed|velocity)$|geschwindigkeit$|^vitesse|^velocidad"
     r"|^velocita|速度$|snelheid$"
 )
-_TURNS = re.compile(rf"(?:speed|rotation|drehzahl)$|^{STEP_WORD}\d*$")
+_TURNS = re.compile(
+    rf"(?:speed|velocity|rotation|rpm|drehzahl|vitesse|velocidad|velocita|giri|obroty|转速|回転数)$|^{STEP_WORD}\d*$"
+)
 _WANTED = {
     "m": (RADIUS, DIAMETER, _R, ARM, STROKE, HALF_STROKE, PITCH, TURNING, PROFILE_LENGTH),
     "s": (INTERVAL,),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from tribolab.draft.vocabulary import RUN_WORDS, WEIGHTS
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 _ABOVE = 8  # lines above the first row that are looked at
 _TELLING = 200  # cells that tell whether a row is one of units
+_WORD = re.compile(r"\S+")
 _SPECIAL = re.compile(r"([.^$*+?{}\[\]\\|()])")
 # A name of words with its unit in brackets, or a word. No name is longer than so: without an end to
 # look for it, a long line without brackets would be gone through once for each of its words
@@ -70,7 +71,13 @@ def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int)
         if lines[index].strip():
             above.append(index)
     split = {index: _cells(lines[index], grammar, width) for index in above[:3]}
-    fitting = {i: c for i, c in split.items() if _fits(lines[i], c[0], grammar, width)}
+    fitting = {
+        i: c
+        for i, c in split.items()
+        if _fits(lines[i], c[0], grammar, width) or _is_row_of_units(c[0], grammar, width)
+    }
+    fitting |= {i: c for i, c in _units_below_names(lines, above[:3], fitting, width).items()}
+    fitting = {index: fitting[index] for index in above[:3] if index in fitting}
     for index, (cells, aligned) in fitting.items():
         over = [above for above in fitting if above < index]
         if _are_units(cells) and over:
@@ -163,6 +170,45 @@ def _fits(line: str, cells: Sequence[str], grammar: Grammar, width: int) -> bool
     if width == 1:
         return len(filled) == 1 and len(line) < 60 and not re.search(r"[:=]\s*\S", line)
     return len(filled) >= 2 and 0.5 * width <= len(cells) <= 1.5 * width + 2
+
+
+def _is_row_of_units(cells: Sequence[str], grammar: Grammar, width: int) -> bool:
+    """Whether a row is one of units of which few columns have one: ";N"."""
+    if grammar.delimiter == "whitespace" or len(cells) != width:
+        return False
+    return any(cells) and all(is_unit(cell.strip("[]() ")) for cell in cells if cell)
+
+
+def _units_below_names(
+    lines: Sequence[str],
+    above: Sequence[int],
+    fitting: Mapping[int, tuple[tuple[str, ...], bool]],
+    width: int,
+) -> dict[int, tuple[tuple[str, ...], bool]]:
+    """Return rows of units that blanks part, of which some columns have none, by their places."""
+    found: dict[int, tuple[tuple[str, ...], bool]] = {}
+    for index in above:
+        words = list(_WORD.finditer(lines[index]))
+        if index in fitting or not 0 < len(words) < width:
+            continue
+        if not all(is_unit(word[0].strip("[]()")) for word in words):
+            continue
+        over = next((i for i in above if i < index and i in fitting), None)
+        names = list(_WORD.finditer(lines[over])) if over is not None else []
+        if len(names) != width:
+            continue
+        cells = [""] * width
+        for word in words:
+            near = min(range(width), key=lambda k: _offset(names[k].span(), word.span()))
+            cells[near] = word[0]
+        if sum(map(bool, cells)) == len(words):
+            found[index] = tuple(cells), False
+    return found
+
+
+def _offset(one: tuple[int, int], other: tuple[int, int]) -> int:
+    """Return by how much two words do not stand below each other, at the end that fits better."""
+    return min(abs(one[0] - other[0]), abs(one[1] - other[1]))
 
 
 def _known(cells: Sequence[str]) -> int:

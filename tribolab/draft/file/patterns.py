@@ -24,6 +24,7 @@ def header_pattern(
     repeats = len(wanted) > 1
     if wanted == [0]:
         return None, False
+    spaced = grammar.delimiter == "whitespace"  # then no line begins with a blank when it is read
     for short in (True, False):
         texts = [
             escaped(first_cells(line, grammar.delimiter) if short else line.strip() or line)
@@ -31,7 +32,11 @@ def header_pattern(
         ]
         texts = list(dict.fromkeys(texts))
         pattern = "^" + (texts[0] if len(texts) == 1 else f"(?:{'|'.join(texts)})")
-        matched = [i for i, line in enumerate(lines) if re.match(pattern, line)]
+        matched = [
+            i
+            for i, line in enumerate(lines)
+            if re.match(pattern, line.lstrip() if spaced else line)
+        ]
         if matched == wanted or (not repeats and matched[:1] == wanted):
             return pattern, repeats
     return None, False

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import mmap
+import re
 from itertools import islice
 
 from tribolab.errors import ReadError, shown
@@ -14,6 +15,7 @@ from tribolab.io.dialects.patterns import Guarded
 from tribolab.io.dialects.signature import File
 
 BOM = b"\xef\xbb\xbf"
+_CLASS = re.compile(r"(?<!\\)\[")
 LONGEST_LINE = 4 << 20  # bytes: some 300 000 columns; what is longer is no row of a table
 
 
@@ -115,6 +117,8 @@ def is_wide(dialect: Dialect) -> bool:
 def compiled(pattern: str, dialect: Dialect) -> Guarded[bytes]:
     """Return a pattern for lines of raw bytes: ``$`` also stands before CR LF."""
     # behind "\s*", a second wish for blanks would take a time that grows with their number squared
+    if dialect.text.delimiter == "whitespace" and not _CLASS.search(pattern):
+        pattern = re.sub(" +", r"[\\t ]+", pattern)  # tabs stand for blanks by now, see `mended`
     if pattern.endswith("$") and not pattern.endswith((r"\$", r"\s*$")):
         pattern = pattern[:-1] + r"[ \t\r]*$"
     return Guarded(pattern.encode(table_encoding(dialect), errors="replace"))
