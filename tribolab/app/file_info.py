@@ -21,6 +21,7 @@ from tribolab.io.force_ratio import doubt_about, doubt_about_coefficient
 from tribolab.io.kinds import kind_of
 from tribolab.io.missing import missing_of
 from tribolab.io.runs import read_run as known_run
+from tribolab.io.scans.extent import doubt_about_heights
 from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.results import read_tester_results
 from tribolab.quantities import quantity
@@ -35,6 +36,8 @@ _LARGEST = 2_000_000  # heights of a scan whose roughness is told at once
 _OTHER_FORM = 0.02  # of the roughness, from which on it matters which form was taken off
 _LONGEST = 300  # letters of what a file says of itself
 _TOLD_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
+_TOLD_OF_SCAN = {"tip_radius_m", "stated_length_m", "stated_pitch_m", "stated_points", "doubtful"}
+_ROUNDING = 1e-6  # of a step: positions that deviate by less are even
 
 
 def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
@@ -147,7 +150,26 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
     lines.append(f"  height  {1e6 * low:.6g} to {1e6 * high:.6g} um")
     if missing := int(scan["height"].isnull().sum()):
         lines.append(f"  {Count(missing):point|points} without a height")
-    return lines + _roughness_lines(scan) + _attribute_lines(scan.attrs, path)
+    lines += _stated_lines(scan.attrs) + _roughness_lines(scan)
+    if doubt := doubt_about_heights(scan):
+        lines.append(f"  doubtful: {doubt}")
+    attrs = {key: value for key, value in scan.attrs.items() if key not in _TOLD_OF_SCAN}
+    return lines + _attribute_lines(attrs, path)
+
+
+def _stated_lines(attrs: Mapping[str, Any]) -> list[str]:
+    """Say what the file states of the trace besides its heights."""
+    told = [
+        f"{name} {scale * float(attrs[key]):.6g}{unit}"
+        for key, name, scale, unit in (
+            ("tip_radius_m", "tip radius", 1e6, " um"),
+            ("stated_length_m", "length", 1e3, " mm"),
+            ("stated_pitch_m", "one point every", 1e6, " um"),
+            ("stated_points", "points", 1.0, ""),
+        )
+        if isinstance(attrs.get(key), float)
+    ]
+    return [f"  stated  {', '.join(told)}"] if told else []
 
 
 def _roughness_lines(scan: xr.Dataset) -> list[str]:
@@ -203,6 +225,8 @@ def _results_lines(path: Path) -> list[str]:
 
 def _attribute_lines(attrs: Mapping[str, Any], path: str | Path) -> list[str]:
     told = {key: value for key, value in attrs.items() if key not in _PROVENANCE | _TOLD_ABOVE}
+    if float(told.get("x_unevenness", 1.0)) < _ROUNDING:
+        del told["x_unevenness"]
     if "to_keep_it" in told:  # to be typed where `info` was
         told["to_keep_it"] = how_to_keep(str(path))
     return [f"  {key}: {shown(_said(value), _LONGEST)}" for key, value in told.items()]

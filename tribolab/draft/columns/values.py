@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -16,6 +17,7 @@ from tribolab.draft.columns.stated_words import (
     PROFILE_LENGTH,
     RADIUS,
     RATE,
+    TIP,
     TURNING,
 )
 from tribolab.draft.columns.strokes import FREQUENCY, HALF_STROKE, STROKE
@@ -26,16 +28,19 @@ from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.vocabulary import WEIGHTS
 
 _MOST = 12  # a long preamble is not repeated in the dialect
+_MOST_OF_SCAN = 200  # settings of a profilometer, among which the few that count may come last
 # "# rate: 10 Hz", "Set Force = -200", "Disc track radius used (mm)<tab>21.232"
 _SAID = (
-    r"(?P<before>\W*(?P<key>[^\W\d][^:：=\t;{mark}]*?)\s*[:：=\t;{mark}]\s*)"
-    r"(?P<number>[-+]?\d[\d.{digits}]*(?:e[-+]?\d+)?)[\s;{mark}]*(?P<unit>[^\s\d;,][^\s;,]*)?"
-    r"\s*[;,\t]*\s*(?:\(.*\))?$"
+    r"(?P<before>\W*(?P<key>[^\W\d][^:：=\t;{mark}]*?)(?:\"?\s*[:：=\t;{mark}]\s*\"?|\s{{2,80}}))"
+    r"(?P<number>[-+]?\d[\d.{digits}]*(?:e[-+]?\d+)?)[\s;{mark}\"]*"
+    r"(?P<unit>[^\s\d;,\"][^\s;,\"]*)?[\s;,\t\"]*(?:\(.*\))?$"
 )
 _SAYS = re.compile(_SAID.format(mark="", digits=","), re.IGNORECASE)
 _IN_CELLS = re.compile(_SAID.format(mark=",", digits=""), re.IGNORECASE)  # "Dead weight,500,g"
 _UNIT_OF = re.compile(r"^(?P<key>.+?)(?:units?|einheit|unite|unidad|unita|eenheid|单位|単位)$")
-_WORDS = re.compile(r"\W*(?P<key>[^\W\d][^:：=\t;]*?)\s*[:：=\t;]\s*(?P<text>[^\W\d].*)$")
+_WORDS = re.compile(
+    r"\W*(?P<key>[^\W\d][^:：=\t;]*?)(?:\"?\s*[:：=\t;]\s*|\s{2,80})[\"\[(]?(?P<text>[^\W\d].*)$"
+)
 _LONGEST = 200  # characters of a line that are looked at
 _DRIVEN = re.compile(  # "reciprocating rig, crank drive"
     r"\b(?:crank|scotch[- ]yoke|eccentric|kurbel|exzenter)"
@@ -70,6 +75,15 @@ class DraftValue(NamedTuple):
     key: str = ""
     guess: str = ""
 
+    @property
+    def number(self) -> float:
+        """The number as the file has it; NaN where it is none."""
+        match = re.search(self.pattern, self.text)
+        try:
+            return float(match[1].replace(",", ".")) if match else math.nan
+        except ValueError:
+            return math.nan
+
 
 def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
     """Find the single values that a file and its name state, a dozen at most of the former.
@@ -79,12 +93,12 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
     layout
         From `tribolab.draft.file.layout.find_layout`.
     bare
-        Whether to look above a table without a header, too.
+        Whether heights are meant: a table may have no header, and instruments write many settings.
 
     Returns
     -------
     list of DraftValue
-        A dozen at most.
+        A dozen at most, of heights more.
     """
     values: dict[str, DraftValue] = {}
     if radius := _radius_in_name(layout.file.path.name):
@@ -104,7 +118,7 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
     for line in layout.lines[:stop]:
         said = _said(line.rstrip())
         # a digit before the colon: a time of day
-        if len(values) >= _MOST:
+        if len(values) >= (_MOST_OF_SCAN if bare else _MOST):
             break
         if said and not said["key"][-1].isdigit():
             _keep(values, _value(said, units))
@@ -187,6 +201,7 @@ def words_said(layout: Layout, *, bare: bool = False) -> list[tuple[str, str]]:
     said = (_WORDS.match(line.strip()) for line in layout.lines[:stop])
     told = [(match["key"], match["text"]) for match in said if match]
     drives = (_DRIVEN.search(line[:_LONGEST]) for line in layout.lines[:stop])
+    told = [(key, text.rstrip('"; ,')) for key, text in told]
     return told + [("drive", match[0]) for match in drives if match]
 
 
@@ -271,7 +286,7 @@ _SPEED = re.compile(
 )
 _TURNS = re.compile(rf"(?:speed|rotation|drehzahl)$|^{STEP_WORD}\d*$")
 _WANTED = {
-    "m": (RADIUS, DIAMETER, _R, ARM, STROKE, HALF_STROKE, PITCH, TURNING, PROFILE_LENGTH),
+    "m": (RADIUS, DIAMETER, _R, ARM, STROKE, HALF_STROKE, PITCH, TURNING, PROFILE_LENGTH, TIP),
     "s": (INTERVAL,),
     "m/s": (_SPEED,),
     "rad/s": (FREQUENCY, _TURNS),

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from tribolab.draft.columns.follows import SAYS_FRICTION, SAYS_LOAD, Follows, what_follows
 from tribolab.draft.columns.lengths import find_pitch, find_profile_length
+from tribolab.draft.columns.traces import find_stated
 from tribolab.draft.columns.turning import torque_of
 from tribolab.draft.columns.values import find_values
 from tribolab.draft.dialect.tables import (
@@ -23,6 +24,7 @@ from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn, Understood
 from tribolab.io.dialects.dates import has_day
 
+_MOST = 12  # values that a long preamble states
 _REMOVE = "then remove the '#' below"
 
 
@@ -58,12 +60,20 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
     rest = [c for c in columns if not c.used and not c.fill_in and c.place not in taken]
     parts.append(unused_columns(rest, numbers))
     values, taken_over = find_values(layout), follows.values
+    if understood.kind == "scan":
+        values = find_values(layout, bare=True)
     pitch = find_pitch(layout) if understood.pitch_pattern else None
     pitch = find_profile_length(layout) if understood.length_pattern else pitch
     if pitch is not None:
         values = [pitch, *(value for value in values if value.text != pitch.text)]
         taken_over = (*taken_over, pitch)
-    parts.append(value_tables(values, taken_over))
+    if understood.kind == "scan" and not any(c.quantity == "y" for c in used):
+        known = {value.pattern for value in taken_over}
+        placed = any(column.quantity == "x" for column in used)
+        stated = find_stated(layout, placed=placed)
+        taken_over = (*taken_over, *(v for v in stated if v.pattern not in known))
+    kept = [*taken_over, *(v for v in values if v not in taken_over)][: max(_MOST, len(taken_over))]
+    parts.append(value_tables([v for v in kept if v in values], taken_over))
     parts += [formula_table(formula) for formula in follows.formulas]
     if understood.kind == "run":
         parts += _wanted_tables(understood, follows)
