@@ -242,7 +242,8 @@ SCAN_WORDS = (
             "height hoehe profile profil totalprofile rawprofile amplitude topography depth tiefe "
             "raw hauteur altura perfil profilo profondeur profundidad profondita ordonnee ordenada "
             "elevation relief ordinate hoogte "
-            "altezza vyska wysokosc hojd hoyde hojde hoejd hoeyde hoejde yuekseklik korkeus magassag visina yukseklik 高度 高さ"
+            "altezza vyska wysokosc hojd hoyde hojde hoejd hoeyde hoejde yuekseklik yukseklik "
+            "korkeus magassag visina 高度 高さ"
         ),
     ),
 )

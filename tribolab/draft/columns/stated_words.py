@@ -102,7 +102,10 @@ ALONG = re.compile(
     r"^x(?:axis|achse|values?)?(?:units?|einheit)?$|^(?:unit|units|einheit)(?:of|der|de)?x$|lateral"
     r"|horizontal|abs[cz]iss"
 )
-_RADIUS_WORDS = r"(?:radius|rayon|radio|raggio|raio|straal|polomer|promien|saede|sade|radie|yaricap|sugar|радиус|半径)"
+_RADIUS_WORDS = (
+    r"(?:radius|rayon|radio|raggio|raio|straal|polomer|promien|saede|sade|radie|yaricap|sugar"
+    r"|радиус|半径)"
+)
 _TIP_WORDS = (
     r"(?:tip|stylus|styli|needle|spitz|taster|tastnadel|nadel|punta|puntal|palpa|pointe|puntina|agulha|ponta|naald"
     r"|hrot|ostrz|kaerje|karje|nal|игл|щуп|针|針|触针|探针)"

@@ -58,14 +58,10 @@ _UNIT_WORDS = {
     **{"н": "N", "мн": "mN", "кн": "kN", "нм": "nm", "мк": "um"},
     **dict.fromkeys(("mikrometri", "mikrometria", "mikrometriä", "mikron", "mikrony"), "um"),
     **dict.fromkeys(("mikrometry", "mikrometrů", "mikrometr", "mikrometrów", "mikrons"), "um"),
-    **dict.fromkeys(
-        ("micrometri", "micrómetros", "micrômetros", "micra", "micron", "микрон"), "um"
-    ),
+    **dict.fromkeys(("micrometri", "micrómetros", "micrômetros", "micra", "micron"), "um"),
     **dict.fromkeys(("微米", "マイクロメートル", "ミクロン", "마이크로미터"), "um"),
     **dict.fromkeys(("nanometri", "nanometria", "nanometriä", "nanometry", "nanometrů"), "nm"),
-    **dict.fromkeys(
-        ("nanomètres", "nanómetros", "nanômetros", "纳米", "奈米", "ナノメートル"), "nm"
-    ),
+    **dict.fromkeys(("nanomètres", "nanómetros", "纳米", "奈米", "ナノメートル"), "nm"),
     **dict.fromkeys(("millimetri", "millimetriä", "milimetry", "milímetros", "millimètres"), "mm"),
     **dict.fromkeys(("毫米", "ミリメートル", "millimeter", "millimetre", "millimeters"), "mm"),
     **dict.fromkeys(("nanometer", "nanometre", "nanometers", "nanometres"), "nm"),
