@@ -410,3 +410,12 @@ def test_a_file_that_states_more_points_than_it_holds_is_objected_to(tmp_path):
 def test_rounding_of_positions_is_not_told(tmp_path):
     told = "\n".join(file_lines(written(tmp_path, f"X [mm],Z [um]\n{ROWS}\n")))
     assert "x_unevenness" not in told
+
+
+@pytest.mark.parametrize("said", ["puuttuva arvo", "no data", "manquant", "nicht gemessen"])
+def test_a_number_that_the_header_states_for_no_height_is_none(tmp_path, said):
+    holed = [-5000.0 if n in (20, 21, 90) else z for n, z in enumerate(Z)]
+    cells = "\n".join(f"{0.00025 * n:.5f},{z}" for n, z in enumerate(holed))
+    scan = read_scans(written(tmp_path, f"{said}: -5000\nX [mm],Z [um]\n{cells}\n"))
+    assert np.flatnonzero(np.isnan(scan.height.values[0])).tolist() == [20, 21, 90]
+    assert np.nanmin(scan.height) > -2e-6

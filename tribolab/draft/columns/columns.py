@@ -26,6 +26,7 @@ from tribolab.draft.columns.lengths import (
 from tribolab.draft.columns.ratio import disagreement, force_or_ratio
 from tribolab.draft.columns.results_table import results_told
 from tribolab.draft.columns.sampling import find_sampling
+from tribolab.draft.columns.stated_missing import take_stated_missing
 from tribolab.draft.columns.values import DraftValue
 from tribolab.draft.columns.words import Match, matches, squeezed
 from tribolab.draft.file.header import converts
@@ -100,7 +101,8 @@ def understand(layout: Layout) -> Understood:
     period = summed(columns, numbers)
     on_repeat, restart, columns = find_clock(layout, columns, numbers)
     used = [column.place - 1 for column in columns if column.used]
-    words = tuple(dict.fromkeys(word for index in used for word in missing[index]))
+    said = take_stated_missing(layout, columns, numbers) if kind == "scan" else []
+    words = tuple(dict.fromkeys([*said, *(word for index in used for word in missing[index])]))
     placed = any(c.used and c.quantity == "x" for c in columns)
     if kind == "scan" and apart and not placed:
         guesses += [length.guess] if length is not None and length.guess else []

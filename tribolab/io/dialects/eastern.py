@@ -120,7 +120,7 @@ def _read(head: bytes, script: _Script, *, whole: bool) -> _Reading | None:
     codes = [letter.encode(script.encoding) for letter in letters]
     if sum(map(script.is_common, codes)) < _COMMON * len(codes):
         return None
-    if min(map(min, codes)) >= _CAPITALS:
+    if min(min(sign.encode(script.encoding)) for sign in signs) >= _CAPITALS:
         return None  # one word of them, in Cyrillic, Greek or accented Latin letters
     beside = max((len(set(run)) for run in _RUN.findall(text)), default=0)
     if beside < _FEWEST or len(_ALONE.findall(text)) > len(letters) // 8:
