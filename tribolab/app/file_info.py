@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 _PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
 _PROVENANCE |= {"drafted_layout"}
 _LARGEST = 2_000_000  # heights of a scan whose roughness is told at once
+_LARGEST_MAP = 20_000_000  # of which a form can be taken off at once
 _OTHER_FORM = 0.02  # of the roughness, from which on it matters which form was taken off
 _LONGEST = 300  # letters of what a file says of itself
 _TOLD_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
@@ -150,7 +151,9 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
     lines.append(f"  height  {1e6 * low:.6g} to {1e6 * high:.6g} um")
     if missing := int(scan["height"].isnull().sum()):
         lines.append(f"  {Count(missing):point|points} without a height")
-    lines += _stated_lines(scan.attrs) + _roughness_lines(scan)
+    lines += _stated_lines(scan.attrs)
+    lines += _areal_lines(scan) if "y" in axes else []
+    lines += _roughness_lines(scan)
     if doubt := doubt_about_heights(scan):
         lines.append(f"  doubtful: {doubt}")
     attrs = {key: value for key, value in scan.attrs.items() if key not in _TOLD_OF_SCAN}
@@ -170,6 +173,31 @@ def _stated_lines(attrs: Mapping[str, Any]) -> list[str]:
         if isinstance(attrs.get(key), float)
     ]
     return [f"  stated  {', '.join(told)}"] if told else []
+
+
+def _areal_lines(scan: xr.Dataset) -> list[str]:
+    """Say how rough a map is as a whole."""
+    # late: starting stays quick
+    from tribolab.surface.areal_roughness import areal_roughness
+    from tribolab.surface.form import remove_form
+
+    if scan["height"].size > _LARGEST_MAP:
+        return []
+    try:
+        said, level = (areal_roughness(remove_form(scan, form)) for form in ("polynomial", "tilt"))
+    except AnalysisError:  # a check of the scan says why
+        return []
+    sq, sa, level_sq = (1e6 * float(value.mean()) for value in (said.Sq, said.Sa, level.Sq))
+    beside = ""
+    if sq > 0 and abs(level_sq / sq - 1) > _OTHER_FORM:
+        beside = (
+            f"; with the tilt alone taken off Sq {level_sq:.3g} um, "
+            f'Sa {1e6 * float(level.Sa.mean()):.3g} um (form = "tilt" in [roughness])'
+        )
+    return [
+        f"  Sq      {sq:.3g} um, Sa {sa:.3g} um: polynomial of degree 2 taken off, waves of every "
+        f"length, over the whole map (ISO 25178){beside}"
+    ]
 
 
 def _roughness_lines(scan: xr.Dataset) -> list[str]:
@@ -203,14 +231,17 @@ def _roughness_lines(scan: xr.Dataset) -> list[str]:
             value, known = (1e6 * float(iso[each].mean()) for each in (name, error))
             told[name] = f"{with_error(value, known)} um"
     radius = flat.attrs.get("form_radius_m", math.inf)
-    form = f"circle of R = {radius:.3g} m" if math.isfinite(radius) else "form"
+    is_map = scan.sizes.get("y", 1) > 1
+    form = "polynomial of degree 2" if is_map else "form"
+    form = f"circle of R = {radius:.3g} m" if math.isfinite(radius) else form
+    rows = ", along its rows" if is_map else ""
     beside = ""
     if abs(level / all_waves - 1) > _OTHER_FORM:
         beside = f'; with the tilt alone taken off {level:.3g} um (form = "tilt" in [roughness])'
     return [
         f"  Rq      {told['Rq']}, Ra {told['Ra']}: {form} taken off, {filtered}; means over "
-        "sampling lengths (ISO 4287)",
-        f"  Pq      {all_waves:.3g} um: {form} taken off, waves of every length{beside}",
+        f"sampling lengths{rows} (ISO 4287)",
+        f"  Pq      {all_waves:.3g} um: {form} taken off, waves of every length{rows}{beside}",
     ]
 
 
