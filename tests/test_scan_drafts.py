@@ -419,3 +419,49 @@ def test_a_number_that_the_header_states_for_no_height_is_none(tmp_path, said):
     scan = read_scans(written(tmp_path, f"{said}: -5000\nX [mm],Z [um]\n{cells}\n"))
     assert np.flatnonzero(np.isnan(scan.height.values[0])).tolist() == [20, 21, 90]
     assert np.nanmin(scan.height) > -2e-6
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "z scale: 0.01\nunits: um",
+        "vertical magnification: 5000\nunits: mm",
+        "Faktor 0,1\nEinheit: µm",
+        "dz = 0.1 um\nz: um",
+        "0.5 nm per digit\nunits: nm",
+    ],
+)
+def test_a_factor_that_heights_may_miss_is_asked_about(tmp_path, said):
+    whole = "\n".join(str(round(1000 * z)) for z in Z)
+    with pytest.raises(ReadError, match="heights are read as they stand, not times"):
+        read_scans(written(tmp_path, f"spacing: 0.25 um\n{said}\n{whole}\n"))
+
+
+def test_a_lens_or_a_step_of_one_unit_is_no_factor(tmp_path):
+    said = "spacing: 0.25 um\nz resolution: 1 nm\nscale: 1\nunits: nm"
+    whole = "\n".join(str(round(1000 * z)) for z in Z)
+    scan = read_scans(written(tmp_path, f"{said}\n{whole}\n"))
+    np.testing.assert_allclose(scan.height[0], 1e-6 * Z, atol=6e-10)
+
+
+@pytest.mark.parametrize(
+    ("said", "encoding"),
+    [
+        ("Шаг: 0,25 мкм\nЕдиницы: мкм\nВысота", "cp1251"),
+        ("測定ピッチ,0.25,μm\n単位,μm\n測定点数,200", "cp932"),
+        ("# spacing 0.25 um\n# units um", "utf-8"),
+        ("krok próbkowania: 0,25 µm\nwysokość: µm", "cp1250"),
+    ],
+)
+def test_pitch_and_unit_are_known_in_more_languages(tmp_path, said, encoding):
+    path = tmp_path / "line.txt"
+    text = GERMAN if "0,25" in said else COLUMN
+    path.write_bytes(f"{said}\n{text}\n".encode(encoding))
+    scan = read_scans(path)
+    np.testing.assert_allclose(scan.height[0], 1e-6 * Z, rtol=0, atol=1e-15)
+    assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
+
+
+def test_a_length_of_the_part_or_a_range_of_the_gauge_is_not_that_of_the_trace(tmp_path):
+    said = "length: 25 mm\nrange: 80 um\nspacing: 0.25 um\nZ (um)"
+    assert "stated_length_m" not in read_scans(written(tmp_path, f"{said}\n{COLUMN}\n")).attrs

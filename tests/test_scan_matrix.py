@@ -170,3 +170,25 @@ def test_a_length_that_may_have_a_mark_of_thousands_is_not_taken(tmp_path):
     path.write_text("Pixel size: 1,024 um\nHeight unit: um\n" + rows(np.round(HEIGHTS, 6), " "))
     with pytest.raises(ReadError, match="how far its points lie apart"):
         read_scans(path)
+
+
+@pytest.mark.parametrize("said", ["multiply by 0.01", "dz: 0.01 um", "scaling factor: 0.1"])
+def test_whole_numbers_that_may_be_counts_are_not_taken_for_heights(tmp_path, said):
+    path = tmp_path / "map.txt"
+    path.write_text(f"dx: 1 um\ndy: 1 um\nz: um\n{said}\n" + rows(np.round(HEIGHTS, 8), " ", 1e8))
+    with pytest.raises(ReadError, match="in which unit its heights are"):
+        read_scans(path)
+
+
+def test_a_range_that_ends_at_the_last_point_has_one_step_less(tmp_path):
+    path = tmp_path / "map.txt"
+    path.write_text("X range: 13 um\nY range: 8 um\nHeight unit: um\n" + rows(mark=" "))
+    scan = read_scans(path)
+    np.testing.assert_allclose(np.diff(scan.x), 1e-6)
+    np.testing.assert_allclose(np.diff(scan.y), 1e-6)
+
+
+def test_a_value_for_no_height_may_stand_among_the_heights(tmp_path):
+    path = tmp_path / "map.txt"
+    path.write_text("dx: 1 um\ndy: 1 um\nz: um\nno data value: 0\n" + rows(HOLES, " ", hole="0"))
+    np.testing.assert_allclose(read_scans(path).height.values, HOLES, rtol=1e-9)

@@ -231,7 +231,9 @@ SCAN_WORDS = (
         _words(
             "lateral position distance messweg weg strecke laenge length abstand longueur "
             "distancia distanza posicion posizione posicao longitud lunghezza recorrido "
-            "位置 距离 距離"
+            "laege posisjon sijainti matka poloha vzdalenost drah polozenie pozycj odleglosc "
+            "dlugosc konum mesafe uzunluk tavolsag hosszusag положение расстояние длина координата "
+            "位置 距离 距離 长度 위치 거리"
         ),
     ),
     Word("y", ("y",), ()),
@@ -243,7 +245,7 @@ SCAN_WORDS = (
             "raw hauteur altura perfil profilo profondeur profundidad profondita ordonnee ordenada "
             "elevation relief ordinate hoogte "
             "altezza vyska wysokosc hojd hoyde hojde hoejd hoeyde hoejde yuekseklik yukseklik "
-            "korkeus magassag visina 高度 高さ"
+            "korkeus magassag visina высота 높이 高度 高さ"
         ),
     ),
 )

@@ -11,7 +11,7 @@ from tribolab.draft.columns.assign import SIGNALS, assigned
 from tribolab.draft.columns.bridges import calibrated_forces
 from tribolab.draft.columns.either import told_by_load, without_means
 from tribolab.draft.columns.epochs import DATES, counted_from
-from tribolab.draft.columns.factors import missing_factors, with_worth
+from tribolab.draft.columns.factors import missing_factors, missing_of_heights, with_worth
 from tribolab.draft.columns.fill_in import Bare
 from tribolab.draft.columns.heights import as_heights, beside_x, in_stated_unit, side_by_side
 from tribolab.draft.columns.labels import bare_name, labelled
@@ -101,6 +101,10 @@ def understand(layout: Layout) -> Understood:
     period = summed(columns, numbers)
     on_repeat, restart, columns = find_clock(layout, columns, numbers)
     used = [column.place - 1 for column in columns if column.used]
+    if kind == "scan":
+        heights = [c.place - 1 for c in columns if c.used and c.quantity == "height"]
+        factors = missing_of_heights(layout, numbers[:, heights])
+        guesses += [said for said in factors if said[-45:] not in " ".join(guesses)]
     said = take_stated_missing(layout, columns, numbers) if kind == "scan" else []
     words = tuple(dict.fromkeys([*said, *(word for index in used for word in missing[index])]))
     placed = any(c.used and c.quantity == "x" for c in columns)

@@ -38,6 +38,7 @@ LOAD = re.compile(
 PITCH = re.compile(
     r"^(?:d?x|deltax|pitch|spacing|increment|step|stepsize|stepping|interval|xscale)$"
     r"|^(?:schritt\w*|x?pas|x?paso|x?passo|x?stap\w*|x?schritt\w*|sampling|sampled|abtastung)$|(?:abtast|mess)schritt"
+    r"|^(?:шаг|pikselboyutu|ornekleme|oernekleme|askel|naytevali|naeytevaeli)\w*|间隔|간격"
     r"|^(?:roztec|rozestup|krok|odstep|avstand|steglangd|lepeskoz)\w*"
     r"|间距|步长|步距|ピッチ|間隔|点间隔|采样间隔"
     r"|(?:sampl|point|mess|punkt|data|x|lateral|measur|echantillon|abtast|punt)\w*"
@@ -115,6 +116,12 @@ TIP = re.compile(
     rf"|(?:{_RADIUS_WORDS}|dia\w*|durchm\w*|直径).*{_TIP_WORDS}|^rtip$|^r?(?:tip|stylus)r$"
 )
 ACROSS_TIP = re.compile("dia|durchm|直径")
+# a length that is surely the trace's: "length" may be that of the part, "range" that of the gauge
+OF_TRACE = re.compile(
+    r"(?:scan|trac|travers|profile?|measur|mess|tast|total|full|gesamt|data|record|line|meet)\w*"
+    r"(?:length|laenge|strecke|weg|lengte)"
+    r"|(?:longueur|longitud|lunghezza|comprimento).+|(?:测量|扫描|轮廓|測定|走査)"
+)
 # a part of the trace, over which an instrument computes
 PART_OF_TRACE = re.compile(r"evalu|assess|ln$|valutazione|avaliacao|auswert|sampling|einzel")
 RADIUS = re.compile("radius|rayon|radio(?!m)|raggio|raio|straal|半径")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from tribolab.draft.columns.lengths import metres
 from tribolab.draft.columns.stated_words import (
     ACROSS_TIP,
+    OF_TRACE,
     PART_OF_TRACE,
     PITCH,
     POINTS,
@@ -36,7 +37,7 @@ def find_stated(layout: Layout, *, placed: bool) -> list[DraftValue]:
     values = [value for value in find_values(layout, bare=True) if value.source == "preamble"]
     tips = [v for v in values if TIP.search(v.key) and _TIPS[0] < _radius(v) < _TIPS[1]]
     whole = [v for v in values if PROFILE_LENGTH.search(v.key) and metres(v) > 0]
-    whole = [v for v in whole if not PART_OF_TRACE.search(v.key)]
+    whole = [v for v in whole if not PART_OF_TRACE.search(v.key) and OF_TRACE.search(v.key)]
     pitches = [v for v in values if placed and PITCH.search(v.key) and metres(v) > 0]
     counts = [v for v in values if v.own_unit is None and POINTS.search(v.key)]
     counts = [v for v in counts if v.number == round(v.number)]

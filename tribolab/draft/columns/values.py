@@ -21,7 +21,7 @@ from tribolab.draft.columns.stated_words import (
     TURNING,
 )
 from tribolab.draft.columns.strokes import FREQUENCY, HALF_STROKE, STROKE
-from tribolab.draft.columns.words import matches, split_unit, squeezed
+from tribolab.draft.columns.words import matches, split_unit, squeezed, unit_in_words
 from tribolab.draft.file.header import DIMENSIONS, converts, escaped, is_unit
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import STEP_WORD
@@ -40,6 +40,12 @@ _IN_CELLS = re.compile(_SAID.format(mark=",", digits=""), re.IGNORECASE)  # "Dea
 _UNIT_OF = re.compile(r"^(?P<key>.+?)(?:units?|einheit|unite|unidad|unita|eenheid|单位|単位)$")
 _WORDS = re.compile(
     r"\W*(?P<key>[^\W\d][^:：=\t;]*?)(?:\"?\s*[:：=\t;]\s*|\s{2,80})[\"\[(]?(?P<text>[^\W\d].*)$"
+)
+_UNIT_SAID = re.compile(  # "Units um", "単位,μm"
+    r"[\W_]*(?P<key>(?:units?|einheit(?:en)?|unit[éeà]s?|unidad(?:es)?|eenheid|jednostk[ai]|jednotk[ay]"
+    r"|enhet|yksikkö|birim|egység|единиц[аы]|단위|单位|単位)(?:\s[^\W\d]{1,10})?|[^\W\d]\w{0,20}(?=\s*,))"
+    r"(?:\s+|\"?\s*,\s*\"?)[\[(]?(?P<unit>[^\W\d]{1,20})[\])]?\W*$",
+    re.IGNORECASE,
 )
 _LONGEST = 200  # characters of a line that are looked at
 _DRIVEN = re.compile(  # "reciprocating rig, crank drive"
@@ -200,6 +206,8 @@ def words_said(layout: Layout, *, bare: bool = False) -> list[tuple[str, str]]:
     stop = layout.heading.names if layout.heading else above
     said = (_WORDS.match(line.strip()) for line in layout.lines[:stop])
     told = [(match["key"], match["text"]) for match in said if match]
+    cells = (_UNIT_SAID.match(line.strip()) for line in layout.lines[:stop])
+    told += [(match["key"], match["unit"]) for match in cells if match]
     drives = (_DRIVEN.search(line[:_LONGEST]) for line in layout.lines[:stop])
     told = [(key, text.rstrip('"; ,')) for key, text in told]
     return told + [("drive", match[0]) for match in drives if match]
@@ -218,7 +226,7 @@ def _units_apart(layout: Layout, *, bare: bool) -> dict[str, str]:
 
 
 def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:
-    key, unit = said["key"], (said["unit"] or "").strip("[]()") or None
+    key, unit = said["key"], unit_in_words((said["unit"] or "").strip("[]()")) or None
     bracket = _BRACKETS.search(key)
     if unit is None and bracket and is_unit(bracket[1]):
         unit, key = bracket[1], key[: bracket.start()]

@@ -126,6 +126,15 @@ def is_axis(name: str) -> bool:
     return bool(_AXIS.search(squeezed(device or own)))
 
 
+def unit_in_words(text: str) -> str:
+    """Return the unit that a word or sign of another language is; else the text as it is.
+
+    >>> unit_in_words("мкм"), unit_in_words("Sekunden"), unit_in_words("kN")
+    ('um', 's', 'kN')
+    """
+    return _UNIT_WORDS.get(text.lower(), text)
+
+
 def length_unit(text: str) -> str:
     """Return the unit of length that a text is and nothing else, in letters of ours; or "".
 

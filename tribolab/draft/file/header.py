@@ -22,6 +22,13 @@ _SPECIAL = re.compile(r"([.^$*+?{}\[\]\\|()])")
 # A name of words with its unit in brackets, or a word. No name is longer than so: without an end to
 # look for it, a long line without brackets would be gone through once for each of its words
 _BRACKETED = re.compile(r"\S[^\[\]()]{0,200}?[\[(][^\[\]()]{0,100}[\])]|\S+")
+# "単位,μm" and "点数,1500" say something, and name no column
+_SAYS = re.compile(
+    r"[^\W\d]\W*[,;]\W*(?:[nmkuµμ]?m|Å|мкм|мм|нм|微米|纳米|毫米|[-+]?\d[\d.,]*)\W*$"
+    r"|^\W*(?:units?|einheit(?:en)?|unit[éà]s?|unidad(?:es)?|单位|単位)\s+[^\W\d]{1,3}\W*$"
+    r"|(?<![\w.,(\[])\d+(?:[.,]\d+|[.,]?\d*\s?(?:[nmkuµμ]?m|Å|Hz|N|s|mm/s|°C)(?![^\W\d_]))(?![^()\[\]]*[)\]])",
+    re.IGNORECASE,
+)
 # what parts the header from the numbers, and names no column
 _MARK = re.compile(
     r"\W*(?:(?:end|eoh|begin|start|fin|fine|ende|beginn|anfang|d[ée]but|inicio|inizio|fim|einde|slut"
@@ -78,8 +85,9 @@ def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int)
     for index in range(start - 1, max(start - _ABOVE, 0) - 1, -1):
         if grammar.width(lines[index]):
             break
-        if width == 1 and _MARK.fullmatch(lines[index][:_LONGEST_MARK]):
-            break  # above the end of the header no column is named
+        told = lines[index][:_LONGEST_MARK]
+        if width == 1 and (_MARK.fullmatch(told) or _SAYS.search(told)):
+            break  # a column is named right above its numbers
         if lines[index].strip():
             above.append(index)
     split = {index: _cells(lines[index], grammar, width) for index in above[:3]}

@@ -101,6 +101,9 @@ def read_matrix(path: Path) -> xr.Dataset | None:
     heights = np.array(matrix.rows)
     if _even(heights[0, 1:]) and _even(heights[1:, 0]):
         return None  # positions stand beside the heights
+    whole = (heights == np.round(heights)) | np.isnan(heights)
+    if header.gauge_step not in (None, header.height) and whole.all():
+        header = header._replace(height=None)  # counts of that step, perhaps
     _refuse(path, matrix, header)
     assert header.dx and header.dy and header.height  # else refused
     attrs = {"instrument": "matrix of heights, by its header"}

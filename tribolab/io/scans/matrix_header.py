@@ -14,7 +14,7 @@ _UNIT = (
 )
 _EASTERN = {"微米": "um", "纳米": "nm", "毫米": "mm"}
 _IN_KEY = re.compile(rf"[\[(]\s*({_UNIT})\s*[\])]|(?<![^\W\d_])({_UNIT})[\s:=,;]*$")
-_OF_UNIT = "units?|einheit(?:en)?|unit[eéà]s?|unidad(?:es)?|单位|単位"
+_OF_UNIT = "units?|einheit(?:en)?|unit[eéà]s?|unidad(?:es)?|单位|単位|단위"
 _HEIGHTS = (
     r"heights?|höhen?|hoehen?|hauteurs?|alturas?|altezz[ae]|topograph\w*|elevations?|高[さ度]"
     r"|korkeu\w+|v[ýy][šs]k\w+|wysoko\w+|h(?:ö|o|oe)jd\w*|h[øo][yj]de\w*|hoogtes?|magass[áa]g\w*"
@@ -39,7 +39,18 @@ _ACROSS = re.compile(r"(?i)(?<![^\W\d_])(?:xy|x|y)(?![^\W\d_])|lateral|横|縦")
 _FACTOR = re.compile(
     r"(?i)(?:(?<![^\W\d_])z|height)[\s_-]*(?:scale|scaling|factor|calibration|magnification)"
 )
-_ALONG_Z = re.compile(r"(?i)(?<![^\W\d_])z(?![^\W\d_])|vertical (?:range|scan|step|resolution)")
+_ANY_FACTOR = re.compile(
+    r"(?i)^(?!.*(?<![^\W\d_])[xy](?![^\W\d_]))(?!.*(?:lateral|pixel)).*(?:fa[ck]t(?:or|eur)|multipl"
+    r"|scaling|skalierung|(?<![^\W\d_])scale(?![^\W\d_]))"
+)
+_STEP_OF_GAUGE = re.compile(
+    r"(?i)(?<![^\W\d_])[dΔ]z(?![^\W\d_])"
+    r"|(?<![^\W\d_])(?:z|height|vertical|höhen?)[\s_-]*(?:step|resol|auflös|incr|quant|digit|lsb)"
+    r"|(?<![^\W\d_])lsb(?![^\W\d_])"
+)
+_ALONG_Z = re.compile(
+    r"(?i)(?<![^\W\d_])[dΔ]?z(?![^\W\d_])|vertical (?:range|scan|step|resolution)"
+)
 _X = re.compile(
     r"(?i)(?<![^\W\d_])[dΔ]?x(?![^\W\d_])|horizontal|width|breite|largeur|ancho|larghezza|宽|幅|横"
     r"|columns?|spalten|colonnes?|columnas|列"
@@ -64,7 +75,7 @@ _PITCH = re.compile(
     r"|punktabstand|(?:distance|pas|paso|passo)\s+(?:entre|de|di|tra)\s+p\w+"
     r"|(?<![^\W\d_])[dΔ][xy](?![^\W\d_])|^\W*(?:pitch|spacing|cell\s?size|grid\s?size)\W*$"
     rf"|(?:{_STEPS}).*(?<![^\W\d_])(?:xy|x|y)(?![^\W\d_])|(?<![^\W\d_])(?:xy|x|y)\W+(?:{_STEPS})"
-    r"|像素(?:尺寸|大小|间距)|点间距|ピクセル(?:サイズ|ピッチ)|画素(?:サイズ|ピッチ)|点間隔"
+    r"|픽셀\s?(?:크기|간격)|像素(?:尺寸|大小|间距)|点间距|ピクセル(?:サイズ|ピッチ)|画素(?:サイズ|ピッチ)|点間隔"
 )
 _EXTENT = re.compile(
     r"(?i)field[\s_-]*(?:of[\s_-]*)?view|(?<![^\W\d_])fov(?![^\W\d_])"
@@ -87,7 +98,7 @@ class MatrixHeader(NamedTuple):
     """What stands above a matrix: pitch along x and y [m], unit of heights [m], rows and columns.
 
     None is what it does not say, or says in two ways. `stated` are names and numbers that stand
-    alone, without a unit.
+    alone, without a unit; `gauge_step` [m] is what whole numbers may be counted in.
     """
 
     dx: float | None
@@ -96,6 +107,7 @@ class MatrixHeader(NamedTuple):
     rows: int | None
     columns: int | None
     stated: tuple[tuple[str, float], ...] = ()
+    gauge_step: float | None = None
 
 
 class _Said(NamedTuple):
@@ -131,16 +143,33 @@ def header_of(
     texts = [line[:_LONGEST].replace('"', " ").strip() for line in lines]
     said = [part for text in texts if (part := _said(text, mark, commas_part=commas_part))]
     pitch = _places(said, _PITCH, (1, 1))
-    extent = _places(said, _EXTENT, shape)
+    extent = _places(said, _EXTENT, shape, parted=True)
     dx, dy = (first or second for first, second in zip(pitch, extent, strict=True))
     rows, columns = _counts(said)
-    scaled = any(_FACTOR.search(part.key) and part.numbers[0] != 1.0 for part in said)
+    scaled = any(
+        part.numbers[0] != 1.0
+        and (_FACTOR.search(part.key) or (_ANY_FACTOR.search(part.key) and not part.units[0]))
+        for part in said
+    )
+    steps = {
+        part.numbers[0] * _metres(part.units[0])
+        for part in said
+        if _STEP_OF_GAUGE.search(part.key) and part.units[0]
+    }
     alone = tuple(
         (part.key.strip(" #%;,:=\t"), part.numbers[0])
         for part in said
         if len(part.numbers) == 1 and not part.units[0]
     )
-    return MatrixHeader(dx, dy, None if scaled else _height_unit(texts), rows, columns, alone)
+    return MatrixHeader(
+        dx,
+        dy,
+        None if scaled else _height_unit(texts),
+        rows,
+        columns,
+        alone,
+        max(steps, default=None),
+    )
 
 
 def _said(text: str, mark: str, *, commas_part: bool) -> _Said | None:
@@ -172,7 +201,7 @@ def _number(text: str, mark: str) -> float:
 
 
 def _places(
-    said: list[_Said], words: re.Pattern[str], shape: tuple[int, int]
+    said: list[_Said], words: re.Pattern[str], shape: tuple[int, int], *, parted: bool = False
 ) -> tuple[float | None, float | None]:
     """Return the pitch along x and y [m] that lines of such words say."""
     rows, columns = (max(number, 1) for number in shape)
@@ -185,15 +214,21 @@ def _places(
             continue
         x, y = bool(_X.search(part.key)), bool(_Y.search(part.key))
         if len(lengths) == 2:
-            along[0].add(lengths[0] / columns)
-            along[1].add(lengths[1] / rows)
+            along[0].add(_part(lengths[0], columns, parted))
+            along[1].add(_part(lengths[1], rows, parted))
         elif x != y:
-            along[0 if x else 1].add(lengths[0] / (columns if x else rows))
+            along[0 if x else 1].add(_part(lengths[0], columns if x else rows, parted))
         elif rows == columns:  # of a field that is not square one length may be either side
             for axis in along:
-                axis.add(lengths[0] / columns)
+                axis.add(_part(lengths[0], columns, parted))
     dx, dy = (values.pop() if len(values) == 1 else None for values in along)
     return dx, dy
+
+
+def _part(length: float, points: int, parted: bool) -> float:
+    """Return the distance of points over a length, whose last one is its end or one step before."""
+    pitches = [length / points, length / max(points - 1, 1)] if parted else [length]
+    return min(pitches, key=lambda pitch: len(f"{pitch:.7g}"))
 
 
 def _counts(said: list[_Said]) -> tuple[int | None, int | None]:

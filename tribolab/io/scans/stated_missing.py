@@ -17,6 +17,14 @@ _NAMED = re.compile(
     r"|puuttu|saknad|ogiltig|mangl|ugyldig|chyb[eě]j|neplatn|\bbrak\b|hi[aá]nyz|eksik|ge[cç]ersiz"
     r"|пропу|отсутств|недейств|无效|無效|缺失|欠損|欠測|無効|결측|누락"
 )
+# a value, which may lie among the heights, and not how many are missing
+_AS_VALUE = re.compile(
+    r"(?i)no[\s_-]*data|value|wert|valeur|valor|arvo|värde|verdi|værdi|hodnota|warto|érték|de[ğg]er|знач|[値值]"
+)
+_COUNTS = re.compile(
+    r"(?i)points?|pixels?|count|number|anzahl|zahl|punkt|nombre|n[uú]mero|quant|liczba|po[čc]et|antal|aantal"
+    r"|say[ıi]s|числ|колич|点数|個数|个数|%|ratio|share|anteil"
+)
 # results, and what lies far outside without being no height
 _RESULTS = re.compile(
     r"(?i)min|max|lowest|highest|peak|valley|pit|range|offset|origin|mean|average|mittel|tief|h(?:ö|oe)ch"
@@ -60,12 +68,15 @@ def take_stated(
 
 
 def _is_mark(values: np.ndarray, here: np.ndarray, name: str, number: float) -> bool:
-    """Whether a number that is stated lies outside of all others: "missing: 5" may count them."""
+    """Whether a number that is stated lies outside of all others: "missing: 5" may count them.
+
+    A value by its name may stand among them: "no data value: 0".
+    """
     rest = values[~here & np.isfinite(values)]
     if not rest.size:
         return False
     low, high = float(rest.min()), float(rest.max())
     outside = max(low - number, number - high)
     if _NAMED.search(name):
-        return outside > 0
+        return outside > 0 or bool(_AS_VALUE.search(name) and not _COUNTS.search(name))
     return outside > high - low and int(here.sum()) >= _TWICE and not _RESULTS.search(name)
