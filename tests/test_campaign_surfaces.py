@@ -302,6 +302,10 @@ def test_several_maps_of_a_surface_are_averaged(tmp_path):
     seen = roughness.attrs["measured_rms_slope"]  # short waves have most of it
     assert seen == pytest.approx(rms_slope(rough), rel=0.15)
     assert roughness.Ra.dims == ("scan", "y")
+    assert roughness.Sq.dims == ("scan",) and "Sq" in roughness
+    row = recorded(tmp_path, files, instrument="nanovea_map", contact=NOTHING_KNOWN).rows.roughness
+    assert row["Sq_m"] == pytest.approx(float(roughness.Sq.mean()))
+    assert row["Pq_m"] < row["Sq_m"] and 0.6 * row["Sq_m"] < row["Sa_m"] < row["Sq_m"]
 
 
 def test_without_scans_the_surface_is_skipped_and_that_is_said(tmp_path):

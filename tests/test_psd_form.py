@@ -94,7 +94,10 @@ def test_a_tilted_map_is_levelled(shared_data):
         (lambda: remove_form(profile(np.zeros(1001)), "polynomial", degree=40), "degree"),
         (lambda: remove_form(profile(np.full(1001, np.nan))), "too\\s+few"),
         (lambda: fill_dropouts(profile(np.full(1001, np.nan))), "leave that scan out"),
-        (lambda: remove_form(profile(circle(0.07, 12.5e-3), X * 1e-3)), "unit of x"),
+        (
+            lambda: remove_form(profile(circle(0.07, 12.5e-3), X * 1e-3)),
+            "units of the heights",
+        ),
     ],
 )
 def test_what_has_no_form_says_so(call, words):

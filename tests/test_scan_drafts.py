@@ -10,6 +10,7 @@ from tribolab.draft.dialect.draft import draft_dialect, save_draft
 from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError, TribolabError
 from tribolab.io.dialects.find import load_dialect
+from tribolab.qc.scan.checks import check_scans
 
 Z = np.round(np.sin(np.arange(200) / 9.0), 4)
 COLUMN = "\n".join(map(str, Z))
@@ -54,7 +55,7 @@ def test_a_header_that_says_all_is_enough(tmp_path, kind):
 
 def test_what_would_be_guessed_is_told_instead(tmp_path):
     path = written(tmp_path, f"Sampling interval = 0.25 um\nPoints = 200\n{COLUMN}\n")
-    with pytest.raises(ReadError, match=r"column 1.*it is the height in um.*or: mm, m"):
+    with pytest.raises(ReadError, match=r"column 1.*it is the height in um.*or: nm, mm, m"):
         read_scans(path)
     path = written(tmp_path, f"Evaluation length = 4 mm\nZ [um]\n{COLUMN}\n")
     with pytest.raises(ReadError, match="the heights lie evenly over 'Evaluation length = 4 mm'"):
@@ -337,3 +338,130 @@ def test_the_form_that_was_taken_off_is_named_where_it_matters(tmp_path):
         if line.startswith("  Pq")
     ]
     assert "circle of R = 0.2 m taken off" in told and "with the tilt alone taken off" in told
+
+
+BARE = "\n".join(f"{1000 * z:.1f}" for z in Z)
+STATED = {
+    "vertical": f"# stylus tip radius: 2 um\n# traverse length: 50 um\n# points: 200\n"
+    f"# spacing: 0.25 um\n# vertical: nm\n{BARE}\n",
+    "blanks part name and value": f"SURFACE DATA\nInstrument      stylus\nTip radius     2 um\n"
+    f"Data length     0.05 mm\nNo. of points   200\nData spacing    0.25 um\nUnits           nm\n"
+    f"Filter          none (raw)\nEND OF HEADER\n{BARE}\n",
+    "Finnish": f"kärjen säde; 2 um\nlateral spacing; 0.25 um\nkorkeus; nm\n{BARE}\n",
+    "an unknown word": f"% Rayon de la pointe = 2 µm\n% pas = 0,25 µm\n% unidades verticais = nm\n"
+    f"{BARE}\n",
+    "in words": f"Tastspitzenradius\t2 µm\nMesspunktabstand\t0,25 µm\n"
+    f"Einheit Messwerte\tNanometer\n[Daten]\n{BARE}\n",
+    "quoted": f'"Tip diameter";"4 um"\n"Spacing";"0.25 um"\n"Unit";"nm"\n"BEGIN DATA"\n{BARE}\n',
+}
+
+
+@pytest.mark.parametrize("kind", STATED)
+def test_what_the_header_states_of_a_trace_is_kept(tmp_path, kind):
+    path = written(tmp_path, STATED[kind])
+    scan = read_scans(path)
+    np.testing.assert_allclose(scan.height[0], 1e-6 * Z, rtol=0, atol=1e-10)
+    assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
+    assert scan.attrs["tip_radius_m"] == pytest.approx(2e-6)
+    if "200" in STATED[kind].split(BARE)[0]:
+        assert scan.attrs["stated_points"] == 200
+        assert scan.attrs["stated_length_m"] == pytest.approx(50e-6)
+        told = "\n".join(file_lines(path))
+        assert "tip radius 2 um" in told and "points 200" in told and "length 0.05 mm" in told
+    kept = read_scans(path, save_draft(draft_dialect(path), tmp_path / "own.toml"))
+    assert kept.attrs["tip_radius_m"] == scan.attrs["tip_radius_m"]
+
+
+def test_units_across_and_up_may_stand_above_the_table(tmp_path):
+    path = written(tmp_path, f"horizontal: mm\nvertical: um\nX,Z\n{ROWS}\n")
+    scan = read_scans(path)
+    np.testing.assert_allclose(scan.height[0], 1e-6 * Z, rtol=0, atol=1e-15)
+    assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
+
+
+@pytest.mark.parametrize("said", ["# lateral: nm", "# x unit: nm", "# cut-off unit: mm", "# id: m"])
+def test_a_unit_of_something_else_is_not_that_of_the_heights(tmp_path, said):
+    path = written(tmp_path, f"# spacing: 0.25 um\n{said}\n{BARE}\n")
+    with pytest.raises(ReadError, match=r"it is the height in nm.*or: um, mm, m"):
+        read_scans(path)
+
+
+def test_two_units_for_the_heights_are_asked_about(tmp_path):
+    path = written(tmp_path, f"# spacing: 0.25 um\n# height: nm\n# vertical: um\n{BARE}\n")
+    with pytest.raises(ReadError, match="it is the height in"):
+        read_scans(path)
+
+
+def test_heights_as_large_as_the_scan_do_not_pass_without_objection(tmp_path):
+    path = written(tmp_path, f"# spacing: 0.25 um\n# vertical: um\n{BARE}\n")
+    scan = read_scans(path)
+    assert "is their unit, or that of x, right?" in scan.attrs["doubtful"]
+    assert any(line.startswith("  doubtful: heights reach over") for line in file_lines(path))
+    fine = read_scans(written(tmp_path, f"# spacing: 0.25 um\n# vertical: nm\n{COLUMN}\n"))
+    assert "doubtful" not in fine.attrs
+
+
+def test_a_file_that_states_more_points_than_it_holds_is_objected_to(tmp_path):
+    path = written(tmp_path, f"# spacing: 0.25 um\n# vertical: nm\n# points: 400\n{COLUMN}\n")
+    found = check_scans(read_scans(path))
+    assert any("states 400 points, 200 stand in it" in row["message"] for row in found.rows)
+
+
+def test_rounding_of_positions_is_not_told(tmp_path):
+    told = "\n".join(file_lines(written(tmp_path, f"X [mm],Z [um]\n{ROWS}\n")))
+    assert "x_unevenness" not in told
+
+
+@pytest.mark.parametrize("said", ["puuttuva arvo", "no data", "manquant", "nicht gemessen"])
+def test_a_number_that_the_header_states_for_no_height_is_none(tmp_path, said):
+    holed = [-5000.0 if n in (20, 21, 90) else z for n, z in enumerate(Z)]
+    cells = "\n".join(f"{0.00025 * n:.5f},{z}" for n, z in enumerate(holed))
+    scan = read_scans(written(tmp_path, f"{said}: -5000\nX [mm],Z [um]\n{cells}\n"))
+    assert np.flatnonzero(np.isnan(scan.height.values[0])).tolist() == [20, 21, 90]
+    assert np.nanmin(scan.height) > -2e-6
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "z scale: 0.01\nunits: um",
+        "vertical magnification: 5000\nunits: mm",
+        "Faktor 0,1\nEinheit: µm",
+        "dz = 0.1 um\nz: um",
+        "0.5 nm per digit\nunits: nm",
+    ],
+)
+def test_a_factor_that_heights_may_miss_is_asked_about(tmp_path, said):
+    whole = "\n".join(str(round(1000 * z)) for z in Z)
+    with pytest.raises(ReadError, match="heights are read as they stand, not times"):
+        read_scans(written(tmp_path, f"spacing: 0.25 um\n{said}\n{whole}\n"))
+
+
+def test_a_lens_or_a_step_of_one_unit_is_no_factor(tmp_path):
+    said = "spacing: 0.25 um\nz resolution: 1 nm\nscale: 1\nunits: nm"
+    whole = "\n".join(str(round(1000 * z)) for z in Z)
+    scan = read_scans(written(tmp_path, f"{said}\n{whole}\n"))
+    np.testing.assert_allclose(scan.height[0], 1e-6 * Z, atol=6e-10)
+
+
+@pytest.mark.parametrize(
+    ("said", "encoding"),
+    [
+        ("Шаг: 0,25 мкм\nЕдиницы: мкм\nВысота", "cp1251"),
+        ("測定ピッチ,0.25,μm\n単位,μm\n測定点数,200", "cp932"),
+        ("# spacing 0.25 um\n# units um", "utf-8"),
+        ("krok próbkowania: 0,25 µm\nwysokość: µm", "cp1250"),
+    ],
+)
+def test_pitch_and_unit_are_known_in_more_languages(tmp_path, said, encoding):
+    path = tmp_path / "line.txt"
+    text = GERMAN if "0,25" in said else COLUMN
+    path.write_bytes(f"{said}\n{text}\n".encode(encoding))
+    scan = read_scans(path)
+    np.testing.assert_allclose(scan.height[0], 1e-6 * Z, rtol=0, atol=1e-15)
+    assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
+
+
+def test_a_length_of_the_part_or_a_range_of_the_gauge_is_not_that_of_the_trace(tmp_path):
+    said = "length: 25 mm\nrange: 80 um\nspacing: 0.25 um\nZ (um)"
+    assert "stated_length_m" not in read_scans(written(tmp_path, f"{said}\n{COLUMN}\n")).attrs

@@ -118,3 +118,77 @@ def test_a_pitch_goes_before_the_extent_and_counts_are_no_lengths():
     assert (said.columns, said.rows, said.height) == (10, None, None)
     narrow = header_of(lines[:2], (10, 10), ".")
     assert (narrow.dx, narrow.dy) == pytest.approx((1e-6, 0.5e-6))
+
+
+STATED = [
+    ("# dx = 2.0 um\n# dy = 10.0 um\n# korkeus: nm\n# puuttuva arvo: -99999\n", -99999),
+    ("# krok x: 2 µm\n# krok y: 10 µm\n# výška: nm\n# dosazeno: -12345\n", -12345),
+    ("Punktabstand x;2,0;µm\nPunktabstand y;10,0;µm\nHöhe;nm\nkein Wert;9999999\n", 9999999),
+    ("x-pitch   2 um\ny-pitch   0.01 mm\nvertical   nm\nNODATA_value   -1e6\n", -1e6),
+    ("Δx: 2 µm\nΔy: 10 µm\n高度：nm\n无效点: 1e9\n", 1e9),
+]
+
+
+@pytest.mark.parametrize(("above", "mark"), STATED)
+def test_two_pitches_a_bare_unit_and_a_stated_number_for_no_height_are_read(tmp_path, above, mark):
+    path = tmp_path / "raster.asc"
+    heights = np.round(HOLES, 9)
+    decimal, between = (",", ";") if ";" in above else (".", " ")
+    path.write_text(above + rows(heights, between, 1e9, decimal, hole=f"{mark:g}"), "utf-8")
+    scan = read_scans(path)
+    np.testing.assert_allclose(scan.height.values, heights, rtol=1e-9, atol=1e-15)
+    np.testing.assert_allclose(np.diff(scan.x), 2e-6)
+    np.testing.assert_allclose(np.diff(scan.y), 10e-6)
+    assert "as the header states" in scan.attrs["taken_for_missing"]
+
+
+def test_what_the_header_states_of_heights_takes_none_away(tmp_path):
+    path = tmp_path / "raster.asc"
+    spiked = HEIGHTS.copy()
+    spiked[3, 4] = -2e-5
+    said = "# pixel size: 1 um\n# unit: nm\n# minimum: -20000\n# missing points: 12\n"
+    path.write_text(said + rows(spiked, " ", 1e9))
+    scan = read_scans(path)
+    np.testing.assert_allclose(scan.height.values, spiked, rtol=1e-9, atol=1e-15)
+    assert "taken_for_missing" not in scan.attrs
+
+
+@pytest.mark.parametrize("said", ["Punktabstand: 2,5 µm", "Pixel size [um]: 2.5", "dx=dy: 2,5 um"])
+@pytest.mark.parametrize("decimal", [".", ","])
+def test_the_header_may_have_another_decimal_mark_than_the_matrix(tmp_path, said, decimal):
+    path = tmp_path / "map.txt"
+    whole = np.round(HEIGHTS, 6 if decimal == "." else 9)  # in um no mark tells
+    path.write_text(f"{said}\nHeight unit: um\n" + rows(whole, " ", 1e6, decimal), "utf-8")
+    scan = read_scans(path)
+    np.testing.assert_allclose(scan.height, whole, atol=1e-15)
+    np.testing.assert_allclose(np.diff(scan.x), 2.5e-6)
+    np.testing.assert_allclose(np.diff(scan.y), 2.5e-6)
+
+
+def test_a_length_that_may_have_a_mark_of_thousands_is_not_taken(tmp_path):
+    path = tmp_path / "map.txt"
+    path.write_text("Pixel size: 1,024 um\nHeight unit: um\n" + rows(np.round(HEIGHTS, 6), " "))
+    with pytest.raises(ReadError, match="how far its points lie apart"):
+        read_scans(path)
+
+
+@pytest.mark.parametrize("said", ["multiply by 0.01", "dz: 0.01 um", "scaling factor: 0.1"])
+def test_whole_numbers_that_may_be_counts_are_not_taken_for_heights(tmp_path, said):
+    path = tmp_path / "map.txt"
+    path.write_text(f"dx: 1 um\ndy: 1 um\nz: um\n{said}\n" + rows(np.round(HEIGHTS, 8), " ", 1e8))
+    with pytest.raises(ReadError, match="in which unit its heights are"):
+        read_scans(path)
+
+
+def test_a_range_that_ends_at_the_last_point_has_one_step_less(tmp_path):
+    path = tmp_path / "map.txt"
+    path.write_text("X range: 13 um\nY range: 8 um\nHeight unit: um\n" + rows(mark=" "))
+    scan = read_scans(path)
+    np.testing.assert_allclose(np.diff(scan.x), 1e-6)
+    np.testing.assert_allclose(np.diff(scan.y), 1e-6)
+
+
+def test_a_value_for_no_height_may_stand_among_the_heights(tmp_path):
+    path = tmp_path / "map.txt"
+    path.write_text("dx: 1 um\ndy: 1 um\nz: um\nno data value: 0\n" + rows(HOLES, " ", hole="0"))
+    np.testing.assert_allclose(read_scans(path).height.values, HOLES, rtol=1e-9)

@@ -148,6 +148,8 @@ _ROWS = [
     ("Ra", "Ra", "m", "arithmetic mean deviation of the profile"),
     ("Rq", "Rq", "m", "root-mean-square deviation of the profile"),
     ("Pq", "Pq", "m", "root-mean-square deviation of the profile, no cut-off applied"),
+    ("Sq", "Sq", "m", "root-mean-square height of the map, no cut-off applied"),
+    ("Sa", "Sa", "m", "arithmetic mean height of the map, no cut-off applied"),
     ("Rz", "Rz", "m", "greatest height of the profile, mean over sampling lengths"),
     ("Rsk", "Rsk", "1", "skewness of the profile"),
     ("Rku", "Rku", "1", "kurtosis of the profile"),

@@ -265,7 +265,11 @@ def _undirected(segments: xr.Dataset) -> bool:
 def _scan_said(file: Path, dialect: Path) -> str:
     # late: starting stays quick
     from tribolab.draft.scans import read_scans
+    from tribolab.io.scans.extent import doubt_about_heights
 
-    height = read_scans(file, dialect)["height"]
+    scan = read_scans(file, dialect)
+    height = scan["height"]
     span = float(height.max() - height.min())
-    return f"{Count(height.size):point|points}, heights over {1e6 * span:.4g} um"
+    doubt = doubt_about_heights(scan)
+    said = f"{Count(height.size):point|points}, heights over {1e6 * span:.4g} um"
+    return f"{said}; doubtful: {doubt}" if doubt else said

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tribolab.app.ranges import range_of
+from tribolab.app.scan_info import areal_lines, roughness_lines, stated_lines
 from tribolab.campaign.engine.stage import Stage
 from tribolab.draft.dialect.questions import how_to_keep
 from tribolab.draft.on_the_fly import holds_run, read_run
-from tribolab.errors import AnalysisError, ReadError, TribolabError, shown, told
+from tribolab.errors import ReadError, TribolabError, shown, told
 from tribolab.io.companion import CompanionFacts, describe_companion
 from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.dialects.signature import peek
@@ -21,6 +21,7 @@ from tribolab.io.force_ratio import doubt_about, doubt_about_coefficient
 from tribolab.io.kinds import kind_of
 from tribolab.io.missing import missing_of
 from tribolab.io.runs import read_run as known_run
+from tribolab.io.scans.extent import doubt_about_heights
 from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.results import read_tester_results
 from tribolab.quantities import quantity
@@ -31,10 +32,10 @@ if TYPE_CHECKING:
 
 _PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
 _PROVENANCE |= {"drafted_layout"}
-_LARGEST = 2_000_000  # heights of a scan whose roughness is told at once
-_OTHER_FORM = 0.02  # of the roughness, from which on it matters which form was taken off
 _LONGEST = 300  # letters of what a file says of itself
 _TOLD_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
+_TOLD_OF_SCAN = {"tip_radius_m", "stated_length_m", "stated_pitch_m", "stated_points", "doubtful"}
+_ROUNDING = 1e-6  # of a step: positions that deviate by less are even
 
 
 def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
@@ -147,49 +148,13 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
     lines.append(f"  height  {1e6 * low:.6g} to {1e6 * high:.6g} um")
     if missing := int(scan["height"].isnull().sum()):
         lines.append(f"  {Count(missing):point|points} without a height")
-    return lines + _roughness_lines(scan) + _attribute_lines(scan.attrs, path)
-
-
-def _roughness_lines(scan: xr.Dataset) -> list[str]:
-    """Say how rough it is: with the cut-off that instruments apply, and with none."""
-    # late: starting stays quick
-    from tribolab.records.wording import with_error
-    from tribolab.surface.form import remove_form
-    from tribolab.surface.roughness import (
-        STANDARD_CUTOFF,
-        primary_roughness,
-        roughness_parameters,
-    )
-
-    if scan["height"].size > _LARGEST:
-        return []
-    try:
-        flat = remove_form(scan, "polynomial" if scan.sizes.get("y", 1) > 1 else "circle")
-        iso = roughness_parameters(flat)
-        level = 1e6 * float(primary_roughness(remove_form(scan, "tilt")).mean())
-    except AnalysisError:  # a check of the scan says why
-        return []
-    told = {name: f"{1e6 * float(iso[name].mean()):.3g} um" for name in ("Rq", "Ra")}
-    all_waves = 1e6 * float(primary_roughness(flat).mean())
-    cut = iso.attrs.get("lambda_c_m")
-    by = " by the instrument" if iso.attrs["filtered_by"] == "instrument" else ""
-    filtered = f"waves longer than {1e3 * cut:.3g} mm filtered out{by}" if cut else "no cut-off"
-    if cut and not by and cut < STANDARD_CUTOFF:
-        filtered += f" (a fifth of the scan, which is short of {5e3 * STANDARD_CUTOFF:.3g} mm)"
-    for name in told:
-        if (error := f"{name}_sem") in iso:
-            value, known = (1e6 * float(iso[each].mean()) for each in (name, error))
-            told[name] = f"{with_error(value, known)} um"
-    radius = flat.attrs.get("form_radius_m", math.inf)
-    form = f"circle of R = {radius:.3g} m" if math.isfinite(radius) else "form"
-    beside = ""
-    if abs(level / all_waves - 1) > _OTHER_FORM:
-        beside = f'; with the tilt alone taken off {level:.3g} um (form = "tilt" in [roughness])'
-    return [
-        f"  Rq      {told['Rq']}, Ra {told['Ra']}: {form} taken off, {filtered}; means over "
-        "sampling lengths (ISO 4287)",
-        f"  Pq      {all_waves:.3g} um: {form} taken off, waves of every length{beside}",
-    ]
+    lines += stated_lines(scan.attrs)
+    lines += areal_lines(scan) if "y" in axes else []
+    lines += roughness_lines(scan)
+    if doubt := doubt_about_heights(scan):
+        lines.append(f"  doubtful: {doubt}")
+    attrs = {key: value for key, value in scan.attrs.items() if key not in _TOLD_OF_SCAN}
+    return lines + _attribute_lines(attrs, path)
 
 
 def _results_lines(path: Path) -> list[str]:
@@ -203,6 +168,8 @@ def _results_lines(path: Path) -> list[str]:
 
 def _attribute_lines(attrs: Mapping[str, Any], path: str | Path) -> list[str]:
     told = {key: value for key, value in attrs.items() if key not in _PROVENANCE | _TOLD_ABOVE}
+    if float(told.get("x_unevenness", 1.0)) < _ROUNDING:
+        del told["x_unevenness"]
     if "to_keep_it" in told:  # to be typed where `info` was
         told["to_keep_it"] = how_to_keep(str(path))
     return [f"  {key}: {shown(_said(value), _LONGEST)}" for key, value in told.items()]

@@ -87,6 +87,7 @@ class Understood(NamedTuple):
 _UNITS = {
     "s": ("s", "ms", "min"),
     "m": ("mm", "um", "m"),
+    "height": ("um", "nm", "mm", "m"),
     "N": ("N", "mN", "gf"),
     "m/s": ("mm/s", "m/s", "um/s"),
     "rad/s": ("1/min", "Hz", "rad/s"),
@@ -99,6 +100,8 @@ _UNITS = {
 
 def other_units(si_unit: str, chosen: str = "") -> tuple[str, ...]:
     """Return units that instruments write for what is measured in an SI unit, but the chosen one.
+
+    Heights of a scan are written in smaller ones than ways: "height" is for them.
 
     >>> other_units("s", "ms")
     ('s', 'min')

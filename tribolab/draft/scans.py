@@ -18,6 +18,7 @@ from tribolab.draft.on_the_fly import DRAFTED, draft_of
 from tribolab.errors import ReadError
 from tribolab.io import cures
 from tribolab.io.dialects.find import Dialect, Instrument
+from tribolab.io.scans.extent import doubt_about_heights
 from tribolab.io.scans.read import files_of, read_known_scans, stacked
 from tribolab.io.scans.undescribed import is_own_text
 from tribolab.stamping import stamp
@@ -147,7 +148,12 @@ def _read(file: Path, units: dict[str, str | None]) -> list[xr.Dataset]:
         if dialect is None:
             raise
         told = {"instrument": DRAFTED, "to_keep_it": how_to_keep(file)}
-        return [scan.assign_attrs(told) for scan in read_known_scans([file], dialect)]
+        return [_doubted(scan.assign_attrs(told)) for scan in read_known_scans([file], dialect)]
+
+
+def _doubted(scan: xr.Dataset) -> xr.Dataset:
+    doubt = doubt_about_heights(scan)
+    return scan.assign_attrs(doubtful=doubt) if doubt else scan
 
 
 def _drafted(file: Path, error: ReadError) -> Dialect | None:

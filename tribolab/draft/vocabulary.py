@@ -60,7 +60,8 @@ RUN_WORDS = (
         "normal_force",
         _words("fn fz fnorm fnormal w l nf fv normal"),
         _words(
-            "normalforce normalload normload normforce axialforce axialload verticalforce verticalload "
+            "normalforce normalload normload normforce axialforce axialload "
+            "verticalforce verticalload "
             "balload ballload "
             "pressingforce pressforce clampingforce downforce appliedforce "
             "normaalkracht aandrukkracht belasting "
@@ -70,7 +71,8 @@ RUN_WORDS = (
             "forcanormal silanacisku silanormalna nacisk obciazenie normalovasila pritlacnasila "
             "zatizeni normaalivoima normalero nyomoero normalkuvvet normalyuek yuek "
             "нормальнаясила нагрузка 수직하중 수직력 하중 "
-            "试验力 试验载荷 試験荷重 法向力 正压力 法向载荷 载荷 載荷 负荷 负载 加载力 垂直荷重 法線力 垂直力 荷重"
+            "试验力 试验载荷 試験荷重 "
+            "法向力 正压力 法向载荷 载荷 載荷 负荷 负载 加载力 垂直荷重 法線力 垂直力 荷重"
         ),
         _words("loadcell"),
     ),
@@ -108,7 +110,8 @@ RUN_WORDS = (
         _words("x s pos xpos enc disp"),
         _words(
             "horizontaldisplacement horizontalposition "
-            "strokeposition strokepos position displacement displ extension crosshead stroke slidingdistance "
+            "strokeposition strokepos position displacement displ extension crosshead stroke "
+            "slidingdistance "
             "distance verschiebung auslenkung gleitweg traversenweg standardweg strecke weg hub "
             "travel encoder "
             "deplacement course posicion desplazamiento recorrido posizione spostamento corsa "
@@ -231,7 +234,9 @@ SCAN_WORDS = (
         _words(
             "lateral position distance messweg weg strecke laenge length abstand longueur "
             "distancia distanza posicion posizione posicao longitud lunghezza recorrido "
-            "位置 距离 距離"
+            "laege posisjon sijainti matka poloha vzdalenost drah polozenie pozycj odleglosc "
+            "dlugosc konum mesafe uzunluk tavolsag hosszusag положение расстояние длина координата "
+            "位置 距离 距離 长度 위치 거리"
         ),
     ),
     Word("y", ("y",), ()),
@@ -242,7 +247,8 @@ SCAN_WORDS = (
             "height hoehe profile profil totalprofile rawprofile amplitude topography depth tiefe "
             "raw hauteur altura perfil profilo profondeur profundidad profondita ordonnee ordenada "
             "elevation relief ordinate hoogte "
-            "altezza vyska wysokosc hojd hoyde hojde korkeus magassag visina yukseklik 高度 高さ"
+            "altezza vyska wysokosc hojd hoyde hojde hoejd hoeyde hoejde yuekseklik yukseklik "
+            "korkeus magassag visina высота 높이 高度 高さ"
         ),
     ),
 )

@@ -23,7 +23,7 @@ _ISO = ("Ra", "Rq", "Rz", "Rsk", "Rku", "Rdq")
 ROUGHNESS = [
     "scans",
     *("Ra_m", "Rq_m", "Rz_m", "Rsk", "Rku", "Rdq"),
-    "Pq_m",
+    *("Pq_m", "Sq_m", "Sa_m"),
     *(column(f"{name}_sem") for name in _ISO),
     *(column(f"{name}_gap_error") for name in _ISO),
     *(f"rms_roughness{end}_m" for end in _BAND),
@@ -87,7 +87,8 @@ def _roughness(moments: xr.Dataset, psd: xr.Dataset) -> Row:
         rough[column(f"{name}_sem")] = _error_over_scans(moments, name)
         if (error := f"{name}_gap_error") in moments:
             rough[column(error)] = _error_of_mean(moments[error])
-    rough["Pq_m"] = float(moments["Pq"].mean()) if "Pq" in moments else None
+    for name in ("Pq", "Sq", "Sa"):
+        rough[column(name)] = float(moments[name].mean()) if name in moments else None
     for name in ("rms_roughness", "rms_slope"):
         for end in _BAND:
             if name + end in moments:

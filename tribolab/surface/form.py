@@ -15,9 +15,9 @@ from tribolab.surface.level import rounding_only
 _FORMS = {"mean": 0, "tilt": 1, "circle": 2, "polynomial": None}
 _STEPS = 60
 _NO_CIRCLE = Cure(
-    notebook="check the unit of x, or take form='polynomial'",
-    terminal="check the unit of x",
-    campaign='check the unit of x, or say form = "polynomial" in [roughness]',
+    notebook="check the units of the heights and of x, or take form='polynomial'",
+    terminal="check the units of the heights and of x",
+    campaign='check the units of the heights and of x, or say form = "polynomial" in [roughness]',
 )
 _CHUNK = 1 << 20  # heights that are worked on at a time
 

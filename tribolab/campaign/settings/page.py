@@ -63,6 +63,7 @@ _USED_VALUES = {
     ),
     "tip_radius": ("m", "of a scan: radius of the stylus; below its reach the spectrum ends"),
     "stated_length": ("m", "of a scan: its length as the instrument says, checked"),
+    "stated_points": ("1", "of a scan: the number of its points as the file says, checked"),
     "stated_pitch": ("m", "of a scan: the distance of its points as the instrument says, checked"),
     "instrument_Ra": (
         "m",

@@ -14,6 +14,7 @@ from tribolab.io.scans.read import stacked
 from tribolab.qc.register import STATUSES
 from tribolab.qc.scan.sets import check_scan_set
 from tribolab.records.parts import Finding, Row
+from tribolab.surface.areal_roughness import areal_roughness
 from tribolab.surface.extrapolation import extrapolate
 from tribolab.surface.form import fill_dropouts, remove_form
 from tribolab.surface.moments import band, rms_roughness, rms_slope
@@ -220,6 +221,8 @@ def spectra_of_scans(
     groups["psd"] = psd
     cut = options.get("lambda_c", "auto")
     iso = roughness_parameters(flat, lambda_c=cut).assign(Pq=primary_roughness(flat))
+    if is_map:
+        iso = iso.merge(areal_roughness(flat), combine_attrs="override")
     groups["roughness"] = iso.merge(whole, combine_attrs="drop_conflicts")
     groups["roughness"].attrs |= {
         "measured_rms_roughness_m": rms_roughness(part),

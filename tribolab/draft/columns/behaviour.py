@@ -93,7 +93,7 @@ def _map(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftColumn
             unit=u,
             used=True,
             guessed=(f"it is {q} in {u}",),
-            options=other_units("m", u),
+            options=other_units("height" if q == "height" else "m", u),
         )
         for column, q, u in zip(columns, ("x", "y", "height"), units, strict=True)
     ]
@@ -107,7 +107,7 @@ def _profile(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftCo
             unit=u,
             used=True,
             guessed=(f"it is {q} in {u}",),
-            options=other_units("m", u),
+            options=other_units("height" if q == "height" else "m", u),
         )
         for column, q, u in zip(columns, ("x", "height"), _scan_units(part, 1), strict=True)
     ]

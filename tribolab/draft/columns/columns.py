@@ -11,7 +11,7 @@ from tribolab.draft.columns.assign import SIGNALS, assigned
 from tribolab.draft.columns.bridges import calibrated_forces
 from tribolab.draft.columns.either import told_by_load, without_means
 from tribolab.draft.columns.epochs import DATES, counted_from
-from tribolab.draft.columns.factors import missing_factors, with_worth
+from tribolab.draft.columns.factors import missing_factors, missing_of_heights, with_worth
 from tribolab.draft.columns.fill_in import Bare
 from tribolab.draft.columns.heights import as_heights, beside_x, in_stated_unit, side_by_side
 from tribolab.draft.columns.labels import bare_name, labelled
@@ -20,10 +20,14 @@ from tribolab.draft.columns.lengths import (
     find_pitch,
     find_point_density,
     find_profile_length,
+    find_unit_along,
+    metres,
 )
 from tribolab.draft.columns.ratio import disagreement, force_or_ratio
 from tribolab.draft.columns.results_table import results_told
 from tribolab.draft.columns.sampling import find_sampling
+from tribolab.draft.columns.stated_missing import take_stated_missing
+from tribolab.draft.columns.values import DraftValue
 from tribolab.draft.columns.words import Match, matches, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
@@ -33,10 +37,12 @@ from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.model import LARGEST
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.dates import seconds
+from tribolab.units import positive
 
 _RISES = 0.9  # share of the steps from row to row; a clock may start anew
 _BY_UNIT = 0.6  # score of a name that says nothing beside a unit that does
 _PURE = ("1", "-")  # what stands for the unit of a pure number
+_REACH = 0.05  # of a scan's length; heights that reach farther are in a smaller unit
 
 
 def understand(layout: Layout) -> Understood:
@@ -49,15 +55,17 @@ def understand(layout: Layout) -> Understood:
     """
     numbers, text, missing = _numbers(layout)
     unit = find_height_unit(layout)
-    columns = in_stated_unit(labelled(layout), unit)
+    columns = in_stated_unit(labelled(layout), unit, find_unit_along(layout))
     pitch = find_pitch(layout)
     density = "" if pitch is not None else find_point_density(layout)
     length = None if pitch is not None or density else find_profile_length(layout)
     apart = pitch is not None or bool(density) or length is not None
     guesses = missing_factors(layout)
     kind: Kind
-    if apart and (layout.width == 1 and not _say_something(columns) or side_by_side(columns)):
-        kind, columns = "scan", [as_heights(column, stated=bool(unit)) for column in columns]
+    if apart and (layout.width == 1 and _may_be_heights(columns[0]) or side_by_side(columns)):
+        likely = _likely_unit(layout, numbers, pitch, density)
+        kind = "scan"
+        columns = [as_heights(column, stated=bool(unit), unit=likely) for column in columns]
     elif (beside := beside_x(columns)) is not None:
         kind, columns = "scan", beside
     elif _say_something(columns):
@@ -93,7 +101,12 @@ def understand(layout: Layout) -> Understood:
     period = summed(columns, numbers)
     on_repeat, restart, columns = find_clock(layout, columns, numbers)
     used = [column.place - 1 for column in columns if column.used]
-    words = tuple(dict.fromkeys(word for index in used for word in missing[index]))
+    if kind == "scan":
+        heights = [c.place - 1 for c in columns if c.used and c.quantity == "height"]
+        factors = missing_of_heights(layout, numbers[:, heights])
+        guesses += [said for said in factors if said[-45:] not in " ".join(guesses)]
+    said = take_stated_missing(layout, columns, numbers) if kind == "scan" else []
+    words = tuple(dict.fromkeys([*said, *(word for index in used for word in missing[index])]))
     placed = any(c.used and c.quantity == "x" for c in columns)
     if kind == "scan" and apart and not placed:
         guesses += [length.guess] if length is not None and length.guess else []
@@ -207,6 +220,25 @@ def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
     for values in numbers.T:  # the reader does so, too
         take_marks([values])
     return numbers, text, missing
+
+
+def _may_be_heights(column: DraftColumn) -> bool:
+    """Whether a single column may be heights: its name is not known, nor its unit another's."""
+    name, unit, _ = bare_name(column)
+    if unit is None:
+        return not matches(name, None)
+    return converts(unit, "m") and not (matches(name, unit) or matches(name, unit, scan=True))
+
+
+def _likely_unit(
+    layout: Layout, numbers: np.ndarray, pitch: DraftValue | None, density: str
+) -> str:
+    """Return the unit that heights may be in: um, or nm where they were as large as the scan."""
+    step = (
+        metres(pitch) if pitch is not None else positive(density, "m", "pitch") if density else 0.0
+    )
+    reach = float(np.nanmax(numbers) - np.nanmin(numbers)) if np.isfinite(numbers).any() else 0.0
+    return "nm" if 0 < step * len(numbers) * _REACH < 1e-6 * reach else "um"
 
 
 def _say_something(columns: list[DraftColumn]) -> bool:

@@ -6,6 +6,8 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from tribolab.draft.columns.words import matches, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
@@ -42,6 +44,17 @@ _CONTACTS = re.compile(
 )
 
 
+# of a scan: a factor of any name; the magnification of a lens changes no height
+_OF_HEIGHTS = re.compile(
+    r"fa[ck]t(?:or|eur)|fattore|fator|scal(?:e|ing)|skal|escala|echelle|massstab|multipl|gain|verstaerk"
+    r"|(?:vertical|vertikal|vv|z|height|hoehen?)\w*(?:magnif|vergr|agrand|aument|ingrand)|系数|倍数|縦倍率"
+)
+_STEP_OF_GAUGE = re.compile(
+    r"(?i)(?<![^\W\d_])[dΔ]z(?![^\W\d_])"
+    r"|(?<![^\W\d_])(?:z|height|vertical|höhen?)[\s_-]*\w{0,4}(?:step|resol|auflös|incr|quant|digit|lsb|pas)"
+    r"|(?<![^\W\d_])(?:lsb|quantum|quantization|quantisierung|digit)(?![^\W\d_])"
+)
+_ONE_UNIT = re.compile(r"(?<![\d.,])1(?:[.,]0+)?\s*[^\W\d]*\W*$")  # "z resolution: 1 nm"
 _COUNT = r"(?:counts?|cts|digits?|lsb|bits?|incr(?:ement)?s?|steps?|pulses?)"
 _WORTH = re.compile(
     rf"(?<![\d.,])(?P<number>{_NUMBER}(?:[eE][-+]?\d+)?)\s?(?P<unit>[^\W\d]{{1,3}})\s?(?:/|per)\s?{_COUNT}\b",
@@ -124,6 +137,30 @@ def missing_factors(layout: Layout) -> list[str]:
     stop = layout.heading.names if layout.heading else 0
     said = (_missing(line[:_LONGEST].strip()) for line in layout.lines[:stop])
     return [sentence for sentence in said if sentence]
+
+
+def missing_of_heights(layout: Layout, heights: np.ndarray) -> list[str]:
+    """Say what heights may still have to be multiplied by: a factor, or what one step is worth.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    heights
+        Their numbers as written. Of whole numbers a stated step of the gauge may be the unit.
+    """
+    stop = layout.heading.names if layout.heading else layout.blocks[0].start
+    present = heights[np.isfinite(heights)]
+    whole = bool(present.size) and bool((present == np.round(present)).all())
+    said = []
+    for line in layout.lines[:stop]:
+        text = line[:_LONGEST].strip()
+        plain = _PLAIN.match(text)
+        factor = plain and _OF_HEIGHTS.search(squeezed(plain["key"])) and _number(plain["number"])
+        step = whole and _STEP_OF_GAUGE.search(text) and not _ONE_UNIT.search(text)
+        if (factor and factor != 1) or step or _WORTH.search(text):
+            said.append(f"heights are read as they stand, not times '{shown(text, 40)}'")
+    return said
 
 
 def _missing(line: str) -> str:

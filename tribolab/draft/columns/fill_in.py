@@ -86,7 +86,7 @@ def filled_in(
         elif kind == "scan":
             written = "mm" if option.quantity in ("x", "y") else "um"
             guessed.append(f"{option.quantity} is in {written}{why}")
-            options = other_units("m", written)
+            options = other_units("height" if option.quantity == "height" else "m", written)
         else:
             fill_in = f"the unit of '{shown(column.label)}' ({option.quantity}), e.g. \"{si_unit}\""
             options = other_units(si_unit)

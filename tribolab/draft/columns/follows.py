@@ -30,9 +30,11 @@ from tribolab.io.missing import missing_of
 
 _DRIVE = re.compile(
     r"drive|motion|waveform|profile|kinematic|antrieb|bewegung|entrainement|mouvement|movim(?:ento|iento)"
-    r"|beweging|aandrijving|forma?(?:de|da|d)onda|formeonde|运动|運動"
+    r"|^moto$|^ruch|hareket|движен|привод|pohyb|pohon|napęd|naped|beweging|aandrijving|forma?(?:de|da|d)onda|formeonde|运动|運動"
 )
-_SINE = re.compile(r"crank|sine|sinus|sinoid|kurbel|eccentric|exzenter|manivelle|scotch")
+_SINE = re.compile(
+    r"crank|manovell|manivel|biel|armonic|harmoni|krank|korb|кривошип|синус|曲柄|正弦|クランク|sine|sinus|sinoid|kurbel|eccentric|exzenter|manivelle|scotch"
+)
 _EVEN = re.compile(r"triang|constant|linear|konstant|dreieck")
 _MODE = re.compile(r"^(?:test|sliding)?mode$|^modus$|^betriebsart$|^modo$|模式$|モード$")
 _SPEED_OF_TURNS = re.compile(r"(?:speed|velocity|rotation|rpm|drehzahl|vitesse|giri|velocidad)$")

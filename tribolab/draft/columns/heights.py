@@ -10,23 +10,22 @@ from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn, other_units
 
 
-def in_stated_unit(columns: list[DraftColumn], unit: str) -> list[DraftColumn]:
-    """Give the heights without a unit the one that the text before the table states."""
-    if not unit:
-        return columns
-    return [
-        column._replace(unit=unit)
-        if bare_name(column)[1] is None and _may_be_heights(column)
-        else column
-        for column in columns
-    ]
+def in_stated_unit(columns: list[DraftColumn], unit: str, along: str = "") -> list[DraftColumn]:
+    """Give heights and positions without a unit those that the text before the table states."""
+    return [_in_unit(column, unit, along, alone=len(columns) == 1) for column in columns]
 
 
-def _may_be_heights(column: DraftColumn) -> bool:
-    if not column.label:
-        return True
-    options = matches(bare_name(column)[0], None, scan=True)
-    return bool(options) and options[0].quantity == "height"
+def _in_unit(column: DraftColumn, unit: str, along: str, *, alone: bool) -> DraftColumn:
+    name, own, _ = bare_name(column)
+    if own is not None:
+        return column
+    options = matches(name, None, scan=True)
+    quantity = options[0].quantity if options else None
+    if quantity in ("x", "y") and along:
+        return column._replace(unit=along)
+    unknown = alone and quantity is None and not matches(name, None)
+    heights = not column.label or quantity == "height" or unknown
+    return column._replace(unit=unit) if unit and heights else column
 
 
 def side_by_side(columns: list[DraftColumn]) -> bool:
@@ -65,15 +64,25 @@ def beside_x(columns: list[DraftColumn]) -> list[DraftColumn] | None:
     ]
 
 
-def as_heights(column: DraftColumn, *, stated: bool) -> DraftColumn:
-    """Take a column without a known name for heights: what a pitch before it is of."""
-    unit = column.file_unit or column.unit
-    guess = "it is the height" + ("" if unit else " in um")
+def as_heights(column: DraftColumn, *, stated: bool, unit: str = "um") -> DraftColumn:
+    """Take a column without a known name for heights: what a pitch before it is of.
+
+    Parameters
+    ----------
+    column
+        The column.
+    stated
+        Whether the text before the table states the unit of heights.
+    unit
+        What they may be in, if nothing says it.
+    """
+    known = column.file_unit or column.unit
+    guess = "it is the height" + ("" if known else f" in {unit}")
     guessed = () if stated and column.unit else (guess,)
     return column._replace(
         quantity="height",
-        unit=column.unit if unit else "um",
+        unit=column.unit if known else unit,
         used=True,
         guessed=guessed,
-        options=() if unit else other_units("m", "um"),
+        options=() if known else other_units("height", unit),
     )

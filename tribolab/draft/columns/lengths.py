@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 
 from tribolab.draft.columns.sentences import points_per_length
 from tribolab.draft.columns.stated_words import (
     ACROSS,
+    ALONG,
     ARM,
     DIAMETER,
     HEIGHT_UNIT,
+    NO_HEIGHT,
     ON_TRACK,
     OTHER_RADIUS,
     PITCH,
@@ -22,12 +23,16 @@ from tribolab.draft.columns.stated_words import (
     TRAVERSE_SPEED,
     TURNING,
     UNIT,
+    VERTICAL,
 )
 from tribolab.draft.columns.values import DraftValue, find_values, words_said
-from tribolab.draft.columns.words import squeezed
+from tribolab.draft.columns.words import length_unit, matches, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.units import conversion
+
+# units of heights under whatever name they stand
+_USUAL = frozenset({"nm", "um", "µm", "μm", "mm", "pm", "Å", "angstrom", "microns", "micron"})
 
 
 def find_pitch(layout: Layout) -> DraftValue | None:
@@ -60,7 +65,7 @@ def find_profile_length(layout: Layout) -> DraftValue | None:
     if len(lengths) != 1:
         return None
     points = len(layout.rows())
-    counts = [_number(v) for v in values if v.unit is None and POINTS.search(v.key)]
+    counts = [v.number for v in values if v.unit is None and POINTS.search(v.key)]
     said = lengths[0]._replace(name="profile_length", to="m")
     if any(abs(count - points) <= 1 for count in counts):
         return said
@@ -75,11 +80,34 @@ def find_height_unit(layout: Layout) -> str:
     layout
         From `tribolab.draft.file.layout.find_layout`.
     """
-    for key, text in words_said(layout, bare=True):
-        alone = layout.width == 1 and UNIT.search(squeezed(key))
-        if (alone or HEIGHT_UNIT.search(squeezed(key))) and converts(text.strip(" []()."), "m"):
-            return text.strip(" []().")
-    return ""
+    said = [(squeezed(key), length_unit(text)) for key, text in words_said(layout, bare=True)]
+    said = [(key, unit) for key, unit in said if unit]
+    own = {unit for key, unit in said if HEIGHT_UNIT.search(key) or _names_heights(key)}
+    if layout.width == 1 and not own:
+        own = {unit for key, unit in said if UNIT.search(key)}
+        own |= {unit for key, unit in said if unit in _USUAL and not NO_HEIGHT.search(key)}
+    return own.pop() if len(own) == 1 else ""
+
+
+def find_unit_along(layout: Layout) -> str:
+    """Return the unit of positions that the text before them states in a line of its own, or "".
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    """
+    said = [(squeezed(key), length_unit(text)) for key, text in words_said(layout, bare=True)]
+    units = {unit for key, unit in said if unit and ALONG.search(key)}
+    return units.pop() if len(units) == 1 else ""
+
+
+def _names_heights(key: str) -> bool:
+    """Whether what a line calls so is the height, and not a size across the surface."""
+    if NO_HEIGHT.search(key):
+        return False
+    options = matches(key, None, scan=True)
+    return bool(VERTICAL.search(key) or (options and options[0].quantity == "height"))
 
 
 def find_point_density(layout: Layout) -> str:
@@ -102,12 +130,12 @@ def _sampled_on_the_way(layout: Layout) -> str:
     values = [value for value in find_values(layout, bare=True) if value.source == "preamble"]
     units = [value.unit or value.own_unit or "" for value in values]
     speeds = [
-        _number(value) * conversion(unit, "m/s")[0]
+        value.number * conversion(unit, "m/s")[0]
         for value, unit in zip(values, units, strict=True)
         if TRAVERSE_SPEED.search(value.key) and converts(unit, "m/s")
     ]
     rates = [
-        _number(value) * conversion(unit, "Hz")[0]
+        value.number * conversion(unit, "Hz")[0]
         for value, unit in zip(values, units, strict=True)
         if RATE.search(value.key) and converts(unit, "Hz")
     ]
@@ -164,9 +192,6 @@ def _is_length(value: DraftValue) -> bool:
     return bool(value.unit and converts(value.unit, "m"))
 
 
-def _number(value: DraftValue) -> float:
-    match = re.search(value.pattern, value.text)
-    try:
-        return float(match[1].replace(",", ".")) if match else math.nan
-    except ValueError:
-        return math.nan
+def metres(value: DraftValue) -> float:
+    """Return the length [m] that a value states; NaN where it is none."""
+    return value.number * conversion(value.unit or "m", "m")[0] if _is_length(value) else math.nan

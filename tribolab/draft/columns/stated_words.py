@@ -41,6 +41,7 @@ LOAD = re.compile(
 PITCH = re.compile(
     r"^(?:d?x|deltax|pitch|spacing|increment|step|stepsize|stepping|interval|xscale)$"
     r"|^(?:schritt\w*|x?pas|x?paso|x?passo|x?stap\w*|x?schritt\w*|sampling|sampled|abtastung)$|(?:abtast|mess)schritt"
+    r"|^(?:шаг|pikselboyutu|ornekleme|oernekleme|askel|naytevali|naeytevaeli)\w*|间隔|간격"
     r"|^(?:roztec|rozestup|krok|odstep|avstand|steglangd|lepeskoz)\w*"
     r"|间距|步长|步距|ピッチ|間隔|点间隔|采样间隔"
     r"|(?:sampl|point|mess|punkt|data|x|lateral|measur|echantillon|abtast|punt)\w*"
@@ -53,7 +54,7 @@ PITCH = re.compile(
 # the length of a whole profile, over which its points lie: no cut-off, no length of a part
 PROFILE_LENGTH = re.compile(
     r"^(?:total|full|x|line)?(?:scan|trace|tracing|taster?|meet|travers\w*|profile?|evaluation|assessment|record"
-    r"|measur\w+|mess|tast(?:er?)?|abtast|gesamt|lateral)?(?:ed|ing)?"
+    r"|measur\w+|mess|tast(?:er?)?|abtast|gesamt|lateral|data)?(?:ed|ing)?"
     r"(?:length|laenge|strecke|range|weg|lengte)(?:x|lt|ln)?$"
     r"|^(?:longueur|longitud|lunghezza|comprimento)"
     r"(?:de|del|di|du|dela|della|da)?(?:mesure|mesuree|palpage|exploration|profil\w*|balayage"
@@ -88,6 +89,44 @@ HEIGHT_UNIT = re.compile(
     r"(?:the)?(?:z|heights?|hoehen?|hauteurs?|alturas?|altezze?|profile?|amplitude)$"
     r"|^高度单位$|^高さ単位$"
 )
+# across the surface, and sizes of the instrument: what is in such a unit is no height
+NO_HEIGHT = re.compile(
+    r"^[dxy]?[xy](?:axis|achse|units?|einheit)?$|^(?:unit|units|einheit)(?:of|der|de)?[xy]$"
+    r"|lateral|horizont|abs[cz]iss|position|distan[czt]|abstand|afstand|weg$|strecke|spacing|pitch|step|pas|paso|passo"
+    r"|sampl|abtast|length|laenge|lengte|longueur|longitud|lunghezza|comprimento|wid(?:th|e)|breite"
+    r"|largeur|anch[oi]|tip|stylus|spitz|taster|probe|radius|diamet|durchmesser|cutoff|cut|filter"
+    r"|wavelength|lambda|wellenlaenge|range|scanner|location|file|version"
+    r"|横|纵|长度|長さ|位置|距离|間隔|间距|步长|半径"
+)
+VERTICAL = re.compile(
+    r"vert[iy][ck]?al|^z(?:axis|achse|scale|data|values?)?$|senkrecht|ordinat|ordonnee|ordenad"
+    r"|vertikaal|pionow|pystysuor|lodret|lodrett|svisl|垂直|縦"
+)
+ALONG = re.compile(
+    r"^x(?:axis|achse|values?)?(?:units?|einheit)?$|^(?:unit|units|einheit)(?:of|der|de)?x$|lateral"
+    r"|horizontal|abs[cz]iss"
+)
+_RADIUS_WORDS = (
+    r"(?:radius|rayon|radio|raggio|raio|straal|polomer|promien|saede|sade|radie|yaricap|sugar"
+    r"|радиус|半径)"
+)
+_TIP_WORDS = (
+    r"(?:tip|stylus|styli|needle|spitz|taster|tastnadel|nadel|punta|puntal|palpa|pointe|puntina|agulha|ponta|naald"
+    r"|hrot|ostrz|kaerje|karje|nal|игл|щуп|针|針|触针|探针)"
+)
+TIP = re.compile(
+    rf"{_TIP_WORDS}.*(?:{_RADIUS_WORDS}|dia|durchm|直径)"
+    rf"|(?:{_RADIUS_WORDS}|dia\w*|durchm\w*|直径).*{_TIP_WORDS}|^rtip$|^r?(?:tip|stylus)r$"
+)
+ACROSS_TIP = re.compile("dia|durchm|直径")
+# a length that is surely the trace's: "length" may be that of the part, "range" that of the gauge
+OF_TRACE = re.compile(
+    r"(?:scan|trac|travers|profile?|measur|mess|tast|total|full|gesamt|data|record|line|meet)\w*"
+    r"(?:length|laenge|strecke|weg|lengte)"
+    r"|(?:longueur|longitud|lunghezza|comprimento).+|(?:测量|扫描|轮廓|測定|走査)"
+)
+# a part of the trace, over which an instrument computes
+PART_OF_TRACE = re.compile(r"evalu|assess|ln$|valutazione|avaliacao|auswert|sampling|einzel")
 RADIUS = re.compile("radius|rayon|radio(?!m)|raggio|raio|straal|半径")
 ARM = re.compile(
     r"lever|hebelarm|arm(?:length|laenge)|torquearm|levier|palanca|braccio|力臂|アーム"

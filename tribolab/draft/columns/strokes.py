@@ -10,7 +10,11 @@ from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.header import converts
 
 STROKE = re.compile(
-    r"^(?:stroke|strokelength|slaglengte|hub|hublaenge|course|carrera|corsa|行程|ストローク)$"
+    r"^(?:total|full|whole|set|nominal|gesamt)?(?:stroke|strokelength|slaglengte|hub|hublaenge|course"
+    r"|carrera|corsa|curso|skok|zdvih|strok|slaglangd|loekethossz|iskunpituus|ход|行程|ストローク)"
+    r"(?:total|totale|length|laenge|intera|completa|uzunlugu)?$"
+    r"|^(?:longueur|longitud|lunghezza|comprimento|dlugosc|delka|длина)"
+    r"(?:dela|de|da|di|do|della)?(?:course|carrera|corsa|curso|skoku|zdvihu|хода)$|^总?行程长?度?$"
 )
 HALF_STROKE = re.compile(
     r"^(?:half(?:the)?stroke(?:length)?|(?:stroke|motion)?amplitude(?:of(?:the)?(?:motion|stroke))?"
@@ -21,7 +25,9 @@ END_TO_END = re.compile(
 )
 FREQUENCY = re.compile(
     r"^(?:(?:stroke|oscillation|reciprocating|test|drive|motion|hub|schwing|crank)?"
-    r"(?:frequency|freq|frequenz|speed|rotation)|frequence|frecuencia|frequenza|频率|周波数"
+    r"(?:frequency|freq|frequenz|speed|rotation)|频率|周波数"
+    r"|(?:frequence|frecuencia|frequenza|frequencia|frequentie|frekvens|frekvence|frekans|taajuus"
+    r"|czestotliwosc|frekvencia|частота|주파수)(?:de\w*|di\w*|do\w*|ruchu|pohybu|хода|oscil\w*)?"
     r"|reciprocation|oscillation|strokerate|cyclerate|frequencyof(?:motion|reciprocation))$"
 )
 

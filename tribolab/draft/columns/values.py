@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -16,26 +17,36 @@ from tribolab.draft.columns.stated_words import (
     PROFILE_LENGTH,
     RADIUS,
     RATE,
+    TIP,
     TURNING,
 )
 from tribolab.draft.columns.strokes import FREQUENCY, HALF_STROKE, STROKE
-from tribolab.draft.columns.words import matches, split_unit, squeezed
+from tribolab.draft.columns.words import matches, split_unit, squeezed, unit_in_words
 from tribolab.draft.file.header import DIMENSIONS, converts, escaped, is_unit
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.vocabulary import WEIGHTS
 
 _MOST = 12  # a long preamble is not repeated in the dialect
+_MOST_OF_SCAN = 200  # settings of a profilometer, among which the few that count may come last
 # "# rate: 10 Hz", "Set Force = -200", "Disc track radius used (mm)<tab>21.232"
 _SAID = (
-    r"(?P<before>\W*(?P<key>[^\W\d][^:：=\t;{mark}]*?)\s*[:：=\t;{mark}]\s*)"
-    r"(?P<number>[-+]?\d[\d.{digits}]*(?:e[-+]?\d+)?)[\s;{mark}]*(?P<unit>[^\s\d;,][^\s;,]*)?"
-    r"\s*[;,\t]*\s*(?:\(.*\))?$"
+    r"(?P<before>\W*(?P<key>[^\W\d][^:：=\t;{mark}]*?)(?:\"?\s*[:：=\t;{mark}]\s*\"?|\s{{2,80}}))"
+    r"(?P<number>[-+]?\d[\d.{digits}]*(?:e[-+]?\d+)?)[\s;{mark}\"]*"
+    r"(?P<unit>[^\s\d;,\"][^\s;,\"]*)?[\s;,\t\"]*(?:\(.*\))?$"
 )
 _SAYS = re.compile(_SAID.format(mark="", digits=","), re.IGNORECASE)
 _IN_CELLS = re.compile(_SAID.format(mark=",", digits=""), re.IGNORECASE)  # "Dead weight,500,g"
 _UNIT_OF = re.compile(r"^(?P<key>.+?)(?:units?|einheit|unite|unidad|unita|eenheid|单位|単位)$")
-_WORDS = re.compile(r"\W*(?P<key>[^\W\d][^:：=\t;]*?)\s*[:：=\t;]\s*(?P<text>[^\W\d].*)$")
+_WORDS = re.compile(
+    r"\W*(?P<key>[^\W\d][^:：=\t;]*?)(?:\"?\s*[:：=\t;]\s*|\s{2,80})[\"\[(]?(?P<text>[^\W\d].*)$"
+)
+_UNIT_SAID = re.compile(  # "Units um", "単位,μm"
+    r"[\W_]*(?P<key>(?:units?|einheit(?:en)?|unit[éeà]s?|unidad(?:es)?|eenheid|jednostk[ai]|jednotk[ay]"
+    r"|enhet|yksikkö|birim|egység|единиц[аы]|단위|单位|単位)(?:\s[^\W\d]{1,10})?|[^\W\d]\w{0,20}(?=\s*,))"
+    r"(?:\s+|\"?\s*,\s*\"?)[\[(]?(?P<unit>[^\W\d]{1,20})[\])]?\W*$",
+    re.IGNORECASE,
+)
 _LONGEST = 200  # characters of a line that are looked at
 _DRIVEN = re.compile(  # "reciprocating rig, crank drive"
     r"\b(?:crank|scotch[- ]yoke|eccentric|kurbel|exzenter)"
@@ -70,6 +81,22 @@ class DraftValue(NamedTuple):
     key: str = ""
     guess: str = ""
 
+    @property
+    def number(self) -> float:
+        """The number as the file has it; NaN where it is none."""
+        match = re.search(self.pattern, self.text)
+        try:
+            return float(match[1].replace(",", ".")) if match else math.nan
+        except ValueError:
+            return math.nan
+
+
+def _end_of_text(layout: Layout, *, bare: bool) -> int:
+    """Return the line at which the text above the table ends; 0 where a table begins the file."""
+    if layout.heading is not None:
+        return layout.heading.names
+    return layout.blocks[0].start if (bare or layout.width == 1) and layout.blocks else 0
+
 
 def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
     """Find the single values that a file and its name state, a dozen at most of the former.
@@ -79,12 +106,12 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
     layout
         From `tribolab.draft.file.layout.find_layout`.
     bare
-        Whether to look above a table without a header, too.
+        Whether heights are meant: a table may have no header, and instruments write many settings.
 
     Returns
     -------
     list of DraftValue
-        A dozen at most.
+        A dozen at most, of heights more.
     """
     values: dict[str, DraftValue] = {}
     if radius := _radius_in_name(layout.file.path.name):
@@ -98,12 +125,11 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
                 "set_normal_force", pattern, in_name["unit"], None, name, "file name"
             )
             values[value.name] = value
-    above = layout.blocks[0].start if bare and layout.blocks else 0
-    stop = layout.heading.names if layout.heading else above
+    stop = _end_of_text(layout, bare=bare)
     units = _units_apart(layout, bare=bare)
     for line in layout.lines[:stop]:
         said = _said(line.rstrip())
-        if len(values) >= _MOST:
+        if len(values) >= (_MOST_OF_SCAN if bare else _MOST):
             break
         # a digit before the colon: a time of day, if it is not the number of a step
         if said and (not said["key"][-1].isdigit() or _STEP_TITLE.match(said["key"])):
@@ -182,11 +208,13 @@ def words_said(layout: Layout, *, bare: bool = False) -> list[tuple[str, str]]:
     bare
         Whether to look above a table without a header, too.
     """
-    above = layout.blocks[0].start if bare and layout.blocks else 0
-    stop = layout.heading.names if layout.heading else above
+    stop = _end_of_text(layout, bare=bare)
     said = (_WORDS.match(line.strip()) for line in layout.lines[:stop])
     told = [(match["key"], match["text"]) for match in said if match]
+    cells = (_UNIT_SAID.match(line.strip()) for line in layout.lines[:stop])
+    told += [(match["key"], match["unit"]) for match in cells if match]
     drives = (_DRIVEN.search(line[:_LONGEST]) for line in layout.lines[:stop])
+    told = [(key, text.rstrip('"; ,')) for key, text in told]
     return told + [("drive", match[0]) for match in drives if match]
 
 
@@ -203,7 +231,7 @@ def _units_apart(layout: Layout, *, bare: bool) -> dict[str, str]:
 
 
 def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:
-    key, unit = said["key"], (said["unit"] or "").strip("[]()") or None
+    key, unit = said["key"], unit_in_words((said["unit"] or "").strip("[]()")) or None
     bracket = _BRACKETS.search(key)
     if unit is None and bracket and is_unit(bracket[1]):
         unit, key = bracket[1], key[: bracket.start()]
@@ -277,7 +305,7 @@ _TURNS = re.compile(
     rf"(?:speed|velocity|rotation|rpm|drehzahl|vitesse|velocidad|velocita|giri|obroty|转速|回転数)$|^{STEP_WORD}\d*$"
 )
 _WANTED = {
-    "m": (RADIUS, DIAMETER, _R, ARM, STROKE, HALF_STROKE, PITCH, TURNING, PROFILE_LENGTH),
+    "m": (RADIUS, DIAMETER, _R, ARM, STROKE, HALF_STROKE, PITCH, TURNING, PROFILE_LENGTH, TIP),
     "s": (INTERVAL,),
     "m/s": (_SPEED,),
     "rad/s": (FREQUENCY, _TURNS),

@@ -55,7 +55,17 @@ _UNIT_WORDS = {
     **dict.fromkeys(("mikrometer", "micromètres", "micras"), "um"),
     **{"с": "s", "сек": "s", "мс": "ms", "мин": "min", "об/мин": "rpm"},
     **{"мм": "mm", "мкм": "um", "м": "m", "мм/с": "mm/s", "мкм/с": "um/s", "м/с": "m/s"},
-    **{"н": "N", "мн": "mN", "кн": "kN"},
+    **{"н": "N", "мн": "mN", "кн": "kN", "нм": "nm", "мк": "um"},
+    **dict.fromkeys(("mikrometri", "mikrometria", "mikrometriä", "mikron", "mikrony"), "um"),
+    **dict.fromkeys(("mikrometry", "mikrometrů", "mikrometr", "mikrometrów", "mikrons"), "um"),
+    **dict.fromkeys(("micrometri", "micrómetros", "micrômetros", "micra", "micron"), "um"),
+    **dict.fromkeys(("微米", "マイクロメートル", "ミクロン", "마이크로미터"), "um"),
+    **dict.fromkeys(("nanometri", "nanometria", "nanometriä", "nanometry", "nanometrů"), "nm"),
+    **dict.fromkeys(("nanomètres", "nanómetros", "纳米", "奈米", "ナノメートル"), "nm"),
+    **dict.fromkeys(("millimetri", "millimetriä", "milimetry", "milímetros", "millimètres"), "mm"),
+    **dict.fromkeys(("毫米", "ミリメートル", "millimeter", "millimetre", "millimeters"), "mm"),
+    **dict.fromkeys(("nanometer", "nanometre", "nanometers", "nanometres"), "nm"),
+    **dict.fromkeys(("micrometer", "micrometre", "micrometers", "micrometres", "microns"), "um"),
 }
 COUNTS = "counts"
 # columns of time that are called by their unit, as the clocks of microcontrollers are
@@ -114,6 +124,29 @@ def is_axis(name: str) -> bool:
     """
     device, own = device_of(name)
     return bool(_AXIS.search(squeezed(device or own)))
+
+
+def unit_in_words(text: str) -> str:
+    """Return the unit that a word or sign of another language is; else the text as it is.
+
+    >>> unit_in_words("мкм"), unit_in_words("Sekunden"), unit_in_words("kN")
+    ('um', 's', 'kN')
+    """
+    return _UNIT_WORDS.get(text.lower(), text)
+
+
+def length_unit(text: str) -> str:
+    """Return the unit of length that a text is and nothing else, in letters of ours; or "".
+
+    >>> length_unit("[nm]"), length_unit("Mikrometer"), length_unit("nm per step")
+    ('nm', 'um', '')
+    """
+    bare = text.strip(" \t[](){}.,;\"'")
+    unit = _UNIT_WORDS.get(bare.lower(), bare)
+    for spelt in (unit, unit.lower()) if unit != "Mm" else ("mm",):
+        if converts(spelt, "m"):
+            return spelt
+    return ""
 
 
 _PER = re.compile(r"[\s_]+per[\s_]+|(?<=[mN°])_(?=(?:s|min|h)$)")  # mm_per_s, mm_s

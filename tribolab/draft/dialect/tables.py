@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Sequence
+from typing import overload
 
 import numpy as np
 
@@ -144,3 +145,22 @@ def quoted_pattern(text: str) -> str:
     """Pattern between quotation marks, in which a backslash is one where that can be."""
     plain = "'" not in text and text.isprintable()
     return f"'{text}'" if plain else quoted(text)
+
+
+@overload
+def any_blanks(pattern: str) -> str: ...
+
+
+@overload
+def any_blanks(pattern: str | None) -> str | None: ...
+
+
+def any_blanks(pattern: str | None) -> str | None:
+    r"""Return a pattern that holds for any number of blanks or tabs where it has some.
+
+    Of a table whose cells blanks part, the reader sees one tab for each row of blanks.
+
+    >>> any_blanks(r"^\s*# sample  rate:\s*(\d+)")
+    '^\\\\s*#[ \\\\t]+sample[ \\\\t]+rate:\\\\s*(\\\\d+)'
+    """
+    return None if pattern is None else re.sub(r"(?:(?<!\\) |\\t)+", r"[ \\t]+", pattern)

@@ -6,10 +6,12 @@ from collections.abc import Sequence
 
 from tribolab.draft.columns.follows import SAYS_FRICTION, SAYS_LOAD, Follows, what_follows
 from tribolab.draft.columns.lengths import find_pitch, find_profile_length
+from tribolab.draft.columns.traces import find_stated
 from tribolab.draft.columns.turning import torque_of
-from tribolab.draft.columns.values import find_values
+from tribolab.draft.columns.values import DraftValue, find_values
 from tribolab.draft.dialect.tables import (
     FILL_IN,
+    any_blanks,
     column_table,
     comment,
     formula_table,
@@ -23,6 +25,7 @@ from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn, Understood
 from tribolab.io.dialects.dates import has_day
 
+_MOST = 12  # values that a long preamble states
 _REMOVE = "then remove the '#' below"
 
 
@@ -36,6 +39,12 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
     layout, understood
         What was found out about the file.
     """
+    follows = what_follows(layout, understood)
+    values, taken_over = _values(layout, understood, follows)
+    if layout.delimiter == "whitespace":
+        layout, understood = _by_any_blanks(layout, understood)
+        values = [value._replace(pattern=any_blanks(value.pattern)) for value in values]
+        taken_over = [value._replace(pattern=any_blanks(value.pattern)) for value in taken_over]
     columns = understood.columns
     used = [column for column in columns if column.used]
     parts = [_head(name, layout, understood)]
@@ -45,7 +54,6 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
     elif not layout.heading:
         parts.append(f"[recognise]\ncolumns = {layout.width}\n")
     parts += [_text_table(layout, understood), _header_table(layout, used)]
-    follows = what_follows(layout, understood)
     parts += [_time_table(understood), _speed_table(understood.kind, columns, follows)]
     numbers = understood.numbers
     parts += [column_table(column, numbers[:, column.place - 1]) for column in used]
@@ -57,18 +65,46 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
         taken.add(torque.place)  # it stands below, to be filled in
     rest = [c for c in columns if not c.used and not c.fill_in and c.place not in taken]
     parts.append(unused_columns(rest, numbers))
-    values, taken_over = find_values(layout), follows.values
-    pitch = find_pitch(layout) if understood.pitch_pattern else None
-    pitch = find_profile_length(layout) if understood.length_pattern else pitch
-    if pitch is not None:
-        values = [pitch, *(value for value in values if value.text != pitch.text)]
-        taken_over = (*taken_over, pitch)
     parts.append(value_tables(values, taken_over))
     parts += [formula_table(formula) for formula in follows.formulas]
     if understood.kind == "run":
         parts += _wanted_tables(understood, follows)
     text = "\n".join(part for part in parts if part)
     return text.encode("utf-8", "replace").decode()  # the file's name may hold any bytes
+
+
+def _values(
+    layout: Layout, understood: Understood, follows: Follows
+) -> tuple[list[DraftValue], list[DraftValue]]:
+    """Return the single values that the file states, and those of them that are used."""
+    taken_over = list(follows.values)
+    if understood.kind != "scan":
+        return find_values(layout), taken_over
+    values = find_values(layout, bare=True)
+    pitch = find_pitch(layout) if understood.pitch_pattern else None
+    pitch = find_profile_length(layout) if understood.length_pattern else pitch
+    if pitch is not None:
+        values = [pitch, *(value for value in values if value.text != pitch.text)]
+        taken_over.append(pitch)
+    quantities = {column.quantity for column in understood.columns if column.used}
+    if "y" not in quantities:
+        known = {value.pattern for value in taken_over}
+        stated = find_stated(layout, placed="x" in quantities)
+        taken_over += [value for value in stated if value.pattern not in known]
+    return values[:_MOST], taken_over
+
+
+def _by_any_blanks(layout: Layout, understood: Understood) -> tuple[Layout, Understood]:
+    """Return what was found out with patterns that hold for any number of blanks."""
+    return (
+        layout._replace(
+            header_pattern=any_blanks(layout.header_pattern),
+            step=any_blanks(layout.step),
+            end=any_blanks(layout.end),
+            skip_lines=any_blanks(layout.skip_lines),
+        ),
+        understood._replace(rate_pattern=any_blanks(understood.rate_pattern)),
+    )
 
 
 def _wanted_tables(understood: Understood, follows: Follows) -> list[str]:

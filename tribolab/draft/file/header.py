@@ -16,12 +16,30 @@ if TYPE_CHECKING:
     from tribolab.draft.file.lines import Grammar
 
 _ABOVE = 8  # lines above the first row that are looked at
+_LONGEST_MARK = 80  # characters of it
 _TELLING = 200  # cells that tell whether a row is one of units
 _WORD = re.compile(r"\S+")
 _SPECIAL = re.compile(r"([.^$*+?{}\[\]\\|()])")
 # A name of words with its unit in brackets, or a word. No name is longer than so: without an end to
 # look for it, a long line without brackets would be gone through once for each of its words
 _BRACKETED = re.compile(r"\S[^\[\]()]{0,200}?[\[(][^\[\]()]{0,100}[\])]|\S+")
+# "単位,μm" and "点数,1500" say something, and name no column
+_SAYS = re.compile(
+    r"[^\W\d]\W*[,;]\W*(?:[nmkuµμ]?m|Å|мкм|мм|нм|微米|纳米|毫米|[-+]?\d[\d.,]*)\W*$"
+    r"|^\W*(?:units?|einheit(?:en)?|unit[éà]s?|unidad(?:es)?|单位|単位)\s+[^\W\d]{1,3}\W*$"
+    r"|(?<![\w.,(\[])\d+(?:[.,]\d+|[.,]?\d*\s?(?:[nmkuµμ]?m|Å|Hz|N|s|mm/s|°C)(?![^\W\d_]))(?![^()\[\]]*[)\]])",
+    re.IGNORECASE,
+)
+# what parts the header from the numbers, and names no column
+_MARK = re.compile(
+    r"\W*(?:(?:end|eoh|begin|start|fin|fine|ende|beginn|anfang|d[ée]but|inicio|inizio|fim|einde|slut"
+    r"|koniec|konec|loppu|конец|начало)(?=[\W_]|$)[\s_\-]*(?:of|der|des|de[lr]?|du|dell[ao']|da|do|van)?"
+    r"[\s_\-]*(?:the|la|l')?[\s_\-]*(?:file|datei)?[\s_\-]*"
+    r"(?:header|head|kopf\w*|vorspann|en-?t[êe]te|cabecera|encabezado|cabe[çc]alho|intestazione|koptekst"
+    r"|data|daten|messwerte|values|donn[ée]es|datos|dati|dados|nag[łl]\w*|hlavi[čc]k\w*|заголов\w*|данн\w*)?"
+    r"|(?:header|data|header[\s_\-]*section)[\s_\-]*(?:end|start|begin)s?|(?:头|表头|数据)(?:结束|开始))\W*",
+    re.IGNORECASE,
+)
 # SI units of what an instrument records: a text that converts to one of them is a unit
 DIMENSIONS = (
     *("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Hz", "rad/s", "Pa s", "N/m"),
@@ -68,6 +86,9 @@ def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int)
     for index in range(start - 1, max(start - _ABOVE, 0) - 1, -1):
         if grammar.width(lines[index]):
             break
+        told = lines[index][:_LONGEST_MARK]
+        if width == 1 and (_MARK.fullmatch(told) or _SAYS.search(told)):
+            break  # a column is named right above its numbers
         if lines[index].strip():
             above.append(index)
     split = {index: _cells(lines[index], grammar, width) for index in above[:3]}
@@ -157,7 +178,7 @@ def _fits(line: str, cells: Sequence[str], grammar: Grammar, width: int) -> bool
     """Whether a line can be the header of a table of a given width."""
     filled = [cell for cell in cells if cell]
     words = [cell for cell in filled if not grammar.is_number(cell)]
-    if not filled or len(words) < 0.7 * len(filled):
+    if not filled or len(words) < 0.7 * len(filled) or _MARK.fullmatch(line[:_LONGEST_MARK]):
         return False
     if re.match(r"\s*(#|%|//|;)", line) and re.search(r"[:=]", line):
         return False  # a comment that says something: "# rate: 10 Hz"

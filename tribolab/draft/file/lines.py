@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from tribolab.draft.vocabulary import EASTERN_WORDS
 from tribolab.io.dialects.cells import split_row
+from tribolab.io.dialects.eastern import eastern_encoding
 from tribolab.io.dialects.signature import HEAD
 
 _EASTERN = ("gb18030", "cp932", "big5", "cp949", "cp1251")
@@ -102,7 +103,7 @@ def find_encoding(head: bytes) -> tuple[str, list[str]]:
         # the head may end inside a character
         head[: max(len(head) - 3, 0) if len(head) == HEAD else None].decode("utf-8")
     except UnicodeDecodeError:
-        if eastern := _eastern(head):
+        if eastern := _eastern(head) or eastern_encoding(head, whole=len(head) < HEAD):
             return eastern, [f"the encoding is {eastern}: names of columns are words in it"]
         name = "cp1252" if re.search(rb"[\x80-\x9f]", head) else "latin-1"
         return name, [f"the encoding is {name}: the file is not UTF-8"]

@@ -14,6 +14,10 @@ from tribolab.words import Count
 _LARGEST_MAP = 10.0  # m; gantries with optical gauges reach one
 _FINEST = 1e-13  # m, a tenth of the finest steps of a tunnelling microscope
 
+_REACH = 0.05  # of a profile's length, from which on its heights are doubted
+_STEEP = 1.0  # rms slope: 45 deg all over
+_FEWEST = 16  # heights of a profile that is doubted
+
 
 def measured_part(scan: xr.Dataset) -> xr.Dataset:
     """Cut a map to the rectangle outside of which no height was measured; x and y begin at 0.
@@ -75,3 +79,44 @@ def refuse_impossible(path: Path, scan: xr.Dataset) -> None:
                 f"{path}: by its units the points are {pitch:.3g} m apart along {dim}, less than "
                 "atoms are; the unit of its positions is wrong: export it with another one"
             )
+
+
+def doubt_about_heights(scan: xr.Dataset) -> str:
+    """Say that a profile's heights are large for its length, as they are in a wrong unit; else "".
+
+    Parameters
+    ----------
+    scan
+        ``height`` [m] (..., x); of a map nothing is said.
+
+    Examples
+    --------
+    >>> x = 1e-6 * np.arange(1000)
+    >>> rough = xr.Dataset({"height": ("x", 1e-4 * np.sin(x / 2e-6))}, {"x": x})
+    >>> doubt_about_heights(rough)
+    'heights reach over 20 % of the length, with an rms slope of 33: is their unit, or that of x, \
+right?'
+    >>> doubt_about_heights(rough.assign(height=rough.height / 1000))
+    ''
+    """
+    if "y" in scan.height.dims or scan.sizes["x"] < _FEWEST:
+        return ""
+    x = scan.x.values
+    length = float(x[-1] - x[0])
+    reach, slope = 0.0, 0.0
+    for row in scan.height.transpose(..., "x").values.reshape(-1, x.size):
+        present = np.isfinite(row)
+        if present.sum() < _FEWEST:
+            continue
+        bowed = np.polynomial.Polynomial.fit(x[present], row[present], 2)
+        rest = row[present] - bowed(x[present])
+        low, high = np.percentile(rest, [0.5, 99.5])  # spikes are no surface
+        steps = np.diff(rest) / np.diff(x[present])
+        reach = max(reach, float(high - low) / length)
+        slope = max(slope, float(np.sqrt(np.mean(steps**2))))
+    if reach < _REACH and slope < _STEEP:
+        return ""
+    return (
+        f"heights reach over {100 * reach:.2g} % of the length, with an rms slope of {slope:.2g}: "
+        "is their unit, or that of x, right?"
+    )

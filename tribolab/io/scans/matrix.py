@@ -12,10 +12,12 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, shown
+from tribolab.io.content.missing_marks import Marked, take_marks
 from tribolab.io.content.read import measurable
 from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.matrix_header import MatrixHeader, header_of
+from tribolab.io.scans.stated_missing import take_stated
 
 _HEAD = 1 << 20  # bytes in which a matrix begins
 _CUT = 8  # bytes of a sign at their end
@@ -87,7 +89,8 @@ def read_matrix(path: Path) -> xr.Dataset | None:
         matrix = _matrix(text.splitlines())
         if matrix is None:
             continue
-        header = header_of(matrix.above, (len(matrix.rows), matrix.columns), matrix.mark)
+        shape = len(matrix.rows), matrix.columns
+        header = header_of(matrix.above, shape, matrix.mark, commas_part=matrix.delimiter == ",")
         if told is None or (header.dx and header.dy and header.height):
             told = matrix, header
     if told is None:
@@ -98,14 +101,31 @@ def read_matrix(path: Path) -> xr.Dataset | None:
     heights = np.array(matrix.rows)
     if _even(heights[0, 1:]) and _even(heights[1:, 0]):
         return None  # positions stand beside the heights
+    whole = (heights == np.round(heights)) | np.isnan(heights)
+    if header.gauge_step not in (None, header.height) and whole.all():
+        header = header._replace(height=None)  # counts of that step, perhaps
     _refuse(path, matrix, header)
     assert header.dx and header.dy and header.height  # else refused
+    attrs = {"instrument": "matrix of heights, by its header"}
+    if missing := _without_missing(heights, header):
+        attrs["taken_for_missing"] = missing
     rows, columns = heights.shape
     return xr.Dataset(
         {"height": (("y", "x"), measurable(header.height * heights))},
         {"y": header.dy * np.arange(rows), "x": header.dx * np.arange(columns)},
-        {"instrument": "matrix of heights, by its header"},
+        attrs,
     )
+
+
+def _without_missing(heights: np.ndarray, header: MatrixHeader) -> str:
+    """Put NaN where a number stands for no height, and say which it was."""
+    stated = take_stated(heights, header.stated)
+    told = [
+        f"height: {Marked(number, count).words}, as the header states ('{shown(name, 30)}')"
+        for name, number, count in stated
+    ]
+    told += [f"height: {mark.words}" for mark in take_marks([heights.reshape(-1)])]
+    return "; ".join(told)
 
 
 def _texts(content: bytes) -> list[str]:

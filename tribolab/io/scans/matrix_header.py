@@ -14,28 +14,55 @@ _UNIT = (
 )
 _EASTERN = {"微米": "um", "纳米": "nm", "毫米": "mm"}
 _IN_KEY = re.compile(rf"[\[(]\s*({_UNIT})\s*[\])]|(?<![^\W\d_])({_UNIT})[\s:=,;]*$")
-_OF_UNIT = "units?|einheit(?:en)?|unit[eéà]s?|unidad(?:es)?|单位|単位"
+_OF_UNIT = "units?|einheit(?:en)?|unit[eéà]s?|unidad(?:es)?|单位|単位|단위"
 _HEIGHTS = (
     r"heights?|höhen?|hoehen?|hauteurs?|alturas?|altezz[ae]|topograph\w*|elevations?|高[さ度]"
+    r"|korkeu\w+|v[ýy][šs]k\w+|wysoko\w+|h(?:ö|o|oe)jd\w*|h[øo][yj]de\w*|hoogtes?|magass[áa]g\w*"
+    r"|y(?:ü|ue|u)ksekli\w+|visin\w+|высот\w*|높이|高度|vert[iy][ck]?al\w*|depths?|tiefen?"
     r"|(?<![^\W\d_])z(?![^\W\d_])"
 )
 _SAYS_UNIT = re.compile(rf"(?:{_OF_UNIT})\W.*?(?<![^\W\d_])(?P<unit>{_UNIT})\W*$", re.IGNORECASE)
 _SAYS_HEIGHTS = re.compile(
     rf"(?:{_HEIGHTS})\W*(?:[\[(]|\b(?:in|en|are)\b)\s*(?P<unit>{_UNIT})\W*$", re.IGNORECASE
 )
+# "korkeus: nm", an entry that is a unit and nothing else; not one of what lies across the surface
+_IS_UNIT = re.compile(
+    rf"^\W*(?P<key>[^\W\d][^:：=;\t]*?)\s*(?:[:：=;,\t]|\s{{2,80}})\W*(?P<unit>{_UNIT})\W*$",
+    re.IGNORECASE,
+)
+_NO_HEIGHT = re.compile(
+    r"(?i)(?<![^\W\d_])[dΔ]?(?:xy|x|y)(?![^\W\d_])|lateral|horizont|pixel|spacing|pitch|step|sampl"
+    r"|width|size|length|field|range|position|distan|abstand|wave|laser|filter|cut|radius|tip|横|縦|像素"
+)
 _ABOUT_HEIGHTS = re.compile(rf"{_HEIGHTS}|values?|data", re.IGNORECASE)
 _ACROSS = re.compile(r"(?i)(?<![^\W\d_])(?:xy|x|y)(?![^\W\d_])|lateral|横|縦")
 _FACTOR = re.compile(
     r"(?i)(?:(?<![^\W\d_])z|height)[\s_-]*(?:scale|scaling|factor|calibration|magnification)"
 )
-_ALONG_Z = re.compile(r"(?i)(?<![^\W\d_])z(?![^\W\d_])|vertical (?:range|scan|step|resolution)")
+_ANY_FACTOR = re.compile(
+    r"(?i)^(?!.*(?<![^\W\d_])[xy](?![^\W\d_]))(?!.*(?:lateral|pixel)).*(?:fa[ck]t(?:or|eur)|multipl"
+    r"|scaling|skalierung|(?<![^\W\d_])scale(?![^\W\d_]))"
+)
+_STEP_OF_GAUGE = re.compile(
+    r"(?i)(?<![^\W\d_])[dΔ]z(?![^\W\d_])"
+    r"|(?<![^\W\d_])(?:z|height|vertical|höhen?)[\s_-]*(?:step|resol|auflös|incr|quant|digit|lsb)"
+    r"|(?<![^\W\d_])lsb(?![^\W\d_])"
+)
+_ALONG_Z = re.compile(
+    r"(?i)(?<![^\W\d_])[dΔ]?z(?![^\W\d_])|vertical (?:range|scan|step|resolution)"
+)
 _X = re.compile(
-    r"(?i)(?<![^\W\d_])x(?![^\W\d_])|horizontal|width|breite|largeur|ancho|larghezza|宽|幅|横"
+    r"(?i)(?<![^\W\d_])[dΔ]?x(?![^\W\d_])|horizontal|width|breite|largeur|ancho|larghezza|宽|幅|横"
     r"|columns?|spalten|colonnes?|columnas|列"
 )
 _Y = re.compile(
-    r"(?i)(?<![^\W\d_])y(?![^\W\d_])|vertical|height|höhe|hauteur|alto|altezza|高|縦"
+    r"(?i)(?<![^\W\d_])[dΔ]?y(?![^\W\d_])|vertical|height|höhe|hauteur|alto|altezza|高|縦"
     r"|rows?|lines|zeilen|lignes|filas|righe|行"
+)
+_STEPS = (
+    r"pitch|spacing|step|increment|schritt\w*|(?:punkt|raster)?abstand|pas|paso|passo|stap|afstand"
+    r"|krok|rozte[čc]\w*|odst[ęe]p|avst[åa]nd|steg\w*|askel\w*|v[äa]li|l[ée]p[ée]s\w*|ad[ıi]m|шаг"
+    r"|间距|步长|ピッチ|間隔|간격"
 )
 _PITCH = re.compile(
     r"(?i)pixel[\s_-]*(?:size|pitch|spacing|width|height|gr(?:ö|oe)(?:ß|ss)e|abstand)"
@@ -46,7 +73,9 @@ _PITCH = re.compile(
     r"(?:pitch|spacing|increment|step|interval|distance)"
     r"|(?:pitch|spacing|increment|step|interval)[\s_-]*\(?[xy](?![^\W\d_])|punkt(?:e|ab)\w*abstand"
     r"|punktabstand|(?:distance|pas|paso|passo)\s+(?:entre|de|di|tra)\s+p\w+"
-    r"|像素(?:尺寸|大小|间距)|点间距|ピクセル(?:サイズ|ピッチ)|画素(?:サイズ|ピッチ)|点間隔"
+    r"|(?<![^\W\d_])[dΔ][xy](?![^\W\d_])|^\W*(?:pitch|spacing|cell\s?size|grid\s?size)\W*$"
+    rf"|(?:{_STEPS}).*(?<![^\W\d_])(?:xy|x|y)(?![^\W\d_])|(?<![^\W\d_])(?:xy|x|y)\W+(?:{_STEPS})"
+    r"|픽셀\s?(?:크기|간격)|像素(?:尺寸|大小|间距)|点间距|ピクセル(?:サイズ|ピッチ)|画素(?:サイズ|ピッチ)|点間隔"
 )
 _EXTENT = re.compile(
     r"(?i)field[\s_-]*(?:of[\s_-]*)?view|(?<![^\W\d_])fov(?![^\W\d_])"
@@ -68,7 +97,8 @@ _COUNT = re.compile(
 class MatrixHeader(NamedTuple):
     """What stands above a matrix: pitch along x and y [m], unit of heights [m], rows and columns.
 
-    None is what it does not say, or says in two ways.
+    None is what it does not say, or says in two ways. `stated` are names and numbers that stand
+    alone, without a unit; `gauge_step` [m] is what whole numbers may be counted in.
     """
 
     dx: float | None
@@ -76,6 +106,8 @@ class MatrixHeader(NamedTuple):
     height: float | None
     rows: int | None
     columns: int | None
+    stated: tuple[tuple[str, float], ...] = ()
+    gauge_step: float | None = None
 
 
 class _Said(NamedTuple):
@@ -86,7 +118,9 @@ class _Said(NamedTuple):
     units: tuple[str, ...]
 
 
-def header_of(lines: Iterable[str], shape: tuple[int, int], mark: str) -> MatrixHeader:
+def header_of(
+    lines: Iterable[str], shape: tuple[int, int], mark: str, *, commas_part: bool = False
+) -> MatrixHeader:
     """Understand the lines above a matrix.
 
     Parameters
@@ -96,7 +130,9 @@ def header_of(lines: Iterable[str], shape: tuple[int, int], mark: str) -> Matrix
     shape
         Rows and columns of the matrix, by which an extent becomes a pitch.
     mark
-        Decimal mark.
+        Decimal mark of the matrix; the lines above may have the other one.
+    commas_part
+        Whether commas part cells, and are no decimal marks.
 
     Examples
     --------
@@ -105,24 +141,47 @@ def header_of(lines: Iterable[str], shape: tuple[int, int], mark: str) -> Matrix
     (2.0, 2.0, 1e-09)
     """
     texts = [line[:_LONGEST].replace('"', " ").strip() for line in lines]
-    said = [part for text in texts if (part := _said(text, mark)) is not None]
+    said = [part for text in texts if (part := _said(text, mark, commas_part=commas_part))]
     pitch = _places(said, _PITCH, (1, 1))
-    extent = _places(said, _EXTENT, shape)
+    extent = _places(said, _EXTENT, shape, parted=True)
     dx, dy = (first or second for first, second in zip(pitch, extent, strict=True))
     rows, columns = _counts(said)
-    scaled = any(_FACTOR.search(part.key) and part.numbers[0] != 1.0 for part in said)
-    return MatrixHeader(dx, dy, None if scaled else _height_unit(texts), rows, columns)
+    scaled = any(
+        part.numbers[0] != 1.0
+        and (_FACTOR.search(part.key) or (_ANY_FACTOR.search(part.key) and not part.units[0]))
+        for part in said
+    )
+    steps = {
+        part.numbers[0] * _metres(part.units[0])
+        for part in said
+        if _STEP_OF_GAUGE.search(part.key) and part.units[0]
+    }
+    alone = tuple(
+        (part.key.strip(" #%;,:=\t"), part.numbers[0])
+        for part in said
+        if len(part.numbers) == 1 and not part.units[0]
+    )
+    return MatrixHeader(
+        dx,
+        dy,
+        None if scaled else _height_unit(texts),
+        rows,
+        columns,
+        alone,
+        max(steps, default=None),
+    )
 
 
-def _said(text: str, mark: str) -> _Said | None:
-    number = rf"(?<![\w.])[-+]?\d+(?:[{mark}]\d+)?(?:[eE][-+]?\d+)?"
+def _said(text: str, mark: str, *, commas_part: bool) -> _Said | None:
+    marks = "." if commas_part else ".,"
+    number = rf"(?<![\w.])[-+]?\d+(?:[{marks}]\d+)?(?:[eE][-+]?\d+)?"
     first = re.search(number, text)
     if first is None:
         return None
     key = text[: first.start()]
     numbers, units = [], []
     for match in re.finditer(rf"({number})[\s,;]*[(\[]?({_UNIT})?", text[first.start() :]):
-        numbers.append(float(match[1].replace(mark, ".")))
+        numbers.append(_number(match[1], mark))
         units.append(match[2] or "")
     if len(numbers) > 2:  # a date, a time, a row of results
         return None
@@ -131,8 +190,18 @@ def _said(text: str, mark: str) -> _Said | None:
     return _Said(key, tuple(numbers), tuple(unit or usual for unit in units))
 
 
+def _number(text: str, mark: str) -> float:
+    """Return a number; NaN where its mark is not the table's and may part thousands: 1,024.
+
+    >>> _number("2,5", "."), _number("1,024", ","), _number("1,024", ".")
+    (2.5, 1.024, nan)
+    """
+    thousands = re.fullmatch(r"[-+]?[1-9]\d{0,2}[.,]\d{3}", text) and mark not in text
+    return float("nan") if thousands else float(text.replace(",", "."))
+
+
 def _places(
-    said: list[_Said], words: re.Pattern[str], shape: tuple[int, int]
+    said: list[_Said], words: re.Pattern[str], shape: tuple[int, int], *, parted: bool = False
 ) -> tuple[float | None, float | None]:
     """Return the pitch along x and y [m] that lines of such words say."""
     rows, columns = (max(number, 1) for number in shape)
@@ -145,22 +214,28 @@ def _places(
             continue
         x, y = bool(_X.search(part.key)), bool(_Y.search(part.key))
         if len(lengths) == 2:
-            along[0].add(lengths[0] / columns)
-            along[1].add(lengths[1] / rows)
+            along[0].add(_part(lengths[0], columns, parted))
+            along[1].add(_part(lengths[1], rows, parted))
         elif x != y:
-            along[0 if x else 1].add(lengths[0] / (columns if x else rows))
+            along[0 if x else 1].add(_part(lengths[0], columns if x else rows, parted))
         elif rows == columns:  # of a field that is not square one length may be either side
             for axis in along:
-                axis.add(lengths[0] / columns)
+                axis.add(_part(lengths[0], columns, parted))
     dx, dy = (values.pop() if len(values) == 1 else None for values in along)
     return dx, dy
+
+
+def _part(length: float, points: int, parted: bool) -> float:
+    """Return the distance of points over a length, whose last one is its end or one step before."""
+    pitches = [length / points, length / max(points - 1, 1)] if parted else [length]
+    return min(pitches, key=lambda pitch: len(f"{pitch:.7g}"))
 
 
 def _counts(said: list[_Said]) -> tuple[int | None, int | None]:
     """Return the numbers of rows and columns."""
     along: tuple[set[int], set[int]] = set(), set()
     for part in said:
-        whole = all(n == int(n) and n > 0 for n in part.numbers) and not any(part.units)
+        whole = all(n > 0 and n == round(n) for n in part.numbers) and not any(part.units)
         if not whole or not _COUNT.search(part.key):
             continue
         x, y = bool(_X.search(part.key)), bool(_Y.search(part.key))
@@ -177,15 +252,19 @@ def _height_unit(texts: list[str]) -> float | None:
     """Return the unit of the heights [m], if just one is said."""
     own: set[float] = set()
     any_unit: set[float] = set()
+    other: set[float] = set()
     for text in texts:
+        if any(sign.isdigit() for sign in text):
+            continue
         match = _SAYS_HEIGHTS.search(text) or _SAYS_UNIT.search(text)
-        if match is None or any(sign.isdigit() for sign in text):
-            continue
-        of_heights = bool(_ABOUT_HEIGHTS.search(text))
-        if not of_heights and _ACROSS.search(text):
-            continue
-        (own if of_heights else any_unit).add(_metres(match["unit"]))
-    units = own or any_unit
+        if match is not None:
+            of_heights = bool(_ABOUT_HEIGHTS.search(text))
+            if of_heights or not _ACROSS.search(text):
+                (own if of_heights else any_unit).add(_metres(match["unit"]))
+        elif (entry := _IS_UNIT.search(text)) and not _NO_HEIGHT.search(entry["key"]):
+            of_heights = bool(_ABOUT_HEIGHTS.search(entry["key"]))
+            (own if of_heights else other).add(_metres(entry["unit"]))
+    units = own or any_unit or other
     return units.pop() if len(units) == 1 else None
 
 

@@ -187,6 +187,8 @@ def _of_columns(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
         attrs["columns_not_used"] = "; ".join(content.not_used)
     if content.left_out:
         attrs["rows_left_out_why"] = "; ".join(f"{n} {why}" for why, n in content.left_out.items())
+    if "taken_for_missing" in content.notes:
+        attrs["taken_for_missing"] = content.notes["taken_for_missing"]
     if len(pieces) > 1:
         attrs["traces"] = str(len(pieces))
     return [_scan(path, piece.columns, attrs, dialect) for piece in pieces], content.sha256

@@ -75,7 +75,9 @@ def _of_text(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Data
     except NotSaidError as lacking:
         try:
             return read_foreign(path, x_unit, height_unit)
-        except NotSaidError:
+        except NotSaidError as error:
+            if x_unit is None:  # what is lacking is said of our own reading
+                raise lacking from error
             raise
         except ReadError as error:
             raise lacking from error

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError
+from tribolab.io.scans.extent import doubt_about_heights
 from tribolab.qc.register import Check, Limit, Result
 from tribolab.qc.scan.subject import ScanSubject
 from tribolab.surface.roughness import roughness_parameters
@@ -59,6 +60,8 @@ def _length(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
             f"{stated_ones[row] * size:.6g} {unit}"
         )
         results.append(Result(status, name, text, value))
+    if (short := _too_few(subject)) is not None:
+        results.append(short)
     if (odd := _implausible(subject, limits)) is not None:
         results.append(odd)
     if not results and attrs.get("stated_length_m") is None:
@@ -68,6 +71,17 @@ def _length(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
             )
         ]
     return results
+
+
+def _too_few(subject: ScanSubject) -> Result | None:
+    """Say whether the file states another number of points than stand in it."""
+    stated = [number for number in subject.stated("stated_points") if np.isfinite(number)]
+    points = subject.scans.sizes["x"]
+    if subject.is_map or not stated or all(abs(number - points) <= 1 for number in stated):
+        return None
+    other = next(number for number in stated if abs(number - points) > 1)
+    text = f"the file states {other:.0f} points, {points} stand in it: is it whole?"
+    return Result("suspect", "height", text, float(points))
 
 
 def _implausible(subject: ScanSubject, limits: Mapping[str, float]) -> Result | None:
@@ -85,10 +99,11 @@ def _implausible(subject: ScanSubject, limits: Mapping[str, float]) -> Result | 
     if steepest > limits["slope"]:
         text = (
             f"the rms slope is {steepest:.3g}, {np.degrees(np.arctan(steepest)):.3g} deg: heights "
-            "and positions do not fit each other"
+            "and positions do not fit each other, so the unit of the heights or that of x is wrong"
         )
         return Result("suspect", "pitch", text, steepest)
-    return None
+    doubt = doubt_about_heights(subject.scans)
+    return Result("pass", "height", doubt, steepest, noted=True) if doubt else None
 
 
 def _own_results(subject: ScanSubject) -> list[tuple[str, dict[str, float], float]]:
@@ -178,7 +193,7 @@ INSTRUMENT_CHECKS = (
         "length",
         7,
         "Is the scan as long and as fine as the file states?",
-        "Find out whether the unit of x is right and the scan was whole.",
+        "Find out whether the units of the heights and of x are right and the scan was whole.",
         {
             "suspect": Limit(0.01, "1", "run-in and rounding stay below a hundredth"),
             "fail": Limit(0.1, "1", "wavenumbers wrong by a tenth change C by a third"),

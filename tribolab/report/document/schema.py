@@ -42,7 +42,8 @@ _QUALITY = "gravest finding of the checks on the scans that were used; empty if 
 _ROUGHNESS = (
     "a row of tables/roughness.csv: ISO parameters are means over the scans, *_sem their "
     "standard errors from the scatter of the scans (of a single profile, of its sampling lengths), "
-    "*_gap_error what missing heights bring, rms_* moments of the extrapolated spectrum "
+    "*_gap_error what missing heights bring, Sq and Sa (ISO 25178) of maps alone and without a "
+    "cut-off, null for profiles, rms_* moments of the extrapolated spectrum "
     "of an isotropic surface"
 )
 _CONTACT = (

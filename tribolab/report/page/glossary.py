@@ -50,6 +50,7 @@ GLOSSARY: dict[str, str] = {
     "h rms": "Root mean square of the heights by the spectrum, extrapolated: what theory takes.",
     "Rq": "Root mean square of the heights, without form and waves beyond the cut-off (ISO).",
     "Pq": "Root mean square of all heights of the scan without form, no cut-off applied (ISO).",
+    "Sq": "Root mean square of all heights of a map without form, no cut-off applied (ISO 25178).",
     "Slope rms": "Root mean square of the slopes of the roughness.",
     "Hurst exponent": "How roughness grows with the length it is looked at: slope of the power "
     "spectrum is −2(1 + H). Fractal from 0 to 1; above 1 the surface is smooth at short distances.",
@@ -70,7 +71,7 @@ GLOSSARY: dict[str, str] = {
 
 # What a campaign of surfaces alone speaks of.
 OF_SURFACES = frozenset(
-    ("A/A₀", "Pull-off force", "h rms", "Rq", "Pq", "Slope rms", "Hurst exponent", "Roll-off")
+    ("A/A₀", "Pull-off force", "h rms", "Rq", "Pq", "Sq", "Slope rms", "Hurst exponent", "Roll-off")
 )
 
 # Words in the sentences of the first screen that are explained where they stand.
@@ -108,6 +109,7 @@ HEADS: dict[str, str] = {
     "Hurst exponent": GLOSSARY["Hurst exponent"],
     "Rq (µm)": GLOSSARY["Rq"] + " Small: the cut-off.",
     "Pq (µm)": GLOSSARY["Pq"],
+    "Sq (µm)": GLOSSARY["Sq"] + " Small: Sa.",
     "h rms (µm)": GLOSSARY["h rms"] + " Small: outer bounds of the extrapolated spectrum.",
     "Slope rms": GLOSSARY["Slope rms"],
     "Roll-off (1/mm)": GLOSSARY["Roll-off"],

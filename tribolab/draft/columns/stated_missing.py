@@ -1,0 +1,48 @@
+"""Numbers in columns of heights that the header states to stand for no height."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tribolab.draft.columns.values import find_values
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.model import DraftColumn
+from tribolab.io.dialects.cells import split_row
+from tribolab.io.scans.stated_missing import take_stated
+
+
+def take_stated_missing(
+    layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray
+) -> list[str]:
+    """Put NaN where a number stands for no height, and return what is written there.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    columns
+        The columns as they are understood.
+    numbers
+        Their numbers (rows, columns) as written; changed in place.
+    """
+    stated = [(v.text, v.number) for v in find_values(layout, bare=True) if v.number == v.number]
+    heights = [c.place - 1 for c in columns if c.used and c.quantity == "height"]
+    taken = {number for place in heights for _, number, _ in take_stated(numbers[:, place], stated)}
+    if not taken:
+        return []
+    cells = {
+        row[place]
+        for row in (split_row(line, layout.delimiter) for line in layout.rows())
+        for place in heights
+        if place < len(row)
+    }
+    return sorted(cell for cell in cells if _number(cell, layout.decimal) in taken)
+
+
+def _number(cell: str, decimal: str) -> float | None:
+    try:
+        return float(cell.replace(decimal, "."))
+    except ValueError:
+        return None
