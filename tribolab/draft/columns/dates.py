@@ -45,9 +45,11 @@ def find_form(texts: Sequence[str]) -> tuple[str, str]:
     filled = [text for text in texts if text]
     fitting = [form for form in _FORMS if filled[:_TRIED] and _fits(filled[:_TRIED], form)]
     fitting = [form for form in fitting if _fits(filled, form)]
-    if ISO in fitting:  # without a zone there is none to be read
-        fitting = [form for form in fitting if form != ISO_ZONE]
-    return (fitting[0] if fitting else "", fitting[1] if len(fitting) > 1 else "")
+    if not fitting:
+        return "", ""
+    times = seconds(filled, fitting[0])
+    others = (form for form in fitting[1:] if not np.allclose(seconds(filled, form), times))
+    return fitting[0], next(others, "")
 
 
 def _fits(texts: Sequence[str], form: str) -> bool:

@@ -161,6 +161,6 @@ def any_blanks(pattern: str | None) -> str | None:
     Of a table whose cells blanks part, the reader sees one tab for each row of blanks.
 
     >>> any_blanks(r"^\s*# sample  rate:\s*(\d+)")
-    '^\\\\s*#[ \\\\t]+sample[ \\\\t]+rate:\\\\s*(\\\\d+)'
+    '^\\s*#[ \\t]+sample[ \\t]+rate:\\s*(\\d+)'
     """
     return None if pattern is None else re.sub(r"(?:(?<!\\) |\\t)+", r"[ \\t]+", pattern)

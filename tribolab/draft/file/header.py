@@ -210,8 +210,10 @@ def _units_below_names(
     found: dict[int, tuple[tuple[str, ...], bool]] = {}
     for index in above:
         words = list(_WORD.finditer(lines[index]))
-        if index in fitting or not 0 < len(words) < width:
+        if index in fitting or not width // 2 <= len(words) < width:
             continue
+        if not any(map(str.isalpha, lines[index])):
+            continue  # a mark of comments is no percentage
         if not all(is_unit(word[0].strip("[]()")) for word in words):
             continue
         over = next((i for i in above if i < index and i in fitting), None)

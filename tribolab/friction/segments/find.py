@@ -27,6 +27,7 @@ from tribolab.several import as_stated, of_runs, over_dims
 from tribolab.stamping import stamp
 from tribolab.units import to_si
 
+_OF_STROKE = 5  # samples of a middle, at least: many short strokes tell as much as a long one
 _OF_STROKES = 5  # degree of the polynomial through the positions of a stroke
 _MIDDLE = 0.5  # of each stroke that a crank drives: its speed changes there by an eighth
 _LABELS = ("set_speed", "set_normal_force", "step", "cycle", "rolling_speed", "slide_roll_ratio")
@@ -159,7 +160,7 @@ def find_segments(
     if "stroke_m" not in run.attrs and not shuttles(run):
         return plateaus
     try:  # what a crank drives is never at constant speed: each stroke has a middle
-        return _of_strokes(run, source, _MIDDLE, min_samples)
+        return _of_strokes(run, source, _MIDDLE, min(min_samples, _OF_STROKE))
     except AnalysisError:  # it does not move to and fro: why no plateau was found says more
         return plateaus
 

@@ -42,6 +42,7 @@ def _gb2312(code: bytes) -> bool:
 def _jis(code: bytes) -> bool:
     """Whether a letter is kana, or in the first level of JIS X 0208."""
     kana = len(code) == 2 and code[0] in (0x82, 0x83)
+    kana = kana or code in (b"\x81\x5b", b"\x81\x58")  # long vowels, repeated signs
     return kana or (len(code) == 2 and 0x88 <= code[0] <= 0x98)
 
 

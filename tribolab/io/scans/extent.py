@@ -94,7 +94,7 @@ def doubt_about_heights(scan: xr.Dataset) -> str:
     >>> x = 1e-6 * np.arange(1000)
     >>> rough = xr.Dataset({"height": ("x", 1e-4 * np.sin(x / 2e-6))}, {"x": x})
     >>> doubt_about_heights(rough)
-    'heights reach over 20 % of the length, with an rms slope of 33: is their unit, or that of x, \
+    'heights reach over 20 % of the length, with an rms slope of 35: is their unit, or that of x, \
 right?'
     >>> doubt_about_heights(rough.assign(height=rough.height / 1000))
     ''
