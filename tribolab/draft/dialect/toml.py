@@ -189,7 +189,7 @@ def _header_table(layout: Layout, used: list[DraftColumn]) -> str:
         below = 'units = "row"\n' if held.units_below else ""
         sheet = f"[header]\nline = {held.line}\n{below}sheet = {quoted(held.sheet)}\n"
         return sheet if held.sheet else ""
-    lines = ["[header]"]
+    lines, skip = ["[header]"], layout.skip
     if layout.heading:
         if layout.header_pattern:
             lines.append(f"pattern = {quoted_pattern(layout.header_pattern)}")
@@ -197,6 +197,8 @@ def _header_table(layout: Layout, used: list[DraftColumn]) -> str:
             lines.append(f"line = {layout.header_line}")
         units = "row" if layout.heading.units is not None else "brackets"
         units = units if layout.heading.aligned else "dialect"
+        if units == "dialect" and layout.heading.units is not None:
+            skip += layout.heading.units - layout.heading.names
         if units != "brackets":
             lines.append(f'units = "{units}"')
         if units == "row" and layout.units_line > 1:
@@ -205,8 +207,8 @@ def _header_table(layout: Layout, used: list[DraftColumn]) -> str:
             lines.append("repeats = true")
         if layout.step:
             lines.append(f"step = {quoted_pattern(layout.step)}")
-    if layout.skip:
-        lines.append(f"skip = {layout.skip}")
+    if skip:
+        lines.append(f"skip = {skip}")
     return "\n".join(lines) + "\n" if len(lines) > 1 else ""
 
 

@@ -1,0 +1,112 @@
+"""Headers as other laboratories write them: few units, steps in cells, one column, marks."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import tribolab as tl
+from tribolab.draft.dialect.draft import draft_dialect
+from tribolab.errors import ReadError
+
+ROWS = 400
+
+
+def noisy(level, seed):
+    return level * (1 + 0.01 * np.random.default_rng(seed).standard_normal(ROWS))
+
+
+def test_units_below_some_names_belong_to_those_they_stand_under(tmp_path):
+    """In a table that blanks part a pure number has no unit, and the row of units is short."""
+    time = 0.02 * np.arange(ROWS)
+    rows = np.column_stack([time, noisy(6.0, 1), noisy(50.0, 2), noisy(0.12, 3), noisy(2.0, 4)])
+    head = "Sliding speed = 25 mm/s\n       T        Fx        Fz       COF        AE\n"
+    head += "     sec        mN         N                   V\n"
+    text = head + "\n".join(" ".join(f"{x:9.4f}" for x in row) for row in rows) + "\n"
+    (tmp_path / "run.txt").write_text(text, "utf-8")
+    columns = draft_dialect(tmp_path / "run.txt").understood.columns
+    assert [(c.label, c.read_unit) for c in columns[:3]] == [
+        *(("T", "sec"), ("Fx", "mN"), ("Fz", "N"))
+    ]
+    assert columns[3].quantity == "friction_coefficient" and columns[3].read_unit is None
+    dialect = draft_dialect(tmp_path / "run.txt").dialect
+    run = tl.read(tmp_path / "run.txt", dialect)
+    assert float(run.friction_force.mean()) == pytest.approx(6e-3, rel=0.01)
+    assert float(run.normal_force.mean()) == pytest.approx(50, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("title", "unit"),
+    [
+        ("Palier {n}/3;{rpm};tr/min;;", "tr/min"),
+        ("Step {n} of 3;Rotational speed;{rpm};min-1;", ""),
+    ],
+)
+def test_a_rotation_stated_in_the_title_of_each_step_is_its_own(tmp_path, title, unit):
+    """Where it stands in cells too, and in whatever way a turn a minute is written."""
+    if not unit:
+        title = title.replace(";Rotational speed;", "\tRotational speed ").replace(
+            ";min-1;", " min-1"
+        )
+    blocks = ["Rayon de piste;15;mm;;"]
+    for number, rpm in enumerate((30, 60, 120), start=1):
+        blocks += [title.format(n=number, rpm=rpm), "Temps (s);Ft (N);Fn (N);T (°C)"]
+        force = noisy(2.0 / number, number)
+        blocks += [f"{0.1 * k:.1f};{f:.4f};10.0;21.0" for k, f in enumerate(force)]
+    (tmp_path / "disc.csv").write_text("\n".join(blocks) + "\n", "latin-1")
+    draft = draft_dialect(tmp_path / "disc.csv")
+    assert any("is how fast it turns in its step" in guess for guess in draft.guesses)
+    run = tl.read(tmp_path / "disc.csv", draft.dialect)
+    speed = [float(np.median(run.sliding_velocity[run.step == step])) for step in (1, 2, 3)]
+    assert speed == pytest.approx([2 * np.pi * 0.015 * rpm / 60 for rpm in (30, 60, 120)])
+
+
+def test_a_single_column_is_what_the_line_above_it_says(tmp_path):
+    phase = 2 * np.pi * 2 * 0.01 * np.arange(ROWS)
+    head = ["Corsa totale: 20 mm", "Frequenza: 2 Hz", "Carico: 10 N", "Campionamento: 100 Hz"]
+    head += ["Moto: alternativo armonico", "Segnale: forza di attrito [mN], zero non corretto"]
+    force = 4 * np.sign(np.cos(phase)) + 0.1 + 0.05 * noisy(1.0, 7)
+    values = [f"{1e3 * x:.3f}".replace(".", ",") for x in force]
+    (tmp_path / "prova.dat").write_text("\n".join([*head, "-" * 30, *values]) + "\n", "latin-1")
+    run = tl.read(tmp_path / "prova.dat")
+    assert float(np.abs(run.friction_force - 0.15).median()) == pytest.approx(4.0, rel=1e-3)
+    assert float(run.time[-1]) == pytest.approx((ROWS - 1) / 100)
+    assert float(run.sliding_velocity.max()) == pytest.approx(np.pi * 0.02 * 2, rel=1e-3)
+    assert float(run.normal_force[0]) == 10
+
+
+def test_a_row_of_units_that_fills_one_cell_is_one(tmp_path):
+    head = ["Normal load;15;N", "Oscillation frequency;2;Hz", "Stroke;8;mm", "Sampling rate;100;Hz"]
+    head += ["Drive;crank;", "No.;Lateral force", " ;N"]
+    phase = 2 * np.pi * 2 * 0.01 * np.arange(ROWS)
+    rows = [f"{k};{x:.3f}" for k, x in enumerate(4.5 * np.sign(np.cos(phase)), start=1)]
+    (tmp_path / "pin.csv").write_text("\n".join([*head, *rows]) + "\n", "utf-8")
+    run = tl.read(tmp_path / "pin.csv")
+    assert float(run.time[-1]) == pytest.approx((ROWS - 1) / 100)
+    assert float(np.abs(run.friction_force).median()) == 4.5
+    assert float(run.sliding_velocity.max()) == pytest.approx(np.pi * 0.008 * 2, rel=1e-3)
+
+
+def test_names_behind_a_mark_of_comments_are_found_again_whatever_the_blanks(tmp_path):
+    time = 0.01 * np.arange(ROWS)
+    way = 1e-2 * np.abs((time % 2) - 1)
+    rows = np.column_stack([time, 1e3 * way, noisy(2.0, 1), noisy(0.1, 2)])
+    head = (
+        "% linear slider\n% deadweight 2 N\n%\n% t [s]           x [mm]          Fn [N]   Ft [N]\n"
+    )
+    text = head + "\n".join("  " + "  ".join(f"{x:.7e}" for x in row) for row in rows) + "\n"
+    (tmp_path / "sweep.txt").write_text(text, "utf-8")
+    run = tl.read(tmp_path / "sweep.txt")
+    assert float(run.position.max()) == pytest.approx(1e-2, rel=0.01)
+    assert float(run.normal_force.mean()) == pytest.approx(2.0, rel=0.01)
+
+
+def test_dates_that_two_forms_read_alike_are_no_guess(tmp_path):
+    lines = ["日時,回転数,荷重,摩擦トルク", ",rpm,N,N・m"]
+    lines += [f"2018/06/12 13:05:{k / 10:04.1f},100,300.0,0.5" for k in range(500)]
+    (tmp_path / "ring.csv").write_text("\n".join(lines) + "\n", "cp932")
+    with pytest.raises(ReadError) as told:
+        tl.read(tmp_path / "ring.csv")
+    assert "written" not in str(told.value) and "radius" in str(told.value)
+    torque = draft_dialect(tmp_path / "ring.csv").understood.columns[3]
+    assert torque.file_unit == "N・m"
