@@ -23,6 +23,7 @@ from tribolab.records.run_facts import (
     values_of,
 )
 from tribolab.records.run_record import DecisionRow
+from tribolab.records.run_trend import trends_along
 from tribolab.words import duration, many, percent
 
 if TYPE_CHECKING:
@@ -71,6 +72,9 @@ def notices_of(
         if largest:
             text += f", at most {percent(largest)} of the typical friction"
         say("note", "friction", text)
+    if quantity == "friction_coefficient" and quantity in friction:
+        for trend in trends_along(friction, values):
+            say("note", "friction", trend.text)
     for text in _remarks(friction):
         say("note", "friction", text)
     if str(friction.attrs.get("offset", "")).startswith("none"):
@@ -78,6 +82,14 @@ def notices_of(
     if (track := position_range(segments)) is not None:
         low, high = (f"{1e3 * end:.4g}" for end in track)
         say("note", "left out", f"what lies outside positions {low} to {high} mm of each stroke")
+    if (share := segments.attrs.get("stroke_middle")) is not None and segments.sizes["segment"]:
+        whole, used = (
+            float((segments[f"{part}stop"] - segments[f"{part}start"]).sum())
+            for part in ("", "trimmed_")
+        )
+        strokes = many(segments.sizes["segment"], "stroke")
+        text = f"what lies outside the middle {percent(float(share))} of each of {strokes}"
+        say("note", "left out", f"{text}: {duration(whole - used)} of {duration(whole)}")
     for entry in left_out(segments):
         text = f"{many(entry.intervals, 'interval')}, {duration(entry.duration_s)}"
         say("note", "left out", f"{entry.reason}: {text}")
