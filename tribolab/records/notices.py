@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribolab.friction.coefficient.steadiness import chance_limit
 from tribolab.friction.segments.find import why_no_segment
 from tribolab.records.decision_rows import decision_notices
-from tribolab.records.judgement import SURE
 from tribolab.records.parts import Notice
 from tribolab.records.run_facts import (
     counting,
@@ -65,7 +65,8 @@ def notices_of(
             text = f"{many(against, 'segment')} of {count} with friction along the motion (µ < 0)"
             say("suspect", "friction", text + "; is the sign of the force or the offset right?")
     # as the check on steadiness and the page's table count them
-    drift = int((values_of(friction, "trend_p_value", count) < SURE).sum())
+    limit = chance_limit(values_of(friction, "effective_samples", count))
+    drift = int((values_of(friction, "trend_p_value", count) < limit).sum())
     if drift:
         text = f"{many(drift, 'segment')} of {count} with a significant trend"
         largest = drift_of(friction, values) if quantity in friction else None

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribolab.friction.coefficient.steadiness import chance_limit
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.oscillation.waveform import NOT_CLEAR, NOT_LOOKED_AT, oscillating
 from tribolab.friction.stribeck import mean_of_observations
@@ -15,7 +16,7 @@ from tribolab.friction.zero.of_run import PAIRED
 from tribolab.medians import median
 from tribolab.records.decision_rows import decision_rows
 from tribolab.records.frames import friction_columns, plain_rows
-from tribolab.records.judgement import SURE, not_decided
+from tribolab.records.judgement import not_decided
 from tribolab.records.run_record import CheckRow, Highlight, LeftOut, RunFacts, Waveform
 from tribolab.records.traces import flagged_spans
 from tribolab.records.wording import SPREAD_OF, plain_value
@@ -234,7 +235,7 @@ def drift_of(friction: xr.Dataset, value: np.ndarray) -> float | None:
         return None
     change = change / typical.mean()
     chance, samples = (values_of(friction, n, size) for n in ("trend_p_value", "effective_samples"))
-    sure = chance < SURE
+    sure = chance < chance_limit(samples)
     if not sure.any() and not_decided(change, chance, samples).any():
         return None
     return float(np.nanmax(np.abs(change[sure]), initial=0.0))

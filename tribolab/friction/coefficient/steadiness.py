@@ -11,6 +11,7 @@ SIGNIFICANT = 0.01  # chance of a trend below which a segment is not steady: run
 SUSPECT_DRIFT = 0.05  # of the run's typical friction: above the usual spread of repeats
 FAILING_DRIFT = 0.50  # of the run's typical friction: a mean over such a change has no meaning
 SAMPLES = 10.0  # fewer effective samples do not tell a trend from slow wandering
+_MANY = 20  # segments
 _LIMITS = {
     "suspect": SUSPECT_DRIFT,
     "fail": FAILING_DRIFT,
@@ -20,6 +21,29 @@ _LIMITS = {
 
 IS_NOT_STEADY, IS_STEADY, NOT_DECIDED = 0, 1, 2
 STEADINESS_WORDS = {IS_NOT_STEADY: "not steady", IS_STEADY: "steady", NOT_DECIDED: "undecided"}
+
+
+def chance_limit(samples: np.ndarray, limits: Mapping[str, float] = _LIMITS) -> np.ndarray:
+    """Return the p value below which a line through each segment is a trend (segment).
+
+    A crank makes hundreds of segments of few effective samples. Their memory cannot be seen in so
+    short a record, and in one of twenty noise looks like a trend: no single one of them tells.
+
+    Parameters
+    ----------
+    samples
+        Effective samples (segment).
+    limits
+        `_LIMITS`, or those of the check on steadiness.
+
+    Examples
+    --------
+    >>> chance_limit(np.array([90.0, 3.0])).tolist(), chance_limit(np.full(20, 4.0)).tolist()[0]
+    ([0.01, 0.01], 0.0)
+    """
+    known = samples[np.isfinite(samples)]
+    short = known.size >= _MANY and np.median(known) < limits["samples"]
+    return np.full(samples.shape, 0.0 if short else limits["chance"])
 
 
 def undecided(
@@ -47,7 +71,7 @@ def undecided(
     """
     size = np.abs(change)
     open_ = (size > limits["suspect"]) & (samples < limits["samples"])
-    return (open_ | (size > limits["fail"])) & (chance >= limits["chance"])
+    return (open_ | (size > limits["fail"])) & (chance >= chance_limit(samples, limits))
 
 
 def relative_change(friction: xr.Dataset) -> np.ndarray | None:
@@ -92,7 +116,9 @@ def judged(friction: xr.Dataset) -> xr.Dataset:
     if change is None:
         change = np.full(chance.shape, np.nan)
     open_ = ~np.isfinite(chance) | undecided(change, chance, samples, _LIMITS)
-    flag = np.where(open_, NOT_DECIDED, np.where(chance < SIGNIFICANT, IS_NOT_STEADY, IS_STEADY))
+    flag = np.where(
+        open_, NOT_DECIDED, np.where(chance < chance_limit(samples), IS_NOT_STEADY, IS_STEADY)
+    )
     attrs = {
         "flag_values": np.array(list(STEADINESS_WORDS), np.int8),
         "flag_meanings": " ".join(word.replace(" ", "_") for word in STEADINESS_WORDS.values()),

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tribolab.friction.coefficient import steadiness
-from tribolab.friction.coefficient.steadiness import relative_change, undecided
+from tribolab.friction.coefficient.steadiness import chance_limit, relative_change, undecided
 from tribolab.friction.oscillation.lines import Line
 from tribolab.friction.oscillation.periods import AT_ODDS
 from tribolab.friction.oscillation.regularity import SLIP_KINDS
@@ -170,7 +170,8 @@ def _steadiness(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
         raise Skip("no trend was estimated, or there is no friction to compare with")
     chance, samples = friction["trend_p_value"].values, friction["effective_samples"].values
     open_ = undecided(change, chance, samples, limits)
-    graded = np.where(open_, np.nan, np.where(chance >= limits["chance"], 0.0, change))
+    sure = chance < chance_limit(samples, limits)
+    graded = np.where(open_, np.nan, np.where(sure, change, 0.0))
     told = "trend within a segment"
     if not open_.any():
         return _told(by_segment(subject, signal, graded, limits, told), change)

@@ -1,0 +1,55 @@
+"""Friction that changes from stroke to stroke, and noise that does not."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.signal import lfilter
+
+from tribolab.friction.coefficient.coefficient import friction_coefficient
+from tribolab.friction.segments.find import find_segments
+from tribolab.records.notices import notices_of
+from tribolab.records.run_trend import trends_along
+
+RATE, STROKES = 250.0, 120
+
+
+def crank(rise, seed, speed=1.0):
+    """A crank at 1 Hz under 15 N; friction rises by `rise` over the run."""
+    time = np.arange(int(STROKES / 2 / speed * RATE)) / RATE
+    rng = np.random.default_rng(seed)
+    noise = lfilter([1], [1, -0.8], 0.0036 * rng.standard_normal(time.size))
+    mu = 0.31 * (1 + rise * time / time[-1]) + noise
+    phase = 2 * np.pi * speed * time + 0.7
+    run = xr.Dataset(
+        {
+            "friction_force": ("time", 15.0 * mu * np.sign(np.cos(phase))),
+            "normal_force": ("time", np.full(time.size, 15.0)),
+            "sliding_velocity": ("time", 0.01 * np.pi * speed * np.cos(phase)),
+        },
+        {"time": time},
+        {"stroke_m": 0.01},
+    )
+    segments = find_segments(run)
+    return run, segments, friction_coefficient(run, segments)
+
+
+@pytest.mark.parametrize("rise", [0.08, -0.05])
+def test_a_rise_or_fall_along_the_run_is_told_with_both_ends(rise):
+    run, segments, friction = crank(rise, seed=3)
+    (trend,) = trends_along(friction, friction["friction_coefficient"].values)
+    off = trend.last - trend.first - 0.31 * rise
+    assert abs(off) < 4 * trend.error and trend.error < 0.1 * 0.31 * abs(rise)
+    told = [notice.message for notice in notices_of("pin", run, segments, friction)]
+    word = "rises" if rise > 0 else "falls"
+    assert sum(f"friction {word} along the run from" in message for message in told) == 1
+    assert any(message.startswith("what lies outside the middle 50 %") for message in told)
+
+
+def test_noise_is_no_trend_along_the_run_nor_within_a_stroke():
+    for seed in range(10):
+        run, segments, friction = crank(0.0, seed)
+        assert trends_along(friction, friction["friction_coefficient"].values) == []
+        told = [notice.message for notice in notices_of("pin", run, segments, friction)]
+        assert not any("with a significant trend" in message for message in told)
