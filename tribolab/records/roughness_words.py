@@ -32,7 +32,7 @@ def form_in_words(row: Row, *, radius: bool = True) -> str:
 
 
 def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
-    """Return Rq of surfaces, a line for each cut-off.
+    """Return Rq of surfaces, and Sq of maps, a line for each form and cut-off.
 
     Parameters
     ----------
@@ -45,9 +45,17 @@ def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
     ['Rq (no cut-off): fine 0.1 µm, rough 2.00 ± 0.10 µm']
     >>> roughness_in_words([("roll", {"Rq_m": 1e-7, "lambda_c_m": 8e-4, "form_removed": "circle"})])
     ['Rq (circle taken off, cut-off 0.8 mm): roll 0.1 µm']
+    >>> roughness_in_words([("map", {"Sq_m": 1e-6, "Rq_m": 9e-7, "form_removed": "polynomial"})])
+    ['Sq (polynomial of degree 2 taken off): map 1 µm']
     """
     told: dict[str, list[str]] = {}
     for name, row in rows:
+        if (sq := number_of(row, "Sq_m")) is not None:  # of a map: of its area, not of its rows
+            form = form_in_words(row, radius=False)
+            told.setdefault(f"Sq ({form})" if form else "Sq", []).append(
+                f"{name} {1e6 * sq:.3g} µm"
+            )
+            continue
         if (rq := number_of(row, "Rq_m")) is None:
             continue
         cut = number_of(row, "lambda_c_m")
@@ -56,9 +64,9 @@ def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
             by = f"{form}, {by}"
         error = max(number_of(row, f"Rq_{what}_m") or 0.0 for what in ("sem", "gap_error"))
         said = with_error(1e6 * rq, 1e6 * error) if error else f"{1e6 * rq:.3g}"
-        told.setdefault(by, []).append(f"{name} {said} µm")
+        told.setdefault(f"Rq ({by})", []).append(f"{name} {said} µm")
     return [
-        f"Rq ({by}): {', '.join(names[:_MOST])}"
+        f"{what}: {', '.join(names[:_MOST])}"
         + (f" and {len(names) - _MOST} more" if len(names) > _MOST else "")
-        for by, names in told.items()
+        for what, names in told.items()
     ]
