@@ -163,6 +163,8 @@ def split_unit(label: str) -> tuple[str, str | None]:
     >>> split_unit("时间（s）")
     ('时间', 's')
     """
+    if len(label) > _LONGEST:
+        return label, None
     wide = _WIDE_BRACKETS.match(label.strip())
     if wide and is_unit(wide["unit"].strip()):
         return wide["name"], wide["unit"].strip()

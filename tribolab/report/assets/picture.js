@@ -124,7 +124,7 @@ report.Picture = (() => {
       else if (!log && side === "y" && low > 0 && low < 0.6 * high) low = 0;
       // so far apart that no noise in a last digit fills it
       const largest = Math.max(Math.abs(low), Math.abs(high)), alone = high - low <= (log ? 1e-5 : 1e-5 * largest);
-      const least = alone ? (log ? 0.6 : largest || 1) : log ? 0.1 : 0.02 * largest, wider = Math.max(0, (least - (high - low)) / 2);
+      const span = alone ? (log ? 0.6 : largest || 1) : log ? 0.1 : 0.02 * largest, wider = Math.max(0, (span - (high - low)) / 2);
       [low, high] = [low - wider, high + wider];
       const room = (high - low) * 0.06;
       return [low === 0 && !log ? 0 : low - room, high + room];
