@@ -7,6 +7,7 @@ import pytest
 
 import tribolab as tl
 from tribolab.draft.dialect.draft import draft_dialect
+from tribolab.draft.file.lines import find_encoding
 from tribolab.errors import ReadError
 
 ROWS = 400
@@ -110,3 +111,51 @@ def test_dates_that_two_forms_read_alike_are_no_guess(tmp_path):
     assert "written" not in str(told.value) and "radius" in str(told.value)
     torque = draft_dialect(tmp_path / "ring.csv").understood.columns[3]
     assert torque.file_unit == "N・m"
+
+
+@pytest.mark.parametrize(
+    ("encoding", "text"),
+    [
+        ("cp1250", "Siła tarcia, Obciążenie, Zużycie, Promień"),
+        ("cp1251", "Длина трассы, мкм: 0,5; Ординаты профиля"),
+        ("koi8-r", "Длина трассы, мкм: 0,5; Ординаты профиля"),
+        ("cp1254", "Sürtünme kuvveti, Ağırlık, hız değeri, şaft"),
+        ("latin-1", "Größe in µm, 20 °C, m³/s, mm², été, señal, Ångström"),
+        ("latin-1", "¿Qué señal? 5 £ per m³ of x¹ and mm³"),
+        ("cp1252", "cœur – 20 °C “x” œuvre"),
+    ],
+)
+def test_an_encoding_of_one_byte_a_letter_is_told_by_letters_that_stand_together(encoding, text):
+    found, notes = find_encoding(f"{text}\n1;2\n".encode(encoding))
+    assert found == encoding and len(notes) == 1
+
+
+def test_a_polish_header_gives_load_radius_and_the_speed_of_each_run(tmp_path):
+    lines = ["Obciążenie P = 29,43 N   (odważnik 3 kg)", "Promień tarcia r = 14 mm"]
+    for number, rpm in enumerate((40, 80), start=1):
+        lines += [
+            f"===== Bieg {number}   n = {rpm} obr/min =====",
+            "Czas[s] Siła_tarcia[N] Temp[°C]",
+        ]
+        force = noisy(7.0 / number, number)
+        rows = [f"{0.04 * k:8.2f} {f:8.4f}     22.0" for k, f in enumerate(force)]
+        lines += [row.replace(".", ",") for row in rows]
+    (tmp_path / "proba.txt").write_text("\n".join(lines) + "\n", "cp1250")
+    run = tl.read(tmp_path / "proba.txt", draft_dialect(tmp_path / "proba.txt").dialect)
+    assert float(run.normal_force[0]) == pytest.approx(29.43)
+    speed = [float(np.median(run.sliding_velocity[run.step == step])) for step in (1, 2)]
+    assert speed == pytest.approx([2 * np.pi * 0.014 * rpm / 60 for rpm in (40, 80)])
+
+
+def test_a_unit_may_stand_behind_a_comma_of_what_is_stated(tmp_path):
+    x = 0.5e-6 * np.arange(3000)
+    height = (
+        3 + 0.2 * np.sin(2 * np.pi * x / 1e-4) + 0.01 * np.random.default_rng(2).normal(size=3000)
+    )
+    head = ["Длина трассы, мм: 1,5", "Шаг дискретизации, мкм: 0,5", "Количество точек: 3000"]
+    head += ["Ординаты профиля, мкм:"]
+    values = [f"{z:.4f}".replace(".", ",") for z in height]
+    (tmp_path / "трасса.txt").write_text("\n".join([*head, *values]) + "\n", "cp1251")
+    scan = tl.read_scans(tmp_path / "трасса.txt", draft_dialect(tmp_path / "трасса.txt").dialect)
+    assert float(scan.x[1] - scan.x[0]) == pytest.approx(0.5e-6)
+    assert float(scan.height.mean()) == pytest.approx(3e-6, rel=0.01)

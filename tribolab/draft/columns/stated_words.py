@@ -33,6 +33,7 @@ LOAD = re.compile(
     r"|^(?:normalkraft|auflast|normallast|belastet|belastung|chargenormale|charge|forcenormale"
     r"|effortnormal|carganormal|carga|fuerzanormal|cariconormale|carico|caricato|forzanormale|peso|poids"
     r"|nacisk|obciazenie|zatizeni|zatez|nagruzka|нагрузка|нормальнаясила|belasting|kuorma|terheles|yuek"
+    r"|(?:nacisk|obciazenie|zatizeni|нагрузка|carico|carga|charge|load|last)(?:fn|fz|f|p|w|n)"
     r"|试验力|法向力|法向载荷|载荷|负载|荷重|垂直荷重|試験荷重|載荷|하중)$"
     r"|^(?:carga|peso|massa|carico|charge|fuerza|forza|forca)(?:normale?)?"
     r"(?:do|da|de|del|della|des|du|aplicada|appliquee|applicato)\w{0,12}$"
@@ -43,7 +44,7 @@ PITCH = re.compile(
     r"|^(?:schritt\w*|x?pas|x?paso|x?passo|x?stap\w*|x?schritt\w*|sampling|sampled|abtastung)$|(?:abtast|mess)schritt"
     r"|^(?:шаг|pikselboyutu|ornekleme|oernekleme|askel|naytevali|naeytevaeli)\w*|间隔|간격"
     r"|^(?:roztec|rozestup|krok|odstep|avstand|steglangd|lepeskoz)\w*"
-    r"|间距|步长|步距|ピッチ|間隔|点间隔|采样间隔"
+    r"|^шаг\w*|间距|步长|步距|ピッチ|間隔|点间隔|采样间隔"
     r"|(?:sampl|point|mess|punkt|data|x|lateral|measur|echantillon|abtast|punt)\w*"
     r"(?:pitch|spacing|increment|step|interval|distance|abstand|afstand|schritt\w*|intervall)"
     r"|(?:distan[czt]\w*?|afstand|abstand|ecart|espaciado|intervall?[eo]?|pas|paso|passo)"
@@ -60,6 +61,7 @@ PROFILE_LENGTH = re.compile(
     r"(?:de|del|di|du|dela|della|da)?(?:mesure|mesuree|palpage|exploration|profil\w*|balayage"
     r"|medida|medicion|recorrido|exploracion|evaluacion|trazado|barrido|misura\w*|esplorazione"
     r"|scansione|traccia|valutazione|medicao|varredura|avaliacao|perfil)?$"
+    r"|^(?:длина|dlugosc|delka|hossz|pituus|uzunluk)(?:трассы|профиля|измерения|pomiaru|profilu|odcinka|mereni)?$"
     r"|^(?:测量|扫描|轮廓|取样)?长度$|^(?:測定|走査)?長さ$"
 )
 # how fast a stylus goes over a profile
@@ -77,6 +79,7 @@ POINTS = re.compile(
     r"|^(?:mess|daten|profil)?punkt(?:e|anzahl|zahl|eanzahl)$|^(?:count|npts|npoints|nx|anzahl)$"
     r"|^(?:nombre|nb|numero|num|no|n)(?:de|dei|di|des|dos)?"
     r"(?:points?|puntos?|punti|pontos?|mesures|valores|valori|echantillons|muestras)$"
+    r"|^(?:количество|число|liczba|ilosc|pocet)(?:точек|punktow|probek|bodu)$"
     r"|^(?:点数|采样点数|数据点数|データ点数|測定点数)$"
 )
 UNIT = re.compile(
@@ -127,7 +130,9 @@ OF_TRACE = re.compile(
 )
 # a part of the trace, over which an instrument computes
 PART_OF_TRACE = re.compile(r"evalu|assess|ln$|valutazione|avaliacao|auswert|sampling|einzel")
-RADIUS = re.compile("radius|rayon|radio(?!m)|raggio|raio|straal|半径")
+RADIUS = re.compile(
+    "promien|polomer|радиус|yaricap|radius|rayon|radio(?!m)|raggio|raio|straal|半径"
+)
 ARM = re.compile(
     r"lever|hebelarm|arm(?:length|laenge)|torquearm|levier|palanca|braccio|力臂|アーム"
 )

@@ -236,6 +236,9 @@ def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:
     if unit is None and bracket and is_unit(bracket[1]):
         unit, key = bracket[1], key[: bracket.start()]
     unit = unit or units.get(squeezed(key))
+    name, comma, behind = key.rpartition(",")
+    if unit is None and comma and is_unit(behind.strip()):  # "Step, um: 0.5"
+        key, unit = name, behind.strip()
     if unit is None and "_" in key:  # "stroke_mm=8"
         key, unit = split_unit(key)
     digits = r"[-+\d.eE]+" if said.re is _IN_CELLS else r"[-+\d.,eE]+"
@@ -302,7 +305,7 @@ _SPEED = re.compile(
     r"|^velocita|速度$|snelheid$"
 )
 _TURNS = re.compile(
-    rf"(?:speed|velocity|rotation|rpm|drehzahl|vitesse|velocidad|velocita|giri|obroty|转速|回転数)$|^{STEP_WORD}\d*$"
+    rf"(?:speed|velocity|rotation|rpm|drehzahl|vitesse|velocidad|velocita|giri|obroty|转速|回転数)$|^{STEP_WORD}\d*n?$"
 )
 _WANTED = {
     "m": (RADIUS, DIAMETER, _R, ARM, STROKE, HALF_STROKE, PITCH, TURNING, PROFILE_LENGTH, TIP),

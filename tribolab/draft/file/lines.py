@@ -105,9 +105,45 @@ def find_encoding(head: bytes) -> tuple[str, list[str]]:
     except UnicodeDecodeError:
         if eastern := _eastern(head) or eastern_encoding(head, whole=len(head) < HEAD):
             return eastern, [f"the encoding is {eastern}: names of columns are words in it"]
-        name = "cp1252" if re.search(rb"[\x80-\x9f]", head) else "latin-1"
+        name = _of_single_bytes(head)
         return name, [f"the encoding is {name}: the file is not UTF-8"]
     return "utf-8", []
+
+
+# Words of Cyrillic letters are bytes above 0xc0 side by side, as Western words never are; between
+# ASCII letters, a few bytes are letters in the middle of Europe or in Turkey and signs elsewhere
+_CYRILLIC = re.compile(rb"[\xc0-\xff\xa8\xb8]{3,}")
+_CENTRAL = re.compile(rb"[A-Za-z][\xb3\xb9\xbf\x9f\x9d\xbe\xbc](?=[a-z])|(?<![^\s;,])\xa3(?=[a-z])")
+_TURKISH = re.compile(rb"[A-Za-z][\xf0\xfe]|\xfe(?=[a-z])|[A-Za-z]\xfd[a-z]{2}\w*\xfd")
+_MOSTLY, _HALF = 0.8, 0.5
+_COMMON_LETTERS = {  # half and more of any text in these languages
+    "cp1251": frozenset("оеаинтсрвлк"),
+    "koi8-r": frozenset("оеаинтсрвлк"),
+    "cp1253": frozenset("αοιετσνρηά"),
+}
+
+
+def _common(words: bytes, encoding: str) -> float:
+    """Return which share of bytes are common letters in an encoding, small ones above."""
+    text = words.decode(encoding, errors="replace")
+    share = sum(sign in _COMMON_LETTERS[encoding] for sign in text.lower()) / max(len(text), 1)
+    return share + 0.01 * sum(map(str.islower, text)) / max(len(text), 1)
+
+
+def _of_single_bytes(head: bytes) -> str:
+    """Return in which encoding of one byte a letter a text is, by which of them stand together."""
+    high = sum(byte >= 0x80 for byte in head)
+    words = b"".join(_CYRILLIC.findall(head))
+    if len(words) >= _MOSTLY * high:
+        common = {name: _common(words, name) for name in _COMMON_LETTERS}
+        best = max(common, key=lambda name: common[name])
+        if common[best] >= _HALF:
+            return best
+    if _CENTRAL.search(head):
+        return "cp1250"
+    if _TURKISH.search(head):
+        return "cp1254"
+    return "cp1252" if re.search(rb"[\x80-\x9f]", head) else "latin-1"
 
 
 def _eastern(head: bytes) -> str:

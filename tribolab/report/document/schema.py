@@ -62,7 +62,7 @@ LoadFrom = Annotated[
         meaning="where the nominal normal force is from; varies where a run has several loads",
     ),
 ]
-RoughnessRow = Annotated[Row, Columns(ROUGHNESS, row=_ROUGHNESS)]
+RoughnessRow = Annotated[Row, Columns(ROUGHNESS, texts=("form_removed",), row=_ROUGHNESS)]
 ContactRow = Annotated[Row, Columns(CONTACT, row=_CONTACT)]
 AdhesionRow = Annotated[Row, Columns(ADHESION, texts=("medium",), row=_ADHESION)]
 ScanCheckRow = Annotated[
