@@ -181,7 +181,8 @@ def test_a_stated_rotation_and_radius_make_the_speed_of_each_step(tmp_path):
     parts = (f"*** STAGE {k} SPEED {rpm} RPM ***\nTime [s],Ff [N]\n{rows}" for k, rpm in STAGES)
     file.write_text("Track dia 24 mm\nLoad 30 N\n" + "\n".join(parts) + "\n")
     data, draft = drafted(file, tmp_path)
-    assert any("is how fast it turns in its step" in guess for guess in draft.guesses)
+    assert not any("how fast it turns" in guess for guess in draft.guesses)
+    assert data.attrs["speed_from"] == "stated"
     speeds = [2 * np.pi * rpm / 60 * 0.012 for _, rpm in STAGES]
     np.testing.assert_allclose(tl.find_segments(data).sliding_speed, speeds, rtol=1e-6)
 
@@ -291,7 +292,8 @@ def test_titles_that_state_a_rotation_are_used_for_their_steps_or_not_at_all(
         asked = [question.guess for question in questions(draft)]
         assert "sliding_velocity" not in data and "the table goes on below" in asked
         return
-    assert any("is how fast it turns in its step" in guess for guess in draft.guesses)
+    assert not any("how fast it turns" in guess for guess in draft.guesses)
+    assert data.attrs["speed_from"] == "stated"
     speeds = [2 * np.pi * rpm / 60 * 0.012 for _, rpm in STAGES]
     np.testing.assert_allclose(tl.find_segments(data).sliding_speed, speeds, rtol=1e-6)
 

@@ -56,8 +56,9 @@ def test_a_rotation_stated_in_the_title_of_each_step_is_its_own(tmp_path, title,
         blocks += [f"{0.1 * k:.1f};{f:.4f};10.0;21.0" for k, f in enumerate(force)]
     (tmp_path / "disc.csv").write_text("\n".join(blocks) + "\n", "latin-1")
     draft = draft_dialect(tmp_path / "disc.csv")
-    assert any("is how fast it turns in its step" in guess for guess in draft.guesses)
-    run = tl.read(tmp_path / "disc.csv", draft.dialect)
+    assert not any("how fast it turns" in guess for guess in draft.guesses)
+    run = tl.read(tmp_path / "disc.csv")
+    assert run.attrs["speed_from"] == "stated"
     speed = [float(np.median(run.sliding_velocity[run.step == step])) for step in (1, 2, 3)]
     assert speed == pytest.approx([2 * np.pi * 0.015 * rpm / 60 for rpm in (30, 60, 120)])
 
@@ -159,3 +160,64 @@ def test_a_unit_may_stand_behind_a_comma_of_what_is_stated(tmp_path):
     scan = tl.read_scans(tmp_path / "трасса.txt", draft_dialect(tmp_path / "трасса.txt").dialect)
     assert float(scan.x[1] - scan.x[0]) == pytest.approx(0.5e-6)
     assert float(scan.height.mean()) == pytest.approx(3e-6, rel=0.01)
+
+
+def test_a_layout_that_lacks_what_its_maker_writes_is_read_by_what_it_says_itself(tmp_path):
+    """A high-speed export names the instrument, and its frequencies stand in the titles."""
+    lines = ["SRV report", "Normalkraft [N];200", "Abtastrate [kHz];5"]
+    for number, hertz in enumerate((10, 20), start=1):
+        time = np.arange(2000) / 5e3
+        way = -np.cos(2 * np.pi * hertz * time)
+        force = np.sign(np.sin(2 * np.pi * hertz * time)) * (30 - hertz) * 1.0
+        lines += ["", f"Aufzeichnung {number};Frequenz [Hz];{hertz}", "Zeit;Weg;Reibkraft"]
+        lines += ["ms;mm;N"]
+        rows = zip(1e3 * time, way, force, strict=True)
+        lines += [f"{t:.1f};{x:.4f};{f:.2f}".replace(".", ",") for t, x, f in rows]
+    (tmp_path / "srv.csv").write_text("\n".join(lines) + "\n", "utf-8")
+    run = tl.read(tmp_path / "srv.csv")
+    assert run.attrs["instrument"] == "drafted from the file"
+    assert "optimol_srv" in run.attrs["known_layout_lacks"]
+    mu = tl.friction_coefficient(run, tl.find_segments(run))
+    fast = mu.sliding_speed > 0.09
+    assert float(mu.friction_coefficient[~fast].mean()) == pytest.approx(20 / 200, rel=0.01)
+    assert float(mu.friction_coefficient[fast].mean()) == pytest.approx(10 / 200, rel=0.01)
+
+
+def test_a_layout_that_lacks_something_and_says_too_little_itself_is_refused(tmp_path):
+    text = "SRV report\nZeit;Signal A;Reibkraft\ns;V;N\n"
+    text += "".join(f"{n / 10};{n % 7};{5 + n % 3}\n" for n in range(50))
+    (tmp_path / "srv.csv").write_text(text, "utf-8")
+    with pytest.raises(ReadError, match="the stroke and the frequency is missing"):
+        tl.read(tmp_path / "srv.csv")
+
+
+@pytest.mark.parametrize(
+    ("label", "quantity", "unit"),
+    [
+        ("rpm_set", "set_speed", "rpm"),
+        ("rpm", "rotation_speed", "rpm"),
+        ("RPM (enc)", "rotation_speed", "rpm"),
+        ("tempC", "temperature", "C"),
+        ("forceN", "friction_force", "N"),
+    ],
+)
+def test_names_that_are_or_end_in_their_unit_need_no_question(label, quantity, unit, tmp_path):
+    rows = "\n".join(f"{n / 10},{60 + n % 3},{20 + n % 2}" for n in range(60))
+    (tmp_path / "a.csv").write_text(f"Time [s],{label},Fz [N]\n{rows}\n", "utf-8")
+    column = draft_dialect(tmp_path / "a.csv").understood.columns[1]
+    assert (column.read_unit, column.fill_in) == (unit, "")
+    assert column.quantity in (quantity, "rotation_speed")
+
+
+@pytest.mark.parametrize("rig", ["Block on ring", "ブロックオンリング", "pin on disc"])
+def test_the_ring_is_the_track_of_a_block_on_it(rig, tmp_path):
+    head = f"Test rig: {rig}\nRing diameter,35,mm\n\nTime [s],Speed [rpm],Load [N],Torque [N m]\n"
+    rows = "\n".join(f"{n / 10},100,{300 + n % 3},0.5" for n in range(ROWS))
+    (tmp_path / "a.csv").write_text(f"{head}{rows}\n", "utf-8")
+    if rig == "pin on disc":
+        with pytest.raises(ReadError, match="twice the radius of the track"):
+            tl.read(tmp_path / "a.csv")
+        return
+    run = tl.read(tmp_path / "a.csv")
+    assert float(run.friction_force[0]) == pytest.approx(0.5 / 0.0175)
+    assert float(run.sliding_velocity[0]) == pytest.approx(2 * np.pi * 100 / 60 * 0.0175)

@@ -116,7 +116,9 @@ def test_two_columns_that_name_the_same_and_say_otherwise_are_asked_about(tmp_pa
 def test_a_load_counted_negative_is_told_by_its_size_where_noise_surrounds_zero(tmp_path):
     load = np.where(T < 3, 20 * np.cos(9 * T), -LOAD)
     head = "Time [s],Fx [mN],Fz [mN],Speed [mm/s]"
-    assert "counted negative" in asked(written(tmp_path / "a.csv", head, T, FRICTION, load, SPEED))
+    run = tl.read(written(tmp_path / "a.csv", head, T, FRICTION, load, SPEED))
+    assert run.attrs["counted_negative"] == "normal_force"
+    np.testing.assert_allclose(run.normal_force, -1e-3 * load, atol=1e-6)
 
 
 def test_what_is_horizontal_slides_and_what_is_vertical_does_not(tmp_path):

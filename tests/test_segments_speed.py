@@ -159,3 +159,25 @@ def test_sliding_without_load_is_left_out_with_its_reason():
     assert found["stop"].values == pytest.approx([6, 12, 28], abs=0.1)
     unloaded = found["omitted_reason"].values == "no load"
     assert found["omitted_start"].values[unloaded] == pytest.approx([15, 21, 28, 33], abs=0.1)
+
+
+@pytest.mark.parametrize("crank", [False, True])
+def test_strokes_too_short_for_blocks_are_told_at_their_turns(crank):
+    """Ten, then a hundred times as fast between the same turns, by an encoder."""
+    noise = np.random.default_rng(5)
+    parts, ahead = [], 0.0
+    for speed, seconds in ((1e-5, 100.0), (1e-4, 60.0), (1e-3, 20.0)):
+        way = speed * np.arange(0, seconds, 0.02)
+        parts.append(ahead + way)
+        ahead = parts[-1][-1] + 0.02 * speed
+    gone = np.concatenate(parts) / 5e-4
+    shape = (1 - np.cos(np.pi * gone)) / 2 if crank else np.abs((gone + 1) % 2 - 1)
+    position = 5e-4 * shape + 5e-8 * noise.standard_normal(gone.size)
+    run = xr.Dataset({"position": ("time", position)}, {"time": 0.02 * np.arange(gone.size)})
+    found = find_segments(run)
+    speeds = found.sliding_speed.values
+    fast = np.abs(speeds / 1e-3 - 1) < 0.02
+    if crank:
+        assert not fast.any()
+        return
+    assert fast.sum() >= 38 and (found.direction.values[fast][1:] != found.direction[fast][:-1]).all()

@@ -421,3 +421,21 @@ def test_an_uncertainty_of_the_zero_may_be_a_torque_where_one_was_measured():
         )
     with pytest.raises(AnalysisError, match="is a torque, and"):
         analysed(run, zero_uncertainty="10 N mm")
+
+
+def test_what_idles_without_load_shows_the_zero_where_no_rest_does():
+    """A torque of bearings and a drifting sensor, before the load comes on and after it goes."""
+    rng = np.random.default_rng(8)
+    time = 0.1 * np.arange(3000)
+    pressed = (time > 20) & (time < 280)
+    speed = np.where(time < 150, 0.1, 0.3)
+    idle = 1.5 + 1.0 * time / 300
+    force = np.where(pressed, 0.1 * 300, 0.0) + idle + 0.05 * rng.standard_normal(time.size)
+    normal = np.where(pressed, 300.0, 0.0) + 0.2 * rng.standard_normal(time.size)
+    signals = {"sliding_velocity": speed, "friction_force": force, "normal_force": normal}
+    run = xr.Dataset({k: ("time", v) for k, v in signals.items()}, {"time": time})
+    friction = friction_coefficient(run, find_segments(run))
+    value, error = friction["friction_coefficient"], friction["friction_coefficient_sem"]
+    assert friction.attrs["offset"] == "zero load" and value.size == 2
+    assert (np.abs(value - 0.1) < 3 * error).all() and (error < 0.002).all()
+    assert not friction.attrs["zero_doubts"]

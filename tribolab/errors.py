@@ -102,6 +102,10 @@ class ReadError(TribolabError):
     """A raw file could not be understood."""
 
 
+class LacksError(ReadError):
+    """A raw file lacks what the description of its instrument asks for: it may be another's."""
+
+
 class UnitError(TribolabError):
     """A quantity has no unit, an unknown unit, or one of the wrong dimension."""
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
 from tribolab.aliases import PathLike
-from tribolab.errors import ReadError
+from tribolab.errors import LacksError, ReadError
 from tribolab.io import cures, runs
 from tribolab.io.dialects.find import Dialect, Instrument, UnknownFileError
 
@@ -50,16 +50,22 @@ def read_run(
     ConfigError
         If there is no such instrument.
     """
+    paths = [Path(path)] if isinstance(path, PathLike) else [Path(name) for name in path]
+    told: dict[str, str] = {}
     try:
         return runs.read_run(path, instrument, **said)
     except UnknownFileError as error:
-        paths = [Path(path)] if isinstance(path, PathLike) else [Path(name) for name in path]
         if Path(error.where) != paths[0]:
             raise  # some files of the run are a known instrument's
         dialect = _drafted(paths[0], error)
+    except LacksError as error:
+        other = None if instrument is not None or len(paths) > 1 else _says_all(paths[0])
+        if other is None:
+            raise
+        dialect, told = other, {"known_layout_lacks": str(error.what)}
     alone: runs.Reading = {**said, "pair": False}
     run = runs.read_run(path, dialect, **alone)
-    return run.assign_attrs(_told(paths[0]))
+    return run.assign_attrs(_told(paths[0]) | told)
 
 
 def holds_run(path: Path, *, by_name: bool = True) -> bool:
@@ -94,6 +100,17 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
         what = "no known instrument writes such a file; it looks like a profile or map"
         raise ReadError(what, where=path, cure=cures.PROFILE) from error
     assert draft.dialect is not None  # only tables have none
+    return draft.dialect
+
+
+def _says_all(path: Path) -> Dialect | None:
+    """Return the dialect that a file's own header makes, if it leaves nothing open."""
+    # late: starting stays quick
+    from tribolab.draft.dialect.questions import missing_words, questions
+
+    draft = draft_of(path)
+    if draft is None or draft.kind != "run" or questions(draft) or missing_words(draft):
+        return None
     return draft.dialect
 
 

@@ -21,6 +21,7 @@ from tribolab.io.derived import add_derived
 from tribolab.io.dialects.as_written import as_written
 from tribolab.io.dialects.column_rule import FRICTION_SIGNALS
 from tribolab.io.dialects.find import Dialect
+from tribolab.io.dialects.formula import names_in, parse_formula
 from tribolab.io.dialects.signature import peek
 from tribolab.io.forces_agree import keep_forces_that_agree
 from tribolab.io.row_counts import row_attributes
@@ -158,8 +159,13 @@ _TIME_FROM = {
 
 
 def _speed_from(dialect: Dialect) -> str:
-    by_formula = any(rule.quantity == "sliding_velocity" for rule in dialect.derived)
-    return "formula" if by_formula else dialect.speed.source
+    """Say what the sliding speed is from: what only texts state of it nothing measures."""
+    formulas = [rule.formula for rule in dialect.derived if rule.quantity == "sliding_velocity"]
+    if not formulas:
+        return dialect.speed.source
+    texts = {rule.name for rule in dialect.value}
+    stated = all(names_in(parse_formula(formula)) <= texts for formula in formulas)
+    return "stated" if stated else "formula"
 
 
 def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> Json:
@@ -188,6 +194,8 @@ def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> Jso
     for column in dialect.column:
         if column.key in labels:
             attrs.update(column.attributes)
+    turned = [c.key for c in dialect.column if c.sign == -1 and c.key in labels]
+    attrs |= {"counted_negative": ", ".join(turned)} if turned else {}
     if stated := dialect.uncertainty.plain():
         attrs["uncertainty"] = stated
     for content in contents:

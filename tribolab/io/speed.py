@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.errors import LacksError, ReadError
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.stroke_speed import velocity_of_strokes
 from tribolab.medians import median
@@ -134,7 +134,7 @@ def _by_turns(
     if radius is None:
         radius = _stated(dialect.speed.radius, dialect.speed.radius_value, "m", attrs)
     if radius is None or "rotation_speed" not in columns:
-        raise ReadError(
+        raise LacksError(
             f"{where}: the speed should follow from rotation_speed and a radius, but "
             f"{'the radius' if radius is None else 'the column rotation_speed'} is missing "
             f"(instrument '{dialect.name}', [speed])"
@@ -151,7 +151,7 @@ def _by_strokes(
     signals = [columns[name] for name in _SIGNALS if name in columns]
     if stroke is None or frequency is None or not signals:
         lost = {"the stroke": stroke, "the frequency": frequency, "a friction signal": signals}
-        raise ReadError(
+        raise LacksError(
             "the speed should follow from stroke and frequency, but "
             f"{' and '.join(name for name, there in lost.items() if not there)} is missing "
             f"(instrument '{dialect.name}', [speed])",

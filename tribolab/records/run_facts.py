@@ -29,7 +29,11 @@ if TYPE_CHECKING:
 
 _SPEED_TOLERANCE = 0.1
 
-_SPEED_FROM = {"stroke": "stroke and frequency", "rotation": "rotation and radius"}
+_SPEED_FROM = {
+    "stroke": "stroke and frequency",
+    "rotation": "rotation and radius",
+    "stated": "what the file states of each step, not measured",
+}
 
 
 def facts_of(

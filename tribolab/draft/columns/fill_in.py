@@ -95,9 +95,7 @@ def filled_in(
     # noise about zero before the contact is loaded may have the other sign
     pressed = finite.size and finite.min() < 0 and finite.max() < _NOISE * -finite.min()
     if option.quantity == "normal_force" and pressed:
-        sign = -1
-        guessed.append("the normal force is counted negative")
-        options = (*options, "counted positive")
+        sign = -1  # no contact slides under a pull all along
     used, note = not fill_in, ""
     if option.quantity == "position" and finite.size > 2 and np.ptp(finite) == 0:
         used, note, fill_in = False, "it stands still", ""

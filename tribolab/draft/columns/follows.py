@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tribolab.draft.columns.bridges import calibrated_forces
-from tribolab.draft.columns.lengths import find_arm, find_radius
+from tribolab.draft.columns.lengths import find_arm, find_radius, on_rim
 from tribolab.draft.columns.stated_load import find_load
 from tribolab.draft.columns.strokes import (
     END_TO_END,
@@ -90,7 +90,7 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     # with a unit still to be filled in, a column is there all the same
     names = {c.quantity for c in understood.columns if c.quantity and (c.used or c.fill_in)}
     values = find_values(layout)
-    track = _track(values, understood)
+    track = _track(values, understood, rim=on_rim(layout))
     result = Follows()
     timed = "time" in names or understood.rate_pattern
     # rows that are counted as seconds make no speed of a position
@@ -178,14 +178,14 @@ def _of_value(value: DraftValue | None) -> _Track:
     return _Track() if value is None else _Track(value.name, (value,))
 
 
-def _track(values: Sequence[DraftValue], understood: Understood) -> _Track:
+def _track(values: Sequence[DraftValue], understood: Understood, *, rim: bool) -> _Track:
     """Return the radius of the track: what a person said, a column, or what the text states."""
     if understood.radius:
         return _Track(f"'{understood.radius}'")
     column = radius_of(understood.columns)
     if column is not None:
         return _Track("radius", symbols=(("radius", column),))
-    return _of_value(find_radius(values))
+    return _of_value(find_radius(values, rim=rim))
 
 
 def _and(
@@ -258,10 +258,6 @@ def _with_speed(
     )
 
 
-def _how_long(value: DraftValue) -> str:
-    return " in its step" if value.source == "step" else " all along"
-
-
 def _is_rotation(value: DraftValue) -> bool:
     step = value.source == "step" and _STEP.search(value.key) is not None
     named = step or _SPEED_OF_TURNS.search(value.key) is not None
@@ -281,16 +277,21 @@ def _with_set_speed(before: Follows, values: Sequence[DraftValue], track: _Track
         about = f"'{turns[0].text}' and the radius of the track"
         rate = turns[0]._replace(unit="rpm", to="rad/s", name="rotation")
         formula = DraftedFormula("sliding_velocity", f"rotation * {track.formula}", about)
-        guess = f"'{turns[0].text}' is how fast it turns{_how_long(turns[0])}"
-        speed = SpeedBy("none", guess=guess, options=("not known",))
+        guess = f"'{turns[0].text}' is how fast it turns all along"
+        speed = _asked_of(SpeedBy("none"), turns[0], guess)
         return _and(before, formula, (rate, *track.values))._replace(speed=speed)
     if len(stated) != 1:
         return before
-    guess = f"'{stated[0].text}' is the sliding speed{_how_long(stated[0])}"
-    return before._replace(
-        speed=SpeedBy("set speed", guess=guess, options=("not known",)),
-        values=(*before.values, stated[0]),
-    )
+    guess = f"'{stated[0].text}' is the sliding speed all along"
+    speed = _asked_of(SpeedBy("set speed"), stated[0], guess)
+    return before._replace(speed=speed, values=(*before.values, stated[0]))
+
+
+def _asked_of(speed: SpeedBy, value: DraftValue, guess: str) -> SpeedBy:
+    """Ask whether what is stated once holds all along; what each step states holds in it."""
+    if value.source == "step":
+        return speed
+    return speed._replace(guess=guess, options=("not known",))
 
 
 class _Strokes(NamedTuple):

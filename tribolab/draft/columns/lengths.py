@@ -13,8 +13,10 @@ from tribolab.draft.columns.stated_words import (
     DIAMETER,
     HEIGHT_UNIT,
     NO_HEIGHT,
+    ON_RIM,
     ON_TRACK,
     OTHER_RADIUS,
+    OUTER,
     PITCH,
     POINTS,
     PROFILE_LENGTH,
@@ -31,6 +33,7 @@ from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.units import conversion
 
+_LONGEST = 200  # characters of a line that are looked at
 # units of heights under whatever name they stand
 _USUAL = frozenset({"nm", "um", "µm", "μm", "mm", "pm", "Å", "angstrom", "microns", "micron"})
 
@@ -144,13 +147,28 @@ def _sampled_on_the_way(layout: Layout) -> str:
     return f"{1e6 * speeds[0] / rates[0]:.12g} um"
 
 
-def find_radius(values: Sequence[DraftValue]) -> DraftValue | None:
+def on_rim(layout: Layout) -> bool:
+    """Whether a file says that the track is the outside of what turns, as in block on ring.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    """
+    above = layout.lines[: layout.heading.names if layout.heading else 0]
+    texts = (layout.file.path.stem, *above)
+    return any(ON_RIM.search(text[:_LONGEST]) for text in texts)
+
+
+def find_radius(values: Sequence[DraftValue], *, rim: bool = False) -> DraftValue | None:
     """Return the radius of the track, if just one of a file's values is one, or its diameter.
 
     Parameters
     ----------
     values
         From `find_values`.
+    rim
+        Whether the track is the outside of what turns: its size is the track's.
 
     Returns
     -------
@@ -166,6 +184,9 @@ def find_radius(values: Sequence[DraftValue]) -> DraftValue | None:
     sure = sure or [v for v in across if DIAMETER.search(v.key)]
     if sure:
         return sure[0] if len(sure) == 1 else None
+    outer = [v for v in (*radii, *across) if rim and OUTER.search(v.key)]
+    if len(outer) == 1:
+        return outer[0]
     whole = [v for v in lengths if v in radii or v.key == "r"]
     perhaps = [v._replace(guess=f"'{v.text}' is the radius of the track") for v in whole]
     perhaps = perhaps or [

@@ -13,7 +13,7 @@ _SET = frozenset(
 )
 _MEASURED = frozenset(
     "actual act measured meas ist istwert real current gemessen gemessene mesuré mesurée réel "
-    "réelle medida medido misurata misurato feedback".split()
+    "réelle medida medido misurata misurato feedback enc encoder".split()
 )
 _DERIVED = frozenset(
     "filtered filt smoothed average averaged avg mean rms "

@@ -151,6 +151,16 @@ TURNING = re.compile(
     r"dis[ck]|scheibe|ring|plate|platte|disque|disco|anneau|anello|anillo|pierscien|specimen|sample|盘|環|环|円板|リング|ディスク|디스크"
 )
 
+# rigs whose counter-body slides on the outside of what turns: the track is as wide as that
+ON_RIM = re.compile(
+    r"(?:block|pin|ball|cylinder|pad|klotz|stift|kugel|bloc|patin|bloque|pattino|kloc|blok)s?[\s_/-]*"
+    r"(?:on|against|vs|auf|gegen|sur|sobre|contra|su|na|op|mot|pa)[\s_/-]*(?:the[\s_-]*)?"
+    r"(?:rings?|rims?|rollers?|wheels?|shafts?|ringe?|rolle|welle|rad|anneau|galet|anillo|rodillo|anello|rullo|hjul)"
+    r"|ring[\s_-]?block|ブロックオンリング|环块|環塊|블록온링|timken|lfw",
+    re.IGNORECASE,
+)
+OUTER = re.compile(r"ring|rim|roll|wheel|shaft|outer|outside|aussen|exter|anneau|anello|anillo|galet|hjul|welle|リング|环|環|外")
+
 
 def is_radius(name: str) -> bool:
     """Whether a column's name, squeezed, is that of the radius of a track.

@@ -73,6 +73,8 @@ _CLOCKS = {"millis": "ms", "msec": "ms", "msecs": "ms", "ms": "ms", "micros": "u
 _CLOCKS |= {"usecs": "us", "mus": "us", "sec": "s", "secs": "s"}
 # units in which nothing else is measured, whatever the name
 _TURNS = re.compile(r"rpm|(?:rev|r|U|tr|ot|obr|giri|omw)\.?/\s?(?:min|s)", re.IGNORECASE)
+_RPM = re.compile(r"(?<![^\W_])rpm(?![^\W_])", re.IGNORECASE)  # a name that is its unit: "rpm_set"
+_GLUED = re.compile(r"(?P<name>[^\W\d_]*[a-z]{2})(?P<unit>[A-Z]{1,2})")  # "tempC", "forceN"
 _NUMBERED = re.compile(r"#?\s*(?:N[°ºr]|No|№)\.?", re.IGNORECASE)  # rows, and not how fast it turns
 _COUNTS = frozenset("count counts cts digit digits lsb bit bits raw adc increments".split())
 # a speed that was set is not how fast it slid
@@ -162,6 +164,8 @@ def split_unit(label: str) -> tuple[str, str | None]:
     (('speed', 'um/s'), ('speed', 'mm/s'))
     >>> split_unit("时间（s）")
     ('时间', 's')
+    >>> split_unit("rpm_set"), split_unit("tempC"), split_unit("Basic")
+    (('rpm_set', 'rpm'), ('temp', 'C'), ('Basic', None))
     """
     if len(label) > _LONGEST:
         return label, None
@@ -170,6 +174,8 @@ def split_unit(label: str) -> tuple[str, str | None]:
         return wide["name"], wide["unit"].strip()
     if squeezed(label) in _CLOCKS:
         return "time", _CLOCKS[squeezed(label)]
+    if _RPM.fullmatch(label.strip()):
+        return label, "rpm"
     if squeezed(label) in _SYMBOLS or _is_ratio(label):
         return _symbol_and_unit(label) or (label, None)
     for gap in re.finditer(r"\s+in\s+|[\s_/,]+", label.strip()):
@@ -181,6 +187,13 @@ def split_unit(label: str) -> tuple[str, str | None]:
             unitless = converts(text, "1") and text != "%"
             if name and not unitless and is_unit(text):
                 return name, text
+    if _RPM.search(label):
+        return label, "rpm"
+    glued = _GLUED.fullmatch(label.strip())
+    if glued and is_unit(glued["unit"]):
+        meant = matches(glued["name"], glued["unit"])
+        if meant and meant[0].score >= _VAGUE:
+            return glued["name"], glued["unit"]
     return label, None
 
 

@@ -12,6 +12,7 @@ from tribolab.errors import AnalysisError
 from tribolab.friction.segments import slopes
 from tribolab.friction.segments.constancy import MeanVelocities
 from tribolab.friction.segments.locate import ConstancyLimits, VelocityPiece, held, locate, moving
+from tribolab.friction.segments.turns import strokes_within
 from tribolab.medians import median
 from tribolab.pieces import anywhere
 
@@ -89,6 +90,7 @@ def from_position(run: xr.Dataset, limits: ConstancyLimits, max_gap: float | Non
     if time.size < 3 * slopes.FEWEST_OF_BLOCK:
         return _nothing(run, time.size)
     pieces = _by_slopes(time, position, limits, slopes.FEWEST_OF_BLOCK)
+    pieces = strokes_within(time, position, pieces, limits)
     pieces = moving(time, pieces, limits)
     pieces = held(MeanVelocities(time, position=position), pieces, limits)
     pieces = [_with_slope(time, position, p) for p in pieces]

@@ -9,9 +9,9 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError, Cure
 from tribolab.friction.segments.stretches import finite, name_of
+from tribolab.friction.segments.turns import SAME, last_side, turns_of
 from tribolab.medians import median
 
-_HYSTERESIS = 0.25  # of the range: how far a position has to come back to be a turn
 _LEAST_SPEED = 0.2  # of the usual speed: what is slower does not say which way it goes
 _SHORTEST = 0.5  # of the usual length: what is shorter is no stroke
 _FEWEST = 3  # strokes, the cut ones at both ends left out
@@ -22,7 +22,6 @@ _FEW_UNLIKE = 0.2
 _EVEN = 0.1  # of a stroke's duration, by which the next one may differ
 _SEEN = 10  # samples of a stroke, at least
 _CLEAR = 5.0  # standard errors
-_SAME = 1e-9  # of the range, or of the usual speed: what differs by less is the same, or zero
 
 
 class Strokes(NamedTuple):
@@ -172,13 +171,6 @@ def _usual(run: xr.Dataset, first: np.ndarray, length: np.ndarray) -> np.ndarray
 _Parts = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 
 
-def _held(values: np.ndarray, low: float | np.ndarray, high: float | np.ndarray) -> np.ndarray:
-    """Whether a signal was last above `high` (+1) or below `low` (-1); 0 before either."""
-    state = np.where(values > high, 1, np.where(values < low, -1, 0))
-    place = np.where(state != 0, np.arange(state.size), 0)
-    return state[np.maximum.accumulate(place)]
-
-
 def _filled(run: xr.Dataset, name: str) -> np.ndarray:
     """Return a signal with its gaps bridged by straight lines."""
     time, values = finite(run, name)
@@ -189,22 +181,9 @@ def _filled(run: xr.Dataset, name: str) -> np.ndarray:
 
 def _by_position(run: xr.Dataset) -> _Parts:
     position = _filled(run, "position")
-    low, high = np.percentile(position, [1, 99])
-    middle, half = (low + high) / 2, (0.5 - _HYSTERESIS) * (high - low)
-    state = _held(position, middle - half, middle + half)
-    change = np.flatnonzero(np.diff(state)) + 1
-    change = change[state[change - 1] != 0]
-    if change.size < 2 or not high > low:
+    turn, way = turns_of(position)
+    if not way.size:
         return _nothing(position.size)
-    # between two changes the position is on one side: its farthest point is a turn
-    side = state[change[:-1]]
-    inside = np.arange(change[0], change[-1])
-    part = np.repeat(np.arange(side.size), np.diff(change))
-    height = position[inside] * side[part]
-    top = np.maximum.reduceat(height, change[:-1] - change[0])
-    at = inside[height >= top[part] - _SAME * (high - low)]
-    turn = at[np.searchsorted(at, change[:-1])]
-    way = -side[:-1]
     length = np.abs(np.diff(position[turn]))
     place = np.full(position.size, np.nan)
     samples = np.arange(turn[0], turn[-1])
@@ -217,13 +196,13 @@ def _by_position(run: xr.Dataset) -> _Parts:
 def _by_velocity(run: xr.Dataset) -> _Parts:
     time, velocity = run["time"].values, _filled(run, "sliding_velocity")
     limit = _limit(run, velocity)
-    state = _held(velocity, -limit, limit)
+    state = last_side(velocity, -limit, limit)
     change = np.flatnonzero(np.diff(state)) + 1
     change = change[state[change - 1] != 0]
     if change.size < 2:
         return _nothing(velocity.size)
     # the turn lies where the velocity last had the sign of before
-    sign = np.where(np.abs(velocity) > _SAME * limit, np.sign(velocity), 0.0)
+    sign = np.where(np.abs(velocity) > SAME * limit, np.sign(velocity), 0.0)
     same = np.flatnonzero(sign[:-1] * sign[1:] <= 0) + 1
     turn = np.unique(same[np.clip(np.searchsorted(same, change, side="right") - 1, 0, None)])
     way = np.sign(state[np.minimum(turn[1:] - 1, state.size - 1)]).astype(int)

@@ -78,8 +78,10 @@ def wander(offset: np.ndarray, error: np.ndarray, time: np.ndarray) -> Wander:
     # the weights depend on what is sought; this settles in a few rounds. They begin equal: steps
     # with a small error of their own would else outvote one that no error explains
     expected = np.full(apart.size, np.max(excess + noise) + noise.max())
+    if not expected[0] > 0:  # made without noise: nothing differs
+        return Wander(0.0, 0.0)
     for _ in range(30):
-        weight = 1 / np.maximum(expected, 1e-9 * expected.max() + 1e-300)
+        weight = 1 / np.maximum(expected, 1e-9 * expected.max() + 1e-150)
         variances, _ = optimize.nnls(parts * weight[:, None], excess * weight)
         expected = noise + parts @ variances
     # so few squares tell a variance poorly: one standard error above it, as Student's t would; each

@@ -1,4 +1,4 @@
-"""Zeros of the sensors from rests without load, and what they are at another time."""
+"""Zeros of the sensors from rests and other stretches without load, and between them."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def unloaded_rests(
     -------
     tuple
         Zeros of the friction force and of the normal force, in the order of time; None where no
-        rest tells them. The first reads less than a tenth of the load; a later one no more than
+        rest tells them, nor a stretch of motion without load. The first reads less than a tenth of the load; a later one no more than
         that above the one before, so that a zero may drift further.
     """
     rests = _resting(run, segments, load)
@@ -95,15 +95,9 @@ def unloaded_rests(
         return None, None
     time, normal, limits = rests
     friction = run["friction_force"].values if "friction_force" in run else None
-    before, levels = 0.0, []
-    for start, stop in limits:
-        first, last = np.searchsorted(time, [start, stop])
-        level = _level(normal, first, last, load)
-        # more than the zero before may be a light load; less is none, surfaces hardly pull
-        if level.size < _FEWEST or np.mean(normal[level]) - before > UNLOADED * load:
-            continue
-        before = float(np.mean(normal[level]))
-        levels.append(level)
+    levels = _unloaded(time, normal, limits, load)
+    if not levels:  # what moves without touching shows the zero, too: a torque's with its idling
+        levels = _unloaded(time, normal, _limits(segments, "no load"), load)
     signals = [normal] if friction is None else [normal, friction]
     told = estimates_of((time[level], signal[level]) for signal in signals for level in levels)
     when = [float(time[level].mean()) for level in levels]
@@ -157,10 +151,30 @@ def _resting(
     """Return time, normal force, and the limits of the rests [s]; None where no load is known."""
     if "normal_force" not in run or not load > 0 or "omitted" not in segments.dims:
         return None
-    resting = segments["omitted_reason"].values == "at rest"
-    starts, stops = (segments[name].values[resting] for name in ("omitted_start", "omitted_stop"))
-    limits = list(zip(starts.tolist(), stops.tolist(), strict=True))
-    return run["time"].values, run["normal_force"].values, limits
+    return run["time"].values, run["normal_force"].values, _limits(segments, "at rest")
+
+
+def _limits(segments: xr.Dataset, reason: str) -> list[tuple[float, float]]:
+    """Return the limits [s] of the stretches that were omitted for a reason."""
+    chosen = segments["omitted_reason"].values == reason
+    starts, stops = (segments[name].values[chosen] for name in ("omitted_start", "omitted_stop"))
+    return list(zip(starts.tolist(), stops.tolist(), strict=True))
+
+
+def _unloaded(
+    time: np.ndarray, normal: np.ndarray, limits: list[tuple[float, float]], load: float
+) -> list[np.ndarray]:
+    """Return the samples of each stretch at which nothing pressed."""
+    before, levels = 0.0, []
+    for start, stop in limits:
+        first, last = np.searchsorted(time, [start, stop])
+        level = _level(normal, first, last, load)
+        # more than the zero before may be a light load; less is none, surfaces hardly pull
+        if level.size < _FEWEST or np.mean(normal[level]) - before > UNLOADED * load:
+            continue
+        before = float(np.mean(normal[level]))
+        levels.append(level)
+    return levels
 
 
 def _level(normal: np.ndarray, first: int, last: int, load: float) -> np.ndarray:

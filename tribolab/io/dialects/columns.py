@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError, UnitError, nearest, shown
+from tribolab.errors import LacksError, ReadError, UnitError, nearest, shown
 from tribolab.io.dialects.column_rule import Column
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import guarded
@@ -132,7 +132,7 @@ def _index(column: Column, names: Sequence[str], width: int, dialect: Dialect) -
             return column.position - 1
         if column.optional:
             return None
-        raise ReadError(
+        raise LacksError(
             f"column {column.position} ({column.key}) is missing, the table has {width} columns"
         )
     called = column.name or f"like {column.name_pattern}"
@@ -157,7 +157,7 @@ def _index(column: Column, names: Sequence[str], width: int, dialect: Dialect) -
     hint = nearest(column.name or "", [name for name in names if name])
     if "did you mean" not in hint and not any(known.name in names for known in dialect.column):
         hint = ""  # no column of this instrument is there: what the file holds is not told
-    raise ReadError(f"column '{shown(called)}' ({column.key}) is missing{hint}")
+    raise LacksError(f"column '{shown(called)}' ({column.key}) is missing{hint}")
 
 
 def _is_called(name: str, column: Column) -> bool:
