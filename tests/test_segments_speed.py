@@ -180,4 +180,6 @@ def test_strokes_too_short_for_blocks_are_told_at_their_turns(crank):
     if crank:
         assert not fast.any()
         return
-    assert fast.sum() >= 38 and (found.direction.values[fast][1:] != found.direction[fast][:-1]).all()
+    assert (
+        fast.sum() >= 38 and (found.direction.values[fast][1:] != found.direction[fast][:-1]).all()
+    )

@@ -159,7 +159,9 @@ ON_RIM = re.compile(
     r"|ring[\s_-]?block|ブロックオンリング|环块|環塊|블록온링|timken|lfw",
     re.IGNORECASE,
 )
-OUTER = re.compile(r"ring|rim|roll|wheel|shaft|outer|outside|aussen|exter|anneau|anello|anillo|galet|hjul|welle|リング|环|環|外")
+OUTER = re.compile(
+    r"ring|rim|roll|wheel|shaft|outer|outside|aussen|exter|anneau|anello|anillo|galet|hjul|welle|リング|环|環|外"
+)
 
 
 def is_radius(name: str) -> bool:

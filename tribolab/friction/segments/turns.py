@@ -80,7 +80,8 @@ def strokes_within(
     Notes
     -----
     Slopes over blocks do not see strokes that last a few blocks only, and see no speed in as many
-    ways to as fro; between its turns each can be looked at alone. A stroke of a crank is no straight line, and stays a ramp.
+    ways to as fro; between its turns each can be looked at alone. A stroke of a crank is no
+    straight line, and stays a ramp.
     """
     result: list[VelocityPiece] = []
     noise = slopes.position_noise(time, position)
