@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 from scipy.signal import lfilter
 
+import tribolab as tl
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.segments.find import find_segments
 from tribolab.records.notices import notices_of
@@ -53,3 +54,21 @@ def test_noise_is_no_trend_along_the_run_nor_within_a_stroke():
         assert trends_along(friction, friction["friction_coefficient"].values) == []
         told = [notice.message for notice in notices_of("pin", run, segments, friction)]
         assert not any("with a significant trend" in message for message in told)
+
+
+def test_a_rise_along_the_run_is_no_error_of_its_mean():
+    """The mean is one over the run: its error is that about the line, as repeats would show it."""
+    rng = np.random.default_rng(11)
+    curves = []
+    for _ in range(40):
+        rise = 0.3 * (1 + 0.077 * np.linspace(-0.5, 0.5, 200))
+        mu = rise + 0.006 * rng.standard_normal(200)
+        friction = {"friction_coefficient": mu, "friction_coefficient_std": np.full(200, 0.01)}
+        friction |= {"friction_coefficient_sem": np.full(200, 0.004)}
+        friction |= {"sliding_speed": np.full(200, 0.01)}
+        run = xr.Dataset({name: ("segment", values) for name, values in friction.items()})
+        curves.append(tl.measured_stribeck_curve([run]))
+    means = [float(curve.friction_coefficient[0]) for curve in curves]
+    errors = [float(curve.friction_coefficient_sem[0]) for curve in curves]
+    assert np.std(means) < np.median(errors) < 2.5 * np.std(means)
+    assert max(abs(mean - 0.3) for mean in means) < 3 * np.median(errors)

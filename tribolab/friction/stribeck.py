@@ -10,6 +10,7 @@ import xarray as xr
 from scipy import special
 
 from tribolab.errors import AnalysisError, shown
+from tribolab.friction.along_run import line_along
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.joined import Label, grouped, joined_curves
 from tribolab.friction.statistics import error_of_mean, student_widening
@@ -19,6 +20,7 @@ from tribolab.provenance import joined_sources, made
 from tribolab.stamping import stamp
 
 _MANY = 24  # strokes of one speed that tell how long friction remembers
+_LONG = 100  # strokes from which on a line through them is not mistaken for their memory
 _FREEDOM = 3  # least degrees of freedom: two runs alone would widen the error twentyfold
 
 
@@ -100,7 +102,9 @@ def measured_stribeck_curve(
     1/sqrt(sum w_i) with all degrees of freedom, if its interval is the wider one [3]_. With one run
     the spread between runs is unknown, and the error is that run's own. Where it has 24
     observations or more at a speed, as a crank gives, those that follow each other need not be
-    independent: the error is at least that of the mean of a series with their spectrum.
+    independent: the error is at least that of the mean of a series with their spectrum, about the
+    straight line along the run where friction surely rises or falls over a hundred and more: the
+    mean is one over the run.
 
     References
     ----------
@@ -284,7 +288,12 @@ def _wandering(
     mean, error, known = level
     if len(in_order) < _MANY:
         return level
-    plain, wide = (float(part[0]) for part in error_of_mean(np.array([in_order])))
+    series = np.array(in_order)
+    number = np.arange(series.size, dtype=float)
+    line = line_along(number, series) if series.size >= _LONG else None
+    if line is not None:  # what is told as a trend leaves the mean as it is
+        series = series - line.at(number) + mean
+    plain, wide = (float(part[0]) for part in error_of_mean(series[None]))
     if not plain > known.u:
         return mean, max(error, plain), known
     freedom = max((len(in_order) - 1.0) * (known.u / plain) ** 2, 1.0)

@@ -7,12 +7,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from tribolab.friction.along_run import FEWEST, line_along
 from tribolab.words import duration, many, number, percent, speed_text
 
-_BLOCKS = 10  # of neighbouring segments, whose means are as good as independent
-_FEWEST = 2 * _BLOCKS  # segments
-_SURE = 6.0  # standard errors of the slope, of 8 degrees of freedom: chance 3e-4
-_MATTERS = 0.02  # change along the run over the mean
 _SAME_SPEED = 0.05  # relative difference of the speeds of alike segments
 
 
@@ -62,14 +59,13 @@ def trends_along(segments: xr.Dataset, values: np.ndarray) -> list[RunTrend]:
 
     Notes
     -----
-    A straight line through the means of ten blocks of neighbouring segments: what neighbours have
-    in common does not make it surer than it is.
+    See `tribolab.friction.along_run.line_along`.
     """
     speed = segments["sliding_speed"].values
     middle = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
     known = np.isfinite(values) & np.isfinite(speed) & (speed > 0)
     order = np.flatnonzero(known)[np.argsort(speed[known], kind="stable")]
-    if order.size < _FEWEST:
+    if order.size < FEWEST:
         return []
     cuts = np.flatnonzero(np.diff(np.log(speed[order])) > _SAME_SPEED) + 1
     found = (_trend(speed, middle, values, np.sort(part)) for part in np.split(order, cuts))
@@ -79,21 +75,11 @@ def trends_along(segments: xr.Dataset, values: np.ndarray) -> list[RunTrend]:
 def _trend(
     speed: np.ndarray, middle: np.ndarray, values: np.ndarray, part: np.ndarray
 ) -> RunTrend | None:
-    if part.size < _FEWEST:
+    line = line_along(middle[part], values[part])
+    if line is None:
         return None
-    blocks = np.array_split(part, _BLOCKS)
-    time, mean = (np.array([of[block].mean() for block in blocks]) for of in (middle, values))
-    apart = time - time.mean()
-    square = float(apart @ apart)
-    if not square > 0:
-        return None
-    slope = float(apart @ mean) / square
-    rest = mean - mean.mean() - slope * apart
-    error = float(np.sqrt(rest @ rest / (_BLOCKS - 2) / square))
     lasted = float(middle[part[-1]] - middle[part[0]])
-    change, level = slope * lasted, float(mean.mean())
-    if abs(slope) <= _SURE * error or abs(change) <= _MATTERS * abs(level):
-        return None
-    ends = (level + slope * (middle[end] - time.mean()) for end in (part[0], part[-1]))
-    first, last = map(float, ends)
-    return RunTrend(float(np.median(speed[part])), first, last, error * lasted, part.size, lasted)
+    first, last = line.at(middle[part[[0, -1]]]).tolist()
+    return RunTrend(
+        float(np.median(speed[part])), first, last, line.error * lasted, part.size, lasted
+    )
