@@ -221,3 +221,16 @@ def test_the_ring_is_the_track_of_a_block_on_it(rig, tmp_path):
     run = tl.read(tmp_path / "a.csv")
     assert float(run.friction_force[0]) == pytest.approx(0.5 / 0.0175)
     assert float(run.sliding_velocity[0]) == pytest.approx(2 * np.pi * 100 / 60 * 0.0175)
+
+
+def test_units_that_blanks_part_from_their_names_are_no_names_of_columns(tmp_path):
+    rows = "\n".join(f"{n / 10:8.1f} {n % 9 / 2:8.2f} {3 + n % 2:6.1f} {10:6.1f}" for n in range(90))
+    head = "Rig 7\nt [s]   x [mm]   Ft [N]   Fn [N]\n"
+    (tmp_path / "a.txt").write_text(head + rows + "\n", "utf-8")
+    labels = tl.read(tmp_path / "a.txt").attrs["columns_used"]
+    assert labels == {
+        "time": "t [s]",
+        "position": "x [mm]",
+        "friction_force": "Ft [N]",
+        "normal_force": "Fn [N]",
+    }

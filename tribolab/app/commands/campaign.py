@@ -207,7 +207,7 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
     for crash in crashes if debug else ():
         say(crash, to_stderr=True)
     nothing = bool(outcome.campaign.run) and not outcome.segments
-    if nothing:
+    if nothing and outcome.runs:  # of those that could not be read that is told
         say(
             "tribolab: no segment of constant speed was found in any run; in [segments], `drift` "
             "and `min_samples` say what is constant, and `stroke_middle = 0.5` takes half of each "

@@ -64,7 +64,7 @@ def resolve(
         If columns are missing or have no usable unit: all of them are told.
     """
     signals: list[ReadColumn] = []
-    refused: list[str] = []
+    refused: list[ReadError] = []
     for column in dialect.column:
         try:
             index = _index(column, names, width, dialect)
@@ -74,9 +74,11 @@ def resolve(
                 key = f"{column.key}{AGAIN}{before + 1}" if before else column.key
                 signals.append(signal._replace(quantity=key))
         except ReadError as error:
-            refused.append(str(error))
+            refused.append(error)
     if refused:
-        raise ReadError(f"{where}: {'; '.join(refused)} (instrument '{dialect.name}')")
+        lacks = any(isinstance(error, LacksError) for error in refused)
+        told = f"{'; '.join(map(str, refused))} (instrument '{dialect.name}')"
+        raise (LacksError if lacks else ReadError)(told, where=where)
     used = {signal.place for signal in signals}
     unused = [
         f"{name} [{unit}]" if unit else name

@@ -83,6 +83,39 @@ def _columns(
     return names, units
 
 
+def parted_as_numbers(
+    names: tuple[str, ...], units: tuple[str | None, ...], width: int, dialect: Dialect
+) -> tuple[tuple[str, ...], tuple[str | None, ...]]:
+    """Return names and units of a header that blanks part otherwise than they part its numbers.
+
+    Parameters
+    ----------
+    names, units
+        As the delimiter parts them.
+    width
+        How many numbers stand in a row.
+    dialect
+        The instrument's: only where it tells its columns by their place names may be wrong.
+
+    Notes
+    -----
+    Units in brackets belong to the names before them; what still fits no row names nothing.
+    """
+    fits = len(names) == width or dialect.text.delimiter != "whitespace"
+    if fits or any(column.position is None for column in dialect.column):
+        return names, units
+    joined: list[str] = []
+    marked = len(names) > width and not any(map(str.isalnum, names[0]))  # "# t [s] x [mm]"
+    for name in names[marked:]:
+        if joined and name[:1] in "([":
+            joined[-1] += f" {name}"
+        else:
+            joined.append(name)
+    if len(joined) != width:
+        return (), ()
+    return tuple(split_name(name)[0] for name in joined), (None,) * width
+
+
 def line_at(
     file: File, content: bytes | mmap.mmap, start: int, dialect: Dialect
 ) -> tuple[str, int]:

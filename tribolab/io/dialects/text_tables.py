@@ -14,6 +14,7 @@ from tribolab.io.dialects.headers import (
     compiled,
     header_starts,
     line_at,
+    parted_as_numbers,
     read_header,
     table_encoding,
 )
@@ -97,6 +98,7 @@ def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -
         if end is not None and (last := end.search(content, body, min(limit, len(content)))):
             stop = last.start()
         width = len(split_row(line_at(file, content, body, dialect)[0], text.delimiter))
+        names, units = parted_as_numbers(names, units, width, dialect)
         before = _decode(content[origin : start if start > origin else body], file, dialect)
         if header.line is None and header.pattern is None and not header.skip:
             before = ""
