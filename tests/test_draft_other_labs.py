@@ -224,7 +224,7 @@ def test_the_ring_is_the_track_of_a_block_on_it(rig, tmp_path):
 
 
 def test_units_that_blanks_part_from_their_names_are_no_names_of_columns(tmp_path):
-    rows = "\n".join(f"{n / 10:8.1f} {n % 9 / 2:8.2f} {3 + n % 2:6.1f} {10:6.1f}" for n in range(90))
+    rows = "\n".join(f"{n / 10:8.1f} {n % 9 / 2:8.2f} {3 + n % 2:6} {10:6}" for n in range(90))
     head = "Rig 7\nt [s]   x [mm]   Ft [N]   Fn [N]\n"
     (tmp_path / "a.txt").write_text(head + rows + "\n", "utf-8")
     labels = tl.read(tmp_path / "a.txt").attrs["columns_used"]

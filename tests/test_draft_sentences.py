@@ -157,7 +157,9 @@ def test_a_sentence_states_strokes_a_speed_and_a_load(tmp_path):
     path = table(tmp_path / "b.txt", head, T, 100 * FORCE, LOAD)
     told = command("dialect", path, "--no-ask", "--output", tmp_path / "b.toml")
     assert "friction coefficient 0.167 (standard error at most 0.0" in told
-    assert "'Belt rig, speed 0,3 m/min' is the sliding speed all along" in refusal(path)
+    assert tl.read(path).attrs["set_speed_m_s"] == pytest.approx(0.005)
+    fastest = table(tmp_path / "c.txt", head.replace("speed", "max speed"), T, 100 * FORCE, LOAD)
+    assert "set_speed_m_s" not in tl.read(fastest).attrs
     run = tl.read(path, tl.draft_dialect(path).dialect)
     assert run.attrs["set_speed_m_s"] == pytest.approx(5e-3)
 

@@ -14,6 +14,7 @@ from tribolab.errors import ReadError, shown
 from tribolab.io.clocks.clock import join_clocks, mended_time, recorded_at, set_time
 from tribolab.io.content.model import Content
 from tribolab.io.content.newest_first import oldest_first
+from tribolab.io.content.programme import programme_values
 from tribolab.io.content.read import read_content
 from tribolab.io.content.twice import each_row_once
 from tribolab.io.content.values import add_assumed, single_values, step_values, tell_assumed
@@ -55,7 +56,7 @@ def assemble(logs: LogDialects, zero: str | None = None) -> xr.Dataset:
     if "part" in joined and "step" not in columns:
         columns["step"] = np.asarray(joined["part"])
     more, step_attrs = step_values(contents, dialect)
-    columns |= more
+    columns |= more | programme_values(contents, columns, dialect)
     attrs = single_values(contents[0], dialect) | step_attrs
     where = "; ".join(str(content.path) for content in contents)
     mended = mended_time(columns.pop("time"), where, dialect)
@@ -107,7 +108,8 @@ def _symbols(contents: list[Content], dialect: Dialect) -> dict[str, str]:
     of_steps = {
         value.name: value.si_unit
         for value in dialect.value
-        if value.source == "step" and value.unit is not None and value.name not in QUANTITIES
+        if value.source in ("step", "programme")
+        if value.unit is not None and value.name not in QUANTITIES
     }
     return of_steps | {k: v for content in contents for k, v in content.symbols.items()}
 

@@ -88,7 +88,7 @@ def keep_settings(
     ReadError
         If such a column does not hold the same all along, or a step does not state what others do.
     """
-    before_steps = {v.name: v.si_unit for v in dialect.value if v.source == "step" and v.unit}
+    before_steps = {v.name: v.si_unit for v in dialect.value if v.source in _OF_STEPS and v.unit}
     of_steps: dict[str, np.ndarray] = {}
     for key, name in dialect.speed.values_named.items():
         if name not in {*symbols, *before_steps} or name not in columns:
@@ -200,6 +200,7 @@ def _by_strokes_of_steps(
     columns["sliding_velocity"] = velocity
 
 
+_OF_STEPS = ("step", "programme")  # where a value that each step has is said
 _VARIES = 0.1  # relative; the stroke of a magnetic drive is controlled to some per cent
 _SIGNALS = ("friction_force", "friction_coefficient", "shear_stress")
 

@@ -32,7 +32,7 @@ _SPEED_TOLERANCE = 0.1
 _SPEED_FROM = {
     "stroke": "stroke and frequency",
     "rotation": "rotation and radius",
-    "stated": "what the file states of each step, not measured",
+    "stated": "what the file states, not measured",
 }
 
 

@@ -8,7 +8,9 @@ from typing import NamedTuple
 
 from tribolab.draft.columns.bridges import calibrated_forces
 from tribolab.draft.columns.lengths import find_arm, find_radius, on_rim
+from tribolab.draft.columns.programme import programme_of
 from tribolab.draft.columns.stated_load import find_load
+from tribolab.draft.columns.stated_words import PER_MINUTE
 from tribolab.draft.columns.strokes import (
     END_TO_END,
     FREQUENCY,
@@ -19,7 +21,7 @@ from tribolab.draft.columns.strokes import (
 )
 from tribolab.draft.columns.turning import angle_of, radius_of, torque_of, turns_of
 from tribolab.draft.columns.values import DraftValue, find_values, words_said
-from tribolab.draft.columns.words import squeezed
+from tribolab.draft.columns.words import or_term, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import STEP_WORD
@@ -33,13 +35,27 @@ _DRIVE = re.compile(
     r"|^moto$|^ruch|hareket|движен|привод|pohyb|pohon|napęd|naped|beweging|aandrijving|forma?(?:de|da|d)onda|formeonde|运动|運動"
 )
 _SINE = re.compile(
-    r"crank|manovell|manivel|biel|armonic|harmoni|krank|korb|кривошип|синус|曲柄|正弦|クランク|sine|sinus|sinoid|kurbel|eccentric|exzenter|manivelle|scotch"
+    r"crank|manovell|manivel|biel|armonic|harmoni|krank|korb|vev|veiv|krumtap|kampi|klik|forgatty|кривошип|синус|曲柄|正弦|クランク|sine|sinus|sinoid|kurbel|eccentric|exzenter|manivelle|scotch"
 )
 _EVEN = re.compile(r"triang|constant|linear|konstant|dreieck")
 _MODE = re.compile(r"^(?:test|sliding)?mode$|^modus$|^betriebsart$|^modo$|模式$|モード$")
-_SPEED_OF_TURNS = re.compile(r"(?:speed|velocity|rotation|rpm|drehzahl|vitesse|giri|velocidad)$")
+_SPEED_OF_TURNS = or_term(
+    r"(?:speed|velocity|rotation|rpm|drehzahl|vitesse|giri|velocidad)$",
+    "rotation_speed",
+)
+# what nothing else may be than how fast it slides or turns
+_ITS_SPEED = or_term(
+    r"^(?:test|set|nominal|sliding|gleit|linear|surface|track|rotary|rotation(?:al)?|spindle|dis[ck])?"
+    r"(?:speed|velocity|rpm|geschwindigkeit|drehzahl|rotation)$",
+    "sliding_velocity",
+    "rotation_speed",
+)
+_ANOTHER_SPEED = re.compile(
+    r"\b(?:max\w*|min(?:imum|imal)\w*|limit\w*|return\w*|approach\w*|feed\w*|rück\w*|retour\w*|idle\w*"
+    r"|top)\b",
+    re.IGNORECASE,
+)
 _STEP = re.compile(rf"^{STEP_WORD}\d*n?$")
-_PER_MINUTE = re.compile(r"rpm|1/min|min-1|(?:rev|r|U|tr|ot|obr|giri)\.?/\s?min", re.IGNORECASE)
 _SAYS_SPEED = {"sliding_velocity", "position", "set_speed"}
 SAYS_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
@@ -90,6 +106,8 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     # with a unit still to be filled in, a column is there all the same
     names = {c.quantity for c in understood.columns if c.quantity and (c.used or c.fill_in)}
     values = find_values(layout)
+    if "step" in names:
+        values += programme_of(layout)
     track = _track(values, understood, rim=on_rim(layout))
     result = Follows()
     timed = "time" in names or understood.rate_pattern
@@ -260,8 +278,8 @@ def _with_speed(
 
 def _is_rotation(value: DraftValue) -> bool:
     step = value.source == "step" and _STEP.search(value.key) is not None
-    named = step or _SPEED_OF_TURNS.search(value.key) is not None
-    return named and _PER_MINUTE.fullmatch(value.own_unit or "") is not None
+    named = step or value.source == "programme" or _SPEED_OF_TURNS.search(value.key) is not None
+    return named and PER_MINUTE.fullmatch(value.own_unit or "") is not None
 
 
 def _angle(understood: Understood) -> DraftColumn | None:
@@ -288,8 +306,9 @@ def _with_set_speed(before: Follows, values: Sequence[DraftValue], track: _Track
 
 
 def _asked_of(speed: SpeedBy, value: DraftValue, guess: str) -> SpeedBy:
-    """Ask whether what is stated once holds all along; what each step states holds in it."""
-    if value.source == "step":
+    """Ask whether a speed of some name holds all along; what each step states holds in it."""
+    its = _ITS_SPEED.search(value.key) and not _ANOTHER_SPEED.search(value.text)
+    if value.source in ("step", "programme") or its:
         return speed
     return speed._replace(guess=guess, options=("not known",))
 

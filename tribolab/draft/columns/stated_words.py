@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from tribolab.draft.columns.words import or_term
+
 # a sample rate by its name; "Frequency" alone may be that of the strokes
 _TAKEN = (
     r"(?:sampl|abtast|acqui|adquis|aquisi|scan|log|data|daten|daq|mess|meet|record|captur|update"
@@ -14,10 +16,11 @@ _OFTEN = (
     r"(?:rate|rata|freq|frek|frecuen|cadenc|taux|tasa|taxa|vitess|veloc|geschwind|hastighet"
     r"|частот|czestotl|częstotl|率|周波数|レート|速度)"
 )
-RATE = re.compile(
+RATE = or_term(
     rf"^(?:rate|fs|daqrate)$|{_TAKEN}.*{_OFTEN}|{_OFTEN}.*{_TAKEN}"
     r"|abtastrate|cadence|echantillonnage|muestreo|campionamento|采样|サンプリング"
-    r"|^(?:sampling|acquisition|logging|abtastung|aufzeichnung|sampled|logged|recorded|acquired|abgetastet|aufgezeichnet)$"
+    r"|^(?:sampling|acquisition|logging|abtastung|aufzeichnung|sampled|logged|recorded|acquired|abgetastet|aufgezeichnet)$",
+    "sampling_rate",
 )
 # what passes from one sample to the next
 INTERVAL = re.compile(
@@ -27,7 +30,7 @@ INTERVAL = re.compile(
     r"|pasdetemps|pasodetiempo|passotemporale|passodetempo|tijdstap|tidssteg|periododemuestreo"
     r"|intervallodicampionamento|perioded?echantillonnage|采样间隔|采样周期|サンプリング(?:間隔|周期)"
 )
-LOAD = re.compile(
+LOAD = or_term(
     r"^(?:normal|applied|dead|sled|schlitten|test|axial|static|set)?"
     r"(?:load(?:ed|set)?|force|weight|mass|gewicht|masse|kraft|last)+$"
     r"|^(?:normalkraft|auflast|normallast|belastet|belastung|chargenormale|charge|forcenormale"
@@ -36,10 +39,11 @@ LOAD = re.compile(
     r"|(?:nacisk|obciazenie|zatizeni|нагрузка|carico|carga|charge|load|last)(?:fn|fz|f|p|w|n)"
     r"|试验力|法向力|法向载荷|载荷|负载|荷重|垂直荷重|試験荷重|載荷|하중)$"
     r"|^(?:carga|peso|massa|carico|charge|fuerza|forza|forca)(?:normale?)?"
-    r"(?:do|da|de|del|della|des|du|aplicada|appliquee|applicato)\w{0,12}$"
+    r"(?:do|da|de|del|della|des|du|aplicada|appliquee|applicato)\w{0,12}$",
+    "load",
 )
 # the distance of a profile's points by its name
-PITCH = re.compile(
+PITCH = or_term(
     r"^(?:d?x|deltax|pitch|spacing|increment|step|stepsize|stepping|interval|xscale)$"
     r"|^(?:schritt\w*|x?pas|x?paso|x?passo|x?stap\w*|x?schritt\w*|sampling|sampled|abtastung)$|(?:abtast|mess)schritt"
     r"|^(?:шаг|pikselboyutu|ornekleme|oernekleme|askel|naytevali|naeytevaeli)\w*|间隔|간격"
@@ -50,10 +54,11 @@ PITCH = re.compile(
     r"|(?:distan[czt]\w*?|afstand|abstand|ecart|espaciado|intervall?[eo]?|pas|paso|passo)"
     r"(?:de\w?|di|entre(?:les|los)?|tra\w?|fra\w?|tussen|zwischen\w{0,5}|der)?"
     r"(?:punt\w+|points?|pontos?|punkten?|muestreo|d?echantillonnage|campionamento|amostragem)$"
-    r"|(?:pitch|spacing|increment|interval)(?:x|between\w*)?$"
+    r"|(?:pitch|spacing|increment|interval)(?:x|between\w*)?$",
+    "pitch",
 )
 # the length of a whole profile, over which its points lie: no cut-off, no length of a part
-PROFILE_LENGTH = re.compile(
+PROFILE_LENGTH = or_term(
     r"^(?:total|full|x|line)?(?:scan|trace|tracing|taster?|meet|travers\w*|profile?|evaluation|assessment|record"
     r"|measur\w+|mess|tast(?:er?)?|abtast|gesamt|lateral|data)?(?:ed|ing)?"
     r"(?:length|laenge|strecke|range|weg|lengte)(?:x|lt|ln)?$"
@@ -62,7 +67,8 @@ PROFILE_LENGTH = re.compile(
     r"|medida|medicion|recorrido|exploracion|evaluacion|trazado|barrido|misura\w*|esplorazione"
     r"|scansione|traccia|valutazione|medicao|varredura|avaliacao|perfil)?$"
     r"|^(?:длина|dlugosc|delka|hossz|pituus|uzunluk)(?:трассы|профиля|измерения|pomiaru|profilu|odcinka|mereni)?$"
-    r"|^(?:测量|扫描|轮廓|取样)?长度$|^(?:測定|走査)?長さ$"
+    r"|^(?:测量|扫描|轮廓|取样)?长度$|^(?:測定|走査)?長さ$",
+    "profile_length",
 )
 # how fast a stylus goes over a profile
 _GOES = (
@@ -72,7 +78,7 @@ _GOES = (
 _FAST = r"(?:speed|velocity|snelheid|geschwindigkeit|vitesse|velocidade?|velocita|rate|速度)"
 TRAVERSE_SPEED = re.compile(rf"{_GOES}.{{0,4}}{_FAST}|{_FAST}.{{0,4}}{_GOES}")
 # how many points a profile has
-POINTS = re.compile(
+POINTS = or_term(
     r"^(?:number|numbers|no|nr|n|num|total|count)?(?:of|de)?(?:data|measured?|measuring|profile)?"
     r"(?:points?|pts?|samples?|values?|heights?|pixels?)(?:number|count|total)?$"
     r"|^(?:anzahl|zahl|aantal|antal|antall)(?:der)?(?:mess|daten|profil)?(?:punkte|punten|punkter|waarden|werte|hoehen)$"
@@ -80,7 +86,8 @@ POINTS = re.compile(
     r"|^(?:nombre|nb|numero|num|no|n)(?:de|dei|di|des|dos)?"
     r"(?:points?|puntos?|punti|pontos?|mesures|valores|valori|echantillons|muestras)$"
     r"|^(?:количество|число|liczba|ilosc|pocet)(?:точек|punktow|probek|bodu)$"
-    r"|^(?:点数|采样点数|数据点数|データ点数|測定点数)$"
+    r"|^(?:点数|采样点数|数据点数|データ点数|測定点数)$",
+    "points",
 )
 UNIT = re.compile(
     r"^(?:unit|units|einheit|einheiten|unite|unites|unidad|unidades|unita|unidade|eenheid|单位|単位)$"
@@ -130,8 +137,9 @@ OF_TRACE = re.compile(
 )
 # a part of the trace, over which an instrument computes
 PART_OF_TRACE = re.compile(r"evalu|assess|ln$|valutazione|avaliacao|auswert|sampling|einzel")
-RADIUS = re.compile(
-    "promien|polomer|радиус|yaricap|radius|rayon|radio(?!m)|raggio|raio|straal|半径"
+RADIUS = or_term(
+    "promien|polomer|радиус|yaricap|radius|rayon|radio(?!m)|raggio|raio|straal|半径",
+    "track_radius",
 )
 ARM = re.compile(
     r"lever|hebelarm|arm(?:length|laenge)|torquearm|levier|palanca|braccio|力臂|アーム"
@@ -141,11 +149,15 @@ OTHER_RADIUS = re.compile(
 )
 _TRACK = "track|wear|spur|laufbahn|reib|friction|path|piste|traccia|pista|sliding|gleit|磨|轨|摩擦"
 # of the track, not of a ball or a disc
-DIAMETER = re.compile(
-    rf"(?:{_TRACK}).*(?:dia|durchmesser|直径)|(?:dia(?:m\w*)?|durchmesser).*(?:{_TRACK})"
+DIAMETER = or_term(
+    rf"(?:{_TRACK}).*(?:dia|durchmesser|直径)|(?:dia(?:m\w*)?|durchmesser).*(?:{_TRACK})",
+    "track_diameter",
 )
-ACROSS = re.compile(r"dia|durchmesser|diametr|srednica|直径|外径|내경|외경|^(?:ø|oe|⌀)$|^d$")
-ON_TRACK = re.compile(_TRACK)
+ACROSS = or_term(
+    r"dia|durchmesser|diametr|srednica|直径|外径|내경|외경|^(?:ø|oe|⌀)$|^d$|od$", "track_diameter"
+)
+ON_TRACK = or_term(_TRACK, "track_radius")
+PER_MINUTE = re.compile(r"rpm|1/min|min-1|(?:rev|r|U|tr|ot|obr|giri)\.?/\s?min", re.IGNORECASE)
 # what turns may be wider than the track on it
 TURNING = re.compile(
     r"dis[ck]|scheibe|ring|plate|platte|disque|disco|anneau|anello|anillo|pierscien|specimen|sample|盘|環|环|円板|リング|ディスク|디스크"
@@ -160,7 +172,7 @@ ON_RIM = re.compile(
     re.IGNORECASE,
 )
 OUTER = re.compile(
-    r"ring|rim|roll|wheel|shaft|outer|outside|aussen|exter|anneau|anello|anillo|galet|hjul|welle|リング|环|環|外"
+    r"ring|rim|roll|wheel|shaft|outer|outside|aussen|exter|anneau|anello|anillo|galet|hjul|welle|リング|环|環|外|od$"
 )
 
 

@@ -6,15 +6,16 @@ import re
 from collections.abc import Sequence
 
 from tribolab.draft.columns.roles import without_role
-from tribolab.draft.columns.words import squeezed
+from tribolab.draft.columns.words import or_term, squeezed
 from tribolab.draft.file.header import converts
 
-STROKE = re.compile(
+STROKE = or_term(
     r"^(?:total|full|whole|set|nominal|gesamt)?(?:stroke|strokelength|slaglengte|hub|hublaenge|course"
     r"|carrera|corsa|curso|skok|zdvih|strok|slaglangd|loekethossz|iskunpituus|ход|行程|ストローク)"
     r"(?:total|totale|length|laenge|intera|completa|uzunlugu)?$"
     r"|^(?:longueur|longitud|lunghezza|comprimento|dlugosc|delka|длина)"
-    r"(?:dela|de|da|di|do|della)?(?:course|carrera|corsa|curso|skoku|zdvihu|хода)$|^总?行程长?度?$"
+    r"(?:dela|de|da|di|do|della)?(?:course|carrera|corsa|curso|skoku|zdvihu|хода)$|^总?行程长?度?$",
+    "stroke",
 )
 HALF_STROKE = re.compile(
     r"^(?:half(?:the)?stroke(?:length)?|(?:stroke|motion)?amplitude(?:of(?:the)?(?:motion|stroke))?"
@@ -23,12 +24,13 @@ HALF_STROKE = re.compile(
 END_TO_END = re.compile(
     r"peak\W?to\W?peak|\bpk\W?pk\b|\bp\W?p\b|spitze\W{1,3}spitze", re.IGNORECASE
 )
-FREQUENCY = re.compile(
+FREQUENCY = or_term(
     r"^(?:(?:stroke|oscillation|reciprocating|test|drive|motion|hub|schwing|crank)?"
     r"(?:frequency|freq|frequenz|speed|rotation)|频率|周波数"
     r"|(?:frequence|frecuencia|frequenza|frequencia|frequentie|frekvens|frekvence|frekans|taajuus"
     r"|czestotliwosc|frekvencia|частота|주파수)(?:de\w*|di\w*|do\w*|ruchu|pohybu|хода|oscil\w*)?"
-    r"|reciprocation|oscillation|strokerate|cyclerate|frequencyof(?:motion|reciprocation))$"
+    r"|reciprocation|oscillation|strokerate|cyclerate|frequencyof(?:motion|reciprocation))$",
+    "frequency",
 )
 
 

@@ -8,14 +8,15 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from tribolab.draft.columns.stated_words import is_radius
-from tribolab.draft.columns.words import split_unit, squeezed
+from tribolab.draft.columns.words import or_term, split_unit, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn
 from tribolab.io.dialects.cells import split_name
 
-_TORQUE = re.compile(
+_TORQUE = or_term(
     r"torque|drehmoment|reibmoment|moment|couple|coppia|momento|binario|koppel|扭矩|转矩|力矩|トルク"
-    r"|parmotor|^(?:m|mr|mf|md|tq|par)$"
+    r"|parmotor|^(?:m|mr|mf|md|tq|par)$",
+    "torque",
 )
 _TORQUE_UNIT = re.compile(r"[cmkuµμ]?N\s?[·⋅・∙•*.]?\s?[cmuµμ]?m")  # and no J
 _ANGLE = re.compile(r"angle|winkel|angolo|angulo|角|phi|^(?:theta|rotation)$")

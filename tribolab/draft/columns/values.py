@@ -21,7 +21,7 @@ from tribolab.draft.columns.stated_words import (
     TURNING,
 )
 from tribolab.draft.columns.strokes import FREQUENCY, HALF_STROKE, STROKE
-from tribolab.draft.columns.words import matches, split_unit, squeezed, unit_in_words
+from tribolab.draft.columns.words import matches, or_term, split_unit, squeezed, unit_in_words
 from tribolab.draft.file.header import DIMENSIONS, converts, escaped, is_unit
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import STEP_WORD
@@ -52,7 +52,10 @@ _DRIVEN = re.compile(  # "reciprocating rig, crank drive"
     r"\b(?:crank|scotch[- ]yoke|eccentric|kurbel|exzenter)"
     r"[- ]?(?:driv\w*|(?:an)?trieb\w*|mechanism)"
     r"|\b(?:sinusoidal|sinusf[oö]rmige?|triangular|constant[- ]speed)"
-    r" (?:motion|strokes?|bewegung)",
+    r" (?:motion|strokes?|bewegung)"
+    r"|\b(?:vevdriv\w+|vevdrift|veivdrift|krumtapdrift|kampikäyttö|biel\w+[- ]maniv\w+|manivelle"
+    r"|krank[- ]biyel|sinüs\w* hareket\w*|korbow\w+|klikov\w+|кривошип\w*|forgattyús?\w*)"
+    r"|曲柄|クランク|크랭크|正弦运动|正弦運動",
     re.IGNORECASE,
 )
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]")
@@ -299,13 +302,15 @@ def _of_phrase(phrase: Phrase) -> DraftValue | None:
 
 
 _STEP_TITLE = re.compile(rf"\W*{STEP_WORD}\W*\d", re.IGNORECASE)
-_R = re.compile(r"^(?:r|d|ø|⌀)$")
-_SPEED = re.compile(
+_R = re.compile(r"^(?:r|d|ø|⌀|od)$|(?:ring|roller|wheel)od$")
+_SPEED = or_term(
     r"^(?:sliding|test|belt|disc|set|linear)?(?:speed|velocity)$|geschwindigkeit$|^vitesse|^velocidad"
-    r"|^velocita|速度$|snelheid$"
+    r"|^velocita|速度$|snelheid$",
+    "sliding_velocity",
 )
-_TURNS = re.compile(
-    rf"(?:speed|velocity|rotation|rpm|drehzahl|vitesse|velocidad|velocita|giri|obroty|转速|回転数)$|^{STEP_WORD}\d*n?$"
+_TURNS = or_term(
+    rf"(?:speed|velocity|rotation|rpm|drehzahl|vitesse|velocidad|velocita|giri|obroty|转速|回転数)$|^{STEP_WORD}\d*n?$",
+    "rotation_speed",
 )
 _WANTED = {
     "m": (RADIUS, DIAMETER, _R, ARM, STROKE, HALF_STROKE, PITCH, TURNING, PROFILE_LENGTH, TIP),

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from tribolab.draft.columns.roles import role_of, without_role
 from tribolab.draft.file.header import converts, is_unit
+from tribolab.draft.terms import TERMS
 from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS, WEIGHTS, Word
 from tribolab.quantities import quantity
 
@@ -28,6 +29,7 @@ _LETTERS = str.maketrans(_SPELT)
 _ACCENTS = re.compile("[\u0300-\u036f]")  # not the marks that make one kana of another
 _VAGUE = 0.6  # of the score of a word that names this quantity alone
 _OF_DEVICE = 0.98
+_TERM = 0.98  # a whole term of a language
 KNOWN_WORD = 0.7  # a name of which so much is a known word is no guess
 # "Stage.X", "DAQ.Fz": letters on both sides of the last point
 _DEVICE = re.compile(r"(?P<device>.*[^\W\d]\w*)\.(?P<name>[^\W\d].*)$")
@@ -299,9 +301,35 @@ def _kinds(unit: str) -> int:
     return sum(converts(unit, kind.unit, kind.bare) for kind in known)
 
 
+def or_term(pattern: str, *concepts: str) -> re.Pattern[str]:
+    """Return a pattern for squeezed names that knows the terms of some concepts, too.
+
+    Parameters
+    ----------
+    pattern
+        For `re.search`.
+    *concepts
+        Of `tribolab.draft.terms.TERMS`.
+
+    Examples
+    --------
+    >>> bool(or_term("^hub$", "stroke").search(squeezed("Slaglängd")))
+    True
+    """
+    terms = sorted({re.escape(term) for concept in concepts for term in _terms(concept)})
+    return re.compile(f"{pattern}|^(?:{'|'.join(terms)})$")
+
+
+@functools.cache
+def _terms(concept: str) -> frozenset[str]:
+    return frozenset(squeezed(term) for term in TERMS.get(concept, ()))
+
+
 def _score(text: str, word: Word) -> float:
     if text in word.symbols:
         return 1.0 - 0.01 * word.symbols.index(text)
+    if text in _terms(word.quantity):
+        return _TERM
     return max(_share(text, word.stems), _VAGUE * _share(text, word.vague))
 
 

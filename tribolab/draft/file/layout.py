@@ -5,12 +5,15 @@ Only the first megabyte is looked at line by line, and the end of a longer file 
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from tribolab.draft.file.blocks import find_blocks, main_blocks
 from tribolab.draft.file.header import Heading
 from tribolab.draft.file.lines import (
     DELIMITERS,
+    Grammar,
     find_encoding,
     find_grammar,
     find_line_ends,
@@ -33,7 +36,11 @@ from tribolab.io.dialects.spelling import (
     without_commas_in_quotes,
 )
 from tribolab.io.dialects.thousands import Mark, find_thousands, without_thousands
+from tribolab.io.dialects.wrapped import numbers_in, unwrapped
 
+_MOST_IN_A_LINE = 64
+_LONGEST = 200  # characters of a line that are looked at
+_COUNT = re.compile(r"(?<![\d.,])(\d{2,7})(?![\d.,])[^\d]{0,20}$")  # "Number of points: 5600"
 _FEW = 20  # lines at the end that tell what parts cells
 _MOST_COLUMNS = 20_000
 
@@ -79,6 +86,7 @@ class Layout(NamedTuple):
     held: Held | None = None
     thousands: Mark = ""
     quoted: bool = False
+    wrapped: bool = False
 
     @property
     def delimiter_name(self) -> str:
@@ -147,6 +155,12 @@ def find_layout(file: File) -> Layout:
         )
     blocks, skip_lines = without_marks(lines, find_blocks(lines, grammar), grammar)
     main, others = main_blocks(blocks)
+    wrapped = file.size <= HEAD and _go_on(lines, main, grammar)
+    if wrapped:
+        table = "\n".join(lines[main[0].start :])
+        lines = (*lines[: main[0].start], *unwrapped(table, grammar.delimiter).split("\n"))
+        blocks, skip_lines = without_marks(lines, find_blocks(lines, grammar), grammar)
+        main, others = main_blocks(blocks)
     first = main[0]
     if first.width > _MOST_COLUMNS:
         raise ReadError(
@@ -191,4 +205,15 @@ def find_layout(file: File) -> Layout:
         guesses=tuple(guesses),
         thousands=thousands,
         quoted=quoted,
+        wrapped=wrapped,
     )
+
+
+def _go_on(lines: Sequence[str], main: Sequence[Block], grammar: Grammar) -> bool:
+    """Whether one column goes on from line to line: as many numbers as the text above says."""
+    first = main[0]
+    if len(main) > 1 or first.heading is not None or not 1 < first.width <= _MOST_IN_A_LINE:
+        return False
+    count = numbers_in("\n".join(lines[first.start :]), grammar.delimiter)
+    above = (_COUNT.search(line[:_LONGEST]) for line in lines[: first.start])
+    return len(first.rows) > 1 and count in {int(match[1]) for match in above if match}

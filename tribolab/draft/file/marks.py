@@ -12,7 +12,7 @@ from tribolab.draft.file.lines import Grammar
 # what steps of a programme are called
 STEP_WORD = (
     r"(?:step|stage|segment|block|interval|phase|schritt|stufe|abschnitt|intervall|[eé]tape|palier"
-    r"|phase|etapa|paso|fase|passo|krok|etap|stap|bieg|прогон|шаг|этап|단계|步骤|步驟|阶段|段|ステップ)"
+    r"|phase|etapa|paso|fase|passo|krok|etap|stap|steg|trinn?|vaihe|l[eé]p[eé]s|ad[ıi]m|kademe|stupe[nň]|treapta|bieg|ступень|етап|крок|прогон|шаг|этап|단계|步骤|步驟|阶段|段|ステップ)"
 )
 _TITLE = re.compile(rf"\W*{STEP_WORD}\W{{0,4}}(?P<number>\d+)\W*", re.IGNORECASE)
 _FEW = 5  # rows below a mark that are more than a line of results

@@ -30,13 +30,13 @@ def single_values(content: Content, dialect: Dialect) -> dict[str, str | float]:
     """
     attrs: dict[str, str | float] = {}
     for value in dialect.value:
-        if value.source == "step" or value.pattern is None:
+        if value.source in ("step", "programme") or value.pattern is None:
             continue
         text = content.path.name if value.source == "file name" else content.pieces[0].before
         text_found = _first_match(value.pattern, text)
         if text_found:
             _agrees(text_found, value, content, dialect)
-            attrs[value.attribute] = _converted(text_found, value, content, dialect)
+            attrs[value.attribute] = converted(text_found, value, content, dialect)
     return attrs
 
 
@@ -95,7 +95,7 @@ def step_values(
             )
         else:
             numbers = [
-                _converted(text, value, content, dialect) if text else np.nan
+                converted(text, value, content, dialect) if text else np.nan
                 for text, (content, _) in zip(texts, places, strict=True)
             ]
             lengths = [len(piece.columns["time"]) for _, piece in places]
@@ -114,7 +114,23 @@ def _first_match(pattern: str, text: str) -> str | None:
     return guarded(pattern).first(text)
 
 
-def _converted(text: str, value: Value, content: Content, dialect: Dialect) -> str | float:
+def converted(text: str, value: Value, content: Content, dialect: Dialect) -> str | float:
+    """Return the number that a text is, in the SI unit of its value; text without a unit as it is.
+
+    Parameters
+    ----------
+    text
+        As it stands in the file.
+    value
+        The dialect's rule.
+    content, dialect
+        The file and its instrument, for the decimal mark and for messages.
+
+    Raises
+    ------
+    ReadError
+        If a value that has a unit is no number.
+    """
     if value.unit is None:
         return text
     try:

@@ -39,6 +39,9 @@ class Text(Strict):
         "", description="mark between the thousands of a number, as the comma of '1,234.5'"
     )
     missing: tuple[str, ...] = Field((), description="texts that stand for no value, error codes")
+    wrapped: bool = Field(
+        False, description="one column whose numbers go on from line to line, many in each"
+    )
     end: Pattern | None = Field(None, description="a line matching this ends the table")
     skip_lines: Pattern | None = Field(
         None, description="lines below the header matching this are passed over: comments, marks"

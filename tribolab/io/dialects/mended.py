@@ -14,6 +14,7 @@ from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File
 from tribolab.io.dialects.spelling import is_unusual, usual, without_commas_in_quotes
 from tribolab.io.dialects.thousands import without_thousands
+from tribolab.io.dialects.wrapped import unwrapped
 
 _ODD_ENDS = 3  # a line end that went through two programs is CR CR LF; more were not seen
 
@@ -105,6 +106,9 @@ def _respelling(dialect: Dialect, head: bytes) -> Callable[[str], str] | None:
         steps.append(without_commas_in_quotes)
     if _is_unusual(head, text.encoding):
         steps.append(usual)
+    if text.wrapped:  # blanks are tabs by now
+        mark = "\t" if text.delimiter == "whitespace" else text.delimiter
+        steps.append(lambda table: unwrapped(table, mark))
     if not steps:
         return None
     return lambda table: functools.reduce(lambda so_far, step: step(so_far), steps, table)

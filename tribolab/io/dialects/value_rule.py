@@ -23,8 +23,16 @@ class Value(Strict):
     """
 
     name: str = Field(description="a quantity, or a name of your own")
-    source: Literal["preamble", "file name", "step"] = "preamble"
-    pattern: Pattern | None = Field(None, description="group 1 is the value")
+    source: Literal["preamble", "file name", "step", "programme"] = Field(
+        "preamble",
+        description="'step' is the text before each of several tables; 'programme' a table of all "
+        "steps above that of the signals, whose column 'step' counts them",
+    )
+    pattern: Pattern | None = Field(
+        None,
+        description="group 1 is the value; of a programme group 1 is the number of the step and "
+        "group 2 the value",
+    )
     default: str | None = Field(
         None,
         description="what it is where the file does not say it, e.g. '1 mm': of a method or a part "
@@ -43,10 +51,17 @@ class Value(Strict):
             raise ValueError(
                 f"value '{shown(self.name)}': the pattern needs a group ( ) for the value"
             )
+        if self.source == "programme" and (
+            self.unit is None or self.pattern is None or guarded(self.pattern).groups != 2
+        ):
+            raise ValueError(
+                f"value '{shown(self.name)}': of a programme it needs a unit, and a pattern with "
+                "two groups, for the number of the step and for the value"
+            )
         if self.unit is not None:
             check_unit(self.unit, self.si_unit, self.bare)
         if self.default is not None:
-            if self.unit is None or self.source == "step":
+            if self.unit is None or self.source in ("step", "programme"):
                 raise ValueError(
                     f"value '{shown(self.name)}': a default is for a number with a unit that "
                     "holds for the whole file"

@@ -23,6 +23,7 @@ _HEAD = 1 << 20  # bytes in which a matrix begins
 _CUT = 8  # bytes of a sign at their end
 _HEAD_LINES = 200  # above a matrix
 _FEWEST = 8  # columns of a matrix; fewer may be a table
+_MOST_OF_LINE = 24  # numbers of one profile in a line
 _ROWS = 4  # of one width tell a matrix
 _MARKS = frozenset(
     (
@@ -101,6 +102,9 @@ def read_matrix(path: Path) -> xr.Dataset | None:
     heights = np.array(matrix.rows)
     if _even(heights[0, 1:]) and _even(heights[1:, 0]):
         return None  # positions stand beside the heights
+    counted = any(0 <= n - heights.size < matrix.columns for _, n in header.stated)
+    if counted and matrix.columns <= _MOST_OF_LINE and header.columns is None:
+        return None  # a profile whose heights go on from line to line
     whole = (heights == np.round(heights)) | np.isnan(heights)
     if header.gauge_step not in (None, header.height) and whole.all():
         header = header._replace(height=None)  # counts of that step, perhaps

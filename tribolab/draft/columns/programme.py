@@ -1,0 +1,105 @@
+"""A table of the steps to come, above the signals: how fast each turns or slides, under which load.
+
+It is used where a column counts the steps.
+"""
+
+from __future__ import annotations
+
+import re
+
+from tribolab.draft.columns.stated_words import LOAD, PER_MINUTE
+from tribolab.draft.columns.values import DraftValue
+from tribolab.draft.columns.words import matches, split_unit, squeezed, unit_in_words
+from tribolab.draft.file.header import converts, escaped
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.file.marks import STEP_WORD
+from tribolab.io.dialects.cells import split_name, split_row
+
+_LONGEST = 300  # characters of a line that are looked at
+_FEWEST = 2  # steps of a programme
+_FIRST = re.compile(
+    rf"^\W*(?:{STEP_WORD}|no|nr|n|#)\W*(?:no|nr|number|nummer|#)?\W*$", re.IGNORECASE
+)
+_NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
+_SAID = {"m/s": "set_speed", "N": "set_normal_force"}
+_DELIMITERS = ("\t", ";", ",", "whitespace")
+
+
+def programme_of(layout: Layout) -> list[DraftValue]:
+    """Return what a table of steps above the signals says of each, as values of its own.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+
+    Returns
+    -------
+    list of DraftValue
+        With ``source`` "programme": rotations (rad/s), speeds (m/s) and forces (N).
+    """
+    stop = layout.heading.names if layout.heading else 0
+    lines = [line[:_LONGEST] for line in layout.lines[:stop]]
+    for index, line in enumerate(lines):
+        for delimiter in _DELIMITERS:
+            names = split_row(line, delimiter)
+            if len(names) < 2 or not _FIRST.match(names[0]):
+                continue
+            if _steps_below(lines[index + 1 :], len(names), delimiter) >= _FEWEST:
+                return _values(line.strip(), names, delimiter)
+    return []
+
+
+def _steps_below(lines: list[str], width: int, delimiter: str) -> int:
+    """Return how many rows of numbers stand right below that count from one step to the next."""
+    count, before = 0, 0.0
+    for line in lines:
+        cells = [cell.strip().strip('"') for cell in split_row(line, delimiter)]
+        if len(cells) < width or not cells[0].isdigit() or not float(cells[0]) > before:
+            break
+        if any(cell and not _NUMBER.fullmatch(cell) for cell in cells[:width]):
+            break
+        count, before = count + 1, float(cells[0])
+    return count
+
+
+def _values(line: str, names: list[str], delimiter: str) -> list[DraftValue]:
+    found = []
+    for place, cell in enumerate(names[1:], start=1):
+        name, unit = split_name(cell)
+        name, unit = (name, unit) if unit is not None else split_unit(cell)
+        unit = unit_in_words(unit) if unit else None
+        turns = unit is not None and PER_MINUTE.fullmatch(unit)
+        unit = "rpm" if turns else unit
+        to = next((si for si in ("rad/s", "m/s", "N") if unit and converts(unit, si)), None)
+        if unit is None or to is None or (to == "N" and not LOAD.search(squeezed(name))):
+            continue
+        options = matches(name, unit)
+        known = options[0].quantity if options else ""
+        if to == "m/s" and known not in ("sliding_velocity", "set_speed"):
+            continue
+        found.append(
+            DraftValue(
+                _SAID.get(to, "rotation"),
+                _pattern(place, len(names), delimiter),
+                unit,
+                None if to in _SAID else to,
+                line,
+                source="programme",
+                own_unit=unit,
+                key=squeezed(name),
+            )
+        )
+    return found
+
+
+def _pattern(place: int, width: int, delimiter: str) -> str:
+    """Return what finds the number of a step, and the value that stands in a place of its row."""
+    if delimiter == "whitespace":
+        gap, cell = r"[ \t]+", r"[^\s]+"
+    else:
+        mark = escaped(delimiter)
+        gap, cell = rf"\s*{mark}\s*", rf"[^{mark}\n]*"
+    number = r'"?([-+]?\d[\d.,eE+-]*)"?'
+    cells = [number if index == place else cell for index in range(1, width)]
+    return rf'^\s*"?(\d+)"?{gap}' + gap.join(cells) + r"\s*$"

@@ -1,0 +1,55 @@
+"""What a table of the steps to come, above the signals, says of each: the programme of a test."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+
+import numpy as np
+
+from tribolab.errors import ReadError, shown
+from tribolab.io.content.model import Content
+from tribolab.io.content.values import converted
+from tribolab.io.dialects.model import Dialect
+
+
+def programme_values(
+    contents: list[Content], columns: Mapping[str, np.ndarray], dialect: Dialect
+) -> dict[str, np.ndarray]:
+    """Return what the programme says of the step of each row, in SI (time); NaN of other steps.
+
+    Parameters
+    ----------
+    contents
+        The files of the run; the programme stands in the text before the first table.
+    columns
+        Signals of the run, with ``step`` (time).
+    dialect
+        The instrument's, whose values with ``source = "programme"`` are looked for.
+
+    Raises
+    ------
+    ReadError
+        If such a value is no number, or the programme says two of one step.
+    """
+    if "step" not in columns:
+        return {}
+    step = np.asarray(columns["step"], dtype=float)
+    result = {}
+    for value in dialect.value:
+        if value.source != "programme" or value.pattern is None:
+            continue
+        said: dict[float, float] = {}
+        for number, text in re.findall(value.pattern, contents[0].pieces[0].before, re.MULTILINE):
+            of_step = float(converted(text, value, contents[0], dialect))
+            if said.setdefault(float(number), of_step) != of_step:
+                raise ReadError(
+                    f"the programme says two values of {shown(value.name)} of step {number}",
+                    where=contents[0].path,
+                )
+        if said:
+            steps = np.array(sorted(said))
+            place = np.searchsorted(steps, step).clip(0, steps.size - 1)
+            numbers = np.array([said[each] for each in steps])
+            result[value.name] = np.where(steps[place] == step, numbers[place], np.nan)
+    return result
