@@ -178,3 +178,31 @@ def test_of_several_tables_alike_it_is_asked_which_is_meant(tmp_path):
 def test_a_symbol_and_its_unit_make_no_other_symbol(label, parts):
     """Ff in N, read as the coefficient F/Fn, would be a wrong one."""
     assert split_unit(label) == parts
+
+
+@pytest.mark.parametrize("beside", ["another sheet", "rows above", "attributes"])
+def test_settings_that_stand_beside_a_table_of_a_workbook_or_hdf5_are_used(beside, tmp_path):
+    settings = {"Normal load [N]": 30, "Track radius [mm]": 20, "Rotational speed [rpm]": 150}
+    time = 0.1 * np.arange(500)
+    force = 9.6 + 0.1 * np.random.default_rng(6).standard_normal(500)
+    if beside == "attributes":
+        h5py = pytest.importorskip("h5py")
+        with h5py.File(tmp_path / "run.h5", "w") as file:
+            file.attrs.update({"Normal load": "30 N", "Track radius": "20 mm", "Speed": "150 rpm"})
+            file["Time [s]"], file["Friction force [N]"] = time, force
+        file_name = "run.h5"
+    else:
+        openpyxl = pytest.importorskip("openpyxl")
+        book = openpyxl.Workbook()
+        page = book.active
+        for row in [["Test", "pin on disc"], *settings.items(), []]:
+            page.append(list(row))
+        table = page if beside == "rows above" else book.create_sheet("Data")
+        for row in [["Time [s]", "Friction force [N]"], *zip(time, force, strict=True)]:
+            table.append(list(map(str, row) if row[0] == "Time [s]" else map(float, row)))
+        book.save(tmp_path / "run.xlsx")
+        file_name = "run.xlsx"
+    run = tl.read(tmp_path / file_name)
+    found = tl.friction_coefficient(run, tl.find_segments(run))
+    assert float(found.sliding_speed[0]) == pytest.approx(2 * np.pi * 150 / 60 * 0.02)
+    assert float(found.friction_coefficient[0]) == pytest.approx(0.32, rel=0.01)

@@ -234,3 +234,20 @@ def test_units_that_blanks_part_from_their_names_are_no_names_of_columns(tmp_pat
         "friction_force": "Ft [N]",
         "normal_force": "Fn [N]",
     }
+
+
+def test_what_pulls_a_sled_is_its_friction(tmp_path):
+    rows = "\n".join(f"{n / 20:.2f},{n / 12:.3f},{0.47 + 0.01 * (n % 3):.3f}" for n in range(600))
+    head = "Sled mass: 200 g\nTime (s),Extension (mm),Load (N)\n"
+    (tmp_path / "film.csv").write_text(head + rows + "\n", "utf-8")
+    run = tl.read(tmp_path / "film.csv")
+    mu = tl.friction_coefficient(run, tl.find_segments(run)).friction_coefficient
+    assert float(mu[0]) == pytest.approx(0.48 / (0.2 * 9.80665), rel=0.01)
+
+
+def test_points_of_a_ramp_are_told_from_a_record_though_they_have_a_time(tmp_path):
+    rows = "\n".join(f"{10 * n};{1.3**n:.5g};{5 - n / 10:.2f};10" for n in range(1, 30))
+    head = "Time [s];Sliding speed [mm/s];Friction force [N];Normal force [N]\n"
+    (tmp_path / "ramp.csv").write_text(head + rows + "\n", "utf-8")
+    with pytest.raises(ReadError, match="29 results, of whose error nothing is known"):
+        tl.read(tmp_path / "ramp.csv")

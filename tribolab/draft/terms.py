@@ -159,7 +159,9 @@ _LINES = {
     """,
     "position": """
         Position | Displacement | Lateral displacement | Lateral disp. | Stage position
-        | Carriage position | Stroke position | Sliding distance | Travel
+        | Carriage position | Stroke position | Sliding distance | Travel | Stage pos
+        | Probe position | Sample position | Slider position | Table position | Linear stage
+        | Stage displacement | Slide position | Encoder position
         位移 | 位置 | 行程
         Poloha | Posunutí | Dráha
         Position | Forskydning | Vandring

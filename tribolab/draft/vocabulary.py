@@ -107,7 +107,7 @@ RUN_WORDS = (
     ),
     Word(
         "position",
-        _words("x s pos xpos enc disp"),
+        _words("x s pos xpos enc disp stage"),
         _words(
             "horizontaldisplacement horizontalposition "
             "strokeposition strokepos position displacement displ extension crosshead stroke "

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from tribolab.draft.columns.roles import role_of
 from tribolab.draft.columns.stated_load import find_load, stated_number
 from tribolab.draft.columns.values import DraftValue, find_values
+from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import WHICH_FORCE, DraftColumn
 from tribolab.errors import shown
@@ -17,6 +19,9 @@ from tribolab.quantities import unit_conversion
 _LOADED = 0.4  # of the largest reading
 _FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 _WORKED_OUT = ("derived", "extreme")
+_SLED = re.compile(
+    r"sled|schlitten|schlitte|traineau|patin|slitta|trineo|tren[oó]|sanie|slee|slade|kelk|сан[ик]|滑块|滑塊|スレッド"
+)
 _SAME = (0.75, 1.33)  # times the stated load: a reading of the load itself
 
 
@@ -84,6 +89,12 @@ def _guessed(column: DraftColumn, load: DraftValue, values: np.ndarray) -> Draft
     else:
         name, other = "friction_force", "normal_force"
         why = f"it is the friction force: '{load.text}' is the load"
+    # what pulls a sled of a stated weight is its friction
+    sure = name == "friction_force" and _SLED.search(squeezed(load.text)) is not None
     return column._replace(
-        quantity=name, used=True, fill_in="", guessed=(why,), options=(other, "not used")
+        quantity=name,
+        used=True,
+        fill_in="",
+        guessed=() if sure else (why,),
+        options=() if sure else (other, "not used"),
     )

@@ -14,7 +14,7 @@ _RISE = 1.02  # from speed to speed
 
 
 def results_told(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[str]:
-    """Say so where every row without a time has another speed, one above the other.
+    """Say so where every row has another speed, one above the other.
 
     Parameters
     ----------
@@ -30,7 +30,7 @@ def results_told(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[st
     """
     held = {column.quantity: column for column in columns if column.used}
     speed = held.get("sliding_velocity") or held.get("rotation_speed")
-    if speed is None or "time" in held or not _FEWEST <= len(numbers) <= _MOST:
+    if speed is None or not _FEWEST <= len(numbers) <= _MOST:
         return []
     size = np.abs(numbers[:, speed.place - 1])
     steps = (size[1:] > _RISE * size[:-1], size[1:] * _RISE < size[:-1])

@@ -57,7 +57,8 @@ def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
     labels = "\t".join(_label(column) for column in columns)
     table = np.column_stack([np.asarray(c.values[:rows], dtype=float) for c in columns])
     np.savetxt(text, table, "%.9g", "\t", header=labels, comments="", encoding="utf-8")
-    head = text.getvalue()
+    beside = f"{held.text}\n\n" if held.text else ""
+    head = beside.encode() + text.getvalue()
     layout = find_layout(File(file.path, "text", len(head), head))
     if layout.width != len(columns) or layout.heading is None:
         raise ReadError("its columns have no names", where=file.path)
@@ -103,7 +104,7 @@ def _of_table(form: str) -> Callable[[Path], tuple[Held, list[HeldColumn]]]:
         for place, (label, unit) in enumerate(zip(table.names, table.units, strict=True)):
             name, own = split_name(label)
             columns.append(HeldColumn(name, unit or own, table.column(place)))
-        return Held(form), columns
+        return Held(form, text=table.text), columns
 
     return read
 

@@ -49,7 +49,8 @@ class Held(NamedTuple):
     """Where columns are in a file that names them: its format, and of a workbook the sheet.
 
     `increment` is the time [s] from row to row where the file has a clock and no column of it;
-    `others` names tables besides the chosen one that have columns of the same names.
+    `others` names tables besides the chosen one that have columns of the same names, `text` is
+    what stands beside the table: other cells, attributes.
     """
 
     form: str
@@ -58,6 +59,7 @@ class Held(NamedTuple):
     units_below: bool = False
     increment: float = 0.0
     others: str = ""
+    text: str = ""
 
 
 class Layout(NamedTuple):

@@ -58,7 +58,7 @@ def read_sheet(path: Path) -> tuple[Held, list[HeldColumn]]:
             values = np.empty(0)
         if label:
             columns.append(HeldColumn(name, unit or own, values))
-    return held, columns
+    return held._replace(text=table.text), columns
 
 
 def _names_row(rows: Sequence[Sequence[object]]) -> int | None:

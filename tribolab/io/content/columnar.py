@@ -57,7 +57,7 @@ def read_columnar(path: Path, dialect: Dialect) -> Content:
     labels = {s.quantity: f"{s.label} [{s.unit}]" for s in signals}
     own = symbols(signals, dialect)
     sha256 = sha256_of_file(path)
-    pieces, scales = [Piece(columns)], scales_of(signals)
+    pieces, scales = [Piece(columns, before=table.text)], scales_of(signals)
     return Content(path, sha256, pieces, labels, tuple(unused), symbols=own, scales=scales)
 
 

@@ -12,6 +12,9 @@ import numpy as np
 from tribolab.errors import ReadError, shown
 
 _MOST_CELLS = 50_000_000  # of a sheet
+_OF_HDF5 = {"units", "unit", "CLASS", "NAME", "TITLE", "VERSION", "DIMENSION_LIST", "_FillValue"}
+_MOST_ROWS, _MOST_WIDE = 100, 12  # of settings that stand in cells
+_SHORT = 200  # characters of a setting
 
 
 class ColumnLayout(NamedTuple):
@@ -26,11 +29,12 @@ class ColumnLayout(NamedTuple):
 
 
 class NamedColumns(NamedTuple):
-    """Names of columns, their units where the file says them, and what gives their numbers."""
+    """Names of columns, units where the file says them, what gives the numbers; text beside."""
 
     names: list[str]
     units: list[str | None]
     column: Callable[[int], np.ndarray]
+    text: str = ""
 
 
 def open_columns(path: Path, form: str, layout: ColumnLayout) -> NamedColumns:
@@ -112,9 +116,24 @@ def _hdf5(path: Path, layout: ColumnLayout) -> NamedColumns:
         units.append(str(unit) if unit is not None else None)
         arrays.append(values.ravel())
 
+    said: list[str] = []
+
+    def tell(name: str, item: object) -> None:
+        for key, value in getattr(item, "attrs", {}).items():
+            if np.size(value) == 1 and key not in _OF_HDF5:
+                value = np.asarray(value).item()
+                value = value.decode("utf-8", "replace") if isinstance(value, bytes) else value
+                said.append(f"{key}: {value}"[:_SHORT].replace("\n", " "))
+        if isinstance(item, h5py.Dataset) and item.shape == () and item.dtype.kind in "fiu":
+            unit = item.attrs.get("units", item.attrs.get("unit", ""))
+            unit = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else unit
+            said.append(f"{name.split('/')[-1]}: {item[()]} {unit}".strip())
+
     with h5py.File(path, "r") as file:
+        tell("", file)
 
         def visit(name: str, item: object) -> None:
+            tell(name, item)
             if not isinstance(item, h5py.Dataset) or item.size is None:
                 return
             labels = _labels_of_matrix(item)
@@ -129,7 +148,7 @@ def _hdf5(path: Path, layout: ColumnLayout) -> NamedColumns:
                 take(name, item[()], item.attrs.get("units", item.attrs.get("unit")))
 
         file.visititems(visit)
-    return NamedColumns(names, units, arrays.__getitem__)
+    return NamedColumns(names, units, arrays.__getitem__, "\n".join(said[:_MOST_ROWS]))
 
 
 def _labels_of_matrix(item: object) -> list[str]:
@@ -178,7 +197,26 @@ def _excel(path: Path, layout: ColumnLayout) -> NamedColumns:
         filled = [n for n, cell in enumerate(cells) if cell != ""]
         return _of_cells(path, cells[: filled[-1] + 1 if filled else 0])
 
-    return NamedColumns(names, units[: len(names)], column)
+    others = (book.get_sheet_by_name(name) for name in book.sheet_names if name != sheet)
+    few = (page.to_python(skip_empty_area=False) for page in others if _is_small(page))
+    text = [_settings(rows[: line - 1][:_MOST_ROWS]), *map(_settings, few)]
+    return NamedColumns(names, units[: len(names)], column, "\n".join(filter(None, text)))
+
+
+def _is_small(page: object) -> bool:
+    """Whether a sheet may hold settings rather than a table."""
+    height, width = (getattr(page, f"total_{side}") for side in ("height", "width"))
+    return bool(height <= _MOST_ROWS and width <= _MOST_WIDE)
+
+
+def _settings(rows: Sequence[Sequence[object]]) -> str:
+    """Return rows of cells as lines, such as a text file has above its table."""
+    lines = []
+    for row in rows:
+        cells = [" ".join(str(cell).split()) for cell in row[:_MOST_WIDE] if cell not in ("", None)]
+        if cells and any(map(str.isalpha, "".join(cells))):
+            lines.append("\t".join(cells)[:_SHORT])
+    return "\n".join(lines)
 
 
 def _of_cells(path: Path, cells: Sequence[object]) -> np.ndarray:
