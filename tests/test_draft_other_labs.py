@@ -251,3 +251,28 @@ def test_points_of_a_ramp_are_told_from_a_record_though_they_have_a_time(tmp_pat
     (tmp_path / "ramp.csv").write_text(head + rows + "\n", "utf-8")
     with pytest.raises(ReadError, match="29 results, of whose error nothing is known"):
         tl.read(tmp_path / "ramp.csv")
+
+
+@pytest.mark.parametrize(
+    ("speed", "ratio", "sliding"),
+    [("Mean speed", "SRR = 30 %", 0.3), ("Sliding speed", "SRR = 30 %", 1.0)]
+    + [("Entrainment speed", "Slide-to-roll ratio: 0.5", 0.5)],
+)
+def test_a_stated_slide_to_roll_ratio_makes_the_sliding_of_the_mean_speed(
+    speed, ratio, sliding, tmp_path
+):
+    rows = "\n".join(
+        f"{n / 10},{100 if n < 200 else 400},30,{1.5 + n % 3 / 50}" for n in range(400)
+    )
+    head = f"Ball on disc\n{ratio}\nTime (s),{speed} (mm/s),Load (N),Traction force (N)\n"
+    (tmp_path / "oil.csv").write_text(head + rows + "\n", "utf-8")
+    found = tl.find_segments(tl.read(tmp_path / "oil.csv")).sliding_speed.values
+    np.testing.assert_allclose(found, [0.1 * sliding, 0.4 * sliding])
+
+
+def test_a_speed_beside_such_a_ratio_that_is_called_neither_is_asked_about(tmp_path):
+    rows = "\n".join(f"{n / 10},{100},30,{1.5 + n % 3 / 50}" for n in range(400))
+    head = "SRR = 30 %\nTime (s),Speed (mm/s),Load (N),Traction force (N)\n"
+    (tmp_path / "oil.csv").write_text(head + rows + "\n", "utf-8")
+    with pytest.raises(ReadError, match="mean speed of both surfaces"):
+        tl.read(tmp_path / "oil.csv")

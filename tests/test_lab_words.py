@@ -9,6 +9,7 @@ import pytest
 
 import tribolab as tl
 from tribolab.draft.columns.words import matches, squeezed
+from tribolab.draft.file.lines import find_encoding
 from tribolab.draft.terms import TERMS
 
 LANGUAGES = {
@@ -85,6 +86,40 @@ def test_strokes_are_understood_in_the_terms_of_a_language(language, tmp_path):
     )
     found = tl.friction_coefficient(run, tl.find_segments(run))
     assert float(found.friction_coefficient.mean()) == pytest.approx(0.5, rel=0.01)
+
+
+ENCODINGS = {
+    "Czech": ("cp1250", "iso8859-2", "cp852"),
+    "Finnish": ("latin-1", "cp437", "mac-roman"),
+    "German": ("cp1252", "cp437", "mac-roman"),
+    "Hungarian": ("cp1250", "iso8859-2"),
+    "Japanese": ("cp932",),
+    "Korean": ("cp949",),
+    "Polish": ("cp1250", "iso8859-2", "cp852"),
+    "Russian": ("cp1251", "koi8-r", "cp866"),
+    "Slovak": ("cp1250",),
+    "Swedish": ("latin-1", "cp437"),
+    "Turkish": ("cp1254",),
+    "Ukrainian": ("cp1251",),
+    "Chinese": ("gb18030",),
+}
+
+
+@pytest.mark.parametrize(
+    ("language", "encoding"), [(key, name) for key, names in ENCODINGS.items() for name in names]
+)
+def test_terms_tell_in_which_encoding_they_are_written(language, encoding, tmp_path):
+    friction, load, time, stroke, _, turns, radius = LANGUAGES[language]
+    force = "Höhe;" if language == "German" else ""
+    lines = [
+        f"{load};20;N",
+        f"{radius};15;mm",
+        f"{stroke};3;mm",
+        f"{time};{force}{friction};{turns}",
+    ]
+    content = "\n".join([*lines, *("1;2;3" for _ in range(40))]).encode(encoding)
+    found = find_encoding(content)[0]
+    assert content.decode(found) == content.decode(encoding)
 
 
 def test_every_term_of_a_column_is_known_and_none_means_two_forces():

@@ -26,6 +26,7 @@ from tribolab.draft.columns.lengths import (
 from tribolab.draft.columns.ratio import disagreement, force_or_ratio
 from tribolab.draft.columns.results_table import results_told
 from tribolab.draft.columns.sampling import find_sampling
+from tribolab.draft.columns.slip import of_both_surfaces
 from tribolab.draft.columns.stated_missing import take_stated_missing
 from tribolab.draft.columns.values import DraftValue
 from tribolab.draft.columns.words import Match, matches, squeezed
@@ -78,7 +79,7 @@ def understand(layout: Layout) -> Understood:
         guesses += behaving
     columns = told_by_load(layout, force_or_ratio(columns), numbers) if kind == "run" else columns
     if kind == "run":
-        columns = without_means(layout, columns)
+        columns = of_both_surfaces(layout, without_means(layout, columns))
         guesses += disagreement(columns, numbers) + results_told(columns, numbers)
     columns = _dated(with_worth(layout, columns), layout, numbers, text)
     columns = [

@@ -9,25 +9,17 @@ from typing import NamedTuple
 from tribolab.draft.columns.bridges import calibrated_forces
 from tribolab.draft.columns.lengths import find_arm, find_radius, on_rim
 from tribolab.draft.columns.programme import programme_of
+from tribolab.draft.columns.slip import stated_ratio
 from tribolab.draft.columns.stated_load import find_load
 from tribolab.draft.columns.stated_words import PER_MINUTE
-from tribolab.draft.columns.strokes import (
-    END_TO_END,
-    FREQUENCY,
-    HALF_STROKE,
-    STROKE,
-    is_frequency,
-    is_length,
-)
+from tribolab.draft.columns.stroke_settings import strokes_of_columns, strokes_of_values
 from tribolab.draft.columns.turning import angle_of, radius_of, torque_of, turns_of
 from tribolab.draft.columns.values import DraftValue, find_values, words_said
 from tribolab.draft.columns.words import or_term, squeezed
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.model import WHICH_FORCE, DraftColumn, Understood
 from tribolab.errors import shown
-from tribolab.io.dialects.cells import split_name
 from tribolab.io.missing import missing_of
 
 _DRIVE = re.compile(
@@ -251,8 +243,13 @@ def _with_speed(
         about = "the slide-to-roll ratio is the sliding speed over the mean speed of both surfaces"
         formula = DraftedFormula("sliding_velocity", "slide_roll_ratio * rolling_speed", about)
         return _and(before, formula)._replace(speed=SpeedBy("none"))
-    by_values = _of_values(values)
-    of_strokes = by_values or _of_columns(understood)
+    ratio = stated_ratio(values) if "rolling_speed" in names else None
+    if ratio is not None:
+        about = f"'{ratio.text}' is the sliding speed over the mean speed of both surfaces"
+        formula = DraftedFormula("sliding_velocity", f"{ratio.name} * rolling_speed", about)
+        return _and(before, formula, (ratio,))._replace(speed=SpeedBy("none"))
+    by_values = strokes_of_values(values)
+    of_strokes = by_values or strokes_of_columns(understood)
     if of_strokes is None or (by_values is None and "rotation_speed" in names):
         known = turning or "set_speed" in names
         return before if known else _with_set_speed(before, values, track)
@@ -311,54 +308,3 @@ def _asked_of(speed: SpeedBy, value: DraftValue, guess: str) -> SpeedBy:
     if value.source in ("step", "programme") or its:
         return speed
     return speed._replace(guess=guess, options=("not known",))
-
-
-class _Strokes(NamedTuple):
-    """Length and frequency of strokes: what [speed] says of them, where they stand, a guess."""
-
-    settings: tuple[tuple[str, str], ...]
-    values: tuple[DraftValue, ...] = ()
-    symbols: tuple[tuple[str, DraftColumn], ...] = ()
-    guess: str = ""
-
-
-def _of_values(values: Sequence[DraftValue]) -> _Strokes | None:
-    """Return the length and frequency of strokes that stand above the table."""
-    stroke, frequency, guess = _only(values, STROKE, "m"), _only(values, FREQUENCY, "Hz"), ""
-    if stroke is None and (half := _only(values, HALF_STROKE, "m")) is not None:
-        whole = END_TO_END.search(half.text) is not None
-        stroke = half if whole else half._replace(scale=2.0)
-        if not whole and "half" not in half.name:
-            guess = f"'{half.text}' is half of a stroke"
-    if stroke is None or frequency is None:
-        return None
-    settings = (("stroke_value", stroke.name), ("frequency_value", frequency.name))
-    return _Strokes(settings, (stroke, frequency), guess=guess)
-
-
-def _of_columns(understood: Understood) -> _Strokes | None:
-    """Return the columns that hold the length and the frequency of strokes."""
-    lengths, frequencies = [], []
-    for column in understood.columns:
-        name, unit = split_name(column.label)
-        unit = column.file_unit or unit
-        if unit is not None and converts(unit, "m") and is_length(name):
-            lengths.append(column)
-        elif is_frequency(name, unit) and not column.used:
-            frequencies.append(column)
-    if len(lengths) != 1 or len(frequencies) != 1 or lengths[0].used:
-        return None
-    settings = (("stroke_value", "stroke"), ("frequency_value", "stroke_frequency"))
-    return _Strokes(
-        settings, symbols=(("stroke", lengths[0]), ("stroke_frequency", frequencies[0]))
-    )
-
-
-def _only(values: Sequence[DraftValue], key: re.Pattern[str], unit: str) -> DraftValue | None:
-    """Return the one value of that name and kind; None if there is none, or several."""
-    fitting = [
-        value
-        for value in values
-        if value.unit and converts(value.unit, unit) and key.search(value.key)
-    ]
-    return fitting[0]._replace(to=unit) if len(fitting) == 1 else None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 
 from tribolab.draft.columns.sentences import points_per_length
@@ -86,10 +87,25 @@ def find_height_unit(layout: Layout) -> str:
     said = [(squeezed(key), length_unit(text)) for key, text in words_said(layout, bare=True)]
     said = [(key, unit) for key, unit in said if unit]
     own = {unit for key, unit in said if HEIGHT_UNIT.search(key) or _names_heights(key)}
+    own |= _in_sentences(layout)
     if layout.width == 1 and not own:
         own = {unit for key, unit in said if UNIT.search(key)}
         own |= {unit for key, unit in said if unit in _USUAL and not NO_HEIGHT.search(key)}
     return own.pop() if len(own) == 1 else ""
+
+
+_HEIGHTS_IN = re.compile(
+    r"(?<![^\W\d_])(?:heights?|z(?:[- ]values?)?|höhen?|hauteurs?|alturas?|altezz[ae]|hoogtes?)\s*"
+    r"(?:(?:are|is|sind|ist|sont)\s+)?(?:in|en)\s+(?P<unit>[^\W\d]{1,12})(?![^\W_])",
+    re.IGNORECASE,
+)
+
+
+def _in_sentences(layout: Layout) -> set[str]:
+    """Return the units that sentences above the heights say of them: "heights in um"."""
+    stop = layout.heading.names if layout.heading else layout.blocks[0].start
+    said = (_HEIGHTS_IN.search(line[:_LONGEST]) for line in layout.lines[:stop])
+    return {unit for match in said if match and (unit := length_unit(match["unit"]))}
 
 
 def find_unit_along(layout: Layout) -> str:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import codecs
+import functools
 import re
 from collections import Counter
 from collections.abc import Sequence
 
+from tribolab.draft.terms import TERMS
 from tribolab.draft.vocabulary import EASTERN_WORDS
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.eastern import eastern_encoding
@@ -116,6 +118,11 @@ _CYRILLIC = re.compile(rb"[\xc0-\xff\xa8\xb8]{3,}")
 _CENTRAL = re.compile(rb"[A-Za-z][\xb3\xb9\xbf\x9f\x9d\xbe\xbc](?=[a-z])|(?<![^\s;,])\xa3(?=[a-z])")
 _TURKISH = re.compile(rb"[A-Za-z][\xf0\xfe]|\xfe(?=[a-z])|[A-Za-z]\xfd[a-z]{2}\w*\xfd")
 _MOSTLY, _HALF = 0.8, 0.5
+_BEGINNING = 1 << 15  # bytes: settings and names stand there
+_SINGLE_BYTES = (
+    *("latin-1", "cp1252", "cp1250", "iso8859-2", "cp1254", "cp1251", "koi8-r", "cp1253"),
+    *("cp437", "cp852", "cp866", "mac-roman"),
+)
 _COMMON_LETTERS = {  # half and more of any text in these languages
     "cp1251": frozenset("оеаинтсрвлк"),
     "koi8-r": frozenset("оеаинтсрвлк"),
@@ -132,6 +139,8 @@ def _common(words: bytes, encoding: str) -> float:
 
 def _of_single_bytes(head: bytes) -> str:
     """Return in which encoding of one byte a letter a text is, by which of them stand together."""
+    if told := _by_terms(head):
+        return told
     high = sum(byte >= 0x80 for byte in head)
     words = b"".join(_CYRILLIC.findall(head))
     if len(words) >= _MOSTLY * high:
@@ -144,6 +153,22 @@ def _of_single_bytes(head: bytes) -> str:
     if _TURKISH.search(head):
         return "cp1254"
     return "cp1252" if re.search(rb"[\x80-\x9f]", head) else "latin-1"
+
+
+@functools.cache
+def _terms_with_own_letters() -> frozenset[str]:
+    every = (term.lower() for terms in TERMS.values() for term in terms)
+    return frozenset(term for term in every if not term.isascii() and len(term) > 2)
+
+
+def _by_terms(head: bytes) -> str:
+    """Return the encoding in which most is said in terms of laboratories; "" where none is."""
+    said = {}
+    for name in _SINGLE_BYTES:
+        text = head[:_BEGINNING].decode(name, errors="replace").lower()
+        said[name] = sum(len(term) for term in _terms_with_own_letters() if term in text)
+    best = max(said, key=lambda name: said[name])  # of equals the first
+    return best if said[best] else ""
 
 
 def _eastern(head: bytes) -> str:

@@ -1,0 +1,69 @@
+"""Length and frequency of strokes: where a file states them, above the table or in columns."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from tribolab.draft.columns.strokes import (
+    END_TO_END,
+    FREQUENCY,
+    HALF_STROKE,
+    STROKE,
+    is_frequency,
+    is_length,
+)
+from tribolab.draft.columns.values import DraftValue
+from tribolab.draft.file.header import converts
+from tribolab.draft.model import DraftColumn, Understood
+from tribolab.io.dialects.cells import split_name
+
+
+class Strokes(NamedTuple):
+    """Length and frequency of strokes: what [speed] says of them, where they stand, a guess."""
+
+    settings: tuple[tuple[str, str], ...]
+    values: tuple[DraftValue, ...] = ()
+    symbols: tuple[tuple[str, DraftColumn], ...] = ()
+    guess: str = ""
+
+
+def strokes_of_values(values: Sequence[DraftValue]) -> Strokes | None:
+    """Return the length and frequency of strokes that stand above the table."""
+    stroke, frequency, guess = _only(values, STROKE, "m"), _only(values, FREQUENCY, "Hz"), ""
+    if stroke is None and (half := _only(values, HALF_STROKE, "m")) is not None:
+        whole = END_TO_END.search(half.text) is not None
+        stroke = half if whole else half._replace(scale=2.0)
+        if not whole and "half" not in half.name:
+            guess = f"'{half.text}' is half of a stroke"
+    if stroke is None or frequency is None:
+        return None
+    settings = (("stroke_value", stroke.name), ("frequency_value", frequency.name))
+    return Strokes(settings, (stroke, frequency), guess=guess)
+
+
+def strokes_of_columns(understood: Understood) -> Strokes | None:
+    """Return the columns that hold the length and the frequency of strokes."""
+    lengths, frequencies = [], []
+    for column in understood.columns:
+        name, unit = split_name(column.label)
+        unit = column.file_unit or unit
+        if unit is not None and converts(unit, "m") and is_length(name):
+            lengths.append(column)
+        elif is_frequency(name, unit) and not column.used:
+            frequencies.append(column)
+    if len(lengths) != 1 or len(frequencies) != 1 or lengths[0].used:
+        return None
+    settings = (("stroke_value", "stroke"), ("frequency_value", "stroke_frequency"))
+    return Strokes(settings, symbols=(("stroke", lengths[0]), ("stroke_frequency", frequencies[0])))
+
+
+def _only(values: Sequence[DraftValue], key: re.Pattern[str], unit: str) -> DraftValue | None:
+    """Return the one value of that name and kind; None if there is none, or several."""
+    fitting = [
+        value
+        for value in values
+        if value.unit and converts(value.unit, unit) and key.search(value.key)
+    ]
+    return fitting[0]._replace(to=unit) if len(fitting) == 1 else None
