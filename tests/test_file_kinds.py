@@ -28,7 +28,7 @@ WAYS = {
     "tdms": AT_ONCE,
     "hdf5": AT_ONCE,
     "zipped": AT_ONCE,
-    "sled": DRAFTED,
+    "sled": AT_ONCE,
     "radius_unsaid": DRAFTED,
     "bridges": DESCRIBED,
 }
