@@ -29,6 +29,9 @@ WAYS = {
     "hdf5": AT_ONCE,
     "zipped": AT_ONCE,
     "sled": AT_ONCE,
+    "programme": AT_ONCE,
+    "stated_ratio": AT_ONCE,
+    "settings_sheet": AT_ONCE,
     "radius_unsaid": DRAFTED,
     "bridges": DESCRIBED,
 }

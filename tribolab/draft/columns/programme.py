@@ -52,7 +52,7 @@ def programme_of(layout: Layout) -> list[DraftValue]:
 
 def _steps_below(lines: list[str], width: int, delimiter: str) -> int:
     """Return how many rows of numbers stand right below that count from one step to the next."""
-    count, before = 0, 0.0
+    count, before = 0, -1.0
     for line in lines:
         cells = [cell.strip().strip('"') for cell in split_row(line, delimiter)]
         if len(cells) < width or not cells[0].isdigit() or not float(cells[0]) > before:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from tribolab.rig.layouts.kinds import LayoutKind, add_kind, there_and_back
+from tribolab.rig.layouts.kinds import LayoutKind, add_kind, on_disc, there_and_back
 from tribolab.rig.layouts.record import MeasuredRecord
 from tribolab.rig.layouts.tables import Cells, friction_of, normal_of, position_of, time_of
 
@@ -49,6 +49,20 @@ def _workbook(record: MeasuredRecord, folder: Path) -> Path:
         about = {"Operator": ["A. Person"], "Test": ["friction"]}
         pd.DataFrame(about).to_excel(book, sheet_name="About", index=False)
         _frame(record).to_excel(book, sheet_name="Data", index=False)
+    return path
+
+
+def _settings_sheet(record: MeasuredRecord, folder: Path) -> Path:
+    """Say the radius of the track in a sheet of its own, and of the speed the turns alone."""
+    path = folder / "disc.xlsx"
+    turns = 60 * record.motion.velocity / 25e-3 / (2 * np.pi)
+    columns = [time_of(record), friction_of(record), normal_of(record)]
+    columns.append(Cells("Rotation", "rpm", turns, 3))
+    with pd.ExcelWriter(path) as book:
+        settings = pd.DataFrame({"Setting": ["Track radius [mm]"], "Value": [25]})
+        settings.to_excel(book, sheet_name="Settings", index=False)
+        table = pd.DataFrame({f"{c.name} [{c.unit}]": c.values for c in columns})
+        table.to_excel(book, sheet_name="Data", index=False)
     return path
 
 
@@ -116,6 +130,11 @@ _BINARY = _dialect(
     f"[binary]\noffset = {len(_HEAD)}\nfields = [{_FIELDS}]\n",
     lambda label: label.replace(" ", "_"),
     units=True,
+)
+add_kind(
+    LayoutKind(
+        "settings_sheet", "Excel, settings in a sheet of their own", on_disc, _settings_sheet
+    )
 )
 _SHEET = _dialect("excel", '[header]\nline = 1\nsheet = "Data"\n')
 for _name, _about, _write, _known in (
