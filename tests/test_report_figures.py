@@ -16,8 +16,10 @@ from tribolab.app.run import run_campaign
 from tribolab.campaign.store.catalogue import Store
 from tribolab.errors import ConfigError
 from tribolab.records.part_records import CurveRecord
+from tribolab.records.parts import CurveOutcome
 from tribolab.records.run_record import RunRecord
 from tribolab.report.figures.choice import wanted
+from tribolab.report.live.curves import FrictionOverSpeed, card_figures
 from tribolab.report.results import write_report
 from tribolab.report.slowest import slow_segments
 from tribolab.report.tables import read_csv, write, write_rows
@@ -206,3 +208,18 @@ def test_strokes_that_a_person_rejected_are_not_looked_at_closely():
     curve = SimpleNamespace(run_names=("gone", "a"))
     slow = slow_segments(curve, SimpleNamespace(store=store))
     assert slow == ("a", "data/a.nc", ((2, 1e-5), (4, 1e-4)))
+
+
+@pytest.mark.parametrize("surface", ["", "Sb-R"])
+def test_runs_of_neither_surface_nor_medium_are_seen_at_once_whatever_their_load(surface):
+    """Of a surface one load is chosen; what names nothing is of as many systems."""
+    row = {"sliding_speed_m_s": 1e-3, "friction_coefficient": 0.3, "segments": 1, "runs": 1}
+    row |= {"friction_coefficient_sem": 0.01, "normal_force_N": None}
+    curves = [
+        CurveRecord(CurveOutcome(name, surface, "", load, "a.nc", (name,)), (row,))
+        for name, load in (("one", 10.0), ("two", 20.0))
+    ]
+    (card,) = card_figures(FrictionOverSpeed(curves, {}, {}, {}, {}, ()))
+    assert card.loads == ([10.0, 20.0] if surface else [])
+    labels = [series.label for series in card.series]
+    assert labels == (["measured", "measured"] if surface else ["one", "two"])

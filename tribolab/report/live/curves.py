@@ -132,7 +132,7 @@ def _card(
         f"{speeds(every)}, µ {span(values)}.",
         panels=(Panel(SPEED_AXIS, FRICTION_AXIS),),
         series=tuple(series),
-        one_load=True,
+        one_load=bool(surface or medium),  # runs that name neither are of as many systems
         width="card",
         height=230,
     )
@@ -141,10 +141,11 @@ def _card(
 def curve_label(curve: CurveOutcome, curves: Sequence[CurveRecord]) -> str:
     """Return what a legend calls a curve: which it is where no choice of load parts them."""
     loads = [other.outcome.normal_force for other in curves]
+    nameless = not (curve.surface or curve.medium)
+    if len(curves) > 1 and nameless:
+        return ", ".join(curve.run_names[:3])
     if len(curves) == 1 or (None not in loads and len(set(loads)) == len(loads)):
         return "measured"
-    if not (curve.surface or curve.medium):
-        return ", ".join(curve.run_names[:3])
     return f"measured, {load_text(curve.normal_force, curve.load_from)}"
 
 
