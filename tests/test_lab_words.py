@@ -166,3 +166,43 @@ def test_a_profile_goes_on_from_line_to_line_where_it_has_as_many_points_as_it_s
     scan = tl.read_scans(tmp_path / "line.txt")
     np.testing.assert_allclose(scan.height.values[0], 1e-6 * heights, atol=1e-9)
     assert scan.attrs["pitch_m"] == pytest.approx(1.5e-6)
+
+
+@pytest.mark.parametrize("mark", [";", "\t", " "])
+def test_a_programme_is_found_however_its_cells_are_parted(mark, tmp_path):
+    rows = [
+        mark.join(("Step", "Speed[rpm]", "Load[N]")),
+        *(f"{k}{mark}{60 * k}{mark}20" for k in (1, 2)),
+    ]
+    head = ["Track radius: 10 mm", *rows, ""]
+    body = [f"{n / 10:.1f}\t{1 + n // 200}\t{4 + n % 3 / 100}" for n in range(400)]
+    text = "\n".join([*head, "Time [s]\tStep\tFriction force [N]", *body])
+    (tmp_path / "rig.txt").write_text(text + "\n", "utf-8")
+    run = tl.read(tmp_path / "rig.txt")
+    found = tl.friction_coefficient(run, tl.find_segments(run))
+    np.testing.assert_allclose(found.sliding_speed, 2 * np.pi * 0.01 * np.array([1, 2]))
+    np.testing.assert_allclose(found.friction_coefficient, 4.01 / 20, rtol=1e-3)
+
+
+def test_a_programme_that_says_two_things_of_a_step_is_refused(tmp_path):
+    dialect = tmp_path / "rig.toml"
+    dialect.write_text(
+        'name = "rig"\ntitle = "rig"\n[header]\npattern = "^Time"\n'
+        '[[column]]\nquantity = "time"\nname = "Time"\nunit = "s"\n'
+        '[[column]]\nquantity = "step"\nname = "Step"\nunit = "1"\n'
+        '[[column]]\nquantity = "friction_force"\nname = "F"\nunit = "N"\n'
+        '[[value]]\nname = "set_speed"\nsource = "programme"\nunit = "mm/s"\n'
+        "pattern = '^(\\d),(\\d+)$'\n",
+        "utf-8",
+    )
+    rows = "".join(f"{n},{1 + n // 50},4\n" for n in range(100))
+    (tmp_path / "a.csv").write_text(f"1,5\n2,10\nTime,Step,F\n{rows}", "utf-8")
+    speeds = tl.read(tmp_path / "a.csv", dialect).set_speed
+    np.testing.assert_allclose(np.unique(speeds), [0.005, 0.01])
+    (tmp_path / "b.csv").write_text(f"1,5\n1,6\nTime,Step,F\n{rows}", "utf-8")
+    with pytest.raises(tl.TribolabError, match="two values of set_speed of step 1"):
+        tl.read(tmp_path / "b.csv", dialect)
+    one_group = dialect.read_text("utf-8").replace("^(\\d),(\\d+)$", "^\\d,(\\d+)$")
+    dialect.write_text(one_group, "utf-8")
+    with pytest.raises(tl.TribolabError, match="two groups"):
+        tl.read(tmp_path / "a.csv", dialect)

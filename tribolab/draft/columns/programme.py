@@ -96,10 +96,10 @@ def _values(line: str, names: list[str], delimiter: str) -> list[DraftValue]:
 def _pattern(place: int, width: int, delimiter: str) -> str:
     """Return what finds the number of a step, and the value that stands in a place of its row."""
     if delimiter == "whitespace":
-        gap, cell = r"[ \t]+", r"[^\s]+"
+        gap, cell = r"[ \t]+", r"\S+"
     else:
         mark = escaped(delimiter)
-        gap, cell = rf"\s*{mark}\s*", rf"[^{mark}\n]*"
-    number = r'"?([-+]?\d[\d.,eE+-]*)"?'
+        gap, cell = rf"{mark}[ \t]*", rf"[^{mark}\n]*"
+    number = r'"?([-+]?\d[\d.,eE+-]*)"?[ \t]*' if delimiter != "whitespace" else r"([-+]?\d\S*)"
     cells = [number if index == place else cell for index in range(1, width)]
-    return rf'^\s*"?(\d+)"?{gap}' + gap.join(cells) + r"\s*$"
+    return rf'^[ \t]*"?(\d+)"?[ \t]*{gap}' + gap.join(cells) + r"[ \t\r]*$"

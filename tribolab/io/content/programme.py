@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 
 import numpy as np
@@ -11,6 +10,8 @@ from tribolab.errors import ReadError, shown
 from tribolab.io.content.model import Content
 from tribolab.io.content.values import converted
 from tribolab.io.dialects.model import Dialect
+from tribolab.io.dialects.patterns import guarded
+from tribolab.io.dialects.value_rule import Value
 
 
 def programme_values(
@@ -40,11 +41,14 @@ def programme_values(
         if value.source != "programme" or value.pattern is None:
             continue
         said: dict[float, float] = {}
-        for number, text in re.findall(value.pattern, contents[0].pieces[0].before, re.MULTILINE):
-            of_step = float(converted(text, value, contents[0], dialect))
-            if said.setdefault(float(number), of_step) != of_step:
+        for match in guarded(value.pattern).all(contents[0].pieces[0].before):
+            number, of_step = _number_of(match[1], value, contents[0], dialect), match[2]
+            if not of_step:
+                continue
+            in_si = float(converted(of_step, value, contents[0], dialect))
+            if said.setdefault(number, in_si) != in_si:
                 raise ReadError(
-                    f"the programme says two values of {shown(value.name)} of step {number}",
+                    f"the programme says two values of {shown(value.name)} of step {number:g}",
                     where=contents[0].path,
                 )
         if said:
@@ -53,3 +57,14 @@ def programme_values(
             numbers = np.array([said[each] for each in steps])
             result[value.name] = np.where(steps[place] == step, numbers[place], np.nan)
     return result
+
+
+def _number_of(text: str | None, value: Value, content: Content, dialect: Dialect) -> float:
+    try:
+        return float(text or "")
+    except ValueError as error:
+        raise ReadError(
+            f"'{shown(str(text))}' is no number of a step of the programme; see the pattern of "
+            f"{shown(value.name)} in the dialect '{dialect.name}'",
+            where=content.path,
+        ) from error
