@@ -276,3 +276,83 @@ def test_a_speed_beside_such_a_ratio_that_is_called_neither_is_asked_about(tmp_p
     (tmp_path / "oil.csv").write_text(head + rows + "\n", "utf-8")
     with pytest.raises(ReadError, match="mean speed of both surfaces"):
         tl.read(tmp_path / "oil.csv")
+
+
+ZERO_HEAD = "Time [s];Torque [mNm];Load [N];Speed [rpm]"
+ZERO_ROWS = "\n".join(f"{n / 10:.1f};{38 + n % 3 - 1};20;60" for n in range(300))
+
+
+@pytest.mark.parametrize(
+    ("remark", "mu"),
+    [
+        ("Remark: torque is not zero corrected", 0.14),
+        ("Bemerkung;Drehmoment ist nicht nullpunktkorrigiert", 0.14),
+        ("All signals are zero corrected", 0.152),
+        ("", None),
+    ],
+)
+def test_a_zero_that_the_text_states_is_taken_off_where_it_is_still_in_the_signal(
+    remark, mu, tmp_path
+):
+    head = f"Track radius: 12.5 mm\nTorque zero [mNm]: 3.0\n{remark}\n\n{ZERO_HEAD}\n"
+    (tmp_path / "disc.csv").write_text(head + ZERO_ROWS + "\n", "utf-8")
+    if mu is None:
+        with pytest.raises(
+            ReadError, match="was taken off the signal +or: it is still in the signal"
+        ):
+            tl.read(tmp_path / "disc.csv")
+        return
+    run = tl.read(tmp_path / "disc.csv")
+    found = tl.friction_coefficient(run, tl.find_segments(run))
+    assert float(found.friction_coefficient[0]) == pytest.approx(mu, rel=1e-3)
+    assert np.isfinite(found.friction_coefficient_sem[0])
+    read = mu == 0.14
+    assert found.attrs["offset"].startswith("read zero" if read else "none")
+    assert ("zeros_stated" in run.attrs) == read
+
+
+def test_a_zero_of_a_force_is_taken_off_its_column_and_one_of_the_load_is_not(tmp_path):
+    rows = "\n".join(f"{n / 10:.1f},{6.5 + n % 3 / 100},20,5" for n in range(300))
+    table = f"\nTime [s],Friction force [N],Normal force [N],Speed [mm/s]\n{rows}\n"
+    remark = "Friction not zero corrected\n"
+    (tmp_path / "a.csv").write_text(f"Friction offset: 0.5 N\n{remark}{table}", "utf-8")
+    assert float(tl.read(tmp_path / "a.csv").friction_force.mean()) == pytest.approx(6.01)
+    (tmp_path / "b.csv").write_text(f"Load offset: 0.5 N\n{remark}{table}", "utf-8")
+    assert float(tl.read(tmp_path / "b.csv").friction_force.mean()) == pytest.approx(6.51)
+
+
+def test_the_version_of_a_file_is_no_lever(tmp_path):
+    rows = "\n".join(f"{n / 10:.1f},{6.5 + n % 3 / 100},20,5" for n in range(300))
+    table = f"Time [s],Friction force [N],Normal force [N],Speed [mm/s]\n{rows}\n"
+    (tmp_path / "a.csv").write_text(f"File version : 2.3\nAgainst steel: 2\n{table}", "utf-8")
+    tl.read(tmp_path / "a.csv")
+    (tmp_path / "b.csv").write_text(f"Lever arm: 2.3\n{table}", "utf-8")
+    with pytest.raises(ReadError, match="not times 'Lever arm: 2.3'"):
+        tl.read(tmp_path / "b.csv")
+
+
+@pytest.mark.parametrize(
+    ("stroke", "length"), [("Stroke: ±4 mm", 8e-3), ("Stroke amplitude: +/- 4 mm", 8e-3)]
+)
+def test_a_stroke_either_way_from_the_middle_is_half_of_it(stroke, length, tmp_path):
+    t = np.arange(2000) / 200
+    rows = "\n".join(f"{a:.3f},{f:.1f}" for a, f in zip(t, np.sign(np.sin(6.283 * t)), strict=True))
+    head = f"{stroke}\nFrequency: 1 Hz\nCrank drive\nTime [s],Friction force [N]\n"
+    (tmp_path / "a.csv").write_text(head + rows + "\n", "utf-8")
+    assert tl.read(tmp_path / "a.csv").attrs["stroke_m"] == pytest.approx(length)
+
+
+def test_the_name_of_a_file_states_speed_and_load(tmp_path):
+    rows = "\n".join(f"{n / 10:.1f},{1.2 + n % 3 / 100}" for n in range(300))
+    (tmp_path / "PTFE_3N_10mms_2.csv").write_text(f"time_s,Ft_N\n{rows}\n", "utf-8")
+    run = tl.read(tmp_path / "PTFE_3N_10mms_2.csv")
+    found = tl.friction_coefficient(run, tl.find_segments(run))
+    assert float(found.sliding_speed[0]) == pytest.approx(0.01)
+    assert float(found.friction_coefficient[0]) == pytest.approx(1.21 / 3, rel=1e-3)
+
+
+def test_heights_lie_evenly_between_a_stated_start_and_end(tmp_path):
+    heights = "\n".join(f"{z:.3f}" for z in np.random.default_rng(9).normal(0, 1, 601))
+    head = "X start: 0 mm\nX end: 3 mm\nN = 601\nUnit Z: um\n\n"
+    (tmp_path / "line.txt").write_text(head + heights + "\n", "utf-8")
+    assert tl.read_scans(tmp_path / "line.txt").attrs["pitch_m"] == pytest.approx(5e-6)

@@ -87,6 +87,11 @@ def _ask_for_lengths(
     """Ask for the radius of the track, and for the load, where the file does not say them."""
     follows = what_follows(layout, understood)
     lacks = " ".join(lacking(understood, follows))
+    if follows.zero_in_doubt is not None:
+        text = follows.zero_in_doubt.text
+        taken = ask(f"was '{text}' taken off the signal ({_NONE}: it is still in it)?", "yes")
+        understood = understood._replace(zero="in it" if taken.strip() == _NONE else "taken off")
+        follows = what_follows(layout, understood)
     guessed = [value for value in follows.values if value.guess]
     if guessed or "the radius of the track" in lacks:
         guess = f"{stated_number(guessed[0]):.6g} {guessed[0].unit}" if guessed else _NONE

@@ -74,6 +74,7 @@ class Understood(NamedTuple):
     radius: str = ""
     load: str = ""
     drive: str = ""
+    zero: str = ""
     pitch_pattern: str = ""
     length_pattern: str = ""
     pitch: str = ""

@@ -77,6 +77,8 @@ def add_derived(
             where=where,
             cure=Cure(*["mend [[column]], [[value]] or [[derived]] in the dialect"] * 3),
         )
+    if zeros := _stated_zeros(said, dialect):
+        attrs["zeros_stated"] = zeros
     _add_ratio_of_stresses(columns, said, attrs)
     for name in symbols:
         columns.pop(name, None)
@@ -132,6 +134,16 @@ def _evaluated(
         return evaluate(rule.formula, known, unit)
     except UnitError as error:
         raise ReadError(f"{rule.quantity}: {error}", where=where) from error
+
+
+def _stated_zeros(said: Mapping[str, str], dialect: Dialect) -> Json:
+    """Say which zeros of the friction the text of the file states, and formulas take off."""
+    zeros = {value.name for value in dialect.value if value.name.endswith("_zero")}
+    return {
+        name: ", ".join(sorted(zeros & names_in(parse_formula(formula))))
+        for name, formula in said.items()
+        if name == "friction_force" and zeros & names_in(parse_formula(formula))
+    }
 
 
 def _operands(

@@ -175,15 +175,27 @@ def _missing(line: str) -> str:
     if contacts and 1 < int(contacts["after"] or contacts["before"]) <= _MOST_CONTACTS:
         return f"friction and load are both of all contacts, or both of one: '{shown(line, 40)}'"
     for ratio in _ONE_TO.finditer(line):
-        key = squeezed(line[: ratio.start()])
-        if _number(ratio["one"]) != _number(ratio["other"]) and (
-            _FACTOR.search(key) or _RATIO.search(key)
-        ):
+        key = line[: ratio.start()]
+        named = _begins_a_word(_FACTOR, key) or _begins_a_word(_RATIO, key)
+        if named and _number(ratio["one"]) != _number(ratio["other"]):
             return f"signals are read as they stand, not times '{shown(line, 40)}'"
     plain = _PLAIN.match(line)
-    if plain and _FACTOR.search(squeezed(plain["key"])) and _number(plain["number"]) != 1:
+    if plain and _begins_a_word(_FACTOR, plain["key"]) and _number(plain["number"]) != 1:
         return f"signals are read as they stand, not times '{shown(line, 40)}'"
     return ""
+
+
+def _begins_a_word(pattern: re.Pattern[str], text: str) -> bool:
+    """Whether a pattern of squeezed names is found at the start of a word.
+
+    >>> _begins_a_word(_FACTOR, "Lever arm ratio"), _begins_a_word(_FACTOR, "File version")
+    (True, False)
+    """
+    starts, end = set(), 0
+    for word in re.split(r"[\W_]+", text):
+        starts.add(end)
+        end += len(squeezed(word))
+    return any(match.start() in starts for match in pattern.finditer(squeezed(text)))
 
 
 def _number(text: str) -> float:

@@ -20,7 +20,7 @@ _BRACKETS = re.compile(r"[\[(]\s*([^\W\d][^\])]{0,19})[\])]\s*$")  # a unit stan
 _FACTOR = re.compile(
     r"[x×*·]?\s?\b10\s?\^\s?-?\d+|[x×*·]\s?1(?:0+|[eE][+-]?\d+)(?!\d)", re.IGNORECASE
 )
-# beside friction: which of several such columns is taken changes no coefficient of friction
+# beside friction: which column is taken for such a quantity changes no coefficient of friction
 _ASIDE = {"temperature", "ambient_pressure", "voltage", "height_displacement"}
 
 
@@ -51,7 +51,7 @@ def filled_in(
     si_unit = quantity(option.quantity).unit
     guessed = []
     options: tuple[str, ...] = ()
-    if option.score < KNOWN_WORD:
+    if option.score < KNOWN_WORD and option.quantity not in _ASIDE:
         guessed.append(f"the name means {quantity(option.quantity).long_name}")
     if several and option.quantity not in _ASIDE:
         guessed.append(f"of several columns for {option.quantity} it is the one meant")

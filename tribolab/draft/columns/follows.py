@@ -12,6 +12,7 @@ from tribolab.draft.columns.programme import programme_of
 from tribolab.draft.columns.slip import stated_ratio
 from tribolab.draft.columns.stated_load import find_load
 from tribolab.draft.columns.stated_words import PER_MINUTE
+from tribolab.draft.columns.stated_zero import find_zero, reading_of, zero_in_doubt
 from tribolab.draft.columns.stroke_settings import strokes_of_columns, strokes_of_values
 from tribolab.draft.columns.turning import angle_of, radius_of, torque_of, turns_of
 from tribolab.draft.columns.values import DraftValue, find_values, words_said
@@ -71,12 +72,16 @@ class SpeedBy(NamedTuple):
 
 
 class Follows(NamedTuple):
-    """Formulas, the columns (with their symbols) and values that they need, and the speed."""
+    """Formulas, the columns (with their symbols) and values that they need, and the speed.
+
+    `zero_in_doubt` is a stated zero of which nothing says whether it is still in the signal.
+    """
 
     formulas: tuple[DraftedFormula, ...] = ()
     symbols: tuple[tuple[str, DraftColumn], ...] = ()
     values: tuple[DraftValue, ...] = ()
     speed: SpeedBy | None = None
+    zero_in_doubt: DraftValue | None = None
 
 
 def what_follows(layout: Layout, understood: Understood) -> Follows:
@@ -114,10 +119,24 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     if not names & SAYS_FRICTION and torque is not None:
         arm = track if track.formula else _of_value(find_arm(values))
         if arm.formula:
-            about = "a torque and a radius"
-            formula = DraftedFormula("friction_force", f"torque / {arm.formula}", about)
-            result = _and(result, formula, arm.values, (("torque", torque), *arm.symbols))
+            zero = find_zero(layout, values, "N m", understood.zero)
+            about = "a torque and a radius" + (f", and '{zero.text}'" if zero else "")
+            net = f"(torque - {zero.name})" if zero else "torque"
+            formula = DraftedFormula("friction_force", f"{net} / {arm.formula}", about)
+            used = arm.values if zero is None else (*arm.values, zero)
+            result = _and(result, formula, used, (("torque", torque), *arm.symbols))
             names.add("friction_force")
+            doubt = zero_in_doubt(layout, values, "N m", understood.zero)
+            result = result._replace(zero_in_doubt=doubt)
+    reading = reading_of(understood.columns)
+    zero = None if reading is None else find_zero(layout, values, "N", understood.zero)
+    if reading is not None:
+        doubt = zero_in_doubt(layout, values, "N", understood.zero)
+        result = result._replace(zero_in_doubt=doubt)
+    if reading is not None and zero is not None:
+        what = f"friction_reading - {zero.name}"
+        formula = DraftedFormula("friction_force", what, f"'{zero.text}'")
+        result = _and(result, formula, [zero], (("friction_reading", reading),))
     for force in calibrated_forces(layout, understood.columns):
         about = f"a signal in volts, and '{force.value.text}'"
         formula = DraftedFormula(force.quantity, force.formula, about)

@@ -34,6 +34,13 @@ from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.units import conversion
 
+_ENDS = (
+    re.compile(
+        r"^x?(?:start|min|first|from|begin|anfang|debut|inicio|inizio)(?:x|position)?$|^xl$"
+    ),
+    re.compile(r"^x?(?:end|max|last|to|stop|ende|fin|final|fine)(?:x|position)?$|^xr$"),
+)
+_COUNT = re.compile(rf"^n$|{POINTS.pattern}")
 _LONGEST = 200  # characters of a line that are looked at
 # units of heights under whatever name they stand
 _USUAL = frozenset({"nm", "um", "µm", "μm", "mm", "pm", "Å", "angstrom", "microns", "micron"})
@@ -142,7 +149,22 @@ def find_point_density(layout: Layout) -> str:
     stop = layout.heading.names if layout.heading else layout.blocks[0].start
     stated = (points_per_length(line) for line in layout.lines[:stop])
     number, unit = next((density for density in stated if density), (0.0, ""))
-    return f"{1 / number:.12g} {unit}" if number else _sampled_on_the_way(layout)
+    if number:
+        return f"{1 / number:.12g} {unit}"
+    return _sampled_on_the_way(layout) or _between_ends(layout)
+
+
+def _between_ends(layout: Layout) -> str:
+    """Return the distance of points that lie between a stated start and end; "" if unknown."""
+    values = [v for v in find_values(layout, bare=True) if v.source == "preamble"]
+    counts = {v.number for v in values if v.own_unit is None and _COUNT.search(v.key)}
+    ends = [[metres(v) for v in values if _is_length(v) and e.search(v.key)] for e in _ENDS]
+    if any(len(stated) != 1 for stated in ends) or not any(
+        abs(count - len(layout.rows())) < 1 for count in counts
+    ):
+        return ""
+    apart = (ends[1][0] - ends[0][0]) / (len(layout.rows()) - 1)
+    return f"{1e6 * apart:.12g} um" if apart > 0 else ""
 
 
 def _sampled_on_the_way(layout: Layout) -> str:

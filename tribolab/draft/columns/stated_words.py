@@ -175,6 +175,29 @@ OUTER = re.compile(
     r"ring|rim|roll|wheel|shaft|outer|outside|aussen|exter|anneau|anello|anillo|galet|hjul|welle|リング|环|環|外|od$"
 )
 
+# what the sensor shows without friction, and whether it is still in the signal
+ZERO = re.compile(
+    r"zero|offset|nullpunkt|nulllage|nullwert|nullsignal|^null|tara|tare|nollpunkt|nollage|nulpunt"
+    r"|nulstil|nolla|cero|零点|零位|ゼロ|ноль|нуль|영점|sifir|nula|nulov"
+)
+NOT_TAKEN_OFF = re.compile(
+    r"\bnot?\s(?:been\s)?(?:yet\s)?(?:zero|offset|tare|drift)?[\s-]?(?:correct|compens|subtract|adjust|remov)"
+    r"|(?:zero|offset|tare)\s(?:is\s|was\s)?not\s|\bnot\s(?:tared|zeroed)|un(?:corrected|tared|zeroed)"
+    r"|nicht\s\w{0,20}(?:korrigiert|bereinigt|abgezogen|kompensiert|tariert)|unkorrigiert"
+    r"|non\s(?:corrig|compens|azzer|soustra|sottra|tar)"
+    r"|no\s(?:corregid|compensad|restad)|sin\s(?:corregir|restar)"
+    r"|não\s(?:corrig|compens|subtra)"
+    r"|ej\skorriger|inte\skorriger|ikke\skorriger|niet\sgecorrigeerd"
+    r"|не\s(?:скоррект|вычт|учт)|未(?:校正|修正|扣除|減算|補正)|未補正",
+    re.IGNORECASE,
+)
+TAKEN_OFF = re.compile(
+    r"(?:zero|offset|tare)[\s-](?:is\s|was\s)?(?:correct|compens|subtract|remov|adjust)"
+    r"|(?<!not )(?:tared|zeroed)\b|nullpunktkorrigiert|nullpunktbereinigt|tariert|compensado"
+    r"|corregido|corretto|corrigé|已(?:校正|扣除)|補正済",
+    re.IGNORECASE,
+)
+
 
 def is_radius(name: str) -> bool:
     """Whether a column's name, squeezed, is that of the radius of a track.

@@ -19,6 +19,8 @@ from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn, Understood
 from tribolab.io.dialects.cells import split_name
 
+_EITHER_WAY = re.compile(r"(?:\+/?-|±)\s?\d")  # from the middle
+
 
 class Strokes(NamedTuple):
     """Length and frequency of strokes: what [speed] says of them, where they stand, a guess."""
@@ -32,10 +34,12 @@ class Strokes(NamedTuple):
 def strokes_of_values(values: Sequence[DraftValue]) -> Strokes | None:
     """Return the length and frequency of strokes that stand above the table."""
     stroke, frequency, guess = _only(values, STROKE, "m"), _only(values, FREQUENCY, "Hz"), ""
+    if stroke is not None and _EITHER_WAY.search(stroke.text):
+        stroke = stroke._replace(scale=2.0)
     if stroke is None and (half := _only(values, HALF_STROKE, "m")) is not None:
         whole = END_TO_END.search(half.text) is not None
         stroke = half if whole else half._replace(scale=2.0)
-        if not whole and "half" not in half.name:
+        if not whole and "half" not in half.name and not _EITHER_WAY.search(half.text):
             guess = f"'{half.text}' is half of a stroke"
     if stroke is None or frequency is None:
         return None

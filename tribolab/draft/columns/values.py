@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
+from pathlib import Path
 from typing import NamedTuple
 
 from tribolab.draft.columns.sentences import Phrase, phrases
@@ -32,7 +33,7 @@ _MOST_OF_SCAN = 200  # settings of a profilometer, among which the few that coun
 # "# rate: 10 Hz", "Set Force = -200", "Disc track radius used (mm)<tab>21.232"
 _SAID = (
     r"(?P<before>\W*(?P<key>[^\W\d][^:：=\t;{mark}]*?)(?:\"?\s*[:：=\t;{mark}]\s*\"?|\s{{2,80}}))"
-    r"(?P<number>[-+]?\d[\d.{digits}]*(?:e[-+]?\d+)?)[\s;{mark}\"]*"
+    r"(?:(?:\+/?-|±)\s?)?(?P<number>[-+]?\d[\d.{digits}]*(?:e[-+]?\d+)?)[\s;{mark}\"]*"
     r"(?P<unit>[^\s\d;,\"][^\s;,\"]*)?[\s;,\t\"]*(?:\(.*\))?$"
 )
 _SAYS = re.compile(_SAID.format(mark="", digits=","), re.IGNORECASE)
@@ -59,6 +60,10 @@ _DRIVEN = re.compile(  # "reciprocating rig, crank drive"
     re.IGNORECASE,
 )
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]")
+_EITHER_WAY = re.compile(r"^\s*(?:\+/?-|±)")
+_SPEED_IN_NAME = re.compile(
+    r"(?:^|[_\- ])(?P<number>\d+(?:\.\d+)?)(?P<unit>[mu]m)(?P<per>p?s|_s|-s| s)(?=[_\- .]|$)"
+)
 _IN_NAME = re.compile(r"(?:^|_)(?P<number>\d+(?:\.\d+)?)(?P<unit>N|mN)(?=_|$)")
 _RADIUS_IN_NAME = re.compile(
     r"(?:^|[_\- ])(?P<key>(?:R|r|[Rr]adius|[Tt]rack)[_=-]?)(?P<number>\d+(?:\.\d+)?)"
@@ -119,6 +124,8 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
     values: dict[str, DraftValue] = {}
     if radius := _radius_in_name(layout.file.path.name):
         values[radius.name] = radius
+    if speed := _speed_in_name(layout.file.path):
+        values[speed.name] = speed
     in_name = _IN_NAME.search(layout.file.path.stem)
     if in_name:
         pattern = rf"_(\d+(?:\.\d+)?){in_name['unit']}(?:_|\.)"
@@ -190,6 +197,17 @@ def _radius_in_name(name: str) -> DraftValue | None:
     )
 
 
+def _speed_in_name(path: Path) -> DraftValue | None:
+    """Return the speed that a file's name states: PTFE_3N_10mms.csv."""
+    match = _SPEED_IN_NAME.search(path.stem)
+    if match is None:
+        return None
+    pattern = rf"(?:^|[_\- ])(\d+(?:\.\d+)?){match['unit']}{match['per']}(?:[_\- .])"
+    unit = f"{match['unit']}/s"
+    key = "slidingspeed"
+    return DraftValue("set_speed", pattern, unit, None, path.name, "file name", unit, key=key)
+
+
 def _keep(values: dict[str, DraftValue], value: DraftValue) -> None:
     """Keep a value, under a name of its own: letters of the east make none."""
     if value.name in values and value.key == values[value.name].key:
@@ -248,7 +266,8 @@ def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:
     before = escaped(said["before"].strip())
     if _STEP_TITLE.match(key):  # the next step has another number
         before = re.sub(r"\d+", r"\\d+", before)
-    pattern = r"^\s*" + before + rf"\s*({digits})"
+    signs = r"(?:\+/?-|±)?\s*" if _EITHER_WAY.search(said.string[said.end("before") :][:4]) else ""
+    pattern = r"^\s*" + before + rf"\s*{signs}({digits})"
     line = said.string.strip()
     plain = squeezed(_BRACKETS.sub("", key))
     dimension = next((d for d in DIMENSIONS if unit and converts(unit, d)), None)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tribolab.draft.columns.follows import Follows, lacking, unknown_of, what_follows
+from tribolab.draft.columns.stated_zero import STILL
 from tribolab.draft.columns.turning import torque_of
 from tribolab.draft.columns.values import without_unit
 from tribolab.draft.dialect.drafted import Drafted
@@ -106,6 +107,9 @@ def _of_roles(understood: Understood, follows: Follows) -> list[Question]:
     asked = []
     if follows.speed is not None and follows.speed.guess:
         asked.append(Question("speed", follows.speed.guess, follows.speed.options))
+    if follows.zero_in_doubt is not None:
+        guess = f"'{follows.zero_in_doubt.text}' was taken off the signal"
+        asked.append(Question("zero", guess, (STILL,)))
     asked += [Question("radius", v.guess, _RADII) for v in follows.values if v.guess]
     names = {column.quantity for column in understood.columns}
     names |= {formula.quantity for formula in follows.formulas}

@@ -46,7 +46,8 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
         values = [value._replace(pattern=any_blanks(value.pattern)) for value in values]
         taken_over = [value._replace(pattern=any_blanks(value.pattern)) for value in taken_over]
     columns = understood.columns
-    used = [column for column in columns if column.used]
+    taken = {column.place for _, column in follows.symbols}
+    used = [column for column in columns if column.used and column.place not in taken]
     parts = [_head(name, layout, understood)]
     names = dict.fromkeys(c.name for c in used if c.name and not c.optional)
     if layout.heading and names and not (layout.held and layout.held.form == "tdms"):
@@ -60,7 +61,6 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
     parts += [symbol_table(symbol, column) for symbol, column in follows.symbols]
     wanted = [column for column in columns if column.fill_in]
     parts += [column_table(column, numbers[:, column.place - 1]) for column in wanted]
-    taken = {column.place for _, column in follows.symbols}
     if understood.kind == "run" and (torque := torque_of(columns)) is not None:
         taken.add(torque.place)  # it stands below, to be filled in
     rest = [c for c in columns if not c.used and not c.fill_in and c.place not in taken]

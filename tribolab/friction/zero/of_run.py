@@ -22,7 +22,7 @@ from tribolab.medians import median, median_of_known
 from tribolab.quantities import quantity
 from tribolab.units import to_si
 
-_FROM_TORQUE = re.compile(r"\s*\w+\s*/\s*(?:(?P<arm>\w+)|'(?P<length>[^']+)')\s*")
+_FROM_TORQUE = re.compile(r"\s*(?:\w+|\(\w+ - \w+\))\s*/\s*(?:(?P<arm>\w+)|'(?P<length>[^']+)')\s*")
 _WITHOUT_SIGN = "mean of both directions: recorded without sign"
 # offsets that are removed from both strokes of a pair, which are then one observation
 PAIRED = ("half loop", _WITHOUT_SIGN)
@@ -146,7 +146,9 @@ def _read(run: xr.Dataset, name: str) -> tuple[float, str]:
     unit = quantity(name).unit
     ending = "" if unit == "1" else f"_{unit}"
     error = float(run.attrs.get(f"{name}_zero_sem{ending}", np.nan))
-    return error, str(dict(run.attrs.get("zeros_read", {})).get(name, ""))
+    read = str(dict(run.attrs.get("zeros_read", {})).get(name, ""))
+    stated = str(dict(run.attrs.get("zeros_stated", {})).get(name, ""))
+    return error, read or (f"the text of the file ({stated})" if stated else "")
 
 
 def _stated(run: xr.Dataset, name: str, given: str | float | None) -> float:

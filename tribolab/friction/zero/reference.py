@@ -276,7 +276,7 @@ def _from_outside(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroR
         return replace(_constant(strokes, 0.0, error, words, "stated"), stated=error)
     if known.read_from:
         words = f"read from {known.read_from}"
-        result = _constant(strokes, 0.0, known.read, words, "read zero")
+        result = _constant(strokes, 0.0, float(np.nan_to_num(known.read)), words, "read zero")
         text = (
             f"the zero was read from {known.read_from} only: what it drifted from there to the "
             "strokes is in the friction and not in its error"

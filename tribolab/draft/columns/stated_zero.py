@@ -1,0 +1,95 @@
+"""The zero of a friction signal that the text above a table states, as a force or a torque."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from tribolab.draft.columns.stated_words import NOT_TAKEN_OFF, TAKEN_OFF, ZERO
+from tribolab.draft.columns.values import DraftValue
+from tribolab.draft.columns.words import matches
+from tribolab.draft.file.header import converts
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.model import DraftColumn
+
+_LONGEST = 300  # characters of a line that are looked at
+STILL = "it is still in the signal"
+_OTHER = {"normal_force", "set_normal_force", "temperature", "position"}
+
+
+def find_zero(
+    layout: Layout, values: Sequence[DraftValue], unit: str, said: str = ""
+) -> DraftValue | None:
+    """Return the zero of the friction signal that a file states and that is still in the signal.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    values
+        From `tribolab.draft.columns.values.find_values`.
+    unit
+        "N" of a force, "N m" of a torque.
+    said
+        What a person said of it: "taken off", or "in it".
+
+    Returns
+    -------
+    DraftValue or None
+        None, too, where nothing says whether it was taken off: see `zero_in_doubt`.
+    """
+    zero = _stated(values, unit)
+    in_it = said == "in it" or (not said and _says(layout, zero, NOT_TAKEN_OFF))
+    if zero is None or not in_it:
+        return None
+    name = "torque_zero" if unit == "N m" else "friction_zero"
+    return zero._replace(name=name, unit=zero.own_unit, to=unit)
+
+
+def zero_in_doubt(
+    layout: Layout, values: Sequence[DraftValue], unit: str, said: str = ""
+) -> DraftValue | None:
+    """Return a stated zero of which nothing says whether it was taken off the signal.
+
+    Parameters
+    ----------
+    layout, values, unit, said
+        As for `find_zero`.
+    """
+    zero = _stated(values, unit)
+    told = said or _says(layout, zero, NOT_TAKEN_OFF) or _says(layout, zero, TAKEN_OFF)
+    return None if told else zero
+
+
+def _stated(values: Sequence[DraftValue], unit: str) -> DraftValue | None:
+    fitting = [value for value in values if _is_zero(value, unit)]
+    return fitting[0] if len(fitting) == 1 and fitting[0].number else None
+
+
+def _says(layout: Layout, zero: DraftValue | None, words: re.Pattern[str]) -> bool:
+    """Whether another line above the table says something of zeros."""
+    above = layout.lines[: layout.heading.names if layout.heading else 0]
+    others = (line[:_LONGEST] for line in above if zero is None or line.strip() != zero.text)
+    return any(words.search(line) for line in others)
+
+
+def reading_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
+    """Return the column that holds the friction force, of which a zero may be taken off.
+
+    Parameters
+    ----------
+    columns
+        As they are understood.
+    """
+    held = [c for c in columns if c.used and c.quantity == "friction_force" and not c.optional]
+    return held[0] if len(held) == 1 else None
+
+
+def _is_zero(value: DraftValue, unit: str) -> bool:
+    if value.source != "preamble" or not ZERO.search(value.key):
+        return False
+    if not (value.own_unit and converts(value.own_unit, unit)):
+        return False
+    bare = ZERO.sub("", value.key)
+    options = matches(bare, value.own_unit) if bare else []
+    return not options or options[0].quantity not in _OTHER
