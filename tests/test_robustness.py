@@ -20,12 +20,15 @@ from hypothesis import strategies as st
 from mutations import mat_inside, mutate
 
 import tribolab as tl
+from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.draft.dialect.questions import GuessedError
 from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError, TribolabError
 from tribolab.io import seal
+from tribolab.io.content.twice import times_over
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.text_tables import find_tables
+from tribolab.io.dialects.wrapped import numbers_in
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.io.scans.results import read_tester_results
 from tribolab.io.tables.mat5 import read_variables
@@ -412,3 +415,36 @@ def test_a_tdms_file_cut_short_says_so(shared_data, tmp_path):
     run = tl.read(tmp_path / "a.tdms")
     assert "ends before" in run.attrs["file_incomplete"]
     assert "file_incomplete" not in tl.read(shared_data / "tdms_force_MIT/TDMSSample.tdms").attrs
+
+
+TABLE = "Time [s],Fx [N],Fz [N]\n" + "".join(f"{k / 10},1.5,10\n" for k in range(40))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        pytest.param(TABLE + "\n" * 400_000, id="blank lines without end"),
+        pytest.param("\n" * 400_000 + TABLE, id="blank lines above"),
+        pytest.param("".join(f"Load = 31 N{k}\n" for k in range(30_000)) + TABLE, id="settings"),
+        pytest.param(TABLE.replace("Fx [N]", f"Fx [{'<a>' * 400_000}]"), id="a unit of letters"),
+        pytest.param("9" * 200_000 + "\n" + TABLE, id="a number of digits"),
+    ],
+)
+def test_a_file_that_is_endless_in_one_way_is_drafted_or_refused(tmp_path, text):
+    (tmp_path / "endless.csv").write_text(text)
+    try:
+        columns = draft_dialect(tmp_path / "endless.csv").understood.columns
+    except ReadError as error:
+        assert "endless.csv" in str(error)
+    else:
+        assert [column.quantity for column in columns][::2] == ["time", "normal_force"]
+
+
+def test_a_row_of_numbers_that_ends_in_a_word_goes_on_over_no_lines():
+    row = ",".join(map(str, range(400)))
+    assert numbers_in(row + ",end\n" + row + ",\n1,,2", ",") == 400
+
+
+def test_times_without_end_are_no_rows_written_twice():
+    time = np.repeat([0.0, 1.0, np.inf, np.inf, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0], 2)
+    assert times_over({"time": time, "force": np.ones(20)}) == 1

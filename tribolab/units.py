@@ -164,6 +164,8 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
     """
     if (prefix := _prefix(unit, si_unit)) is not None:
         return prefix, 0.0
+    if len(unit) > _LONGEST:
+        raise UnitError(f"'{shown(unit)}' is not a unit: it has more than {_LONGEST} letters")
     if (unit, si_unit) in _USUAL:
         return _USUAL[unit, si_unit]
     if (unit, si_unit) == ("mS", "s"):  # nobody times in siemens

@@ -76,8 +76,7 @@ def with_worth(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftColu
     columns
         As they are understood.
     """
-    above = layout.heading.names if layout.heading else 0
-    stated = [worth for line in layout.lines[:above] if (worth := _worth(line[:_LONGEST]))]
+    stated = [worth for line in layout.text_above() if (worth := _worth(line[:_LONGEST]))]
     result = []
     for column in columns:
         si_unit = quantity(column.quantity).unit if column.quantity else ""
@@ -134,8 +133,7 @@ def missing_factors(layout: Layout) -> list[str]:
     list of str
         A sentence for each line that states one.
     """
-    stop = layout.heading.names if layout.heading else 0
-    said = (_missing(line[:_LONGEST].strip()) for line in layout.lines[:stop])
+    said = (_missing(line[:_LONGEST].strip()) for line in layout.text_above())
     return [sentence for sentence in said if sentence]
 
 
@@ -149,11 +147,10 @@ def missing_of_heights(layout: Layout, heights: np.ndarray) -> list[str]:
     heights
         Their numbers as written. Of whole numbers a stated step of the gauge may be the unit.
     """
-    stop = layout.heading.names if layout.heading else layout.blocks[0].start
     present = heights[np.isfinite(heights)]
     whole = bool(present.size) and bool((present == np.round(present)).all())
     said = []
-    for line in layout.lines[:stop]:
+    for line in layout.text_above(bare=True):
         text = line[:_LONGEST].strip()
         plain = _PLAIN.match(text)
         factor = plain and _OF_HEIGHTS.search(squeezed(plain["key"])) and _number(plain["number"])

@@ -110,8 +110,7 @@ _HEIGHTS_IN = re.compile(
 
 def _in_sentences(layout: Layout) -> set[str]:
     """Return the units that sentences above the heights say of them: "heights in um"."""
-    stop = layout.heading.names if layout.heading else layout.blocks[0].start
-    said = (_HEIGHTS_IN.search(line[:_LONGEST]) for line in layout.lines[:stop])
+    said = (_HEIGHTS_IN.search(line[:_LONGEST]) for line in layout.text_above(bare=True))
     return {unit for match in said if match and (unit := length_unit(match["unit"]))}
 
 
@@ -146,8 +145,7 @@ def find_point_density(layout: Layout) -> str:
     layout
         From `tribolab.draft.file.layout.find_layout`.
     """
-    stop = layout.heading.names if layout.heading else layout.blocks[0].start
-    stated = (points_per_length(line) for line in layout.lines[:stop])
+    stated = (points_per_length(line) for line in layout.text_above(bare=True))
     number, unit = next((density for density in stated if density), (0.0, ""))
     if number:
         return f"{1 / number:.12g} {unit}"
@@ -193,8 +191,7 @@ def on_rim(layout: Layout) -> bool:
     layout
         From `tribolab.draft.file.layout.find_layout`.
     """
-    above = layout.lines[: layout.heading.names if layout.heading else 0]
-    texts = (layout.file.path.stem, *above)
+    texts = (layout.file.path.stem, *layout.text_above())
     return any(ON_RIM.search(text[:_LONGEST]) for text in texts)
 
 

@@ -38,8 +38,7 @@ def programme_of(layout: Layout) -> list[DraftValue]:
     list of DraftValue
         With ``source`` "programme": rotations (rad/s), speeds (m/s) and forces (N).
     """
-    stop = layout.heading.names if layout.heading else 0
-    lines = [line[:_LONGEST] for line in layout.lines[:stop]]
+    lines = [line[:_LONGEST] for line in layout.text_above()]
     for index, line in enumerate(lines):
         for delimiter in _DELIMITERS:
             names = split_row(line, delimiter)

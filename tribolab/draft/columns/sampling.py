@@ -61,10 +61,8 @@ def find_sampling(layout: Layout) -> Sampling | None:
     layout
         From `tribolab.draft.file.layout.find_layout`.
     """
-    above = layout.blocks[0].start if layout.width == 1 and layout.blocks else 0
-    stop = layout.heading.names if layout.heading else above
     guessed = None
-    for line in layout.lines[:stop]:
+    for line in layout.text_above(bare=layout.width == 1):
         if (said := _of_line(line.rstrip(), layout.decimal)) is None:
             continue
         if said.has_unit:

@@ -68,8 +68,9 @@ def _stated(values: Sequence[DraftValue], unit: str) -> DraftValue | None:
 
 def _says(layout: Layout, zero: DraftValue | None, words: re.Pattern[str]) -> bool:
     """Whether another line above the table says something of zeros."""
-    above = layout.lines[: layout.heading.names if layout.heading else 0]
-    others = (line[:_LONGEST] for line in above if zero is None or line.strip() != zero.text)
+    others = (
+        line[:_LONGEST] for line in layout.text_above() if zero is None or line.strip() != zero.text
+    )
     return any(words.search(line) for line in others)
 
 

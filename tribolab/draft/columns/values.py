@@ -99,11 +99,8 @@ class DraftValue(NamedTuple):
             return math.nan
 
 
-def _end_of_text(layout: Layout, *, bare: bool) -> int:
-    """Return the line at which the text above the table ends; 0 where a table begins the file."""
-    if layout.heading is not None:
-        return layout.heading.names
-    return layout.blocks[0].start if (bare or layout.width == 1) and layout.blocks else 0
+def _text_above(layout: Layout, *, bare: bool) -> tuple[str, ...]:
+    return layout.text_above(bare=bare or layout.width == 1)
 
 
 def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
@@ -135,9 +132,8 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
                 "set_normal_force", pattern, in_name["unit"], None, name, "file name"
             )
             values[value.name] = value
-    stop = _end_of_text(layout, bare=bare)
     units = _units_apart(layout, bare=bare)
-    for line in layout.lines[:stop]:
+    for line in _text_above(layout, bare=bare):
         said = _said(line.rstrip())
         if len(values) >= (_MOST_OF_SCAN if bare else _MOST):
             break
@@ -229,12 +225,12 @@ def words_said(layout: Layout, *, bare: bool = False) -> list[tuple[str, str]]:
     bare
         Whether to look above a table without a header, too.
     """
-    stop = _end_of_text(layout, bare=bare)
-    said = (_WORDS.match(line.strip()) for line in layout.lines[:stop])
+    above = _text_above(layout, bare=bare)
+    said = (_WORDS.match(line.strip()) for line in above)
     told = [(match["key"], match["text"]) for match in said if match]
-    cells = (_UNIT_SAID.match(line.strip()) for line in layout.lines[:stop])
+    cells = (_UNIT_SAID.match(line.strip()) for line in above)
     told += [(match["key"], match["unit"]) for match in cells if match]
-    drives = (_DRIVEN.search(line[:_LONGEST]) for line in layout.lines[:stop])
+    drives = (_DRIVEN.search(line[:_LONGEST]) for line in above)
     told = [(key, text.rstrip('"; ,')) for key, text in told]
     return told + [("drive", match[0]) for match in drives if match]
 

@@ -43,6 +43,7 @@ _LONGEST = 200  # characters of a line that are looked at
 _COUNT = re.compile(r"(?<![\d.,])(\d{2,7})(?![\d.,])[^\d]{0,20}$")  # "Number of points: 5600"
 _FEW = 20  # lines at the end that tell what parts cells
 _MOST_COLUMNS = 20_000
+_MOST_ABOVE = 500  # lines of text above a table that are looked at
 
 
 class Held(NamedTuple):
@@ -94,6 +95,18 @@ class Layout(NamedTuple):
     def delimiter_name(self) -> str:
         """The delimiter in a word."""
         return DELIMITERS[self.delimiter]
+
+    def text_above(self, *, bare: bool = False) -> tuple[str, ...]:
+        """Return the lines above the table, its first ones at most: none are above bare numbers.
+
+        Parameters
+        ----------
+        bare
+            Whether numbers without a header have text above them, too: heights do.
+        """
+        stop = self.blocks[0].start if bare and self.blocks else 0
+        stop = self.heading.names if self.heading is not None else stop
+        return self.lines[: min(stop, _MOST_ABOVE)]
 
     @property
     def units_line(self) -> int:

@@ -9,7 +9,9 @@ _TRUE_MINUS = re.compile(rf"{_MINUS}(?=[\d.,])")
 _FORTRAN = re.compile(r"(?<=[\d.,])[Dd](?=[+-]\d{1,3}(?!\d))")
 _IN_QUOTES = re.compile(r'"\s*([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)\s*"')
 _WHOLE_IN_QUOTES = re.compile(r'"\s*([+-]?\d+(?:[eE][+-]?\d+)?)\s*"')
-_ROW_IN_QUOTES = re.compile(r'(?:^|,)\s*"[+-]?\d*,\d+(?:[eE][+-]?\d+)?"\s*(?:,|$)', re.MULTILINE)
+_ROW_IN_QUOTES = re.compile(
+    r'(?:^|,)[^\S\n]*"[+-]?\d*,\d+(?:[eE][+-]?\d+)?"[^\S\n]*(?:,|$)', re.MULTILINE
+)
 
 
 def is_unusual(text: str) -> bool:

@@ -4,11 +4,8 @@ from __future__ import annotations
 
 import re
 
-_CELL = r"[-+]?[\d.,]*\d[\d.,]*(?:[eE][-+]?\d+)?"
-_NUMBERS = {
-    mark: re.compile(rf"[ \t]*{_CELL}(?:{gap}{_CELL})*(?:{gap})?[ \t\r]*")
-    for mark, gap in (("whitespace", r"[ \t]+"), *((m, rf"[ \t]*\{m}[ \t]*") for m in ",;\t|"))
-}
+_CELL = re.compile(r"[-+]?[.,]*\d[\d.,]*(?:[eE][-+]?\d+)?")
+_MARKS = {"whitespace": None, **{mark: mark for mark in ",;\t|"}}
 
 
 def unwrapped(text: str, delimiter: str) -> str:
@@ -26,16 +23,11 @@ def unwrapped(text: str, delimiter: str) -> str:
     >>> unwrapped("2 profiles\n1.5 2.5 3.5\n4.5\n", "whitespace").splitlines()
     ['2 profiles', '1.5', '2.5', '3.5', '4.5']
     """
-    numbers = _NUMBERS.get(delimiter)
-    if numbers is None:
+    if delimiter not in _MARKS:
         return text
-    mark = None if delimiter == "whitespace" else delimiter
-    lines = []
+    lines: list[str] = []
     for line in text.split("\n"):
-        if numbers.fullmatch(line):
-            lines += [cell for cell in (part.strip() for part in line.split(mark)) if cell]
-        else:
-            lines.append(line)
+        lines += _numbers(line, _MARKS[delimiter]) or [line]
     return "\n".join(lines)
 
 
@@ -47,9 +39,13 @@ def numbers_in(text: str, delimiter: str) -> int:
     text, delimiter
         As for `unwrapped`.
     """
-    numbers = _NUMBERS.get(delimiter)
-    if numbers is None:
+    if delimiter not in _MARKS:
         return 0
-    mark = None if delimiter == "whitespace" else delimiter
-    rows = (line for line in text.split("\n") if numbers.fullmatch(line))
-    return sum(1 for row in rows for part in row.split(mark) if part.strip())
+    return sum(len(_numbers(line, _MARKS[delimiter])) for line in text.split("\n"))
+
+
+def _numbers(line: str, mark: str | None) -> list[str]:
+    """Return the numbers of a line that holds nothing else; the last may have a mark behind it."""
+    cells = [cell.strip() for cell in line.split(mark)]
+    cells = cells[:-1] if len(cells) > 1 and not cells[-1] else cells
+    return cells if all(map(_CELL.fullmatch, cells)) else []

@@ -18,12 +18,12 @@ from tribolab.io.scans.grid import even
 from tribolab.units import conversion
 
 _AXIS = re.compile(
-    rb"^\s*C(?P<axis>[XYZ])[ \t]+(?P<kind>[IAM])[ \t]+(?P<number>[\d.eE+]+)[ \t]+(?P<unit>\w+)"
+    rb"^[ \t]*C(?P<axis>[XYZ])[ \t]+(?P<kind>[IAM])[ \t]+(?P<number>[\d.eE+]+)[ \t]+(?P<unit>\w+)"
     rb"[ \t]+(?P<scale>[-+\d.eE]+)[ \t]+[ILFD](?:[ \t]+(?P<step>[-+\d.eE]+))?[ \t]*$",
     re.MULTILINE,
 )
-_SPACING = re.compile(rb"^\s*SPACING[ \t]+CX[ \t]+([-+\d.eE]+)", re.MULTILINE)
-_TIP = re.compile(rb"^\s*STYLUS_RADIUS[ \t]+([-+\d.eE]+)[ \t]+(\w+)", re.MULTILINE)
+_SPACING = re.compile(rb"^[ \t]*SPACING[ \t]+CX[ \t]+([-+\d.eE]+)", re.MULTILINE)
+_TIP = re.compile(rb"^[ \t]*STYLUS_RADIUS[ \t]+([-+\d.eE]+)[ \t]+(\w+)", re.MULTILINE)
 _BREAK = re.compile(rb"[\r\n]+")
 _END = re.compile(rb"[\x03\x1a]+")  # SMD parts its records by ETX
 
