@@ -70,3 +70,53 @@ def test_what_is_not_sure_is_asked_for(tmp_path, head, names):
     )
     with pytest.raises(TribolabError, match=r"friction|Friction"):
         read(path)
+
+
+@pytest.mark.parametrize(
+    ("head", "raw", "newtons", "zero"),
+    [
+        ("Load: 20 N\n1 N = 4213 sayım", "hx711_ham", 1 / 4213, 0),
+        (
+            "Belastung: 20 N\nKalibrierung: 4213 Digits = 1 N\nNullpunkt: 84120",
+            "Reibkraft_roh",
+            1 / 4213,
+            84120,
+        ),
+        (
+            "Load [N];20\ncalibration factor: 430.5 counts/g\nTare (counts): 8201",
+            "adc_raw",
+            9.80665e-3 / 430.5,
+            8201,
+        ),
+        ("Carga: 20 N\nzero: 512 bits\n1 N ≙ 87,5 bits", "valor bruto", 1 / 87.5, 512),
+    ],
+)
+def test_counts_of_a_converter_become_the_friction_force(tmp_path, head, raw, newtons, zero):
+    counts = np.round(5.0 * np.where(SPEED > 0, 1, 0) / newtons + np.cos(7 * TIME) + zero)
+    rows = zip(TIME, SPEED, counts, strict=True)
+    table = "\n".join(f"{t:.1f};{v:.1f};{n:.0f}" for t, v, n in rows)
+    path = tmp_path / "run.csv"
+    path.write_text(f"{head}\nTime [s];Sliding speed [mm/s];{raw}\n{table}\n", "utf-8")
+    run = read(path)
+    np.testing.assert_allclose(run.friction_force, newtons * (counts - zero), atol=1e-9)
+    np.testing.assert_allclose(run.normal_force, 20)
+    if zero:
+        assert run.attrs["zeros_stated"] == {"friction_force": "friction_zero"}
+
+
+@pytest.mark.parametrize(
+    ("head", "raw"),
+    [
+        ("Load: 20 N\n1 N = 0.102 kg", "adc_raw"),  # nothing of counts
+        ("Load: 20 N\n1 N = 4213 counts", "marker"),  # not named for a converter
+        ("Load: 20 N\n1 N = 4213 counts\n1 N = 400 steps", "adc_raw"),  # which of both?
+        ("Load: 20 N\n1 mm = 4213 counts", "adc_raw"),  # no force
+    ],
+)
+def test_whole_numbers_without_a_sure_worth_are_no_force(tmp_path, head, raw):
+    counts = np.round(2e4 * np.where(SPEED > 0, 1, 0) + 50 * np.cos(7 * TIME))
+    rows = zip(TIME, SPEED, counts, strict=True)
+    table = "\n".join(f"{t:.1f};{v:.1f};{n:.0f}" for t, v, n in rows)
+    (tmp_path / "run.csv").write_text(f"{head}\nTime [s];Sliding speed [mm/s];{raw}\n{table}\n")
+    with pytest.raises(TribolabError, match="friction"):
+        read(tmp_path / "run.csv")

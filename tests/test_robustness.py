@@ -11,6 +11,7 @@ import sys
 import zipfile
 import zlib
 
+import h5py
 import numpy as np
 import pytest
 import scipy.io
@@ -20,6 +21,7 @@ from hypothesis import strategies as st
 from mutations import mat_inside, mutate
 
 import tribolab as tl
+from tribolab import trials
 from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.draft.dialect.questions import GuessedError
 from tribolab.draft.scans import read_scans
@@ -32,6 +34,7 @@ from tribolab.io.dialects.wrapped import numbers_in
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.io.scans.results import read_tester_results
 from tribolab.io.tables.mat5 import read_variables
+from tribolab.rubber.modulus import read_modulus
 
 COLUMNS = [
     {"quantity": "time", "position": 1, "unit": "s"},
@@ -209,9 +212,8 @@ def test_a_file_of_another_program_is_tried_and_read(tmp_path):
 def test_a_crash_of_the_native_library_is_a_read_error_here(run_file, monkeypatch, ending, told):
     if sys.platform == "win32":
         pytest.skip("signals and limits are those of Unix")
-    start = seal._TRIAL.split("    def visit")[0]  # limits are set, the file is not yet open
-    monkeypatch.setattr(seal, "_TRIAL", f"{start}    {ending}\nexcept ZeroDivisionError: pass")
-    monkeypatch.setattr(seal, "_SECONDS", 1.0)
+    monkeypatch.setitem(trials._OPENINGS, "netCDF", f"limited()\n    {ending}")
+    monkeypatch.setattr(trials, "_SECONDS", 1.0)
     seal.unseal(run_file)
     with pytest.raises(ReadError, match=rf"run\.nc: the file is damaged: .*{told}"):
         read_netcdf(run_file, "run")
@@ -448,3 +450,59 @@ def test_a_row_of_numbers_that_ends_in_a_word_goes_on_over_no_lines():
 def test_times_without_end_are_no_rows_written_twice():
     time = np.repeat([0.0, 1.0, np.inf, np.inf, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0], 2)
     assert times_over({"time": time, "force": np.ones(20)}) == 1
+
+
+def changed(shared_data, tmp_path, case):
+    """Return a workbook without one block of its bytes."""
+    place, size = case
+    content = (shared_data / "dma_pyvisco_BSD3" / "freq_Eplexor_master.xls").read_bytes()
+    (tmp_path / "a.xls").write_bytes(content[:place] + content[place + size :])
+    return tmp_path / "a.xls"
+
+
+@pytest.mark.parametrize("case", [(30_000, 60), (60_000, 360), (512, 512), (80_000, 20)])
+def test_an_old_workbook_that_is_damaged_is_refused(shared_data, tmp_path, case):
+    path = changed(shared_data, tmp_path, case)
+    for reader in (tl.read, draft_dialect, read_modulus):
+        with pytest.raises(ReadError, match=r"a\.xls: "):
+            reader(path)
+
+
+def test_an_old_workbook_that_asks_for_all_memory_is_refused(shared_data, tmp_path, monkeypatch):
+    greedy = "limited()\n    bytearray(64 << 30)"
+    monkeypatch.setitem(trials._OPENINGS, "spreadsheet", greedy)
+    path = changed(shared_data, tmp_path, (1000, 0))
+    with pytest.raises(ReadError, match=r"a\.xls: .*MemoryError"):
+        draft_dialect(path)
+
+
+def test_a_panic_of_a_library_is_a_read_error(tmp_path):
+    PanicException = type("PanicException", (BaseException,), {})  # noqa: N806, as it is called
+    (tmp_path / "a.xlsx").write_bytes(b"PK")
+    with pytest.raises(ReadError, match=r"a\.xlsx: the workbook is damaged: slice"):
+        with trials.workbook_tried(tmp_path / "a.xlsx"):
+            raise PanicException("slice index starts at 5")
+    with pytest.raises(KeyboardInterrupt):
+        with trials.workbook_tried(tmp_path / "a.xlsx"):
+            raise KeyboardInterrupt
+
+
+def test_columns_of_an_hdf5_file_that_is_damaged_are_refused(tmp_path):
+    time = np.arange(500) / 10
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        for name in ("Time [s]", "Fx [N]", "Fz [N]"):
+            file.create_dataset(name, data=time, chunks=(50,), compression="gzip")
+    content = bytearray((tmp_path / "a.h5").read_bytes())
+    whole = draft_dialect(tmp_path / "a.h5").kind
+    assert whole == "run"
+    for place in range(0, len(content), 97):
+        broken = bytearray(content)
+        broken[place : place + 4] = b"\xff\xff\xff\x7f"
+        path = tmp_path / f"b{place}.h5"
+        path.write_bytes(broken)
+        if place > 900:
+            break
+        try:
+            draft_dialect(path)
+        except ReadError as error:
+            assert path.name in str(error)

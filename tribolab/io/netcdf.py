@@ -14,11 +14,12 @@ import xarray as xr
 
 from tribolab.errors import ReadError, TribolabError, brief, shown
 from tribolab.io.attributes import decoded
-from tribolab.io.seal import is_sealed, seal, try_out, unseal
+from tribolab.io.seal import is_sealed, seal, unseal
 from tribolab.io.storage import write_into
 from tribolab.io.stored import read_plain
 from tribolab.pieces import pieces
 from tribolab.room import is_long, room
+from tribolab.trials import try_out
 
 if TYPE_CHECKING:
     import netCDF4

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from tribolab.errors import AnalysisError, Cure, ReadError, UnitError, shown
 from tribolab.quantities import unit_conversion
+from tribolab.trials import workbook_tried
 from tribolab.turns import reciprocal
 from tribolab.units import conversion, positive
 
@@ -274,7 +275,8 @@ def _find_table(path: Path, sheet: str | None) -> pd.DataFrame:
     if path.suffix.lower() in (".xls", ".xlsx", ".ods"):
         try:
             wanted = None if sheet is None else [sheet]
-            sheets = pd.read_excel(path, sheet_name=wanted, dtype=object, engine="calamine")
+            with workbook_tried(path):
+                sheets = pd.read_excel(path, sheet_name=wanted, dtype=object, engine="calamine")
         except ImportError as error:
             raise ReadError(
                 f"{path.name}: spreadsheets need the package python-calamine; install it, or "

@@ -9,9 +9,10 @@ import pandas as pd
 
 from tribolab.draft.columns.assign import SIGNALS, assigned
 from tribolab.draft.columns.bridges import calibrated_forces
+from tribolab.draft.columns.counts import with_worth
 from tribolab.draft.columns.either import told_by_load, without_means
 from tribolab.draft.columns.epochs import DATES, counted_from
-from tribolab.draft.columns.factors import missing_factors, missing_of_heights, with_worth
+from tribolab.draft.columns.factors import missing_factors, missing_of_heights
 from tribolab.draft.columns.fill_in import Bare
 from tribolab.draft.columns.heights import as_heights, beside_x, in_stated_unit, side_by_side
 from tribolab.draft.columns.labels import bare_name, labelled
@@ -81,7 +82,7 @@ def understand(layout: Layout) -> Understood:
     if kind == "run":
         columns = of_both_surfaces(layout, without_means(layout, columns))
         guesses += disagreement(columns, numbers) + results_told(columns, numbers)
-    columns = _dated(with_worth(layout, columns), layout, numbers, text)
+    columns = _dated(with_worth(layout, columns, numbers), layout, numbers, text)
     columns = [
         column._replace(
             used=False,

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.draft.columns.words import matches, squeezed
-from tribolab.draft.file.header import converts
+from tribolab.draft.columns.counts import WORTH
+from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.layout import Layout
-from tribolab.draft.model import DraftColumn
 from tribolab.errors import shown
-from tribolab.quantities import quantity
 
 _LONGEST = 200  # characters of a line that are looked at
 _MOST_CONTACTS = 12
@@ -55,67 +51,6 @@ _STEP_OF_GAUGE = re.compile(
     r"|(?<![^\W\d_])(?:lsb|quantum|quantization|quantisierung|digit)(?![^\W\d_])"
 )
 _ONE_UNIT = re.compile(r"(?<![\d.,])1(?:[.,]0+)?\s*[^\W\d]*\W*$")  # "z resolution: 1 nm"
-_COUNT = r"(?:counts?|cts|digits?|lsb|bits?|incr(?:ement)?s?|steps?|pulses?)"
-_WORTH = re.compile(
-    rf"(?<![\d.,])(?P<number>{_NUMBER}(?:[eE][-+]?\d+)?)\s?(?P<unit>[^\W\d]{{1,3}})\s?(?:/|per)\s?{_COUNT}\b",
-    re.IGNORECASE,
-)
-_SO_MANY = re.compile(
-    rf"(?<![\d.,])(?P<number>{_NUMBER}(?:[eE][-+]?\d+)?)\s?{_COUNT}\s?(?:/|per)\s?(?P<unit>[^\W\d]{{1,3}})\b",
-    re.IGNORECASE,
-)
-
-
-def with_worth(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftColumn]:
-    """Guess what a count of a column is from the one line that states it: "Encoder: 500 counts/mm".
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.draft.file.layout.find_layout`.
-    columns
-        As they are understood.
-    """
-    stated = [worth for line in layout.text_above() if (worth := _worth(line[:_LONGEST]))]
-    result = []
-    for column in columns:
-        si_unit = quantity(column.quantity).unit if column.quantity else ""
-        mine = [worth for worth in stated if si_unit and converts(worth.unit, si_unit)]
-        named = [worth for worth in mine if _is_named(worth.line, str(column.quantity))]
-        mine = named if len(mine) > 1 else mine
-        fits = column.counted and column.fill_in and len(mine) == 1
-        result.append(column if not fits else _worth_of(column, mine[0]))
-    return result
-
-
-def _is_named(line: str, name: str) -> bool:
-    """Whether a line's first words are of a quantity: "Friction channel: 0.002 N/count"."""
-    said = re.split(r"[:=]|\d", line, maxsplit=1)[0]
-    told = (matches(words, None) for words in (said, *said.split()))
-    return next((options[0].quantity for options in told if options), "") == name
-
-
-class _Worth(NamedTuple):
-    """What one count is, and the line that states it."""
-
-    number: float
-    unit: str
-    line: str
-
-
-def _worth(line: str) -> _Worth | None:
-    each, many = _WORTH.search(line), _SO_MANY.search(line)
-    stated = each or many
-    if stated is None or not _number(stated["number"]):
-        return None
-    number = _number(stated["number"])
-    return _Worth(number if each else 1 / number, stated["unit"], line.strip())
-
-
-def _worth_of(column: DraftColumn, worth: _Worth) -> DraftColumn:
-    unit = f"{worth.number:.9g} {worth.unit}"
-    guess = f"one count is {unit}: '{shown(worth.line, 40)}'"
-    return column._replace(unit=unit, used=True, fill_in="", guessed=(*column.guessed, guess))
 
 
 def missing_factors(layout: Layout) -> list[str]:
@@ -155,7 +90,7 @@ def missing_of_heights(layout: Layout, heights: np.ndarray) -> list[str]:
         plain = _PLAIN.match(text)
         factor = plain and _OF_HEIGHTS.search(squeezed(plain["key"])) and _number(plain["number"])
         step = whole and _STEP_OF_GAUGE.search(text) and not _ONE_UNIT.search(text)
-        if (factor and factor != 1) or step or _WORTH.search(text):
+        if (factor and factor != 1) or step or WORTH.search(text):
             said.append(f"heights are read as they stand, not times '{shown(text, 40)}'")
     return said
 

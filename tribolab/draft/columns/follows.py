@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tribolab.draft.columns.bridges import calibrated_forces
+from tribolab.draft.columns.counts import zero_in_counts
 from tribolab.draft.columns.lengths import find_arm, find_radius, on_rim
 from tribolab.draft.columns.programme import programme_of
 from tribolab.draft.columns.slip import stated_ratio
@@ -130,6 +131,8 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
             result = result._replace(zero_in_doubt=doubt)
     reading = reading_of(understood.columns)
     zero = None if reading is None else find_zero(layout, values, "N", understood.zero)
+    if reading is not None and zero is None:  # what a converter counts was not tared
+        zero = zero_in_counts(values, reading, understood.numbers[:, reading.place - 1])
     if reading is not None:
         doubt = zero_in_doubt(layout, values, "N", understood.zero)
         result = result._replace(zero_in_doubt=doubt)

@@ -13,6 +13,7 @@ from tribolab.draft.file.layout import Held
 from tribolab.errors import ReadError, shown
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.tables import columnar
+from tribolab.trials import workbook_tried
 
 _ABOVE = 40  # rows of a sheet above its names
 _MOMENTS = (dt.datetime, dt.time, dt.timedelta)
@@ -34,10 +35,12 @@ def read_sheet(path: Path) -> tuple[Held, list[HeldColumn]]:
     # late: python_calamine takes long to load
     from python_calamine import CalamineWorkbook
 
-    book = CalamineWorkbook.from_path(path)
+    with workbook_tried(path):
+        book = CalamineWorkbook.from_path(path)
+        sheets = [(name, book.get_sheet_by_name(name)) for name in book.sheet_names]
+        pages = [(name, s.to_python(skip_empty_area=False, nrows=ROWS)) for name, s in sheets]
     tables: list[tuple[int, Held, set[str]]] = []
-    for sheet in book.sheet_names:
-        rows = book.get_sheet_by_name(sheet).to_python(skip_empty_area=False, nrows=ROWS)
+    for sheet, rows in pages:
         place = _names_row(rows)
         if place is not None:
             held = Held("excel", sheet, place + 1, not _is_numeric(rows[place + 1]))

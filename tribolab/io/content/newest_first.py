@@ -17,7 +17,7 @@ def is_newest_first(time: np.ndarray) -> bool:
     """
     if time.size < _FEW or not time[0] > time[-1]:
         return False
-    return bool((np.diff(time) < 0).all())
+    return bool((time[1:] < time[:-1]).all())
 
 
 def oldest_first(content: Content) -> Content:

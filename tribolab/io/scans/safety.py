@@ -13,7 +13,8 @@ from typing import IO
 import numpy as np
 
 from tribolab.errors import ReadError, shown
-from tribolab.io.seal import is_sealed, try_out
+from tribolab.io.seal import is_sealed
+from tribolab.trials import try_out
 
 _MEGABYTE = 1 << 20
 _UNPACKED = 64 * _MEGABYTE  # an archive up to this size is no bomb, however well it is packed

@@ -10,6 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.errors import ReadError, shown
+from tribolab.io.seal import is_sealed
+from tribolab.trials import try_out, workbook_tried
 
 _MOST_CELLS = 50_000_000  # of a sheet
 _OF_HDF5 = {"units", "unit", "CLASS", "NAME", "TITLE", "VERSION", "DIMENSION_LIST", "_FillValue"}
@@ -129,6 +131,8 @@ def _hdf5(path: Path, layout: ColumnLayout) -> NamedColumns:
             unit = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else unit
             said.append(f"{name.split('/')[-1]}: {item[()]} {unit}".strip())
 
+    if not is_sealed(path):
+        try_out(path, "HDF5")
     with h5py.File(path, "r") as file:
         tell("", file)
 
@@ -170,15 +174,16 @@ def _excel(path: Path, layout: ColumnLayout) -> NamedColumns:
     # late: python_calamine takes long to load
     from python_calamine import CalamineWorkbook
 
-    book = CalamineWorkbook.from_path(path)
-    sheet = layout.sheet or book.sheet_names[0]
-    if sheet not in book.sheet_names:
-        there = ", ".join(map(shown, book.sheet_names[:8]))
-        raise ReadError(f"there is no sheet '{shown(sheet)}'; there are {there}", where=path)
-    page = book.get_sheet_by_name(sheet)
-    if page.total_height * page.total_width > _MOST_CELLS:
-        raise ReadError(f"sheet '{shown(sheet)}' is larger than a table of numbers", where=path)
-    rows = page.to_python(skip_empty_area=False)
+    with workbook_tried(path):
+        book = CalamineWorkbook.from_path(path)
+        sheet = layout.sheet or book.sheet_names[0]
+        if sheet not in book.sheet_names:
+            there = ", ".join(map(shown, book.sheet_names[:8]))
+            raise ReadError(f"there is no sheet '{shown(sheet)}'; there are {there}", where=path)
+        page = book.get_sheet_by_name(sheet)
+        if page.total_height * page.total_width > _MOST_CELLS:
+            raise ReadError(f"sheet '{shown(sheet)}' is larger than a table of numbers", where=path)
+        rows = page.to_python(skip_empty_area=False)
     line = layout.line
     if len(rows) <= line:
         raise ReadError(f"sheet '{shown(sheet)}' ends before row {line + 1}", where=path)
