@@ -105,7 +105,7 @@ def understand(layout: Layout) -> Understood:
     used = [column.place - 1 for column in columns if column.used]
     if kind == "scan":
         heights = [c.place - 1 for c in columns if c.used and c.quantity == "height"]
-        factors = missing_of_heights(layout, numbers[:, heights])
+        factors = missing_of_heights(layout, numbers[:, heights], columns)
         guesses += [said for said in factors if said[-45:] not in " ".join(guesses)]
     said = take_stated_missing(layout, columns, numbers) if kind == "scan" else []
     words = tuple(dict.fromkeys([*said, *(word for index in used for word in missing[index])]))

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
 
 from tribolab.draft.columns.counts import WORTH
 from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.layout import Layout
+from tribolab.draft.model import DraftColumn
 from tribolab.errors import shown
 
 _LONGEST = 200  # characters of a line that are looked at
@@ -72,7 +74,9 @@ def missing_factors(layout: Layout) -> list[str]:
     return [sentence for sentence in said if sentence]
 
 
-def missing_of_heights(layout: Layout, heights: np.ndarray) -> list[str]:
+def missing_of_heights(
+    layout: Layout, heights: np.ndarray, columns: Sequence[DraftColumn]
+) -> list[str]:
     """Say what heights may still have to be multiplied by: a factor, or what one step is worth.
 
     Parameters
@@ -81,7 +85,10 @@ def missing_of_heights(layout: Layout, heights: np.ndarray) -> list[str]:
         From `tribolab.draft.file.layout.find_layout`.
     heights
         Their numbers as written. Of whole numbers a stated step of the gauge may be the unit.
+    columns
+        As they are understood: what one count is worth is known where their unit holds it.
     """
+    weighed = any(column.used and column.counted and column.unit for column in columns)
     present = heights[np.isfinite(heights)]
     whole = bool(present.size) and bool((present == np.round(present)).all())
     said = []
@@ -90,7 +97,10 @@ def missing_of_heights(layout: Layout, heights: np.ndarray) -> list[str]:
         plain = _PLAIN.match(text)
         factor = plain and _OF_HEIGHTS.search(squeezed(plain["key"])) and _number(plain["number"])
         step = whole and _STEP_OF_GAUGE.search(text) and not _ONE_UNIT.search(text)
-        if (factor and factor != 1) or step or WORTH.search(text):
+        worth = WORTH.search(text)
+        if (worth or step) and weighed:
+            continue
+        if (factor and factor != 1) or step or worth:
             said.append(f"heights are read as they stand, not times '{shown(text, 40)}'")
     return said
 
