@@ -39,6 +39,7 @@ def test_one_value_and_a_pure_number_are_said_once_and_without_a_unit(tmp_path):
         "force": {"label": "", "unit": "N", "minimum": 4.0, "maximum": 4.0},
     }
     about = {"file": "a", "instrument": "b", "title": "", "rows": 2, "duration_s": 1.0}
+    about |= {"are_points": False}
     about |= {"interval_s": None, "steps": 0, "left_out": "", "not_used": [], "metadata": {}}
     about |= {"columns": columns}
     assert [line.split(maxsplit=1)[1] for line in run_lines(about)[2:]] == ["1 to 2", "4", "4 N"]

@@ -13,6 +13,7 @@ from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.draft.dialect.questions import questions
 from tribolab.draft.dialect.show import print_draft
 from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS
+from tribolab.qc.run.checks import check_run
 
 TABLES = {
     "French": "Temps (s);Force de frottement (N);Charge (N);Vitesse de glissement (mm/s);"
@@ -187,12 +188,39 @@ def test_a_stated_rotation_and_radius_make_the_speed_of_each_step(tmp_path):
     np.testing.assert_allclose(tl.find_segments(data).sliding_speed, speeds, rtol=1e-6)
 
 
-def test_a_table_of_results_is_told_from_a_record(tmp_path):
+@pytest.mark.parametrize("order", [slice(None), slice(None, None, -1)], ids=["up", "down"])
+def test_each_row_of_a_table_of_results_is_a_point_of_the_curve(tmp_path, order):
     file = tmp_path / "results.csv"
-    rows = "\n".join(f"{2**n},20,{0.4 - 0.03 * n}" for n in range(8))
+    speed, mu = [2**n for n in range(8)][order], [0.4 - 0.03 * n for n in range(8)][order]
+    rows = "\n".join(f"{v},20,{m}" for v, m in zip(speed, mu, strict=True))
     file.write_text(f"Speed (mm/s),Load (N),COF\n{rows}\n")
-    with pytest.raises(tl.TribolabError, match="each row is of another speed: 8 results"):
-        tl.read(file)
+    run = tl.read(file)
+    assert run.attrs["rows_are"] == "points"
+    found = tl.friction_coefficient(run, tl.find_segments(run))
+    np.testing.assert_allclose(found.sliding_speed, 1e-3 * np.array(speed))
+    np.testing.assert_allclose(found.friction_coefficient, mu)
+    assert np.isnan(found.friction_coefficient_sem).all()
+    curve = tl.measured_stribeck_curve([found])
+    assert np.isnan(curve.friction_coefficient_u).all()  # of one run nothing is known of it
+    other = found.assign(
+        friction_coefficient=found.friction_coefficient + 0.01 * (found.sliding_speed == 0.008)
+    )
+    both = tl.measured_stribeck_curve([found, other])
+    assert both.friction_coefficient_u.sel(sliding_speed=0.008, method="nearest") > 0
+    statuses = dict(check_run(run).table[["check", "status"]].values)
+    assert statuses["stuck"] == statuses["sampling"] == "skipped"
+
+
+def test_a_record_whose_speed_is_held_or_noisy_is_no_table_of_results(tmp_path):
+    rng = np.random.default_rng(4)
+    for name, speed in {
+        "held": np.repeat([1.0, 2.0, 4.0], 30),
+        "noisy": 2 + 0.2 * rng.standard_normal(60),
+        "slow ramp": np.linspace(1, 2, 90),
+    }.items():
+        rows = "\n".join(f"{t / 10},{v:.4f},20,0.3" for t, v in enumerate(speed))
+        (tmp_path / f"{name}.csv").write_text(f"Time [s],Speed [mm/s],Load [N],COF\n{rows}\n")
+        assert "rows_are" not in tl.read(tmp_path / f"{name}.csv").attrs
 
 
 ASIDE = {

@@ -231,6 +231,8 @@ def _run_said(file: Path, dialect: Path) -> str:
     run = read_run(file, dialect, pair=False)
     time = run["time"].values
     said = f"{Count(len(time)):row|rows} over {float(time[-1]):.4g} s"
+    if run.attrs.get("rows_are") == "points":
+        said = f"{Count(len(time)):result|results}, each at one speed"
     try:
         segments = find_segments(run)
         friction = friction_coefficient(run, segments)

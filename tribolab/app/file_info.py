@@ -198,7 +198,11 @@ def run_lines(facts: FileFacts) -> list[str]:
     title = f" ({facts['title']})" if facts["title"] else ""
     lines = [f"{facts['file']}: {facts['instrument'] or 'netCDF'}{title}"]
     sampling = f"  {Count(facts['rows']):row|rows} over {facts['duration_s']:.6g} s"
-    if facts["interval_s"] is not None:
+    if facts["are_points"]:
+        sampling = (
+            f"  {Count(facts['rows']):result|results}, each at one speed: its error is unknown"
+        )
+    elif facts["interval_s"] is not None:
         sampling += (
             f", one every {facts['interval_s']:.3g} s, at most {facts['longest_interval_s']:.3g} s"
         )

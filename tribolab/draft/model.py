@@ -58,7 +58,8 @@ class Understood(NamedTuple):
     presses, and of what drives it.
     Where no column is time, `rate_pattern` finds the sample rate before the table, if it is there;
     where no column is a position, `pitch_pattern` the distance of a profile's points,
-    `length_pattern` its length, or `pitch` is what is known of the distance.
+    `length_pattern` its length, or `pitch` is what is known of the distance. With `points` each row
+    is a result at one speed.
     """
 
     kind: Kind
@@ -78,6 +79,7 @@ class Understood(NamedTuple):
     pitch_pattern: str = ""
     length_pattern: str = ""
     pitch: str = ""
+    points: bool = False
 
     @property
     def pitched(self) -> bool:

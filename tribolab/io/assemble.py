@@ -190,6 +190,7 @@ def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> Jso
         "time_source": _TIME_FROM[dialect.time.source],
         "speed_from": _speed_from(dialect),
     }
+    attrs |= {"rows_are": dialect.rows.are} if dialect.rows.are != "samples" else {}
     recorded = recorded_at(contents[0].pieces[0].started, origin, dialect)
     if recorded is not None:
         attrs["recorded_at"] = recorded.isoformat()

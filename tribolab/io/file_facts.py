@@ -31,6 +31,7 @@ class FileFacts(TypedDict):
     columns: dict[str, ColumnFacts]
     not_used: list[str]
     rows: int
+    are_points: bool
     duration_s: float
     interval_s: float | None
     longest_interval_s: float | None
@@ -83,6 +84,7 @@ def file_facts(run: xr.Dataset, path: PathLike, instrument: Instrument | None = 
         "columns": columns,
         "not_used": unused.split("; ") if unused else [],
         "rows": len(time),
+        "are_points": run.attrs.get("rows_are") == "points",
         "duration_s": float(time[-1]) if len(time) else 0.0,
         "interval_s": float(median(gaps)) if len(gaps) else None,
         "longest_interval_s": float(gaps.max()) if len(gaps) else None,

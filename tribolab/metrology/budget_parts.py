@@ -125,7 +125,10 @@ def combined(
     stated = [known[name].dof if name in known else np.inf for name in parts]
     freedom += [np.full(size, dof) for dof in stated]
     dof = np.array(freedom, float).reshape(shape)
-    missing = [n for n, row in zip(names, values, strict=True) if size and np.isnan(row).all()]
+    # what an input adds is left out where it cannot be worked out; scatter that nobody knows stays
+    # unknown, and so does the whole
+    inputs = zip(parts, values[len(scatter) :], strict=True)
+    missing = [name for name, row in inputs if size and np.isnan(row).all()]
     counted = np.where([[n in missing] for n in names], 0.0, values)
     u = np.sqrt(np.sum(counted**2, axis=0))
     nu = effective_dof(counted, dof, len(scatter))

@@ -126,13 +126,23 @@ def resolve_limits(
     return resolved
 
 
+SWITCHED_OFF = "switched off in the settings"
+
+
 def results_of_checks(
     checks: Mapping[str, Check[Subject]],
     subject: Subject,
     limits: Mapping[str, Mapping[str, float]],
-    skip: tuple[str, ...] = (),
+    skip: Mapping[str, str],
 ) -> dict[str, list[Result]]:
     """Run every check on a subject; a check that crashes is a result, never a gap.
+
+    Parameters
+    ----------
+    checks, subject, limits
+        What to run, on what, with which limits.
+    skip
+        Why a check is left out, by its name.
 
     Returns
     -------
@@ -142,7 +152,7 @@ def results_of_checks(
     results: dict[str, list[Result]] = {}
     for name, check in one_by_one(checks.items()):
         if name in skip:
-            results[name] = [Result("skipped", "", "switched off in the settings")]
+            results[name] = [Result("skipped", "", skip[name])]
             continue
         try:
             results[name] = check.examine(subject, limits[name]) or [

@@ -31,6 +31,10 @@ if TYPE_CHECKING:
 
 
 _NUMBER = re.compile(r"\d[\d.]*")
+_RESULTS = (
+    "each row is a result of the instrument's own at one speed: no error is known within the run, "
+    "only from repeats"
+)
 
 
 def notices_of(
@@ -98,6 +102,8 @@ def notices_of(
         say("note", "inertia", inertia)
     if unused := str(run.attrs.get("columns_not_used", "")):
         say("note", "columns", f"not used: {unused}")
+    if segments.attrs.get("rows_are") == "points":
+        say("note", "rows", _RESULTS)
     return notices
 
 

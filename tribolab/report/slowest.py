@@ -44,7 +44,9 @@ def slow_segments(curve: CurveOutcome, outcome: Outcome) -> Slow | None:
         moving = [
             (float(number_of(row, "sliding_speed_m_s") or 0.0), number)
             for number, row in enumerate(entry.record.slip)
-            if (number_of(row, "direction") or 0) >= 0 and not row.get("rejected")
+            if (number_of(row, "direction") or 0) >= 0
+            and number_of(row, "sliding_distance_m") != 0  # of a result nothing is drawn
+            and not row.get("rejected")
         ]
         apart: list[tuple[int, float]] = []
         for speed, number in sorted(moving):

@@ -25,7 +25,7 @@ from tribolab.draft.columns.lengths import (
     metres,
 )
 from tribolab.draft.columns.ratio import disagreement, force_or_ratio
-from tribolab.draft.columns.results_table import results_told
+from tribolab.draft.columns.results_table import are_points
 from tribolab.draft.columns.sampling import find_sampling
 from tribolab.draft.columns.slip import of_both_surfaces
 from tribolab.draft.columns.stated_missing import take_stated_missing
@@ -81,7 +81,7 @@ def understand(layout: Layout) -> Understood:
     columns = told_by_load(layout, force_or_ratio(columns), numbers) if kind == "run" else columns
     if kind == "run":
         columns = of_both_surfaces(layout, without_means(layout, columns))
-        guesses += disagreement(columns, numbers) + results_told(columns, numbers)
+        guesses += disagreement(columns, numbers)
     columns = _dated(with_worth(layout, columns, numbers), layout, numbers, text)
     columns = [
         column._replace(
@@ -130,6 +130,8 @@ def understand(layout: Layout) -> Understood:
     result = Understood(
         kind, tuple(columns), numbers, tuple(words), on_repeat, restart, tuple(guesses), period
     )
+    if kind == "run" and are_points(columns, numbers):
+        return result._replace(points=True)
     timed = any(column.used and column.quantity == "time" for column in columns)
     sampling = None if timed or kind != "run" else find_sampling(layout)
     if sampling is None:

@@ -1,4 +1,4 @@
-"""Tables of results: a row for each speed, where a record of signals is wanted."""
+"""Tables of results: each row is the mean at one speed, where a record of signals is usual."""
 
 from __future__ import annotations
 
@@ -8,13 +8,14 @@ import numpy as np
 
 from tribolab.draft.model import DraftColumn
 
-_MOST = 200  # rows; a ramp that is sampled so seldom is no record either
+_MOST = 400  # rows
 _FEWEST = 3
 _RISE = 1.02  # from speed to speed
+_SWEEP = 8  # rows of a sweep up or down, at least, where there are several
 
 
-def results_told(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[str]:
-    """Say so where every row has another speed, one above the other.
+def are_points(columns: Sequence[DraftColumn], numbers: np.ndarray) -> bool:
+    """Whether every row is of another speed than its neighbours, in sweeps up and down.
 
     Parameters
     ----------
@@ -22,21 +23,18 @@ def results_told(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[st
         The columns as they are understood.
     numbers
         Their numbers (rows, columns) as written.
-
-    Returns
-    -------
-    list of str
-        One guess, or none.
     """
     held = {column.quantity: column for column in columns if column.used}
-    speed = held.get("sliding_velocity") or held.get("rotation_speed")
-    if speed is None or not _FEWEST <= len(numbers) <= _MOST:
-        return []
-    size = np.abs(numbers[:, speed.place - 1])
-    steps = (size[1:] > _RISE * size[:-1], size[1:] * _RISE < size[:-1])
-    if not any(step.all() for step in steps):
-        return []
-    return [
-        f"each row is of another speed: {len(numbers)} results, of whose error nothing is known, "
-        "and no record of signals; give the file that they were made of"
-    ]
+    column = held.get("sliding_velocity") or held.get("rotation_speed")
+    if column is None or not _FEWEST <= len(numbers) <= _MOST:
+        return False
+    size = np.abs(numbers[:, column.place - 1])
+    size = size[np.isfinite(size)]
+    if size.size < _FEWEST or not (size > 0).all():
+        return False
+    steps = np.log(size[1:] / size[:-1])
+    way = np.sign(steps)
+    turns = np.flatnonzero(way[1:] != way[:-1])
+    # the last speed of one sweep may be the first of the next
+    held_on = np.abs(steps) < np.log(_RISE)
+    return bool(turns.size <= size.size / _SWEEP) and int(held_on.sum()) <= turns.size / 2

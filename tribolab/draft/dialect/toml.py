@@ -55,7 +55,8 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
     elif not layout.heading:
         parts.append(f"[recognise]\ncolumns = {layout.width}\n")
     parts += [_text_table(layout, understood), _header_table(layout, used)]
-    parts += [_time_table(understood), _speed_table(understood.kind, columns, follows)]
+    parts += [_time_table(understood), _rows_table(understood)]
+    parts.append(_speed_table(understood.kind, columns, follows))
     numbers = understood.numbers
     parts += [column_table(column, numbers[:, column.place - 1]) for column in used]
     parts += [symbol_table(symbol, column) for symbol, column in follows.symbols]
@@ -233,7 +234,7 @@ def _time_table(understood: Understood) -> str:
             lines.append(f"rate_unit = {quoted(understood.rate_unit)}")
     elif not timed:
         lines.append('source = "none"')
-        if understood.kind == "run":
+        if understood.kind == "run" and not understood.points:
             lines[-1] += "    # guessed: rows are counted as seconds"
             lines.append(f"# {FILL_IN}: if the sample rate is known, put it in instead:")
             lines.append('# source = "rate"\n# rate = "? Hz"')
@@ -246,6 +247,11 @@ def _time_table(understood: Understood) -> str:
     if understood.restart:
         lines.append('restart = "continue"    # the clock starts anew, or wraps')
     return "\n".join(lines) + "\n" if len(lines) > 1 else ""
+
+
+def _rows_table(understood: Understood) -> str:
+    points = '[rows]\nare = "points"    # each row is the mean at one speed, its error unknown\n'
+    return points if understood.points else ""
 
 
 def _speed_table(kind: str, columns: Sequence[DraftColumn], follows: Follows) -> str:

@@ -17,6 +17,7 @@ from tribolab.friction.segments.stretches import (
     from_steps,
     from_velocity,
     name_of,
+    of_points,
     track,
     velocity_source,
 )
@@ -113,7 +114,9 @@ def find_segments(
     From ``position`` the velocity is a robust slope over blocks that are just long enough.
     Without velocity and position each ``step`` is a segment (speed from ``set_speed`` where
     known, direction from the sign of the mean friction force); with a set speed alone
-    (variable or attribute ``set_speed_m_s``) the whole record is one segment.
+    (variable or attribute ``set_speed_m_s``) the whole record is one segment. Of a run whose rows
+    are results (attribute ``rows_are``: ``"points"``; ``"either"`` where no speed is held) each row
+    that moves is a segment of one sample: its mean is the row's, and its error is not known.
 
     References
     ----------
@@ -137,6 +140,8 @@ def find_segments(
     limits = ConstancyLimits(resolution, drift, min_samples, slow)
 
     source = velocity_source(run)
+    if run.attrs.get("rows_are") == "points":
+        return _of_points(run, source)
     if stroke_middle is not None:
         return _of_strokes(run, source, to_si(stroke_middle, "1", "stroke_middle"), min_samples)
     if source == "recorded":
@@ -157,12 +162,19 @@ def find_segments(
     plateaus = measured(run, stretches, source, share, position_range)
     if plateaus.sizes["segment"] or position_range is not None:
         return plateaus
+    if run.attrs.get("rows_are") == "either":
+        return _of_points(run, source)
     if "stroke_m" not in run.attrs and not shuttles(run):
         return plateaus
     try:  # what a crank drives is never at constant speed: each stroke has a middle
         return _of_strokes(run, source, _MIDDLE, min(min_samples, _OF_STROKE))
     except AnalysisError:  # it does not move to and fro: why no plateau was found says more
         return plateaus
+
+
+def _of_points(run: xr.Dataset, source: str) -> xr.Dataset:
+    """Return each row as a segment: a result at one speed, of what lasted nobody knows how long."""
+    return measured(run, of_points(run), source, 0.0, None).assign_attrs(rows_are="points")
 
 
 def why_no_segment(segments: xr.Dataset) -> str:

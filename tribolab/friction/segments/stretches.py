@@ -73,6 +73,21 @@ def track(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     return time, slopes.without_resets(time, position)[0]
 
 
+def of_points(run: xr.Dataset) -> list[Stretch]:
+    """Return a stretch of no length for each row: results of an instrument, each at its speed."""
+    time = run["time"].values
+    name = next((n for n in ("sliding_velocity", "set_speed") if n in run), "")
+    if not name:
+        raise AnalysisError(f"{name_of(run)}: its rows are points, but nothing tells their speed")
+    speed = np.asarray(run[name].values, dtype=float)
+    known = np.isfinite(speed)
+    kinds = np.where(known & (speed != 0), "constant", np.where(known, "at rest", "not a number"))
+    return [
+        Stretch(float(at), float(at), str(kind), float(v))
+        for at, kind, v in zip(time, kinds, speed, strict=True)
+    ]
+
+
 def from_velocity(run: xr.Dataset, limits: ConstancyLimits, max_gap: float | None) -> list[Stretch]:
     """Stretches from the recorded velocity."""
     time, velocity = finite(run, "sliding_velocity")

@@ -99,7 +99,13 @@ class Header(Strict):
 
 
 class Rows(Strict):
-    """What may be lost of a table's rows."""
+    """What rows are, and what may be lost of them."""
+
+    are: Literal["samples", "points", "either"] = Field(
+        "samples",
+        description="'points': each row is a result of the instrument's own, the mean at one "
+        "speed; 'either': where no speed is held over several rows",
+    )
 
     left_out: float = Field(
         0.0,

@@ -13,7 +13,7 @@ from tribolab.friction.decisions.rejected import kept, rejected
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach_all, combine, uniform
 from tribolab.qc.manual import BIT, MANUAL, reviewed
-from tribolab.qc.register import Check, Result, resolve_limits, results_of_checks
+from tribolab.qc.register import SWITCHED_OFF, Check, Result, resolve_limits, results_of_checks
 from tribolab.qc.run.reading import READING_CHECKS
 from tribolab.qc.run.record import RECORD_CHECKS
 from tribolab.qc.run.rig import RIG_CHECKS
@@ -29,6 +29,10 @@ RUN_CHECKS: dict[str, Check[RunSubject]] = {
 }
 
 _SEGMENTS = "segments"
+# what looks at results as well as at samples
+_OF_POINTS = {"schema", "rows_left_out", "said_elsewhere", "zero_reference", "friction_sign"}
+_OF_POINTS |= {"normal_force_error", "segments", "missing"}
+_NO_SAMPLES = "its rows are results, not samples"
 _NOTHING_EXAMINED = "every check was skipped: nothing says that this run is sound"
 _EXAMINE = "Look at why each was skipped; the signals that they look at may have other names."
 
@@ -104,7 +108,10 @@ def check_run(
         if contact_width is None
         else to_si(contact_width, "m", name="contact_width"),
     )
-    answers = _examined(results_of_checks(checks, subject, resolved, tuple(skip)))
+    unfit = [name for name in checks if subject.is_points and name not in _OF_POINTS]
+    left = dict.fromkeys(unfit, _NO_SAMPLES)
+    left |= dict.fromkeys(skip, SWITCHED_OFF)
+    answers = _examined(results_of_checks(checks, subject, resolved, left))
     results = tuple((checks[name], result) for name, rows in answers.items() for result in rows)
     bits = {check.name: check.bit for check in checks.values()} | {MANUAL: BIT}
     # what is wrong with the time is wrong with every signal; that the time is right says nothing

@@ -96,6 +96,12 @@ class RunSubject:
             raise Skip("no segment of constant speed was found")
         return self._found_segments
 
+    @property
+    def is_points(self) -> bool:
+        """Whether the rows are results of the instrument's own, and no samples."""
+        found = self._found_segments
+        return not isinstance(found, Skip) and found.attrs.get("rows_are") == "points"
+
     @cached_property
     def _found_friction(self) -> xr.Dataset | Skip:
         if self._friction is not None:

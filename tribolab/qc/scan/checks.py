@@ -12,7 +12,14 @@ from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.qc import signals
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import FAIL, SUSPECT, attach
-from tribolab.qc.register import Check, Limit, Result, resolve_limits, results_of_checks
+from tribolab.qc.register import (
+    SWITCHED_OFF,
+    Check,
+    Limit,
+    Result,
+    resolve_limits,
+    results_of_checks,
+)
 from tribolab.qc.scan import profiles
 from tribolab.qc.scan.instrument import INSTRUMENT_CHECKS
 from tribolab.qc.scan.subject import ScanSubject
@@ -79,7 +86,7 @@ def check_scans(
     resolved = resolve_limits(SCAN_CHECKS, limits or {})
     given = [results] if isinstance(results, xr.Dataset) else list(results or ())
     subject = ScanSubject(scans, given)
-    answers = results_of_checks(SCAN_CHECKS, subject, resolved, tuple(skip))
+    answers = results_of_checks(SCAN_CHECKS, subject, resolved, dict.fromkeys(skip, SWITCHED_OFF))
     listed = tuple((SCAN_CHECKS[name], result) for name, rows in answers.items() for result in rows)
     flags = {
         check.name: subject.to_shape(result.flags)

@@ -236,7 +236,9 @@ def _events(what: SlipFigure, folder: Path) -> Made | None:
 
 
 def _map(what: SlipFigure, folder: Path) -> Made | None:
-    shown = _with(what, _slips(what, folder, SLIP), "sliding_speed")
+    found = _with(what, _slips(what, folder, SLIP), "sliding_speed")
+    # where no speed could be judged there is none to show
+    shown = {label: curve for label, curve in found.items() if "waveform" in curve}
     if not shown:
         return None
     said = [f"{label}: {_modes(curve)}" for label, curve in shown.items()]

@@ -64,6 +64,8 @@ def record_of_sliding(
     folder
         The results folder with the data files of the runs.
     """
+    # of results without traces no speed is judged
+    judged = [contact for contact in judged if any("waveform" in r for r in contact.mode.speeds)]
     colours = _colours(judged, surfaces)
     by_name = {contact.curve.name: contact for contact in judged}
     lowest = [by_name[curve.name] for curve in lowest_loads(contact.curve for contact in judged)]
