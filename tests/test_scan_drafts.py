@@ -462,3 +462,102 @@ def test_pitch_and_unit_are_known_in_more_languages(tmp_path, said, encoding):
 def test_a_length_of_the_part_or_a_range_of_the_gauge_is_not_that_of_the_trace(tmp_path):
     said = "length: 25 mm\nrange: 80 um\nspacing: 0.25 um\nZ (um)"
     assert "stated_length_m" not in read_scans(written(tmp_path, f"{said}\n{COLUMN}\n")).attrs
+
+
+HEIGHTS = np.round(2 * np.sin(np.arange(400) / 9) + np.cos(np.arange(400) * 1.7), 3)
+
+
+@pytest.mark.parametrize("mark", ["***", "n.v.", "---", "н/д"])
+@pytest.mark.parametrize("encoding", ["utf-8", "cp1251"])
+def test_marks_of_missing_heights_stand_among_decimal_commas(tmp_path, mark, encoding):
+    cells = [f"{z:.3f}".replace(".", ",") for z in HEIGHTS]
+    cells[50] = cells[51] = mark
+    rows = "\n".join(f"{n / 4:.2f};{z}".replace(".", ",", 1) for n, z in enumerate(cells))
+    text = f"Профиль детали\n\nX (um);Z (um)\n{rows}\n"
+    (tmp_path / "a.txt").write_text(text, encoding)
+    scan = read_scans(tmp_path / "a.txt")
+    wanted = np.where(np.isin(np.arange(400), [50, 51]), np.nan, HEIGHTS)
+    np.testing.assert_allclose(scan.height.values[0], 1e-6 * wanted, atol=1e-12)
+
+
+def test_signals_with_decimal_commas_keep_their_numbers_beside_marks(tmp_path):
+    force = [f"{3 + n % 3 / 10:.1f}".replace(".", ",") for n in range(300)]
+    force[20] = "n/a"
+    rows = "\n".join(f"{n / 10:.1f};5;{f};10,0".replace(".", ",") for n, f in enumerate(force))
+    (tmp_path / "a.csv").write_text(f"Zeit [s];Weg [mm];Reibkraft [N];Last [N]\n{rows}\n")
+    columns = draft_dialect(tmp_path / "a.csv").understood.columns
+    assert columns[2].quantity == "friction_force" and not columns[2].note
+
+
+def test_a_heading_of_letters_of_two_bytes_is_found(tmp_path):
+    head = "測定データ\n測定ピッチ,0.5 μm\n縦軸単位,μm\n[データ]\n"
+    body = "\n".join(f"{z:.3f}" for z in HEIGHTS)
+    (tmp_path / "a.csv").write_text(head + body + "\n", "cp932")
+    scan = read_scans(tmp_path / "a.csv")
+    np.testing.assert_allclose(scan.height.values[0], 1e-6 * HEIGHTS, atol=1e-12)
+    assert scan.attrs["pitch_m"] == pytest.approx(5e-7)
+
+
+def test_a_ruler_below_heights_that_go_on_from_line_to_line_is_no_height(tmp_path):
+    cells = [f"{z:8.3f}".replace(".", ",") for z in HEIGHTS[:397]]
+    lines = ["".join(cells[n : n + 8]) for n in range(0, 397, 8)]
+    head = "Punktabstand     : 0,0008 mm\nEinheit Höhe     : µm\n-----------------\nProfilpunkte\n"
+    text = head + "\n".join(lines) + "\n-----------------\nEnde\n"
+    (tmp_path / "a.txt").write_text(text, "cp1252")
+    with pytest.raises(TribolabError, match="tribolab dialect"):  # no map of 49 x 8 and a rest
+        read_scans(tmp_path / "a.txt")
+    (tmp_path / "a.txt").write_text(f"Anzahl Punkte    : 397\n{text}", "cp1252")
+    scan = read_scans(tmp_path / "a.txt")
+    np.testing.assert_allclose(scan.height.values[0], 1e-6 * HEIGHTS[:397], atol=1e-12)
+    assert scan.attrs["pitch_m"] == pytest.approx(8e-7)
+
+
+@pytest.mark.parametrize(
+    ("head", "encoding"),
+    [
+        ("Скорость перемещения датчика: 40,0 мм/с\n\nВремя, мс;Высота, мм", "cp1251"),
+        ("Vorschubgeschwindigkeit: 40,0 mm/s\n\nZeit [ms];Höhe [mm]", "cp1252"),
+        ("Sensor speed = 2,4 m/min\n\nTime [ms];Height [mm]", "ascii"),
+        ("测量速度: 40 mm/s\n\n时间 [ms];高度 [mm]", "gb18030"),
+    ],
+)
+def test_heights_by_the_clock_lie_as_far_apart_as_the_sensor_goes(tmp_path, head, encoding):
+    rows = "\n".join(f"{n / 2:.1f};{z / 50:.5f}" for n, z in enumerate(HEIGHTS))
+    (tmp_path / "a.txt").write_text((head + "\n" + rows).replace(".", ",") + "\n", encoding)
+    scan = read_scans(tmp_path / "a.txt")
+    assert scan.attrs["pitch_m"] == pytest.approx(2e-5, rel=1e-9)
+    np.testing.assert_allclose(scan.height.values[0], 2e-5 * HEIGHTS, atol=1e-8)
+
+
+def test_heights_by_an_uneven_clock_or_beside_a_force_are_no_profile(tmp_path):
+    time = np.cumsum(1 + (np.arange(400) % 2))
+    for name, head, last in (("a", "Time [s];Height [mm]", ""), ("b", "t [s];z [mm];Fx [N]", ";1")):
+        rows = "\n".join(f"{t};{z:.3f}{last}" for t, z in zip(time, HEIGHTS, strict=True))
+        (tmp_path / f"{name}.txt").write_text(f"Sensor speed: 40 mm/s\n{head}\n{rows}\n")
+        assert draft_dialect(tmp_path / f"{name}.txt").kind != "scan"
+
+
+@pytest.mark.parametrize(
+    ("head", "heights"),
+    [
+        ("\\Samps/line: 20\n\\Lines: 20\n\\Scan Size: 5000 nm\n\"Height_Sensor(nm)\"", "nm"),
+        ("Points per line: 25\nNumber of lines: 16\nPixel size x: 250 nm\nPixel size y: 500 nm\n"
+         "Height [um]", "um"),
+    ],
+)  # fmt: skip
+def test_a_column_of_heights_row_after_row_is_a_map(tmp_path, head, heights):
+    (tmp_path / "a.txt").write_text(head + "\n" + "\n".join(f"{z:.3f}" for z in HEIGHTS) + "\n")
+    scan = read_scans(tmp_path / "a.txt")
+    shape, steps = ((20, 20), (2.5e-7, 2.5e-7)) if heights == "nm" else ((16, 25), (5e-7, 2.5e-7))
+    assert scan.height.shape[-2:] == shape
+    scale = 1e-9 if heights == "nm" else 1e-6
+    np.testing.assert_allclose(scan.height.values.reshape(shape), scale * HEIGHTS.reshape(shape))
+    for dim, step in zip("yx", steps, strict=True):
+        np.testing.assert_allclose(np.diff(scan[dim]), step)
+
+
+def test_a_column_of_other_than_the_stated_number_of_heights_is_no_map(tmp_path):
+    head = '\\Samps/line: 20\n\\Lines: 20\n\\Scan Size: 5000 nm\n"Height_Sensor(nm)"\n'
+    (tmp_path / "a.txt").write_text(head + "\n".join(f"{z:.3f}" for z in HEIGHTS[:390]) + "\n")
+    with pytest.raises(TribolabError):
+        read_scans(tmp_path / "a.txt")

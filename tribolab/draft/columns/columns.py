@@ -14,7 +14,13 @@ from tribolab.draft.columns.either import told_by_load, without_means
 from tribolab.draft.columns.epochs import DATES, counted_from
 from tribolab.draft.columns.factors import missing_factors, missing_of_heights
 from tribolab.draft.columns.fill_in import Bare
-from tribolab.draft.columns.heights import as_heights, beside_x, in_stated_unit, side_by_side
+from tribolab.draft.columns.heights import (
+    as_heights,
+    beside_x,
+    heights_by_clock,
+    in_stated_unit,
+    side_by_side,
+)
 from tribolab.draft.columns.labels import bare_name, labelled
 from tribolab.draft.columns.lengths import (
     find_height_unit,
@@ -23,6 +29,7 @@ from tribolab.draft.columns.lengths import (
     find_profile_length,
     find_unit_along,
     metres,
+    pitch_of_clock,
 )
 from tribolab.draft.columns.ratio import disagreement, force_or_ratio
 from tribolab.draft.columns.results_table import are_points
@@ -39,7 +46,7 @@ from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.model import LARGEST
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.dates import seconds
-from tribolab.units import positive
+from tribolab.units import conversion, positive
 
 _RISES = 0.9  # share of the steps from row to row; a clock may start anew
 _BY_UNIT = 0.6  # score of a name that says nothing beside a unit that does
@@ -70,6 +77,10 @@ def understand(layout: Layout) -> Understood:
         columns = [as_heights(column, stated=bool(unit), unit=likely) for column in columns]
     elif (beside := beside_x(columns)) is not None:
         kind, columns = "scan", beside
+    elif (taken := heights_by_clock(columns)) is not None and (
+        density := pitch_of_clock(layout, _seconds(taken[0], numbers))
+    ):
+        kind, columns, apart = "scan", taken, True
     elif _say_something(columns):
         kind, columns = _by_name(columns, numbers, placed=apart)
     else:
@@ -212,7 +223,8 @@ def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
     numbers[:, understood] = frame.loc[:, understood].to_numpy(dtype=float)
     for index in np.flatnonzero(~understood).tolist():
         column = frame[index]
-        known = pd.to_numeric(column, errors="coerce")
+        plain = column.astype(str).str.replace(",", ".") if layout.decimal == "," else column
+        known = pd.to_numeric(plain, errors="coerce")
         numbers[:, index] = known.to_numpy(dtype=float)
         odd = column[known.isna() & column.notna()].astype(str).str.strip()
         odd = odd[~odd.str.lower().isin(["nan", ""])]
@@ -226,12 +238,19 @@ def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
     return numbers, text, missing
 
 
+def _seconds(column: DraftColumn, numbers: np.ndarray) -> np.ndarray:
+    """Return the numbers of a column of time in seconds."""
+    return conversion(column.read_unit or "s", "s")[0] * numbers[:, column.place - 1]
+
+
 def _may_be_heights(column: DraftColumn) -> bool:
     """Whether a single column may be heights: its name is not known, nor its unit another's."""
     name, unit, _ = bare_name(column)
     if unit is None:
         return not matches(name, None)
-    return converts(unit, "m") and not (matches(name, unit) or matches(name, unit, scan=True))
+    scan = matches(name, unit, scan=True)
+    height = not scan or scan[0].quantity == "height"
+    return converts(unit, "m") and height and not matches(name, unit)
 
 
 def _likely_unit(

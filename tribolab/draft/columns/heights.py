@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.columns.words import matches
+from tribolab.draft.columns.words import KNOWN_WORD, matches
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn, other_units
 
@@ -64,6 +64,26 @@ def beside_x(columns: list[DraftColumn]) -> list[DraftColumn] | None:
     ]
 
 
+def heights_by_clock(columns: list[DraftColumn]) -> list[DraftColumn] | None:
+    """Return heights behind the moments at which a sensor on its way took them, and nothing else.
+
+    The moments are not used: their interval and how fast the sensor goes make the distance.
+    """
+    if len(columns) != 2:
+        return None
+    (clock, beat, _), (name, unit, say) = (bare_name(column) for column in columns)
+    moments, heights = matches(clock, beat), matches(name, unit, scan=True)
+    if not moments or moments[0].quantity != "time" or beat is None:
+        return None
+    if not heights or heights[0].quantity != "height" or unit is None or not converts(unit, "m"):
+        return None
+    note = "its interval and how fast the sensor goes make the distance of points"
+    height = columns[1]._replace(
+        quantity="height", unit=unit if say else columns[1].unit, used=True
+    )
+    return [columns[0]._replace(unit=beat, note=note), height]
+
+
 def as_heights(column: DraftColumn, *, stated: bool, unit: str = "um") -> DraftColumn:
     """Take a column without a known name for heights: what a pitch before it is of.
 
@@ -78,7 +98,10 @@ def as_heights(column: DraftColumn, *, stated: bool, unit: str = "um") -> DraftC
     """
     known = column.file_unit or column.unit
     guess = "it is the height" + ("" if known else f" in {unit}")
-    guessed = () if stated and column.unit else (guess,)
+    name, own, _ = bare_name(column)
+    said = matches(name, own, scan=True)
+    named = bool(known and said and said[0].quantity == "height" and said[0].score >= KNOWN_WORD)
+    guessed = () if named or (stated and column.unit) else (guess,)
     return column._replace(
         quantity="height",
         unit=column.unit if known else unit,

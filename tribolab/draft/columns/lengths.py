@@ -6,6 +6,8 @@ import math
 import re
 from collections.abc import Sequence
 
+import numpy as np
+
 from tribolab.draft.columns.sentences import points_per_length
 from tribolab.draft.columns.stated_words import (
     ACROSS,
@@ -42,6 +44,8 @@ _ENDS = (
 )
 _COUNT = re.compile(rf"^n$|{POINTS.pattern}")
 _LONGEST = 200  # characters of a line that are looked at
+_FEW_POINTS = 20  # of a profile
+_UNEVEN = 0.1  # of the interval of heights that are taken by the clock
 # units of heights under whatever name they stand
 _USUAL = frozenset({"nm", "um", "µm", "μm", "mm", "pm", "Å", "angstrom", "microns", "micron"})
 
@@ -167,20 +171,40 @@ def _between_ends(layout: Layout) -> str:
 
 def _sampled_on_the_way(layout: Layout) -> str:
     values = [value for value in find_values(layout, bare=True) if value.source == "preamble"]
-    units = [value.unit or value.own_unit or "" for value in values]
-    speeds = [
-        value.number * conversion(unit, "m/s")[0]
-        for value, unit in zip(values, units, strict=True)
-        if TRAVERSE_SPEED.search(value.key) and converts(unit, "m/s")
-    ]
-    rates = [
-        value.number * conversion(unit, "Hz")[0]
-        for value, unit in zip(values, units, strict=True)
-        if RATE.search(value.key) and converts(unit, "Hz")
-    ]
-    if len(speeds) != 1 or len(rates) != 1 or not (speeds[0] > 0 and rates[0] > 0):
+    speed = _only(values, TRAVERSE_SPEED, "m/s")
+    rate = _only(values, RATE, "Hz")
+    return f"{1e6 * speed / rate:.12g} um" if speed > 0 and rate > 0 else ""
+
+
+def pitch_of_clock(layout: Layout, time: np.ndarray) -> str:
+    """Return the distance of points that a sensor takes by the clock on its way; "" if unknown.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`, whose text states how fast the sensor goes.
+    time
+        When each height was taken [s].
+    """
+    values = [value for value in find_values(layout, bare=True) if value.source == "preamble"]
+    speed = _only(values, TRAVERSE_SPEED, "m/s")
+    steps = np.diff(time)
+    if not speed > 0 or steps.size < _FEW_POINTS or not np.isfinite(steps).all():
         return ""
-    return f"{1e6 * speeds[0] / rates[0]:.12g} um"
+    step = float(steps.mean())
+    even = step > 0 and float(np.abs(steps - step).max()) < _UNEVEN * step
+    return f"{1e6 * speed * step:.12g} um" if even else ""
+
+
+def _only(values: Sequence[DraftValue], words: re.Pattern[str], si_unit: str) -> float:
+    """Return what a text states once by such words, in SI; 0 if it does not."""
+    units = [value.unit or value.own_unit or "" for value in values]
+    told = [
+        value.number * conversion(unit, si_unit)[0]
+        for value, unit in zip(values, units, strict=True)
+        if words.search(value.key) and converts(unit, si_unit)
+    ]
+    return told[0] if len(told) == 1 else 0.0
 
 
 def on_rim(layout: Layout) -> bool:

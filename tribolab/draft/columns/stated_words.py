@@ -73,9 +73,14 @@ PROFILE_LENGTH = or_term(
 # how fast a stylus goes over a profile
 _GOES = (
     r"(?:tast|abtast|travers\w*|scan\w*|measur\w*|mess|meet|probe|stylus|tracing|vorschub|feed|palpage"
-    r"|mesure|exploration|avance|varredura|medi\w+|barrido|scansione|misura|esplorazione|扫描|测量)"
+    r"|mesure|exploration|avance|varredura|medi\w+|barrido|scansione|misura|esplorazione|deplacement"
+    r"|mat|sond|sensor|pomiar\w*|przesuw\w*|skan\w+|posuv\w*|mereni|snimani|перемещ\w+|движ\w+|скан\w+"
+    r"|ощуп\w+|трассир\w+|измер\w+|olcum|oelcuem|tarama|扫描|测量|移动|进给|測定|送り|走査|측정|이송)"
 )
-_FAST = r"(?:speed|velocity|snelheid|geschwindigkeit|vitesse|velocidade?|velocita|rate|速度)"
+_FAST = (
+    r"(?:speed|velocity|snelheid|geschwindigkeit|vitesse|velocidade?|velocita|rate|hastighe[td]"
+    r"|nopeus|predkosc|rychlost|sebesseg|hizi?|скорость|速度|속도)"
+)
 TRAVERSE_SPEED = re.compile(rf"{_GOES}.{{0,4}}{_FAST}|{_FAST}.{{0,4}}{_GOES}")
 # how many points a profile has
 POINTS = or_term(

@@ -23,7 +23,7 @@ _NUMBER = {
     ",": r"[+-]?(?:\d++(?:,\d*+)?|,\d++)(?:[eE][+-]?\d++)?",
 }
 # what instruments write where a value should stand; and dates and times of day
-_INSTEAD = r"nan|[+-]?inf|null|n/?a|-+|[*#][*.#]*[a-zµμ]*!?|err\w*|over\w*|ovl|none"
+_INSTEAD = r"nan|[+-]?inf|null|n/?a|-{1,8}|[*#][*.#]*[a-zµμ]*!?|err\w*|over\w*|ovl|none"
 _MISSING = re.compile(rf"(?i){_INSTEAD}")
 _NO_NUMBER = re.compile(
     rf"(?i){_INSTEAD}|"

@@ -138,13 +138,16 @@ def endless(line: int) -> str:
 
 
 def table_encoding(dialect: Dialect) -> str:
-    """Return the encoding of what is looked at: text of wide letters is mended to UTF-8."""
+    """Return the encoding of what is looked at: some text is mended to UTF-8."""
     return "utf-8" if is_wide(dialect) else dialect.text.encoding
 
 
 def is_wide(dialect: Dialect) -> bool:
-    """Whether letters take two or four bytes each."""
-    return dialect.text.encoding.lower().replace("_", "-").startswith(("utf-16", "utf-32"))
+    """Whether text is mended to UTF-8: of wide letters, or with words for no value in others."""
+    encoding = dialect.text.encoding.lower().replace("_", "-")
+    words = not all(word.isascii() for word in dialect.text.missing)
+    plain = encoding.startswith(("utf-8", "ascii"))
+    return encoding.startswith(("utf-16", "utf-32")) or (words and not plain)
 
 
 def compiled(pattern: str, dialect: Dialect) -> Guarded[bytes]:
@@ -154,4 +157,22 @@ def compiled(pattern: str, dialect: Dialect) -> Guarded[bytes]:
         pattern = re.sub(" +", r"[\\t ]+", pattern)  # tabs stand for blanks by now, see `mended`
     if pattern.endswith("$") and not pattern.endswith((r"\$", r"\s*$")):
         pattern = pattern[:-1] + r"[ \t\r]*$"
-    return Guarded(pattern.encode(table_encoding(dialect), errors="replace"))
+    return Guarded(_as_bytes(pattern, table_encoding(dialect)))
+
+
+def _as_bytes(pattern: str, encoding: str) -> bytes:
+    """Return a pattern for bytes: the second byte of a letter may be a sign of patterns.
+
+    >>> re.search(_as_bytes("^[ ]*ー+$", "cp932"), "  ーー".encode("cp932")) is not None
+    True
+    """
+    parts = []
+    inside = escaped = False  # of a class of letters; behind a backslash
+    for sign in pattern:
+        code = sign.encode(encoding, errors="replace")
+        plain = sign.isascii() or inside or len(code) == 1
+        parts.append(code if plain else b"(?:" + re.escape(code) + b")")
+        if not escaped and sign in "[]":
+            inside = sign == "["
+        escaped = sign == "\\" and not escaped
+    return b"".join(parts)

@@ -51,7 +51,7 @@ _GRAMMARS = (
 
 
 class _Matrix(NamedTuple):
-    """Where rows of numbers stand: the lines above, the rows, what parts cells, decimal mark."""
+    """Rows of numbers: the lines above, what parts cells, whether the last line is shorter."""
 
     above: list[str]
     rows: list[list[float]]
@@ -59,6 +59,7 @@ class _Matrix(NamedTuple):
     mark: str
     columns: int
     alone: bool = True
+    ragged: bool = False
 
 
 def read_matrix(path: Path) -> xr.Dataset | None:
@@ -83,10 +84,10 @@ def read_matrix(path: Path) -> xr.Dataset | None:
     """
     with path.open("rb") as file:
         head = file.read(_HEAD)
-    if not any(_matrix(text.splitlines()) for text in _texts(head)):
+    if not any(_matrix(text.splitlines()) for text in texts_of(head)):
         return None
     told: tuple[_Matrix, MatrixHeader] | None = None
-    for text in _texts(path.read_bytes()):
+    for text in texts_of(path.read_bytes()):
         matrix = _matrix(text.splitlines())
         if matrix is None:
             continue
@@ -103,7 +104,8 @@ def read_matrix(path: Path) -> xr.Dataset | None:
     if _even(heights[0, 1:]) and _even(heights[1:, 0]):
         return None  # positions stand beside the heights
     counted = any(0 <= n - heights.size < matrix.columns for _, n in header.stated)
-    if counted and matrix.columns <= _MOST_OF_LINE and header.columns is None:
+    goes_on = matrix.ragged or (counted and matrix.columns <= _MOST_OF_LINE)
+    if goes_on and header.columns is None:
         return None  # a profile whose heights go on from line to line
     whole = (heights == np.round(heights)) | np.isnan(heights)
     if header.gauge_step not in (None, header.height) and whole.all():
@@ -132,7 +134,7 @@ def _without_missing(heights: np.ndarray, header: MatrixHeader) -> str:
     return "; ".join(told)
 
 
-def _texts(content: bytes) -> list[str]:
+def texts_of(content: bytes) -> list[str]:
     """Return the content in each encoding that fits; most files fit the first only."""
     if content.startswith((b"\xff\xfe", b"\xfe\xff")):
         return [content.decode("utf-16", "replace")]
@@ -178,9 +180,17 @@ def _filled(lines: Sequence[str], like: _Matrix) -> _Matrix:
         values = _numbers(line, like) if line.strip() else None
         if values is None:
             rest = (_numbers(below, like) for below in lines[number:] if below.strip())
-            return like._replace(rows=rows, alone=all(values is None for values in rest))
+            alone = all(values is None for values in rest)
+            return like._replace(rows=rows, alone=alone, ragged=_is_part(line, like))
         rows.append(values)
     return like._replace(rows=rows)
+
+
+def _is_part(line: str, like: _Matrix) -> bool:
+    """Whether a line is a shorter row of numbers."""
+    cells = _cells(line, like.delimiter) if line.strip() else []
+    part = like._replace(columns=len(cells))
+    return 0 < len(cells) < like.columns and _numbers(line, part) is not None
 
 
 def _cells(line: str, delimiter: str | None) -> list[str]:
@@ -200,11 +210,11 @@ def _numbers(line: str, like: _Matrix) -> list[float] | None:
             return [*map(float, cells)]
         except ValueError:
             pass
-    values = [_value(cell, like.mark) for cell in cells]
+    values = [value_of(cell, like.mark) for cell in cells]
     return None if None in values else [value for value in values if value is not None]
 
 
-def _value(cell: str, mark: str) -> float | None:
+def value_of(cell: str, mark: str) -> float | None:
     """Return a cell's number, NaN of one without a height, None of any other text."""
     try:
         return float(cell if mark == "." else cell.replace(".", "x").replace(mark, "."))
@@ -239,6 +249,10 @@ def _refuse(path: Path, matrix: _Matrix, header: MatrixHeader) -> None:
     if not matrix.alone:
         raise ReadError(
             f"{path}: several matrices of numbers stand in the file; leave only the heights"
+        )
+    if matrix.ragged:
+        raise ReadError(
+            f"{path}: below {rows} rows of {columns} numbers stands a row of fewer; is it whole?"
         )
     if header.rows not in (None, rows) or header.columns not in (None, columns):
         raise ReadError(

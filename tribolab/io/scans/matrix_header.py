@@ -23,7 +23,8 @@ _HEIGHTS = (
 )
 _SAYS_UNIT = re.compile(rf"(?:{_OF_UNIT})\W.*?(?<![^\W\d_])(?P<unit>{_UNIT})\W*$", re.IGNORECASE)
 _SAYS_HEIGHTS = re.compile(
-    rf"(?:{_HEIGHTS})\W*(?:[\[(]|\b(?:in|en|are)\b)\s*(?P<unit>{_UNIT})\W*$", re.IGNORECASE
+    rf"(?:{_HEIGHTS})(?:[_ ]\w{{1,12}})?\W*(?:[\[(]|\b(?:in|en|are)\b)\s*(?P<unit>{_UNIT})\W*$",
+    re.IGNORECASE,
 )
 # "korkeus: nm", an entry that is a unit and nothing else; not one of what lies across the surface
 _IS_UNIT = re.compile(
@@ -87,8 +88,12 @@ _EXTENT = re.compile(
     r"|campo|[aá]rea (?:de |di )?(?:medi|escan|misura|scansione)"
     r"|视野|視野|视场|扫描(?:范围|尺寸)|测量(?:范围|区域)|測定(?:範囲|領域)|画像サイズ"
 )
+# "Samps/line", "points per row": how many heights make a row
+_OF_ROW = re.compile(
+    r"(?i)(?:samp\w*|points?|pixels?|pts|values?|punkte|pixel)\s*(?:/|per|pro|je)\s*(?:line|row|zeile|linie|profile?)"
+)
 _COUNT = re.compile(
-    r"(?i)points?|pixels?|columns?|rows?|lines|spalten|zeilen|punkte|bildpunkte|lignes|colonnes?"
+    r"(?i)samp\w*|points?|pixels?|columns?|rows?|lines|spalten|zeilen|punkte|bildpunkte|lignes|colonnes?"
     r"|filas|columnas|righe|píxeles|horizontal|vertical|(?<![^\W\d_])[xy][\s_-]*size|像素数?|点数"
     r"|画素数|列|行|横|縦"
 )
@@ -207,7 +212,7 @@ def _places(
     rows, columns = (max(number, 1) for number in shape)
     along: tuple[set[float], set[float]] = set(), set()
     for part in said:
-        if not words.search(part.key) or _ALONG_Z.search(part.key) or not part.units[0]:
+        if not words.search(part.key) or _ALONG_Z.search(part.key) or not all(part.units):
             continue
         lengths = [n * _metres(u) for n, u in zip(part.numbers, part.units, strict=True)]
         if not min(lengths) > 0:
@@ -238,7 +243,9 @@ def _counts(said: list[_Said]) -> tuple[int | None, int | None]:
         whole = all(n > 0 and n == round(n) for n in part.numbers) and not any(part.units)
         if not whole or not _COUNT.search(part.key):
             continue
-        x, y = bool(_X.search(part.key)), bool(_Y.search(part.key))
+        of_row = bool(_OF_ROW.search(part.key))
+        x = of_row or bool(_X.search(part.key))
+        y = not of_row and bool(_Y.search(part.key))
         if len(part.numbers) == 2:
             along[1].add(int(part.numbers[0]))
             along[0].add(int(part.numbers[1]))

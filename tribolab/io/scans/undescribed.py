@@ -7,6 +7,7 @@ from pathlib import Path
 import xarray as xr
 
 from tribolab.errors import ReadError
+from tribolab.io.scans.column_map import read_column_map
 from tribolab.io.scans.formats import NotSaidError, read_foreign
 from tribolab.io.scans.gauges import is_gauge, read_gauge
 from tribolab.io.scans.matrix import read_matrix
@@ -81,4 +82,5 @@ def _of_text(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Data
             raise
         except ReadError as error:
             raise lacking from error
+    scan = read_column_map(path) if scan is None else scan
     return read_foreign(path, x_unit, height_unit) if scan is None else scan

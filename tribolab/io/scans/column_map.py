@@ -1,0 +1,102 @@
+"""Maps as one column of heights, row after row, below lines that say how many make a row.
+
+So export force microscopes their images as text.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from tribolab.io.content.missing_marks import take_marks
+from tribolab.io.content.read import measurable
+from tribolab.io.scans.matrix import texts_of, value_of
+from tribolab.io.scans.matrix_header import MatrixHeader, header_of
+
+_HEAD = 1 << 16  # bytes in which a column begins
+_HEAD_LINES = 500  # above it
+_FEWEST = 8  # rows, and heights of each
+_ROWS = 20  # numbers that tell a column
+
+
+def read_column_map(path: Path) -> xr.Dataset | None:
+    """Read a map whose heights stand below each other.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Returns
+    -------
+    xarray.Dataset or None
+        ``height`` [m] (y, x); None where the file is no such column, or does not say how many
+        heights make a row, how far they lie apart and in what unit they are.
+    """
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+    if not any(_begin(text.splitlines()) for text in texts_of(head)):
+        return None
+    for text in texts_of(path.read_bytes()):
+        lines = text.splitlines()
+        begin = _begin(lines)
+        if begin is None:
+            continue
+        place, mark = begin
+        header = _header(lines[:place], mark)
+        if header is None or header.rows is None or header.columns is None:
+            continue
+        heights = _numbers(lines[place:], mark)
+        if heights.size != header.rows * header.columns:
+            continue
+        return _map(heights.reshape(header.rows, header.columns), header)
+    return None
+
+
+def _map(heights: np.ndarray, header: MatrixHeader) -> xr.Dataset:
+    assert header.dx and header.dy and header.height  # else `_header` gives none
+    attrs = {"instrument": "map in one column, by its header"}
+    if marks := take_marks([heights.reshape(-1)]):
+        attrs["taken_for_missing"] = "; ".join(f"height: {mark.words}" for mark in marks)
+    rows, columns = heights.shape
+    return xr.Dataset(
+        {"height": (("y", "x"), measurable(header.height * heights))},
+        {"y": header.dy * np.arange(rows), "x": header.dx * np.arange(columns)},
+        attrs,
+    )
+
+
+def _header(above: list[str], mark: str) -> MatrixHeader | None:
+    """Return what stands above, if it says all that is needed."""
+    counts = header_of(above, (1, 1), mark)
+    if counts.rows is None or counts.columns is None or min(counts.rows, counts.columns) < _FEWEST:
+        return None
+    told = header_of(above, (counts.rows, counts.columns), mark)
+    return told if told.dx and told.dy and told.height else None
+
+
+def _begin(lines: list[str]) -> tuple[int, str] | None:
+    """Return the line at which a column of numbers begins, and its decimal mark."""
+    for place in range(1, min(len(lines) - _ROWS, _HEAD_LINES)):
+        first = [line.strip() for line in lines[place : place + _ROWS]]
+        if not first[0] or first[0][0] not in "+-.,0123456789":
+            continue
+        for mark in ".,":
+            if all(cell and value_of(cell, mark) is not None for cell in first):
+                return place, mark
+    return None
+
+
+def _numbers(lines: list[str], mark: str) -> np.ndarray:
+    """Return the numbers up to the first line that is none; blank lines are passed over."""
+    values = []
+    for line in lines:
+        if not (cell := line.strip()):
+            continue
+        number = value_of(cell, mark)
+        if number is None:
+            break
+        values.append(number)
+    return np.array(values)
