@@ -313,6 +313,34 @@ def test_a_zero_that_the_text_states_is_taken_off_where_it_is_still_in_the_signa
     assert ("zeros_stated" in run.attrs) == read
 
 
+@pytest.mark.parametrize(
+    ("zero", "mu"),
+    [
+        ("Drehmoment Nullpunkt: 3,0 mNm (NICHT abgezogen)", 0.14),
+        ("Torque zero: 3.0 mNm, to be subtracted", 0.14),
+        ("Torque zero: 3.0 mNm (idle run, already subtracted)", 0.152),
+        ("Zéro du couple : 3,0 mNm (déduit)", 0.152),
+        ("Zéro du couple : 3,0 mNm (non déduit)", 0.14),
+    ],
+)
+def test_the_line_of_the_zero_may_say_itself_whether_it_was_taken_off(zero, mu, tmp_path):
+    head = f"Track radius: 12.5 mm\n{zero}\n\n{ZERO_HEAD}\n"
+    (tmp_path / "disc.csv").write_text(head + ZERO_ROWS + "\n", "utf-8")
+    run = tl.read(tmp_path / "disc.csv")
+    assert float((run.friction_force / run.normal_force).mean()) == pytest.approx(mu, rel=1e-3)
+
+
+def test_the_frequency_of_samples_is_none_of_the_strokes(tmp_path):
+    force = np.where(np.arange(4000) % 200 < 100, 1.5, -1.5)
+    head = "Course (crête à crête) : 4 mm\nFréquence : 2 Hz (bielle-manivelle)\nCharge : 12,5 N\n"
+    head += "Fréquence d'échantillonnage : 400 Hz\nn°\tFt (N)\n"
+    rows = "\n".join(f"{n}\t{f}" for n, f in enumerate(force))
+    (tmp_path / "a.dat").write_text(f"{head}{rows}\n", "latin-1")
+    run = tl.read(tmp_path / "a.dat")
+    assert float(np.abs(run.sliding_velocity).max()) == pytest.approx(np.pi * 2 * 4e-3, rel=1e-3)
+    assert float(run.normal_force[0]) == 12.5
+
+
 def test_a_zero_of_a_force_is_taken_off_its_column_and_one_of_the_load_is_not(tmp_path):
     rows = "\n".join(f"{n / 10:.1f},{6.5 + n % 3 / 100},20,5" for n in range(300))
     table = f"\nTime [s],Friction force [N],Normal force [N],Speed [mm/s]\n{rows}\n"

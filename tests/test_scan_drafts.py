@@ -324,6 +324,14 @@ def test_a_length_in_a_sentence_is_that_of_the_profile(tmp_path):
     assert read_scans(file, instrument=named).attrs["pitch_m"] == pytest.approx(0.5e-6)
 
 
+def test_a_sentence_right_above_the_heights_states_their_unit(tmp_path):
+    heights = "\n".join(str(n % 9) for n in range(300))
+    head = "punti: 300\npasso: 0,5 um\nquote in nm, senza filtro, senza livellamento\n---\n"
+    (tmp_path / "anello.txt").write_text(f"{head}{heights}\n")
+    scan = read_scans(tmp_path / "anello.txt")
+    np.testing.assert_allclose(scan.height.values[0], [1e-9 * (n % 9) for n in range(300)])
+
+
 def test_the_form_that_was_taken_off_is_named_where_it_matters(tmp_path):
     rng = np.random.default_rng(2)
     x = np.arange(800) * 1e-6

@@ -106,15 +106,17 @@ def find_height_unit(layout: Layout) -> str:
 
 
 _HEIGHTS_IN = re.compile(
-    r"(?<![^\W\d_])(?:heights?|z(?:[- ]values?)?|höhen?|hauteurs?|alturas?|altezz[ae]|hoogtes?)\s*"
-    r"(?:(?:are|is|sind|ist|sont)\s+)?(?:in|en)\s+(?P<unit>[^\W\d]{1,12})(?![^\W_])",
+    r"(?<![^\W\d_])(?:heights?|ordinates?|z(?:[- ]values?)?|höhen?|hauteurs?|alturas?|cotas?"
+    r"|altezz[ae]|quot[ae]|hoogtes?|ordinat[ae]|wysokości|výšky|höjder|høyder|højder|высоты)\s*"
+    r"(?:(?:are|is|sind|ist|sont)\s+)?(?:in|en|w|v|i|em|в)\s+(?P<unit>[^\W\d]{1,12})(?![^\W_])",
     re.IGNORECASE,
 )
 
 
 def _in_sentences(layout: Layout) -> set[str]:
     """Return the units that sentences above the heights say of them: "heights in um"."""
-    said = (_HEIGHTS_IN.search(line[:_LONGEST]) for line in layout.text_above(bare=True))
+    names = layout.heading.cells if layout.heading is not None and layout.width == 1 else ()
+    said = (_HEIGHTS_IN.search(line[:_LONGEST]) for line in (*layout.text_above(bare=True), *names))
     return {unit for match in said if match and (unit := length_unit(match["unit"]))}
 
 

@@ -188,12 +188,23 @@ ZERO = re.compile(
 NOT_TAKEN_OFF = re.compile(
     r"\bnot?\s(?:been\s)?(?:yet\s)?(?:zero|offset|tare|drift)?[\s-]?(?:correct|compens|subtract|adjust|remov)"
     r"|(?:zero|offset|tare)\s(?:is\s|was\s)?not\s|\bnot\s(?:tared|zeroed)|un(?:corrected|tared|zeroed)"
-    r"|nicht\s\w{0,20}(?:korrigiert|bereinigt|abgezogen|kompensiert|tariert)|unkorrigiert"
-    r"|non\s(?:corrig|compens|azzer|soustra|sottra|tar)"
-    r"|no\s(?:corregid|compensad|restad)|sin\s(?:corregir|restar)"
-    r"|não\s(?:corrig|compens|subtra)"
-    r"|ej\skorriger|inte\skorriger|ikke\skorriger|niet\sgecorrigeerd"
+    r"|\bnot?\s(?:been\s)?(?:yet\s)?(?:deduct|taken\soff)|\bstill\s(?:in|contained|included)\b"
+    r"|\b(?:to|must|should)\sbe\s(?:subtract|deduct|taken\soff|remov)|\bsubtract\b|abzuziehen|abziehen"
+    r"|[àa]\s(?:soustraire|déduire|sottrarre|restar|descontar)|da\ssottrarre"
+    r"|nicht\s\w{0,20}(?:korrigiert|bereinigt|abgezogen|kompensiert|tariert)|unkorrigiert|noch\senthalten"
+    r"|non\s(?:corrig|compens|azzer|soustra|sottra|tar|dédui|detratt)"
+    r"|no\s(?:corregid|compensad|restad|descontad)|sin\s(?:corregir|restar|descontar)"
+    r"|não\s(?:corrig|compens|subtra|descont)"
+    r"|(?:ej|inte|ikke)\s(?:korriger|kompenser|subtra|avdrag|trukk|fratruk)"
+    r"|niet\s(?:gecorrigeerd|gecompenseerd|afgetrokken)|nie\s(?:odj|skoryg|skompens)|neode[cč]ten"
     r"|не\s(?:скоррект|вычт|учт)|未(?:校正|修正|扣除|減算|補正)|未補正",
+    re.IGNORECASE,
+)
+# behind the zero itself, where no other sentence is needed to say of what
+OFF_ALREADY = re.compile(
+    r"subtracted|deducted|removed|corrected|compensated|taken\soff|abgezogen|korrigiert|kompensiert"
+    r"|soustrait|dédui|corrigé|sottratt|detratt|corrett|restad|descontad|corregid|corrigid|subtraíd"
+    r"|afgetrokken|gecorrigeerd|odję|skoryg|odečten|korriger|扣除|校正|補正|減算",
     re.IGNORECASE,
 )
 TAKEN_OFF = re.compile(

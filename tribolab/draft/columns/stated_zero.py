@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tribolab.draft.columns.stated_words import NOT_TAKEN_OFF, TAKEN_OFF, ZERO
+from tribolab.draft.columns.stated_words import NOT_TAKEN_OFF, OFF_ALREADY, TAKEN_OFF, ZERO
 from tribolab.draft.columns.values import DraftValue
 from tribolab.draft.columns.words import matches
 from tribolab.draft.file.header import converts
@@ -39,7 +39,7 @@ def find_zero(
         None, too, where nothing says whether it was taken off: see `zero_in_doubt`.
     """
     zero = _stated(values, unit)
-    in_it = said == "in it" or (not said and _says(layout, zero, NOT_TAKEN_OFF))
+    in_it = said == "in it" or (not said and _is_still_in(layout, zero))
     if zero is None or not in_it:
         return None
     name = "torque_zero" if unit == "N m" else "friction_zero"
@@ -57,8 +57,16 @@ def zero_in_doubt(
         As for `find_zero`.
     """
     zero = _stated(values, unit)
-    told = said or _says(layout, zero, NOT_TAKEN_OFF) or _says(layout, zero, TAKEN_OFF)
+    if zero is None or said or _is_still_in(layout, zero):
+        return None
+    behind = zero.text[zero.text.find(":") + 1 :]
+    told = _says(layout, zero, TAKEN_OFF) or OFF_ALREADY.search(behind)
     return None if told else zero
+
+
+def _is_still_in(layout: Layout, zero: DraftValue | None) -> bool:
+    own = zero is not None and NOT_TAKEN_OFF.search(zero.text)
+    return bool(own) or _says(layout, zero, NOT_TAKEN_OFF)
 
 
 def _stated(values: Sequence[DraftValue], unit: str) -> DraftValue | None:

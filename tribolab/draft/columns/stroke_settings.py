@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tribolab.draft.columns.stated_words import RATE
 from tribolab.draft.columns.strokes import (
     END_TO_END,
     FREQUENCY,
@@ -68,6 +69,9 @@ def _only(values: Sequence[DraftValue], key: re.Pattern[str], unit: str) -> Draf
     fitting = [
         value
         for value in values
-        if value.unit and converts(value.unit, unit) and key.search(value.key)
+        if value.unit
+        and converts(value.unit, unit)
+        and key.search(value.key)
+        and not RATE.search(value.key)  # how often samples are taken
     ]
     return fitting[0]._replace(to=unit) if len(fitting) == 1 else None

@@ -22,7 +22,9 @@ HALF_STROKE = re.compile(
     r"|halbhub|demicourse)$"
 )
 END_TO_END = re.compile(
-    r"peak\W?to\W?peak|\bpk\W?pk\b|\bp\W?p\b|spitze\W{1,3}spitze", re.IGNORECASE
+    r"peak\W?to\W?peak|\bpk\W?pk\b|\bp\W?p\b|spitze\W{1,3}(?:zu\W)?spitze|crête\W{1,2}(?:à\W)?crête"
+    r"|pi[ck]co\W{1,2}(?:a\W)?pi[ck]co|top\W{1,2}top",
+    re.IGNORECASE,
 )
 FREQUENCY = or_term(
     r"^(?:(?:stroke|oscillation|reciprocating|test|drive|motion|hub|schwing|crank)?"
