@@ -148,7 +148,7 @@ def test_limits_can_be_set_and_are_told(run):
         for found in (loose, strict)
     ]
     told = next(row for row in strict.rows if row["check"] == "spikes")["limits"]
-    assert told == {"noise": 3.0, "fail": 0.01}
+    assert told == {"noise": 3.0, "fail": 0.01, "mean": 0.005}
 
 
 def test_a_skipped_check_is_listed_and_the_short_name_does_the_same(run):

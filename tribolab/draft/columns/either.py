@@ -7,20 +7,28 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tribolab.draft.columns.labels import bare_name
+from tribolab.draft.columns.lengths import find_arm
 from tribolab.draft.columns.roles import role_of
 from tribolab.draft.columns.stated_load import find_load, stated_number
 from tribolab.draft.columns.values import DraftValue, find_values
 from tribolab.draft.columns.words import squeezed
+from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import WHICH_FORCE, DraftColumn
 from tribolab.errors import shown
 from tribolab.quantities import unit_conversion
 
 _LOADED = 0.4  # of the largest reading
+_MOST = 0.98
 _FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 _WORKED_OUT = ("derived", "extreme")
 _SLED = re.compile(
     r"sled|schlitten|schlitte|traineau|patin|slitta|trineo|tren[oó]|sanie|slee|slade|kelk|сан[ик]|滑块|滑塊|スレッド"
+)
+# the one force beside a stated load; a cell or a sensor may act at another arm
+_IS_FORCE = re.compile(
+    r"^(?:f|force|kraft|effort|fuerza|forza|forca|kuvvet|sila|voima|kracht|сила|力)$"
 )
 _SAME = (0.75, 1.33)  # times the stated load: a reading of the load itself
 
@@ -43,10 +51,20 @@ def told_by_load(
     held = {c.quantity for c in columns if c.used}
     if not open_ones and not held & _FRICTION:  # "Load" of a machine that pulls a sled
         open_ones = [c for c in columns if c.used and c.quantity == "normal_force"]
-    load = find_load(find_values(layout)) if len(open_ones) == 1 else None
+    if not open_ones and "normal_force" not in held:  # "Force" beside a dead weight
+        open_ones = [c for c in columns if c.used and c.guessed and _IS_FORCE.search(_name(c))]
+        open_ones = [c for c in open_ones if c.quantity == "friction_force"]
+        if not open_ones and not held & _FRICTION:
+            forces = (c for c in columns if converts(c.read_unit or "", "N"))
+            open_ones = [c for c in forces if not c.used and _IS_FORCE.search(_name(c))]
+    stated = find_values(layout) if len(open_ones) == 1 else []
+    load = find_load(stated)
     if load is None:
         return list(columns)
     guessed = _guessed(open_ones[0], load, numbers[:, open_ones[0].place - 1])
+    if _IS_FORCE.search(_name(guessed)) and guessed.quantity == "friction_force":
+        if find_arm(stated) is None:  # else it may be what a cell reads at the arm
+            guessed = guessed._replace(guessed=(), options=())
     return [guessed if column.place == guessed.place else column for column in columns]
 
 
@@ -73,11 +91,16 @@ def without_means(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftC
     ]
 
 
+def _name(column: DraftColumn) -> str:
+    return squeezed(bare_name(column)[0])
+
+
 def _guessed(column: DraftColumn, load: DraftValue, values: np.ndarray) -> DraftColumn:
     stated = stated_number(load) * unit_conversion(load.unit or "N", "normal_force")[0]
     read = np.abs(values[np.isfinite(values)])
     read = read * unit_conversion(column.read_unit or "N", "normal_force")[0]
-    share = float(np.median(read[read > _LOADED * read.max()])) / stated if read.any() else 0.0
+    most = float(np.quantile(read, _MOST)) if read.size else 0.0  # a few readings are faults
+    share = float(np.median(read[read > _LOADED * most])) / stated if most > 0 else 0.0
     if not 0 < share < _SAME[1]:
         return column
     pressed = share > _SAME[0]

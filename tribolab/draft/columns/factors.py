@@ -8,6 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from tribolab.draft.columns.counts import WORTH
+from tribolab.draft.columns.sentences import phrases
+from tribolab.draft.columns.stated_words import LOAD
 from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
@@ -119,6 +121,8 @@ def _missing(line: str) -> str:
     for ratio in _ONE_TO.finditer(line):
         key = line[: ratio.start()]
         named = _begins_a_word(_FACTOR, key) or _begins_a_word(_RATIO, key)
+        if named and any(LOAD.search(said.key) for said in phrases(line[ratio.end() :])):
+            return ""  # what the lever makes of a weight is said behind it
         if named and _number(ratio["one"]) != _number(ratio["other"]):
             return f"signals are read as they stand, not times '{shown(line, 40)}'"
     plain = _PLAIN.match(line)

@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 from tribolab.draft.columns.fill_in import Bare
 from tribolab.draft.columns.values import words_said
-from tribolab.draft.columns.words import COUNTS, is_count, matches, split_unit, squeezed
+from tribolab.draft.columns.words import (
+    COUNTS,
+    is_count,
+    matches,
+    split_unit,
+    squeezed,
+    unit_in_words,
+)
 from tribolab.draft.file.header import is_unit, measures_something
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.lvm import units_above
 from tribolab.draft.model import DraftColumn
 from tribolab.io.dialects.cells import split_name
 
+_LONGEST = 300  # characters of a line that are looked at
 _PURE = ("1", "-")  # what stands for the unit of a pure number
 
 
@@ -25,7 +34,7 @@ def labelled(layout: Layout) -> list[DraftColumn]:
     cells += [""] * (layout.width - len(cells))
     row = list(heading.unit_cells if heading else ()) + [""] * layout.width
     columns: list[DraftColumn] = []
-    above = units_above(layout)
+    above = _stated_units(layout, cells) | units_above(layout)
     seen: dict[str, int] = {}
     for place, cell in enumerate(cells, start=1):
         name, unit = split_name(cell)
@@ -53,6 +62,31 @@ def labelled(layout: Layout) -> list[DraftColumn]:
             )
         )
     return columns
+
+
+_MOST_NAMES = 64
+_IN = (
+    r"\s{0,3}(?:(?:is\s|ist\s|est\s|es\s|è\s|é\s)?(?:in|en|em|w|v|i|в)\s|[:=]|(?=[\[(]))"
+    r"\s{0,3}[\[(]?"
+)
+_SAID_UNIT = r"(?P<unit>[^\W\d_%][^\s,;:()\[\]]{0,20}|%|°C)(?=$|[\s,;.)\]])"
+
+
+def _stated_units(layout: Layout, cells: Sequence[str]) -> dict[int, str]:
+    """Return units of columns (from 1) that the text above says: "F in gf, t in ms"."""
+    bare = [place for place, cell in enumerate(cells, 1) if cell and split_name(cell)[1] is None]
+    if len(bare) > _MOST_NAMES or layout.heading is None or layout.heading.units is not None:
+        return {}
+    lines = [line[:_LONGEST] for line in layout.text_above()]
+    found = {}
+    for place in bare:
+        name = cells[place - 1].strip()
+        words = re.compile(rf"(?<![^\W_]){re.escape(name)}{_IN}{_SAID_UNIT}")
+        told = (match["unit"].rstrip(".") for line in lines for match in words.finditer(line))
+        units = {unit for text in told if is_unit(unit := unit_in_words(text))}
+        if len(units) == 1:
+            found[place] = units.pop()
+    return found
 
 
 _SIGNAL = re.compile(

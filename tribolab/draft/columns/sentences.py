@@ -12,9 +12,16 @@ _LONGEST = 300  # characters of a line that are looked at
 _MOST = 8  # numbers of a line
 _NUMBER = re.compile(
     r"(?<![\d.,A-Za-z_])(?P<number>[-+]?\d[\d.,]*(?:[eE][-+]?\d+)?)\s{0,3}"
-    r"(?P<unit>[^\W\d_][^\s;,:()\[\]，；：（）、。]*|%|°[A-Za-z]?)"
+    r"(?P<unit>[^\W\d_][^\s;,:()\[\]\"，；：（）、。]*|%|°[A-Za-z]?)"
 )
-_CUTS = re.compile(r"[;:,=|()\[\]：；，（）、。]|\b(?:at|on|and|with|bei|und|mit|et|con|avec)\b")
+_CUTS = re.compile(
+    r"[;:,=|()\[\]：；，（）、。]"
+    r"|\b(?:at|(?<!load )(?<!force )(?<!weight )on|and|with|bei|und|mit|et|con|avec)\b"
+)
+_ACROSS_BEHIND = re.compile(
+    r"\s?(?:o\.?d\b|in dia|dia(?:m\w*)?\b|ø|⌀|durchm|di[aá]met)", re.IGNORECASE
+)
+_CAPITALS = 3  # letters of a unit that may be written large
 _ENDS = " \t:=~≈＝：-–"
 _LITTLE = frozenset(
     "a an the of is was are be in to about approx ca von ist war der die das de du des la le les "
@@ -71,12 +78,14 @@ def phrases(line: str) -> list[Phrase]:
     line = line[:_LONGEST].strip()
     for match in _NUMBER.finditer(line):
         unit = match["unit"].rstrip(".!?")
+        unit = unit if len(unit) < _CAPITALS or is_unit(unit) else unit.lower()  # "30 LBF"
         if len(said) == _MOST or not is_unit(unit):
             continue
         before = line[done : match.start()].rstrip(_ENDS)
         clauses = [clause for clause in _CUTS.split(before) if clause.strip()]
         words = clauses[-1] if clauses else ""
         key = "".join(squeezed(w) for w in words.split() if squeezed(w) not in _LITTLE)
+        key += "diameter" if _ACROSS_BEHIND.match(line[match.end() :][:20]) else ""
         number = match["number"].rstrip(".,")
         said.append(Phrase(key, number, unit, _pattern(line[: match.start()]), line))
         done = match.end()

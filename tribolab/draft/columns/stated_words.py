@@ -38,8 +38,14 @@ LOAD = or_term(
     r"|nacisk|obciazenie|zatizeni|zatez|nagruzka|нагрузка|нормальнаясила|belasting|kuorma|terheles|yuek"
     r"|(?:nacisk|obciazenie|zatizeni|нагрузка|carico|carga|charge|load|last)(?:fn|fz|f|p|w|n)"
     r"|试验力|法向力|法向载荷|载荷|负载|荷重|垂直荷重|試験荷重|載荷|하중)$"
-    r"|^(?:carga|peso|massa|carico|charge|fuerza|forza|forca)(?:normale?)?"
-    r"(?:do|da|de|del|della|des|du|aplicada|appliquee|applicato)\w{0,12}$",
+    r"|^(?:carga|pesos?|mas+[ae]|poids|carico|charge|fuerza|forza|forca|effort)(?:normale?)?"
+    r"(?:do|da|de|del|della|des|du|aplicada|appliquee|applicato)\w{0,12}$"
+    r"|^(?:total|gesamt|mean|mittlere)?(?:lip|lippen|seal|ring)?radial(?:force|load|kraft|last)"
+    r"(?:total|gesamt)?$|径向力$"
+    r"|^(?:dead|tot|eigen)(?:weight|gewicht|load|last)\w{0,20}$"
+    r"|^(?:poids|peso)m(?:ort|uert)o?\w{0,20}$"
+    r"|^(?:normal)?(?:load|force|weight)(?:on|per|onto|upon)(?!cell)\w{0,12}$"
+    r"|^(?:forceradiale|effortradial|fuerzaradial|forzaradiale|caricoradiale)\w{0,12}$",
     "load",
 )
 # the distance of a profile's points by its name
@@ -159,7 +165,8 @@ DIAMETER = or_term(
     "track_diameter",
 )
 ACROSS = or_term(
-    r"dia|durchmesser|diametr|srednica|直径|外径|내경|외경|^(?:ø|oe|⌀)$|^d$|od$", "track_diameter"
+    r"dia|durchmesser|diametr|srednica|prumer|直径|外径|轴径|軸径|내경|외경|축경|^(?:ø|oe|⌀)$|^d$|od$",
+    "track_diameter",
 )
 ON_TRACK = or_term(_TRACK, "track_radius")
 PER_MINUTE = re.compile(r"rpm|1/min|min-1|(?:rev|r|U|tr|ot|obr|giri)\.?/\s?min", re.IGNORECASE)
@@ -173,11 +180,19 @@ ON_RIM = re.compile(
     r"(?:block|pin|ball|cylinder|pad|klotz|stift|kugel|bloc|patin|bloque|pattino|kloc|blok)s?[\s_/-]*"
     r"(?:on|against|vs|auf|gegen|sur|sobre|contra|su|na|op|mot|pa)[\s_/-]*(?:the[\s_-]*)?"
     r"(?:rings?|rims?|rollers?|wheels?|shafts?|ringe?|rolle|welle|rad|anneau|galet|anillo|rodillo|anello|rullo|hjul)"
-    r"|ring[\s_-]?block|ブロックオンリング|环块|環塊|블록온링|timken|lfw",
+    r"|ring[\s_-]?block|ブロックオンリング|环块|環塊|블록온링|timken|lfw"
+    # seals and bearings slide on the shaft
+    r"|(?:lip|shaft|rotary|rotating)[\s_-]*seals?|wellendicht|\brwdr\b|simmerring"
+    r"|joint\w* (?:à|a) l[eè]vre|joint\w* (?:rotatif|tournant)|paraolio|retentor|ret[eé]n(?:es)? de"
+    r"|油封|旋转密封|オイルシール|오일씰"
+    r"|journal bearing|plain bearing|gleitlager|radiallager|palier lisse|滑动轴承|すべり軸受"
+    r"|cojinete|cuscinett\w+ (?:liscio|radente)|mancal|łożysk\w* ślizg|kluzn\w* lo[zž]isk"
+    r"|g[uü]feron?\b|hř[ií]delov",
     re.IGNORECASE,
 )
 OUTER = re.compile(
-    r"ring|rim|roll|wheel|shaft|outer|outside|aussen|exter|anneau|anello|anillo|galet|hjul|welle|リング|环|環|外|od$"
+    r"ring|rim|roll|wheel|shaft|outer|outside|aussen|exter|anneau|anello|anillo|galet|hjul|welle"
+    r"|arbre|albero|eje|arbol|eixo|hridel|aksel|axel|wal|リング|环|環|外|轴|軸|축|od$"
 )
 
 # what the sensor shows without friction, and whether it is still in the signal

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from tribolab.draft.columns.sentences import Phrase, phrases
 from tribolab.draft.columns.stated_words import (
+    ACROSS,
     ARM,
     DIAMETER,
     INTERVAL,
@@ -329,7 +330,10 @@ _TURNS = or_term(
     "rotation_speed",
 )
 _WANTED = {
-    "m": (RADIUS, DIAMETER, _R, ARM, STROKE, HALF_STROKE, PITCH, TURNING, PROFILE_LENGTH, TIP),
+    "m": (
+        *(RADIUS, DIAMETER, ACROSS, _R, TURNING, TIP),
+        *(ARM, STROKE, HALF_STROKE, PITCH, PROFILE_LENGTH),
+    ),
     "s": (INTERVAL,),
     "m/s": (_SPEED,),
     "rad/s": (FREQUENCY, _TURNS),

@@ -52,6 +52,14 @@ _MEANT = {"N": WEIGHTS}
 # units as words of languages that the library of units does not know
 _UNIT_WORDS = {
     **dict.fromkeys(("sekunden", "sekunde", "sek", "secondes", "segundos", "secondi"), "s"),
+    **dict.fromkeys(("seconds", "second", "sekundy", "sekunder", "秒"), "s"),
+    **dict.fromkeys(
+        ("milliseconds", "millisecond", "msec", "millisecondi", "毫秒", "ミリ秒"), "ms"
+    ),
+    **dict.fromkeys(("newton", "newtons", "newtonů", "niuton", "niutony", "牛", "ニュートン"), "N"),
+    **dict.fromkeys(("gram-force", "gramforce", "grams-force", "pond", "克力", "グラム重"), "gf"),
+    **dict.fromkeys(("gramas-força", "gramas-forca", "grama-força", "gramos-fuerza"), "gf"),
+    **dict.fromkeys(("grammes-force", "gramme-force", "grammi-forza"), "gf"),
     **dict.fromkeys(("millisekunden", "millisecondes", "milisegundos"), "ms"),
     **dict.fromkeys(("minuten", "minutos", "minuti"), "min"),
     **dict.fromkeys(("mikrometer", "micromètres", "micras"), "um"),

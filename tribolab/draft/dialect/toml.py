@@ -171,6 +171,8 @@ def _text_table(layout: Layout, understood: Understood) -> str:
         lines.insert(1, f"encoding = {quoted(layout.encoding)}")
     if layout.decimal != "." or layout.quoted:
         lines.append('decimal = ","')
+    if layout.arrangement != "below names":
+        lines.append(f"arrangement = {quoted(layout.arrangement)}")
     if layout.wrapped:
         lines.append("wrapped = true    # one column: its numbers go on from line to line")
     if layout.thousands:

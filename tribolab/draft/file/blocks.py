@@ -30,6 +30,10 @@ def find_blocks(lines: tuple[str, ...], grammar: Grammar) -> list[Block]:
             cells = 0
         if not cells and rows and grammar.goes_on(line, width):
             cells = width
+        if rows and cells > width and grammar.filled(line) <= width:
+            cells = width  # delimiters too many at its end
+        elif len(rows) == 1 and 0 < cells < width and grammar.filled(lines[rows[0]]) <= cells:
+            width = cells  # so had the first row
         if cells != width and not (rows and index == last and 0 < cells < width):
             close()
             width = cells

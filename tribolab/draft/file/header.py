@@ -45,6 +45,7 @@ DIMENSIONS = (
     *("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Hz", "rad/s", "Pa s", "N/m"),
     *("m/s**2", "N m"),
 )
+_FRICTION = [word for word in RUN_WORDS if word.quantity.startswith("friction_")]
 _STEMS = frozenset(stem for word in RUN_WORDS for stem in word.stems)
 _SYMBOLS = frozenset(symbol for word in RUN_WORDS for symbol in word.symbols)
 # what else files hold and no quantity of ours is: areas, volumes, wear rates, power, charges
@@ -232,6 +233,20 @@ def _units_below_names(
 def _offset(one: tuple[int, int], other: tuple[int, int]) -> int:
     """Return by how much two words do not stand below each other, at the end that fits better."""
     return min(abs(one[0] - other[0]), abs(one[1] - other[1]))
+
+
+def names_friction(cell: str) -> bool:
+    """Whether a name may be that of a friction force or coefficient.
+
+    >>> names_friction("FUERZA"), names_friction("z [um]")
+    (True, False)
+    """
+    text = "".join(filter(str.isalnum, cell.lower()))
+    bare = "".join(filter(str.isalnum, re.split(r"[\[(]", cell)[0].lower()))
+    return any(
+        bare in word.symbols or any(stem in text for stem in (*word.stems, *word.vague))
+        for word in _FRICTION
+    )
 
 
 def _known(cells: Sequence[str]) -> int:

@@ -9,6 +9,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tribolab.draft.file.arrangement import arranged, arranged_table
 from tribolab.draft.file.blocks import find_blocks, main_blocks
 from tribolab.draft.file.header import Heading
 from tribolab.draft.file.lines import (
@@ -26,6 +27,7 @@ from tribolab.draft.file.patterns import (
     step_pattern,
 )
 from tribolab.errors import ReadError
+from tribolab.io.dialects.arranged import Arrangement
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.mended import line_feeds
 from tribolab.io.dialects.signature import HEAD, File
@@ -90,6 +92,7 @@ class Layout(NamedTuple):
     thousands: Mark = ""
     quoted: bool = False
     wrapped: bool = False
+    arrangement: Arrangement = "below names"
 
     @property
     def delimiter_name(self) -> str:
@@ -162,6 +165,7 @@ def find_layout(file: File) -> Layout:
     if thousands := find_thousands(lines):
         apart = any("\t" in line or ";" in line for line in lines[-_FEW:])
         lines = tuple(without_thousands(x, thousands, ";" if apart else ",") for x in lines)
+    lines, arrangement = arranged(lines)
     grammar = find_grammar(lines)
     if grammar is None:
         raise ReadError(
@@ -170,6 +174,10 @@ def find_layout(file: File) -> Layout:
         )
     blocks, skip_lines = without_marks(lines, find_blocks(lines, grammar), grammar)
     main, others = main_blocks(blocks)
+    if other := arranged_table(lines, main[0], grammar.delimiter):
+        lines, arrangement = other
+        blocks, skip_lines = without_marks(lines, find_blocks(lines, grammar), grammar)
+        main, others = main_blocks(blocks)
     wrapped = file.size <= HEAD and _go_on(lines, main, grammar)
     if wrapped:
         table = "\n".join(lines[main[0].start :])
@@ -187,7 +195,7 @@ def find_layout(file: File) -> Layout:
     if heading and pattern is None and len(main) > 1:
         main, others = main[:1], others + len(main) - 1
         guesses.append("only the first of several tables is read: their headers are not unique")
-    tail = last_lines(file, encoding)
+    tail = last_lines(file, encoding) if arrangement == "below names" else []
     end = end_pattern(lines, main, tail, grammar)
     if tail and pattern is not None and end is not None:
         repeats = True  # only then is the whole file searched for the end of the table
@@ -221,6 +229,7 @@ def find_layout(file: File) -> Layout:
         thousands=thousands,
         quoted=quoted,
         wrapped=wrapped,
+        arrangement=arrangement,
     )
 
 

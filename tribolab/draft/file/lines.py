@@ -82,6 +82,12 @@ class Grammar:
         width, merit = self.merit(line)
         return width if merit else 0
 
+    def filled(self, line: str) -> int:
+        """Return the number of cells of a line up to the last that holds something."""
+        if self._mark is None:
+            return len(self.cells(line))
+        return len(line.rstrip(f"{self._mark} ").split(self._mark))
+
     def is_footer(self, line: str) -> bool:
         """Whether a line of numbers begins with a word: "Mean" below a column of times."""
         first = self.cells(line)[0]

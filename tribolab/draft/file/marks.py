@@ -14,7 +14,12 @@ STEP_WORD = (
     r"(?:step|stage|segment|block|interval|phase|schritt|stufe|abschnitt|intervall|[eé]tape|palier"
     r"|phase|etapa|paso|fase|passo|krok|etap|stap|steg|trinn?|vaihe|l[eé]p[eé]s|ad[ıi]m|kademe|stupe[nň]|treapta|bieg|ступень|етап|крок|прогон|шаг|этап|단계|步骤|步驟|阶段|段|ステップ)"
 )
-_TITLE = re.compile(rf"\W*{STEP_WORD}\W{{0,4}}(?P<number>\d+)\W*", re.IGNORECASE)
+_ENDED = r"(?:end(?:e|ed|s)?|begin\w*|start\w*|finished|done|fin|fine|结束|開始|开始|終了|完成)"
+_TITLE = re.compile(
+    rf"\W*(?:(?:{_ENDED}\W{{1,3}}(?:of\W|der\W|de\W)?)?{STEP_WORD}\W{{0,4}}(?P<number>\d+)"
+    rf"|第\s?(?P<nth>\d+)\s?(?:步|段|级|阶段|ステップ|工程))\W*{_ENDED}?\W*",
+    re.IGNORECASE,
+)
 _FEW = 5  # rows below a mark that are more than a line of results
 _SHARE = 0.01  # of the longest part
 
@@ -82,7 +87,7 @@ def is_numbered(lines: Sequence[str]) -> bool:
     (True, False)
     """
     titles = [_TITLE.fullmatch(line.strip()) for line in lines]
-    numbers = [int(title["number"]) for title in titles if title]
+    numbers = [int(title["number"] or title["nth"]) for title in titles if title]
     rising = all(b == a + 1 for a, b in zip(numbers, numbers[1:], strict=False))
     return bool(numbers) and len(numbers) == len(lines) and rising
 

@@ -25,6 +25,10 @@ _MARKS = np.array(
         *(2147483647.0, 2147483648.0, 4294967295.0),
     ]
 )
+# ends of converters of 24 and 16 bits, which programs show over a power of ten: -8388.608
+_FULL = np.array([8388607.0, 8388608.0, 16777215.0, 32767.0, 32768.0, 65535.0])
+_FULL = np.concatenate([_FULL / 10.0**power for power in range(1, 7)])
+_ROUNDED = 1e-5  # relative: such a number with few decimals
 _SINGLE = 2e-7  # relative: a number with single precision
 _TWICE = 2
 _OUTSIDE = 5.0  # times the largest other number
@@ -95,7 +99,9 @@ def _ends(parts: Sequence[np.ndarray]) -> list[float]:
 
 def _may_be_mark(number: float) -> bool:
     size = abs(number)
-    return size > _NO_SIGNAL or bool((np.abs(_MARKS - size) <= _SINGLE * size).any())
+    if size > _NO_SIGNAL or (np.abs(_MARKS - size) <= _SINGLE * size).any():
+        return True
+    return bool((np.abs(_FULL - size) <= _ROUNDED * size).any())
 
 
 def _judged(

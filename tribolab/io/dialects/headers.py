@@ -143,11 +143,12 @@ def table_encoding(dialect: Dialect) -> str:
 
 
 def is_wide(dialect: Dialect) -> bool:
-    """Whether text is mended to UTF-8: of wide letters, or with words for no value in others."""
+    """Whether text is mended to UTF-8: of wide letters, arranged anew, or with such missing words."""
     encoding = dialect.text.encoding.lower().replace("_", "-")
     words = not all(word.isascii() for word in dialect.text.missing)
     plain = encoding.startswith(("utf-8", "ascii"))
-    return encoding.startswith(("utf-16", "utf-32")) or (words and not plain)
+    arranged = dialect.text.arrangement != "below names"
+    return arranged or encoding.startswith(("utf-16", "utf-32")) or (words and not plain)
 
 
 def compiled(pattern: str, dialect: Dialect) -> Guarded[bytes]:

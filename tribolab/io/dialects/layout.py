@@ -7,6 +7,7 @@ from typing import Literal, Self
 import numpy as np
 from pydantic import Field, NonNegativeInt, PositiveInt, model_validator
 
+from tribolab.io.dialects.arranged import Arrangement
 from tribolab.io.dialects.checked_text import BinaryField, Encoding, Pattern, Strict
 
 
@@ -41,6 +42,12 @@ class Text(Strict):
     missing: tuple[str, ...] = Field((), description="texts that stand for no value, error codes")
     wrapped: bool = Field(
         False, description="one column whose numbers go on from line to line, many in each"
+    )
+    arrangement: Arrangement = Field(
+        "below names",
+        description="where the numbers do not stand below a line of names: 'columns listed' one to "
+        "a line above them, 'names in rows' before each number as in 't:1.5 F:2.0', or tables of "
+        "the same columns 'side by side'; [header] then finds the line of names that is made of it",
     )
     end: Pattern | None = Field(None, description="a line matching this ends the table")
     skip_lines: Pattern | None = Field(

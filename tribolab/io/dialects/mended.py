@@ -9,6 +9,7 @@ from collections.abc import Callable
 from typing import AnyStr
 
 from tribolab.errors import ReadError
+from tribolab.io.dialects.arranged import below_names
 from tribolab.io.dialects.headers import compiled, header_starts, is_wide, table_encoding
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File
@@ -41,7 +42,9 @@ def _with_usual_lines(file: File, dialect: Dialect, head_only: bool) -> bytes | 
         if wide:
             marked = head[:2] in (b"\xff\xfe", b"\xfe\xff")
             decoder = codecs.getincrementaldecoder("utf-16" if marked else dialect.text.encoding)()
-            content = decoder.decode(content, final=not head_only).encode()
+            told = line_feeds(decoder.decode(content, final=not head_only))
+            text = dialect.text
+            content = below_names(told, text.arrangement, text.delimiter).encode()
     except (OSError, UnicodeDecodeError) as error:
         raise ReadError(f"{file.path}: the file cannot be read: {error}") from error
     content = line_feeds(content)

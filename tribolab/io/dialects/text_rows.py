@@ -89,7 +89,15 @@ class RowParser:
     def _second_try(
         self, block: bytes, place: int, last: bool, types: Arguments, error: Exception
     ) -> pa.Table:
-        """Leave out a file's last row if the logger was stopped in it; else say what is wrong."""
+        """Leave out a file's last row if the logger was stopped in it; else say what is wrong.
+
+        Delimiters too many at the end of a row, as beside a comment, are taken off.
+        """
+        if (tidy := self._without_surplus(block)) != block:
+            try:
+                return self._arrow(tidy, types)
+            except pa.ArrowInvalid:
+                block = tidy
         if last:
             whole = block.rstrip(b"\r\n \t")
             cut = whole.rfind(b"\n") + 1
@@ -102,6 +110,17 @@ class RowParser:
                     self.incomplete = 1
                     return table
         raise ReadError(self._diagnosis(block, place)) from error
+
+    def _without_surplus(self, block: bytes) -> bytes:
+        mark = self._parse["delimiter"].encode()
+        most = self._table.width - 1
+        lines = block.split(b"\n")
+        for number, line in enumerate(lines):
+            surplus = line.count(mark) - most
+            bare = line.rstrip(mark + b" \r")
+            if surplus > 0 and bare.count(mark) <= most:
+                lines[number] = bare + mark * (most - bare.count(mark))
+        return b"\n".join(lines)
 
     def endless(self, place: int) -> ReadError:
         """Return the error for a line that does not end; it starts at an offset."""

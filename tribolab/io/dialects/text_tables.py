@@ -97,7 +97,7 @@ def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -
         stop = limit
         if end is not None and (last := end.search(content, body, min(limit, len(content)))):
             stop = last.start()
-        width = len(split_row(line_at(file, content, body, dialect)[0], text.delimiter))
+        width = _width(file, content, body, dialect)
         names, units = parted_as_numbers(names, units, width, dialect)
         before = _decode(content[origin : start if start > origin else body], file, dialect)
         if header.line is None and header.pattern is None and not header.skip:
@@ -109,6 +109,16 @@ def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -
     if not tables:
         raise ReadError(f"{file.path}: the file has a header, but no row of numbers below it")
     return tables
+
+
+def _width(file: File, content: bytes | mmap.mmap, body: int, dialect: Dialect) -> int:
+    """Return the number of cells of a row: of the first one without delimiters too many."""
+    first, below = line_at(file, content, body, dialect)
+    cells = split_row(first, dialect.text.delimiter)
+    if cells[-1] or below >= len(content):
+        return len(cells)
+    second = len(split_row(line_at(file, content, below, dialect)[0], dialect.text.delimiter))
+    return second if 0 < second < len(cells) and not any(cells[second:]) else len(cells)
 
 
 def _decode(content: bytes, file: File, dialect: Dialect) -> str:

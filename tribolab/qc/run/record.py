@@ -11,7 +11,7 @@ from tribolab.errors import AnalysisError, shown
 from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.pieces import anywhere, one_by_one
 from tribolab.qc import signals
-from tribolab.qc.flags import FAIL, GOOD, SUSPECT, uniform
+from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
 from tribolab.qc.register import OBJECTIONS, Check, Limit, Result, Skip, sample_result
 from tribolab.qc.run import schema, timing
 from tribolab.qc.run.subject import RunSubject
@@ -89,13 +89,18 @@ def _rate_changes(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
     return [Result("pass", "time", text, float(places.size), where=where, flags=flags, noted=seen)]
 
 
+_COUNTER = 0.1  # share of the samples: what changes oftener counts turns, and parts nothing
+
+
 def _step_changes(subject: RunSubject) -> np.ndarray:
     """Return the indices of samples at which a new step or cycle of the instrument begins."""
     changed = np.zeros(subject.time.size, dtype=bool)
     for name in ("step", "cycle"):
         if name in subject.run:
             label = subject.run[name].values
-            changed[1:] |= label[1:] != label[:-1]
+            other = label[1:] != label[:-1]
+            if other.sum() < _COUNTER * other.size:
+                changed[1:] |= other
     return np.flatnonzero(changed)
 
 
@@ -209,15 +214,46 @@ def _quantisation(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
 
 def _spikes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = []
+    joins = _joins(subject)
     for name, values in one_by_one(subject.force_signals.items()):
         flags = signals.spikes(values, limits["noise"])
+        flags[joins] = NOT_EVALUATED  # what stands before them is of another step
         text = "{count:single sample stands|single samples stand} out from both neighbours, {where}"
         result = sample_result(name, flags, subject.time, text, fail_share=limits["fail"])
-        if result.status in OBJECTIONS and _sticks_and_slips(subject):
-            result = replace(result, cure=_SLIPS)
+        if result.status in OBJECTIONS:
+            moved = _moved_by(values, flags)
+            if moved > limits["mean"]:
+                text = f"{result.message}; with them the mean of its size is {moved:.1%} off"
+                result = replace(result, message=text, cure=_MOVED)
+            elif _sticks_and_slips(subject):
+                result = replace(result, cure=_SLIPS)
         results.append(result)
     return results
 
+
+def _joins(subject: RunSubject) -> np.ndarray:
+    """Return the samples on either side of where a new step begins."""
+    steps = subject.run.get("step")
+    if steps is None or steps.size < 2:
+        return np.zeros(0, int)
+    starts = np.flatnonzero(np.diff(steps.values)) + 1
+    return np.unique(np.clip(np.concatenate([starts - 1, starts]), 0, steps.size - 1))
+
+
+def _moved_by(values: np.ndarray, flags: np.ndarray) -> float:
+    """Return by which share samples that stand out move the mean size of a signal."""
+    places = np.flatnonzero((flags == SUSPECT) | (flags == FAIL))
+    before, after = np.maximum(places - 1, 0), np.minimum(places + 1, values.size - 1)
+    usual = 0.5 * (values[before] + values[after])
+    size = float(np.nansum(np.abs(values))) - float(np.nansum(np.abs(values[places])))
+    size += float(np.nansum(np.abs(usual)))
+    return abs(float(np.nansum(values[places] - usual))) / size if size > 0 else 0.0
+
+
+_MOVED = (
+    "Look what the instrument writes there: a word or number for an overload, or for no value, "
+    "belongs under [text] missing in the dialect."
+)
 
 _SLIPS = (
     "The contact sticks and slips: a slip shorter than a sample looks like this; record faster to "
@@ -335,6 +371,7 @@ RECORD_CHECKS = (
         {
             "noise": Limit(8.0, "1", "Gaussian noise reaches it once in 1e15 samples"),
             "fail": Limit(0.01, "1", "one sample in a hundred is no longer a rare disturbance"),
+            "mean": Limit(0.005, "1", "half a per cent of the mean is no matter of peaks"),
         },
         _spikes,
     ),
