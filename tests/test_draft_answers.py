@@ -13,7 +13,8 @@ from tribolab import cli
 from tribolab.draft.dialect.answers import corrected
 from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.draft.dialect.examples import draft_of_examples
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, UnitError
+from tribolab.units import to_si
 
 
 def log(n=400, force=6.0, load=-30.0):
@@ -156,7 +157,7 @@ def test_a_torque_is_no_force_and_a_force_without_a_load_is_tried(tmp_path, monk
     file.write_text("Time [s],Torque [mN m],Ways [um]\n" + rows)
     done = command("dialect", file.name, "--ask", typed="\n2\n0\n0\n0\n0\n0\n")
     assert "measures no friction force" in done.output, done.output
-    assert "a torque follows by a [[derived]]" in done.output
+    assert "it is a torque; type -, and then the radius" in done.output
     file = tmp_path / "bare.txt"
     file.write_text("Time [s],Fx [N],Position [um]\n" + rows)
     done = command("dialect", file.name, "--no-ask")
@@ -170,3 +171,18 @@ def test_questions_that_end_early_write_nothing(tmp_path, monkeypatch):
     done = command("dialect", file.name, "--ask", typed="")
     assert done.exit_code == 130 and "nothing is written" in done.output
     assert not (tmp_path / "x.toml").exists()
+
+
+def test_an_answer_stays_where_another_is_not_known_and_may_have_a_comma(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "ring.txt"
+    rows = "".join(f"{i / 10:.1f},{4 + i % 3},60\n" for i in range(200))
+    file.write_text("Time [s],Torque [mN m],Rotation [rpm]\n" + rows)
+    done = command("dialect", file.name, "--ask", typed="\n-\n-\n-\n-\n-\n-\n46,0 N\n")
+    assert "formula = \"'46.0 N'\"" in Path("ring.toml").read_text("utf-8"), done.output
+    assert "a torque: with the radius at which it acts" in done.output
+
+
+def test_a_decimal_comma_of_an_amount_is_named():
+    with pytest.raises(UnitError, match=r"'46,0 N' has a decimal comma; write '46.0 N'"):
+        to_si("46,0 N", "N", "load")

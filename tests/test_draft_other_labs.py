@@ -386,3 +386,73 @@ def test_heights_lie_evenly_between_a_stated_start_and_end(tmp_path):
     head = "X start: 0 mm\nX end: 3 mm\nN = 601\nUnit Z: um\n\n"
     (tmp_path / "line.txt").write_text(head + heights + "\n", "utf-8")
     assert tl.read_scans(tmp_path / "line.txt").attrs["pitch_m"] == pytest.approx(5e-6)
+
+
+SHAFT = "\n".join(
+    f"1;{n / 2:.1f};{200 + n % 3};{0.9 + n % 4 / 100}".replace(".", ",") for n in range(300)
+)
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "Wellendichtring-Prüfstand\nWellendurchmesser;80,0;mm\nRadialkraft (Mittel);46,0;N",
+        "Rotary lip seal rig\nShaft dia. 80 mm, total radial force 46 N",
+        "Gleitlager, Wellendurchmesser 80 mm\nRadiallast: 46 N",
+        "旋转油封试验台\n轴径;80 mm\n唇口径向力(总);46 N",
+    ],
+)
+def test_a_seal_or_bearing_slides_on_its_shaft(head, tmp_path):
+    table = f"Stufe;Zeit [s];Drehzahl [1/min];Reibmoment [Nm]\n{SHAFT}\n"
+    (tmp_path / "seal.csv").write_text(f"{head}\n\n{table}", "utf-8")
+    run = tl.read(tmp_path / "seal.csv")
+    assert float(run.sliding_velocity.mean()) == pytest.approx(np.pi * 0.08 * 201 / 60, rel=1e-3)
+    assert float((run.friction_force / run.normal_force).mean()) == pytest.approx(
+        0.915 / 0.04 / 46, rel=1e-3
+    )
+
+
+def test_a_ring_s_size_may_stand_behind_it_and_a_lever_s_load_behind_the_lever(tmp_path):
+    rows = "\n".join(f"{n / 60:.4f},72,{4.4 + n % 3 / 100}" for n in range(300))
+    head = '"BLOCK-ON-RING TEST","",""\n"Ring: SAE 4620, 35 mm O.D., width 8 mm","",""\n'
+    head += '"Dead wt. on rod 3.00 lb, lever ratio 10:1 ==> LOAD ON BLOCK 30.0 LBF","",""\n'
+    table = f'"Elapsed","Ring Speed","FRICTION"\n"(min)","(rpm)","(lbf)"\n{rows}\n'
+    (tmp_path / "lfw.csv").write_text(head + table)
+    run = tl.read(tmp_path / "lfw.csv")
+    assert float(run.normal_force[0]) == pytest.approx(30 * 4.4482216, rel=1e-6)
+    assert float(run.sliding_velocity[0]) == pytest.approx(np.pi * 0.035 * 72 / 60, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("said", "wrong"),
+    [
+        ("Stroke: 10 mm\nFrequency: 2 Hz\nNumber of cycles: 30\n", None),
+        ("Stroke: 20 mm\nFrequency: 2 Hz\n", "states 20 mm strokes, its position makes"),
+        ("Stroke: 10 mm\nFrequency: 4 Hz\n", "states 4 Hz, its position makes"),
+        ("Stroke: 10 mm\nFrequency: 2 Hz\nCycles: 60\n", "states 60 cycles"),
+    ],
+)
+def test_strokes_that_a_file_states_are_held_against_its_position(said, wrong, tmp_path):
+    time = np.arange(7500) / 500
+    phase = 2 * np.pi * 2 * time
+    force = 6 * np.sign(np.cos(phase)) + 0.05 * np.sin(7 * time)
+    rows = "\n".join(
+        f"{t:.3f},{5 * s:.4f},{f:.4f}" for t, s, f in zip(time, np.sin(phase), force, strict=True)
+    )
+    head = f"Load: 20 N\n{said}Time [s],Position [mm],Friction force [N]\n"
+    (tmp_path / "a.csv").write_text(head + rows + "\n")
+    rows = [row for row in tl.check(tl.read(tmp_path / "a.csv")).rows]
+    told = [
+        r["message"] for r in rows if r["status"] == "suspect" and r["check"] == "said_elsewhere"
+    ]
+    assert (not told) if wrong is None else (len(told) == 1 and wrong in told[0])
+
+
+def test_the_first_sample_of_a_step_is_no_spike(tmp_path):
+    force = 6.5 + 0.01 * np.random.default_rng(1).normal(size=300)
+    force[[100, 200]] = 2.0  # at rest still
+    rows = "\n".join(f"{1 + n // 100},{n / 10:.1f},{f:.4f},20,5" for n, f in enumerate(force))
+    head = "Step,Time [s],Friction force [N],Normal force [N],Speed [mm/s]\n"
+    (tmp_path / "a.csv").write_text(head + rows + "\n")
+    found = tl.check(tl.read(tmp_path / "a.csv")).rows
+    assert [r["status"] for r in found if r["check"] == "spikes"] == ["pass", "pass"]

@@ -267,6 +267,9 @@ def to_si(
         raise UnitError(f"{name}: '{said}' is larger than any number; write e.g. '1 {si_unit}'")
     if not unit and si_unit not in ("", "1"):
         raise UnitError(f"{name}: '{said}' has no unit; write e.g. '{said} {si_unit}'")
+    if re.match(r",\d", unit):
+        pointed = shown(value.strip().replace(",", ".", 1))
+        raise UnitError(f"{name}: '{said}' has a decimal comma; write '{pointed}'")
     try:
         scale, offset = conversion(unit, si_unit, bare)
     except UnitError as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _NONE = "-"
+_COMMA = re.compile(r"^(\d+),(\d{1,2}|\d{4,})(?=\D)")  # no mark of thousands
 _RUN = {
     "time": "time",
     "friction_force": "the friction force",
@@ -131,6 +133,7 @@ def _ask_amount(
         typed = ask(f"{question} ({_NONE}: not known)", guess).strip()
         if typed == _NONE:
             return ""
+        typed = _COMMA.sub(r"\1.\2", typed)  # as the file may write it
         try:
             positive(typed, si_unit, f"the {name}")
         except TribolabError as error:
@@ -177,7 +180,7 @@ def _ask_unit(column: DraftColumn, name: str, ask: Ask) -> str | None:
         what = f"column {column.place} is in {shown(column.file_unit)}, which measures no "
         what += quantity(name).long_name
         if converts(column.file_unit, "N m"):
-            what += ': a torque follows by a [[derived]] of the dialect, such as "torque / arm"'
+            what += f": it is a torque; type {_NONE}, and then the radius at which friction acts"
         raise TribolabError(what)
     if si_unit == "1" or (said and column.unit is None):
         return None

@@ -18,6 +18,7 @@ from tribolab.records.part_records import CurveRecord, SurfaceRecord
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome
 from tribolab.records.roughness_words import roughness_in_words
 from tribolab.records.run_record import RunRecord
+from tribolab.records.run_trend import TRENDS
 from tribolab.words import LOAD_MEASURED, LOAD_VARIES, Count, load_text
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
 _PIPED_WIDTH = 120
 _SHOWN, _HANDFUL = 10, 5
+_MOST_POINTS = 16  # of all curves: more do not help in a terminal
 _NONE = "–"
 _COUNTS = ("load", "runs", "segments")
 
@@ -79,9 +81,41 @@ def outcome_table(outcome: Outcome) -> Table:
     return table
 
 
-def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
+def points_table(outcome: Outcome) -> Table | None:
+    """Return the friction at each speed, where a few curves have a few; None of more."""
+    done = [curve for curve in outcome.curves if curve.done]
+    rows = [(curve, row) for curve in done for row in _points(curve, outcome)]
+    known = [
+        (curve, row, speed)
+        for curve, row in rows
+        if isinstance(speed := row["sliding_speed_m_s"], float)
+        and row["friction_coefficient"] is not None
+    ]
+    if not 1 < len(known) <= _MOST_POINTS:
+        return None
+    table = Table(box=None, pad_edge=False, header_style="bold")
+    unit, scale = ("m/s", 1.0) if max(speed for *_, speed in known) >= 1 else ("mm/s", 1e3)
+    headings = (f"speed ({unit})", "friction coefficient", "± 95 %", "scatter", "segments")
+    for heading in (*(("curve",) if len(done) > 1 else ()), *headings):
+        table.add_column(heading, justify="left" if heading == "curve" else "right")
+    for curve, row, speed in known:
+        first = (curve.name,) if len(done) > 1 else ()
+        cells = [
+            _NONE if (value := row.get(f"friction_coefficient{end}")) is None else f"{value:{form}}"
+            for end, form in (("", ".4f"), ("_U95", ".2g"), ("_std", ".2g"))
+        ]
+        segments = str(int(row.get("segments") or 0))
+        table.add_row(*first, f"{scale * speed:.4g}", *cells, segments)
+    return table
+
+
+def _points(curve: CurveOutcome, outcome: Outcome) -> Sequence[Row]:
     entry = outcome.store.get("curve", curve.name, CurveRecord)
-    points = [] if entry is None else entry.record.points
+    return [] if entry is None else entry.record.points
+
+
+def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
+    points = _points(curve, outcome)
     speed = [row["sliding_speed_m_s"] for row in points if row["sliding_speed_m_s"] is not None]
     mu = [v for row in points if (v := row["friction_coefficient"]) is not None]
     if not speed or not mu:
@@ -144,6 +178,7 @@ def outcome_lines(outcome: Outcome) -> list[str]:
         if len(names) > _HANDFUL:
             file = from_here(outcome.folder / "tables" / "findings.csv")
             lines.append(f"checks {what}: and {len(names) - _HANDFUL} more: see {file}")
+    lines += _trends(done, outcome)
     lines += _decisions(outcome)
     if known := [surface for surface in outcome.surfaces if surface.files]:
         computed = sum(surface.done for surface in known)
@@ -155,7 +190,22 @@ def outcome_lines(outcome: Outcome) -> list[str]:
             "calibration not stated: every uncertainty is statistical only "
             "([uncertainty] in the campaign file)"
         )
+    if any(curve.done for curve in outcome.curves):
+        file = from_here(outcome.folder / "tables" / "stribeck.csv")
+        lines.append(f"friction at each speed: {file}; of each segment: friction.csv beside it")
     return [*lines, f"report: {from_here(outcome.folder / 'report.html')}"]
+
+
+def _trends(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
+    """Say which of a few runs ran in, or wore out: their mean is one over all of it."""
+    few = done if len(done) <= _HANDFUL else ()
+    return [
+        f"{run.name}: {notice.message}"
+        for run in few
+        if (entry := outcome.store.get("run", run.name, RunRecord)) is not None
+        for notice in entry.record.notices
+        if notice.message.startswith(TRENDS)
+    ]
 
 
 def _is_uncalibrated(outcome: Outcome) -> bool:

@@ -10,6 +10,7 @@ import xarray as xr
 from tribolab.friction.along_run import FEWEST, line_along
 from tribolab.words import duration, many, number, percent, speed_text
 
+TRENDS = ("friction rises along", "friction falls along")  # how its text begins
 _SAME_SPEED = 0.05  # relative difference of the speeds of alike segments
 
 
@@ -21,9 +22,9 @@ class RunTrend(NamedTuple):
     speed
         [m/s].
     first, last
-        Friction at both ends, on the line through the segments.
+        Mean friction of the first and of the last tenth of the segments.
     error
-        Standard error of the change between them.
+        Standard error of the change, on the line through the segments.
     segments, lasted
         How many there are, and the time from the first to the last [s].
     """
@@ -41,9 +42,9 @@ class RunTrend(NamedTuple):
         verb = "rises" if abs(self.last) > abs(self.first) else "falls"
         share = percent(abs(self.last - self.first) / abs(self.first))
         return (
-            f"friction {verb} along the run from {number(self.first)} to {number(self.last)}, by "
-            f"{share}, over {many(self.segments, 'segment')} at {speed_text(self.speed)} in "
-            f"{duration(self.lasted)}: the mean is one over the run"
+            f"friction {verb} along the run from {number(self.first)} in its first tenth to "
+            f"{number(self.last)} in its last, by {share}, over {many(self.segments, 'segment')} "
+            f"at {speed_text(self.speed)} in {duration(self.lasted)}: the mean is one over the run"
         )
 
 
@@ -79,7 +80,8 @@ def _trend(
     if line is None:
         return None
     lasted = float(middle[part[-1]] - middle[part[0]])
-    first, last = line.at(middle[part[[0, -1]]]).tolist()
+    tenth = max(part.size // 10, 1)  # what ends of a line would exceed where the change levels off
+    first, last = (float(values[end].mean()) for end in (part[:tenth], part[-tenth:]))
     return RunTrend(
         float(np.median(speed[part])), first, last, line.error * lasted, part.size, lasted
     )

@@ -197,6 +197,10 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
     table = terminal.outcome_table(outcome)
     if table.row_count:
         terminal.console().print(table)
+    points = terminal.points_table(outcome)
+    if points is not None:
+        terminal.console().print()
+        terminal.console().print(points)
     for line in terminal.outcome_lines(outcome):
         say(line)
     for line in terminal.foreign_lines(outcome):

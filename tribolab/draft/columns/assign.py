@@ -28,6 +28,7 @@ SIGNALS = {
 _DECIDING = FORCES | {"sliding_velocity", "rotation_speed"}
 # of two columns for a quantity the measured one counts, and what was set or worked out gives way
 _WEIGHT: dict[Role, float] = {"": 1.0, "measured": 1.1, "derived": 0.6, "set": 0.5, "extreme": 0.4}
+_TORQUE = "a torque: with the radius at which it acts it is a force"
 _NEAR = 0.05  # scores of names that suit a quantity about as well
 _STILL = 0.9  # of the score: a load that never moves is the one that was meant to be
 _EITHER = ("friction_force", "normal_force")  # what a load cell may measure
@@ -88,6 +89,7 @@ def assigned(
         if unit is not None and not matched[index]:
             same = [q for q in SIGNALS if _told_by(unit, quantity(q).unit)]
             hint = f"its unit fits {' or '.join(sorted(same))}" if same else ""
+            hint = _TORQUE if not same and converts(unit, "N m") else hint
             result[index] = column._replace(note=hint or UNKNOWN_NAME)
         elif not matched[index]:
             result[index] = column._replace(note=UNKNOWN_NAME)

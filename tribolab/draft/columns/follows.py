@@ -14,7 +14,7 @@ from tribolab.draft.columns.slip import stated_ratio
 from tribolab.draft.columns.stated_load import find_load
 from tribolab.draft.columns.stated_words import PER_MINUTE
 from tribolab.draft.columns.stated_zero import find_zero, reading_of, zero_in_doubt
-from tribolab.draft.columns.stroke_settings import strokes_of_columns, strokes_of_values
+from tribolab.draft.columns.stroke_settings import as_stated, strokes_of_columns, strokes_of_values
 from tribolab.draft.columns.turning import angle_of, radius_of, torque_of, turns_of
 from tribolab.draft.columns.values import DraftValue, find_values, words_said
 from tribolab.draft.columns.words import or_term, squeezed
@@ -151,6 +151,8 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     if "set_normal_force" in names and names & SAYS_FRICTION and not names & SAYS_LOAD:
         about = "nothing measures it: the load that was set"
         return _and(result, DraftedFormula("normal_force", "set_normal_force", about))
+    if "position" in names and result.speed is None:
+        result = result._replace(values=(*result.values, *as_stated(values)))
     load = find_load(values)
     if load is not None and names & SAYS_FRICTION and not names & SAYS_LOAD:
         about = f"nothing measures it: '{load.text}' is taken for all of the run"

@@ -19,7 +19,7 @@ _CUTS = re.compile(
     r"|\b(?:at|(?<!load )(?<!force )(?<!weight )on|and|with|bei|und|mit|et|con|avec)\b"
 )
 _ACROSS_BEHIND = re.compile(
-    r"\s?(?:o\.?d\b|in dia|dia(?:m\w*)?\b|ø|⌀|durchm|di[aá]met)", re.IGNORECASE
+    r"\s?(?:(o\.?d\b)|in dia|dia(?:m\w*)?\b|ø|⌀|durchm|di[aá]met)", re.IGNORECASE
 )
 _CAPITALS = 3  # letters of a unit that may be written large
 _ENDS = " \t:=~≈＝：-–"
@@ -85,7 +85,8 @@ def phrases(line: str) -> list[Phrase]:
         clauses = [clause for clause in _CUTS.split(before) if clause.strip()]
         words = clauses[-1] if clauses else ""
         key = "".join(squeezed(w) for w in words.split() if squeezed(w) not in _LITTLE)
-        key += "diameter" if _ACROSS_BEHIND.match(line[match.end() :][:20]) else ""
+        if behind := _ACROSS_BEHIND.match(line[match.end() :][:20]):
+            key += "od" if behind[1] else "diameter"
         number = match["number"].rstrip(".,")
         said.append(Phrase(key, number, unit, _pattern(line[: match.start()]), line))
         done = match.end()

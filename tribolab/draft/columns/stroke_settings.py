@@ -20,6 +20,10 @@ from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn, Understood
 from tribolab.io.dialects.cells import split_name
 
+_CYCLES = re.compile(
+    r"^(?:(?:number|no|nr|nombre|nb|numero|anzahl|total|liczba|pocet|antal|aantal)(?:of|de|dei|di|der)?)?"
+    r"(?:cycles?|zyklen|zykluszahl|ciclos|cicli|cykli|cyklu|cykler|cycli|循环次数|サイクル数)$"
+)
 _EITHER_WAY = re.compile(r"(?:\+/?-|±)\s?\d")  # from the middle
 
 
@@ -46,6 +50,20 @@ def strokes_of_values(values: Sequence[DraftValue]) -> Strokes | None:
         return None
     settings = (("stroke_value", stroke.name), ("frequency_value", frequency.name))
     return Strokes(settings, (stroke, frequency), guess=guess)
+
+
+def as_stated(values: Sequence[DraftValue]) -> tuple[DraftValue, ...]:
+    """Return what stands above the table of strokes, to be held against a recorded position."""
+    strokes = strokes_of_values(values)
+    if strokes is None or strokes.guess or any(value.source == "step" for value in strokes.values):
+        return ()
+    length, frequency = strokes.values
+    counts = [v for v in values if v.own_unit is None and _CYCLES.search(v.key)]
+    return (
+        length._replace(name="stated_stroke"),
+        frequency._replace(name="stated_stroke_frequency"),
+        *(count._replace(name="stated_cycles") for count in counts[:1] if len(counts) == 1),
+    )
 
 
 def strokes_of_columns(understood: Understood) -> Strokes | None:

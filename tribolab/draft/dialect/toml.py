@@ -123,8 +123,10 @@ def _wanted_tables(understood: Understood, follows: Follows) -> list[str]:
         known.add("friction_force")
     if known & SAYS_FRICTION and not known & SAYS_LOAD and not waiting:
         about = "the load, if it is one for all of the run, " + _REMOVE
-        rule = ["[[derived]]", 'quantity = "normal_force"', "formula = \"'? N'\""]
-        parts.append(_commented(about, rule))
+        load = understood.load or "? N"
+        rule = ["[[derived]]", 'quantity = "normal_force"', f"formula = \"'{load}'\""]
+        # an answer stays where its table waits for another
+        parts.append("\n".join(rule) + "\n" if understood.load else _commented(about, rule))
     return parts
 
 

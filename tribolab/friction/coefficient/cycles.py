@@ -75,7 +75,7 @@ def friction_per_cycle(run: xr.Dataset, middle: str | float = 0.5) -> xr.Dataset
     >>> run = xr.Dataset({name: ("time", v) for name, v in data.items()}, {"time": time})
     >>> cycles = friction_per_cycle(run)
     >>> cycles.sizes["cycle"], round(float(cycles.mean_friction_coefficient), 3)
-    (18, 0.3)
+    (19, 0.3)
     """
     share = to_si(middle, "1", "middle")
     if not 0 < share <= 1:

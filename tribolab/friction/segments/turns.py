@@ -49,10 +49,12 @@ def turns_of(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     low, high = np.percentile(position, [1, 99])
     middle, half = (low + high) / 2, (0.5 - _HYSTERESIS) * (high - low)
     state = last_side(position, middle - half, middle + half)
+    # the first may be a coming in to the first side; where it began on one, that is no turn
     change = np.flatnonzero(np.diff(state)) + 1
-    change = change[state[change - 1] != 0]
     if change.size < 2 or not high > low:
         return np.empty(0, dtype=int), np.empty(0, dtype=int)
+    back = abs(position[-1] - middle) < half
+    change = np.append(change, position.size) if back else change
     # between two changes the position is on one side: its farthest point is a turn
     side = state[change[:-1]]
     inside = np.arange(change[0], change[-1])

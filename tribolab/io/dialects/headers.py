@@ -143,7 +143,7 @@ def table_encoding(dialect: Dialect) -> str:
 
 
 def is_wide(dialect: Dialect) -> bool:
-    """Whether text is mended to UTF-8: of wide letters, arranged anew, or with such missing words."""
+    """Whether text is mended to UTF-8: wide letters, arranged anew, or such missing words."""
     encoding = dialect.text.encoding.lower().replace("_", "-")
     words = not all(word.isascii() for word in dialect.text.missing)
     plain = encoding.startswith(("utf-8", "ascii"))

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from tribolab.errors import AnalysisError
+from tribolab.friction.segments.strokes import find_strokes
 from tribolab.io.force_ratio import LARGEST, SMALLEST
 from tribolab.medians import median
 from tribolab.qc.register import Check, Limit, Result, Skip
@@ -73,11 +75,52 @@ def _said_elsewhere(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
         text = "not in the file, and taken as the instrument's description has it: "
         text += str(attrs["assumed"]).replace("_", " ")
         results.append(Result("pass", "settings", text, noted=True))
+    results += _stated_strokes(subject, limits)
     with contextlib.suppress(Skip):  # there is no friction of which to speak
         results += _recorded_coefficient(subject, limits) + _out_of_question(subject)
     if results:
         return results
     raise Skip("nothing that the file does not say was taken for it")
+
+
+def _stated_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    """Compare the strokes that a file states with those that its position makes."""
+    attrs = subject.run.attrs
+    said = [float(attrs.get(name, np.nan)) for name in _STATED]
+    if not np.isfinite(said).any() or "position" not in subject.run:
+        return []
+    try:
+        strokes = find_strokes(subject.run)
+    except AnalysisError:
+        return []
+    lasted = np.diff(subject.time[strokes.first])[strokes.usual]
+    if not lasted.size:
+        return []
+    found = (
+        float(median(strokes.length[strokes.usual])),
+        0.5 / float(median(lasted)),
+        0.5 * int(strokes.usual.sum()),
+    )
+    words = ("{0:.4g} mm strokes", "{0:.4g} Hz", "{0:.0f} cycles")
+    results = []
+    for stated, measured, text, unit in zip(said, found, words, (1e3, 1.0, 1.0), strict=True):
+        apart = abs(measured - stated) / stated if stated > 0 else np.nan
+        if not np.isfinite(apart):
+            continue
+        beyond = apart > limits["apart"] and abs(measured - stated) > (text == words[2])
+        told = f"the file states {text.format(unit * stated)}, its position makes "
+        told += text.format(unit * measured)
+        results.append(
+            Result("suspect" if beyond else "pass", "position", told, apart, cure=_STROKES)
+        )
+    return results
+
+
+_STATED = ("stated_stroke_m", "stated_stroke_frequency_Hz", "stated_cycles")
+_STROKES = (
+    "One of the two has a wrong scale, unit or sampling rate, and the speed with it; or the record "
+    "holds a part of the test only."
+)
 
 
 def _out_of_question(subject: RunSubject) -> list[Result]:
