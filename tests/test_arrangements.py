@@ -69,6 +69,45 @@ def test_columns_that_are_listed_above_their_numbers_have_those_names(tmp_path):
         assert float(run.normal_force[0]) == pytest.approx(5)
 
 
+@pytest.mark.parametrize(
+    "said",
+    [
+        "# Columns: time (s), friction force (N), normal force (N), speed (mm/s)",
+        "# 1 = time [s]; 2 = friction force [N]; 3 = normal force [N]; 4 = speed [mm/s]",
+        "Spalten: Zeit [s] | Reibkraft [N] | Normalkraft [N] | Geschwindigkeit [mm/s]",
+    ],
+)
+@pytest.mark.parametrize("mark", [" ", "; "])
+def test_one_line_may_list_the_columns(tmp_path, said, mark):
+    rows = "\n".join(
+        mark.join((f"{n / 50:.2f}", f"{f:.4f}", "20", "5")) for n, f in enumerate(FORCE)
+    )
+    (tmp_path / "a.dat").write_text(f"{said}\n{rows}\n")
+    for run in both_ways(tmp_path / "a.dat"):
+        np.testing.assert_allclose(run.friction_force, np.round(FORCE, 4))
+        assert float(run.sliding_velocity[0]) == pytest.approx(5e-3)
+
+
+def test_a_record_of_json_to_a_line_is_a_row(tmp_path):
+    rows = [
+        f'{{"t_s": {n / 50}, "friction_N": {f:.4f}, "load_N": 20, "speed_mm_s": 5}}'
+        for n, f in enumerate(FORCE)
+    ]
+    (tmp_path / "a.json").write_text("\n".join(rows) + "\n")
+    for run in both_ways(tmp_path / "a.json"):
+        np.testing.assert_allclose(run.friction_force, np.round(FORCE, 4))
+        assert float(run.normal_force[0]) == 20
+
+
+def test_units_in_capitals_below_the_names_are_units(tmp_path):
+    rows = [f"{n / 50:8.3f} {f:8.3f} {20:8.3f} {5:8.3f}" for n, f in enumerate(FORCE)]
+    head = "    TIME     FRIC     LOAD    SPEED\n     [S]      [N]      [N]   [MM/S]\n"
+    (tmp_path / "a.txt").write_text(head + "\n".join(rows) + "\n")
+    for run in both_ways(tmp_path / "a.txt"):
+        np.testing.assert_allclose(run.friction_force, np.round(FORCE, 3))
+        assert float(run.sliding_velocity[0]) == pytest.approx(5e-3)
+
+
 def sled():
     names = ["Tiempo", "Desplazamiento", "FUERZA"]
     units = ["(s)", "(mm)", "(cN)"]

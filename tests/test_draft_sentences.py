@@ -6,6 +6,7 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
+from tribolab.errors import TribolabError
 
 T = np.arange(0, 30, 0.1)
 RNG = np.random.default_rng(3)
@@ -221,3 +222,13 @@ def test_one_heading_with_its_unit_tells_that_commas_are_decimal_marks(tmp_path)
     profile = tl.read_scans(tmp_path / "a.txt")
     np.testing.assert_allclose(profile.height.squeeze(), 1e-9 * height, atol=1e-15)
     np.testing.assert_allclose(np.diff(profile.x).squeeze(), 0.5e-6)
+
+
+def test_lines_that_may_state_what_is_missing_are_quoted(tmp_path):
+    rows = "\n".join(f"{n / 10:.1f};200;0.{10 + n % 3}" for n in range(200))
+    head = "Kommutator-Maß;42,0;mm\nFederkennwert;3,5;N\nTime [s];Speed [rpm];Torque [Nm]\n"
+    (tmp_path / "a.csv").write_text(head + rows + "\n", "utf-8")
+    with pytest.raises(TribolabError) as refused:
+        tl.read(tmp_path / "a.csv")
+    told = refused.value.told("terminal")
+    assert "is it 'Kommutator-Maß;42,0;mm'?" in told and "is it 'Federkennwert;3,5;N'?" in told

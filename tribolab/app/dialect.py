@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from tribolab.draft.columns.follows import lacking, what_follows
+from tribolab.draft.columns.may_say import may_say
 from tribolab.draft.columns.stated_load import stated_number
 from tribolab.draft.dialect.answers import column_of, corrected, fits, written
 from tribolab.draft.dialect.draft import Draft, as_profile, holds_counts, holds_heights
@@ -97,11 +98,15 @@ def _ask_for_lengths(
     guessed = [value for value in follows.values if value.guess]
     if guessed or "the radius of the track" in lacks:
         guess = f"{stated_number(guessed[0]):.6g} {guessed[0].unit}" if guessed else _NONE
-        question = "what is the radius of the track, with its unit?"
+        said = may_say(layout, follows, "the radius")
+        question = "what is the radius of the track, with its unit"
+        question += f"; is it in {said}?" if said else "?"
         radius = _ask_amount(question, "radius", "m", guess, ask, say)
         understood = understood._replace(radius=radius)
     if "the load" in " ".join(lacking(understood, what_follows(layout, understood))):
-        question = "what is the load, with its unit, if it is one for all of the run?"
+        said = may_say(layout, follows, "the load")
+        question = "what is the load, with its unit, if it is one for all of the run"
+        question += f"; is it {said}?" if said else "?"
         load = _ask_amount(question, "load", "N", _NONE, ask, say)
         understood = understood._replace(load=load)
     return written(draft, layout, understood)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 _PIPED_WIDTH = 120
 _SHOWN, _HANDFUL = 10, 5
-_MOST_POINTS = 16  # of all curves: more do not help in a terminal
+_MOST_POINTS = 16  # more do not help in a terminal
 _NONE = "–"
 _COUNTS = ("load", "runs", "segments")
 
@@ -82,30 +82,28 @@ def outcome_table(outcome: Outcome) -> Table:
 
 
 def points_table(outcome: Outcome) -> Table | None:
-    """Return the friction at each speed, where a few curves have a few; None of more."""
+    """Return the friction at each speed of the only curve, if it has a few; else None."""
     done = [curve for curve in outcome.curves if curve.done]
-    rows = [(curve, row) for curve in done for row in _points(curve, outcome)]
+    rows = _points(done[0], outcome) if len(done) == 1 else ()
     known = [
-        (curve, row, speed)
-        for curve, row in rows
+        (row, speed)
+        for row in rows
         if isinstance(speed := row["sliding_speed_m_s"], float)
         and row["friction_coefficient"] is not None
     ]
     if not 1 < len(known) <= _MOST_POINTS:
         return None
     table = Table(box=None, pad_edge=False, header_style="bold")
-    unit, scale = ("m/s", 1.0) if max(speed for *_, speed in known) >= 1 else ("mm/s", 1e3)
-    headings = (f"speed ({unit})", "friction coefficient", "± 95 %", "scatter", "segments")
-    for heading in (*(("curve",) if len(done) > 1 else ()), *headings):
-        table.add_column(heading, justify="left" if heading == "curve" else "right")
-    for curve, row, speed in known:
-        first = (curve.name,) if len(done) > 1 else ()
+    unit, scale = ("m/s", 1.0) if max(speed for _, speed in known) >= 1 else ("mm/s", 1e3)
+    for heading in (f"speed ({unit})", "friction coefficient", "± 95 %", "scatter", "segments"):
+        table.add_column(heading, justify="right")
+    for row, speed in known:
         cells = [
             _NONE if (value := row.get(f"friction_coefficient{end}")) is None else f"{value:{form}}"
             for end, form in (("", ".4f"), ("_U95", ".2g"), ("_std", ".2g"))
         ]
         segments = str(int(row.get("segments") or 0))
-        table.add_row(*first, f"{scale * speed:.4g}", *cells, segments)
+        table.add_row(f"{scale * speed:.4g}", *cells, segments)
     return table
 
 

@@ -36,7 +36,7 @@ RUN_WORDS = (
     ),
     Word(
         "friction_force",
-        _words("fx ff fr ft freib ffric fq ftan ftang lf flat ffriction fs fh fy"),
+        _words("fx ff fr ft fric frict freib ffric fq ftan ftang lf flat ffriction fs fh fy"),
         _words(
             "frictionforce frictionalforce fricforce tangentialforce tangforce lateralforce "
             "horizontalforce horizontalload latforce "

@@ -46,6 +46,8 @@ def labelled(layout: Layout) -> list[DraftColumn]:
         if heading and heading.units is not None:
             name, unit = cell, row[place - 1].strip("[]() ") or None
             unit = None if unit in _PURE else unit
+            if unit and unit.isupper() and not is_unit(unit) and is_unit(unit.lower()):
+                said = unit = unit.lower()
         counted = unit is not None and is_count(unit)
         unit = None if counted else unit
         seen[name] = seen.get(name, 0) + 1

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tribolab.draft.columns.follows import Follows, lacking, unknown_of, what_follows
+from tribolab.draft.columns.may_say import may_say
 from tribolab.draft.columns.stated_zero import STILL
 from tribolab.draft.columns.turning import torque_of
 from tribolab.draft.columns.values import without_unit
@@ -151,7 +152,12 @@ def missing_words(draft: Drafted) -> list[str]:
         From `tribolab.draft.dialect.draft.draft_dialect`.
     """
     lacks = _lacks(draft)
-    return lacks + [f"the unit of '{line}', which is not used" for line in _unused(draft, lacks)]
+    unused = [f"the unit of '{line}', which is not used" for line in _unused(draft, lacks)]
+    if draft.layout is None or draft.understood is None:
+        return lacks + unused
+    follows = what_follows(draft.layout, draft.understood)
+    told = [(lack, may_say(draft.layout, follows, lack)) for lack in lacks]
+    return [lack + (f"; is it {line}?" if line else "") for lack, line in told] + unused
 
 
 def without_unit_and_missed(draft: Drafted) -> list[str]:

@@ -257,5 +257,5 @@ def _known(cells: Sequence[str]) -> int:
 
 def _are_units(cells: Sequence[str]) -> bool:
     filled = [cell.strip("[]() ") for cell in cells if cell][:_TELLING]
-    units = sum(1 for cell in filled if is_unit(cell) or cell == "-")
+    units = sum(1 for cell in filled if is_unit(cell) or is_unit(cell.lower()) or cell == "-")
     return units >= 0.6 * len(filled)

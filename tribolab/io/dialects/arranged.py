@@ -27,10 +27,21 @@ _OWN_CLOCK = re.compile(
     r"t|ts|ms|us|s|time\w*|zeit\w*|temps|tiempo|tempo|millis|micros", re.IGNORECASE
 )
 _FEWEST = 12  # rows that tell
+_MOST_ABOVE = 500  # lines above a table that are looked at
+_MOST_COLUMNS = 512  # that are listed, or of tables side by side
 _LISTED = re.compile(
     r"^\W{0,4}(?P<word>[^\W\d]{0,20})[\W_]{0,3}(?P<number>\d{1,2})"
     r"[\])]?\s{0,3}(?:[=:;,.)\t-]|\s{2,9})\s{0,3}(?P<name>[^\W\d].{0,80}?)\s*$"
 )
+_COLUMNS = re.compile(
+    r"\W*(?:(?:data|table) )?(?:columns?|cols?|channels?|fields?|spalten|kan[äa]le"
+    r"|colonnes?|columnas?|colunas?|colonne|kolommen|sloupce|kolumny|kolumner|sarakkeet|столбцы|列)"
+    r"(?: (?:are|is|sind|names|order))?\s?[:=]\s?(?P<names>[^\W\d].*)$",
+    re.IGNORECASE,
+)
+_COUNTED = re.compile(r"(?<![\w.,])(\d{1,2})\s?[=:.)]\s?([^\W\d][^;,|=]*?)\s*(?=[;,|]|$)")
+_NUMBER_BEHIND = re.compile(r"[\s_#.-]{0,3}\(?\d{1,3}\)?$")
+_LONGEST_NUMBER = 10  # characters of it
 _UNIT_BEHIND = re.compile(r"^(?P<name>.*?)\s*[;,\t|]\s*\"?\[?(?P<unit>[^\s;,\]\"]{1,12})\]?\"?$")
 
 
@@ -77,6 +88,7 @@ def listed_columns(lines: Sequence[str], width: int) -> list[str]:
     list of str
         Empty where no list counts as many from 0 or 1.
     """
+    lines = lines[-_MOST_ABOVE:] if width <= _MOST_COLUMNS else ()
     for start in range(len(lines) - width, -1, -1):
         said = [_LISTED.match(line[:_LONGEST]) for line in lines[start : start + width]]
         found = [match for match in said if match]
@@ -85,6 +97,28 @@ def listed_columns(lines: Sequence[str], width: int) -> list[str]:
         first = int(found[0]["number"])
         if first in (0, 1) and [int(m["number"]) for m in found] == [*range(first, first + width)]:
             return [_named(match["name"]) for match in found]
+    for line in reversed(lines):
+        if names := _in_one_line(line[:_LONGEST], width):
+            return names
+    return []
+
+
+def _in_one_line(line: str, width: int) -> list[str]:
+    """Return the names of columns that one line lists.
+
+    >>> _in_one_line("# Columns: time (s), friction (N)", 2)
+    ['time (s)', 'friction (N)']
+    >>> _in_one_line("1 = t [s]; 2 = Ft [N]", 2), _in_one_line("Load: 20 N, dry", 2)
+    (['t [s]', 'Ft [N]'], [])
+    """
+    counted = _COUNTED.findall(line)
+    if [int(number) for number, _ in counted] == [*range(1, width + 1)]:
+        return [name.strip() for _, name in counted]
+    said = _COLUMNS.match(line)
+    for mark in (";", ",", "|", "\t") if said else ():
+        names = [name.strip() for name in said["names"].rstrip(" .;,").split(mark)] if said else []
+        if len(names) == width and all(names):
+            return names
     return []
 
 
@@ -133,6 +167,7 @@ def groups_beside(cells: Sequence[str]) -> int:
     names = [_common(cell) for cell in cells]
     while names and not names[-1]:
         names.pop()
+    names = names if len(names) <= _MOST_COLUMNS else []
     for width in range(2, (len(names) + 1) // 2 + 1):
         own = names[:width]
         bare = own if own[-1] else own[:-1]
@@ -145,8 +180,17 @@ def groups_beside(cells: Sequence[str]) -> int:
 
 
 def _common(cell: str) -> str:
-    """Return a name without the number of its table."""
-    return re.sub(r"[\s_#.-]*\(?\d+\)?$", "", cell.strip().strip('"')).lower()
+    return _without_number(cell.strip().strip('"')).lower()
+
+
+def _without_number(name: str) -> str:
+    """Return a name without the number of its table.
+
+    >>> _without_number("Force (2)"), _without_number("t_1"), _without_number("F")
+    ('Force', 't', 'F')
+    """
+    number = _NUMBER_BEHIND.search(name[-_LONGEST_NUMBER:])
+    return name[: len(name) - len(number[0])] if number else name
 
 
 def _named(text: str) -> str:
@@ -166,7 +210,7 @@ def _headed(lines: list[str], delimiter: str) -> list[str]:
         if not names:
             return lines
         if delimiter == "whitespace":
-            names = [re.sub(r"\s+(?!\[)", "_", name).replace(" ", "") for name in names]
+            names = [re.sub(r"\s+(?![\[(])", "_", name).replace(" ", "") for name in names]
         else:
             names = [name.replace(delimiter, " ") for name in names]
         mark = "\t" if delimiter == "whitespace" else delimiter
@@ -238,7 +282,7 @@ def _below_each_other(lines: list[str], delimiter: str) -> list[str]:
     for group in range(groups):
         part = slice(group * width, (group + 1) * width)
         title = "".join(titles[part]) if above != lines[:place] else ""
-        head = [re.sub(r"[\s_#.-]*\(?\d+\)?$", "", name) for name in names[:width]]
+        head = [_without_number(name) for name in names[:width]]
         found += ["", title, mark.join(head)]
         rows = (row[part] for row in table if len(row) >= width)
         found += [mark.join(row) for row in rows if any(row)]

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from tribolab.errors import ReadError
 from tribolab.io import cures
+from tribolab.io.dialects.arranged import holds_names
 from tribolab.io.patterns import why_missing
 from tribolab.io.unpacked import ZIP, unpacked
 
@@ -90,11 +91,16 @@ def fits_format(format_of_file: str, format_of_dialect: str) -> bool:
     return format_of_file == format_of_dialect or (format_of_file, format_of_dialect) in _SAME
 
 
+_LINES = 100  # that tell whether each is a record of its own
+
+
 def _is_json(head: bytes) -> bool:
     """Whether a file is JSON as a whole, and no table below a line of it."""
     if not _JSON.match(head):
         return False
     text = head.decode("utf-8-sig", errors="replace").lstrip()
+    if holds_names(text.split("\n")[:_LINES]):
+        return False  # a record to a line
     try:
         end = json.JSONDecoder().raw_decode(text)[1]
     except (ValueError, RecursionError):  # it goes on beyond what is looked at, or too deep
