@@ -149,6 +149,16 @@ def test_tables_stand_side_by_side_under_the_same_names_only(cells, groups):
     assert groups_beside(cells) == groups
 
 
+def test_sensors_beside_each_other_are_no_tables(tmp_path):
+    rows = "\n".join(
+        f"{f:.4f},{20 + n % 3},{f + 0.5:.4f},{20 + n % 2}" for n, f in enumerate(FORCE)
+    )
+    head = "Rate: 10 Hz\nSpeed: 5 mm/s\nFx1 [N],Fz1 [N],Fx2 [N],Fz2 [N]\n"
+    (tmp_path / "two.csv").write_text(head + rows + "\n")
+    draft = draft_dialect(tmp_path / "two.csv")
+    assert draft.layout.arrangement == "below names" and draft.layout.width == 4
+
+
 def test_a_list_that_does_not_count_all_columns_names_none():
     lines = ["Channel 1: t;s", "Channel 2: F;N", "Channel 4: N;N"]
     assert listed_columns(lines, 3) == []

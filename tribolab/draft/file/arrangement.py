@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tribolab.draft.file.header import names_friction
+from tribolab.draft.file.header import names_any
 from tribolab.draft.file.marks import Block
 from tribolab.io.dialects.arranged import (
     Arrangement,
@@ -13,6 +13,7 @@ from tribolab.io.dialects.arranged import (
     listed_columns,
 )
 
+_FRICTION = ("friction_force", "friction_coefficient")
 _FIRST = 400  # lines that tell
 
 
@@ -47,7 +48,11 @@ def arranged_table(
     if heading is None or is_listed(lines[heading.names]):
         listed = block.width > 1 and listed_columns(lines[: block.start], block.width)
         return _anew(lines, "columns listed", delimiter) if listed else None
-    if groups_beside(heading.cells) > 1 and any(map(names_friction, heading.cells)):
+    groups = groups_beside(heading.cells)
+    own = heading.cells[: -(-len(heading.cells) // groups)]
+    # sensors of one record have no clock or way of their own
+    told = any(names_any(cell, "time", "position") for cell in own)
+    if groups > 1 and told and any(names_any(cell, *_FRICTION) for cell in own):
         return _anew(lines, "side by side", delimiter)
     return None
 

@@ -45,7 +45,6 @@ DIMENSIONS = (
     *("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Hz", "rad/s", "Pa s", "N/m"),
     *("m/s**2", "N m"),
 )
-_FRICTION = [word for word in RUN_WORDS if word.quantity.startswith("friction_")]
 _STEMS = frozenset(stem for word in RUN_WORDS for stem in word.stems)
 _SYMBOLS = frozenset(symbol for word in RUN_WORDS for symbol in word.symbols)
 # what else files hold and no quantity of ours is: areas, volumes, wear rates, power, charges
@@ -235,17 +234,19 @@ def _offset(one: tuple[int, int], other: tuple[int, int]) -> int:
     return min(abs(one[0] - other[0]), abs(one[1] - other[1]))
 
 
-def names_friction(cell: str) -> bool:
-    """Whether a name may be that of a friction force or coefficient.
+def names_any(cell: str, *quantities: str) -> bool:
+    """Whether a name may be that of one of some quantities.
 
-    >>> names_friction("FUERZA"), names_friction("z [um]")
+    >>> names_any("FUERZA", "friction_force"), names_any("z [um]", "friction_force", "time")
     (True, False)
     """
-    text = "".join(filter(str.isalnum, cell.lower()))
-    bare = "".join(filter(str.isalnum, re.split(r"[\[(]", cell)[0].lower()))
+    name = re.split(r"[\[(]", cell)[0].lower()
+    text = "".join(filter(str.isalnum, name))
+    bare = text.rstrip("0123456789")  # the number of a table or a sensor
     return any(
         bare in word.symbols or any(stem in text for stem in (*word.stems, *word.vague))
-        for word in _FRICTION
+        for word in RUN_WORDS
+        if word.quantity in quantities
     )
 
 
