@@ -1,20 +1,27 @@
 """What `tribolab run` prints of a few runs: friction at each speed, and what changed along them."""
 
+import tomllib
+
 import numpy as np
+import pytest
 from typer.testing import CliRunner
 
 from tribolab import cli
 
 
-def run_campaign(folder, force):
-    (folder / "raw").mkdir()
+def write_run(file, force):
+    file.parent.mkdir(exist_ok=True)
     speed = np.repeat([2.0, 5.0, 20.0], 300)
     rows = "\n".join(
         f"{n / 50:.2f},{v:.1f},{f:.4f},20"
         for n, (v, f) in enumerate(zip(speed, force, strict=True))
     )
     head = "Time [s],Speed [mm/s],Friction force [N],Normal force [N]\n"
-    (folder / "raw" / "disc.csv").write_text(head + rows + "\n")
+    file.write_text(head + rows + "\n")
+
+
+def run_campaign(folder, force):
+    write_run(folder / "raw" / "disc.csv", force)
     toml = '[campaign]\nname = "disc"\n[[run]]\nfiles = "*.csv"\nzero_uncertainty = "0 N"\n'
     (folder / "campaign.toml").write_text(toml)
     done = CliRunner().invoke(cli.app, ["run", str(folder / "campaign.toml")])
@@ -32,3 +39,53 @@ def test_friction_at_each_speed_of_a_few_is_printed(tmp_path):
     np.testing.assert_allclose([float(row[1]) for row in rows], [0.3, 0.25, 0.2], atol=1e-3)
     assert all(float(row[2]) < 0.002 and row[4] == "1" for row in rows)
     assert any(line.startswith("friction at each speed: ") for line in printed)
+
+
+def write_profile(file):
+    rng, k = np.random.default_rng(5), np.arange(1, 2001)
+    waves = (k > 8) / k**1.3 * np.exp(2j * np.pi * rng.random(k.size))  # self-affine, H = 0.8
+    heights = 300 * np.fft.irfft(np.append(0, waves))
+    rows = "\n".join(f"{z:.4f}" for z in heights)
+    file.write_text(f"Spacing: 0.5 um\nUnit of heights: um\n{rows}\n")
+
+
+@pytest.mark.slow
+def test_raw_files_need_no_campaign_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    force = np.repeat([6.0, 5.0, 4.0], 300) + 0.05 * np.random.default_rng(6).standard_normal(900)
+    write_run(tmp_path / "raw" / "disc 7.csv", force)
+    write_profile(tmp_path / "raw" / "roller.txt")
+    before = {path: path.read_bytes() for path in (tmp_path / "raw").iterdir()}
+    files = ["raw/disc 7.csv", "raw/roller.txt"]
+    done = CliRunner().invoke(cli.app, ["run", *files])
+    assert done.exit_code == 0, done.output
+    assert "campaign.toml is written" in done.output and "Rq (" in done.output
+    assert any(line.split()[:1] == ["20"] and "0.200" in line for line in done.output.splitlines())
+    said = tomllib.loads((tmp_path / "campaign.toml").read_text("utf-8"))
+    assert said["campaign"]["raw"] == "raw" and said["run"] == [{"files": ["disc 7.csv"]}]
+    assert said["surface"] == [{"name": "roller", "scans": "roller.txt"}]
+    again = CliRunner().invoke(cli.app, ["run", *files])
+    assert "is written" not in again.output and "1 unchanged since the last time" in again.output
+    assert {path: path.read_bytes() for path in (tmp_path / "raw").iterdir()} == before
+    # another file would need another campaign file: the one that stands here stays
+    other = CliRunner().invoke(cli.app, ["run", files[0]])
+    assert other.exit_code == 2, other.output
+    assert "stands here already" in other.output
+    assert tomllib.loads((tmp_path / "campaign.toml").read_text("utf-8")) == said
+
+
+def test_a_campaign_file_goes_with_nothing_else(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_run(tmp_path / "disc.csv", np.repeat([6.0, 5.0, 4.0], 300))
+    (tmp_path / "own.toml").write_text('[campaign]\nname = "own"\n')
+    done = CliRunner().invoke(cli.app, ["run", "disc.csv", "own.toml"])
+    assert done.exit_code == 2 and "own.toml: it is no raw file" in done.output, done.output
+    done = CliRunner().invoke(cli.app, ["run", "disc.csv", "gone.csv"])
+    assert done.exit_code == 2 and "gone.csv: there is no such file" in done.output, done.output
+    assert not (tmp_path / "campaign.toml").exists()
+
+
+def test_info_says_what_to_do_next(tmp_path):
+    write_run(tmp_path / "disc 7.csv", np.repeat([6.0, 5.0, 4.0], 300))
+    done = CliRunner().invoke(cli.app, ["info", str(tmp_path / "disc 7.csv")])
+    assert f"tribolab run '{tmp_path / 'disc 7.csv'}'" in done.output

@@ -77,7 +77,10 @@ def reproduce(
 
 def run(
     campaign: Annotated[
-        Path, typer.Argument(help="The campaign file (TOML), or the folder with campaign.toml.")
+        list[Path],
+        typer.Argument(
+            help="The campaign file (TOML), the folder with campaign.toml, or raw files."
+        ),
     ],
     output: Annotated[
         Path | None,
@@ -113,19 +116,26 @@ def run(
     """Analyse a campaign: friction of every run, measured curves, report.
 
     Raw files are only read. Results appear whole or not at all, and what did not change since
-    the last time is not done again.
+    the last time is not done again. Of raw files alone a campaign.toml is written here first, to
+    be completed with what is known of them.
 
         tribolab run campaign.toml
+
+        tribolab run raw/disc_07.csv raw/disc_08.csv
 
         tribolab run campaign.toml --output /tmp/results --jobs 4
     """
     with reported(debug, audience="campaign"):
         # late: starting stays quick
+        from tribolab.app.first_campaign import campaign_file
         from tribolab.app.run import run_campaign
 
+        file, written = campaign_file(campaign, Path())
+        if written:
+            say(f"{file} is written: complete it with what is known of the measurement")
         with progress_bars(quiet) as progress:
             outcome = run_campaign(
-                campaign,
+                file,
                 output=output,
                 jobs=jobs,
                 scheduler=scheduler,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import shlex
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -110,6 +111,9 @@ def info(
                 say(f"tribolab: {description.error}", to_stderr=True)
             else:
                 say("\n".join(description.lines))
+        if len(described) == 1 and not described[0].error:
+            file = shlex.quote(str(described[0].file))
+            say(f"next: tribolab check {file} (is it usable?), tribolab run {file} (its results)")
     raise typer.Exit(UNREADABLE if any(description.error for description in described) else 0)
 
 

@@ -6,6 +6,7 @@ copy a process safely, one without threads imports it once, while its parent goe
 
 from __future__ import annotations
 
+import contextlib
 import io
 import os
 import signal
@@ -50,6 +51,18 @@ class Nursery(ForkServer):
         paths = {"PYTHONPATH": os.pathsep.join(sys.path), "PYTHONSAFEPATH": "1"}
         with with_environment(ONE_THREAD | _NO_THREAD | paths):
             super().ensure_running()
+
+    def connect_to_new_process(self, fds: Sequence[int]) -> tuple[int, int]:
+        """Copy it; if it was killed meanwhile, another one."""
+        try:
+            return super().connect_to_new_process(fds)
+        except ConnectionError:
+            pid = self._forkserver_pid  # type: ignore[attr-defined]
+            if pid is not None:  # it may be about to end still: then nobody would start another
+                with contextlib.suppress(OSError):
+                    os.kill(pid, signal.SIGKILL)
+                    os.waitid(os.P_PID, pid, os.WEXITED | os.WNOWAIT)
+            return super().connect_to_new_process(fds)
 
     def close(self) -> None:
         """End it, when its copies have ended."""

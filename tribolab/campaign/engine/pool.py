@@ -24,6 +24,7 @@ _ENDING = tuple(getattr(signal, n) for n in ("SIGINT", "SIGTERM", "SIGHUP") if h
 
 
 _STOPPED = "stopped before it was done"
+_NONE_BEGAN = "no worker process could be started"
 
 
 _DIED = (
@@ -119,10 +120,15 @@ class LastingPool(Executor):
             pool = lane.pool()
             try:
                 inner = pool.submit(call)
-            except BrokenExecutor:  # died while idle: nothing was lost
+            except (BrokenExecutor, OSError, EOFError):  # died while idle: nothing was lost
                 lane.forget(pool)
                 pool = lane.pool()
-                inner = pool.submit(call)
+                try:
+                    inner = pool.submit(call)
+                except (BrokenExecutor, OSError, EOFError) as error:  # nobody would wait for it
+                    lane.forget(pool)
+                    future.set_exception(WorkerDied(f"{_NONE_BEGAN}: {error}"))
+                    continue
             lane.under_way[future] = call
             inner.add_done_callback(partial(self._ended, lane, pool, future))
 
