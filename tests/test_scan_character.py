@@ -99,3 +99,24 @@ def test_the_digit_of_a_gauge_that_stands_still_is_no_jump(hold):
         assert not (steps(height) == 3).any()
         height[12_000:] += 2e-5  # a jump that is one
         assert np.flatnonzero(steps(height) == 3).tolist() == [12_000]
+
+
+def rough(seed, wave=0.0, length=55e-6):
+    """A self-affine profile of rms height 0.4 um, and a wave of an amplitude [m] on it."""
+    rng, k, x = np.random.default_rng(seed), np.arange(1, 4801), 5e-7 * np.arange(9600)
+    parts = rng.normal(size=k.size) + 1j * rng.normal(size=k.size)
+    height = np.fft.irfft(np.append(0, parts * np.where(k < 9, 9.0, k) ** -1.3))
+    height = 4e-7 * height / height.std() + wave * np.sin(2 * np.pi * x / length)
+    return xr.Dataset({"height": (("scan", "x"), height[None])}, {"x": x})
+
+
+def told_of_waves(scans):
+    (row,) = (row for row in check_scans(scans).rows if row["check"] == "self_affine")
+    return row["status"], row["message"]
+
+
+def test_a_wave_that_repeats_in_a_rough_profile_is_told_and_no_other():
+    status, message = told_of_waves(rough(0, wave=8e-8))
+    assert status == "pass" and "a wave of 55" in message and "with 1.9 % of the mean" in message
+    plain = [told_of_waves(rough(seed))[1] for seed in range(12)]
+    assert set(plain) == {"no wave and no lay stands out"}

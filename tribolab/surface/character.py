@@ -11,6 +11,8 @@ _MOST_POINTS = 8192  # of a profile that are looked at: a wave that rules has so
 _PERIODS = 12  # fewer of them in a scan are no wave that repeats: chance makes six
 _LOBE = 2  # lines on either side that a Hann window spreads a wave over
 _RULES = 0.55  # share of the mean square height that one wave holds on no random surface
+_BESIDE, _NEAR = 24, 4  # lines on either side that tell what is usual, but for the nearest
+_CHANCE = 1e-6  # that one of all lines of random heights stands out so far
 _LAY = 0.4  # slopes along a lay over those across; chance makes 0.6 of smooth small maps
 
 
@@ -75,21 +77,66 @@ def dominant_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
     pitch
         Distance of neighbouring points [m].
     """
-    joined = -(-rows.shape[-1] // _MOST_POINTS)
-    number = rows.shape[-1] // joined
-    rows = rows[:, : joined * number].reshape(len(rows), number, joined).mean(axis=-1)
-    taper = np.hanning(number)
-    rows = rows - (rows @ taper / taper.sum())[:, None]
-    power = (np.abs(np.fft.rfft(rows * taper, axis=-1)) ** 2).mean(axis=0)
+    power, step = _power_of(rows, pitch)
     total = float(power.sum())
-    if number < 4 * _PERIODS or not total > 0:
+    if power.size < 2 * _PERIODS or not total > 0:
         return 0.0, float("nan")
     lobes = np.convolve(power, np.ones(2 * _LOBE + 1), mode="same")
     lobes[:_PERIODS] = 0.0
     line = _PERIODS + int(np.argmax(power[_PERIODS:]))
     near = np.arange(line - _LOBE, min(line + _LOBE + 1, power.size))
     middle = float(near @ power[near] / power[near].sum())
-    return min(float(lobes[line]) / total, 1.0), number * joined * pitch / middle
+    return min(float(lobes[line]) / total, 1.0), step / middle
+
+
+def repeating_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
+    """Return the share of the mean square height and the length [m] of a wave that stands out.
+
+    Parameters
+    ----------
+    rows
+        Heights [m] (row, x) without gaps.
+    pitch
+        Distance of neighbouring points [m].
+
+    Returns
+    -------
+    tuple
+        0 and NaN where none does: marks of a feed and chatter repeat, and roughness does not.
+
+    Notes
+    -----
+    A line of the spectrum, of at least 48 periods, over the medians on both sides. Of random heights a line exceeds their mean r times with the chance exp(-r); of all
+    lines together it is held below 1e-6.
+    """
+    power, length = _power_of(rows, pitch)
+    total = float(power.sum())
+    if power.size < 4 * _BESIDE or not total > 0:
+        return 0.0, float("nan")
+    inner = np.arange(2 * _BESIDE, power.size - _BESIDE)
+    windows = np.lib.stride_tricks.sliding_window_view(power, _BESIDE - _NEAR)
+    middle = np.median(windows, axis=1)
+    left, right = middle[inner - _BESIDE], middle[inner + _NEAR + 1]
+    # of a spectrum that falls their geometric mean; where it begins, the right alone
+    usual = np.where(left >= right, np.sqrt(left * right), right) / np.log(2)
+    ratio = power[inner] / np.where(usual > 0, usual, np.inf)
+    best = int(np.argmax(ratio))
+    line = int(inner[best])
+    if inner.size * np.exp(-ratio[best]) > _CHANCE:
+        return 0.0, float("nan")
+    near = slice(line - _LOBE, line + _LOBE + 1)
+    return float(power[near].sum()) / total, length / line
+
+
+def _power_of(rows: np.ndarray, pitch: float) -> tuple[np.ndarray, float]:
+    """Return the mean power of rows under a Hann window, and the length [m] of the first line."""
+    joined = -(-rows.shape[-1] // _MOST_POINTS)
+    number = rows.shape[-1] // joined
+    rows = rows[:, : joined * number].reshape(len(rows), number, joined).mean(axis=-1)
+    taper = np.hanning(number)
+    rows = rows - (rows @ taper / taper.sum())[:, None]
+    power = (np.abs(np.fft.rfft(rows * taper, axis=-1)) ** 2).mean(axis=0)
+    return power, number * joined * pitch
 
 
 def slope_ratio(height: np.ndarray, step_y: float, step_x: float) -> float:

@@ -287,7 +287,15 @@ def _self_affine(subject: ScanSubject, limits: Mapping[str, float]) -> list[Resu
     if not subject.usable or subject.level:
         return [Result("skipped", "height", "there is no roughness to look at")]
     if (why := subject.not_self_affine) == "":
-        return [Result("pass", "height", "no wave and no lay stands out", 0.0)]
+        share, length = subject.wave
+        if share < limits["told"]:
+            return [Result("pass", "height", "no wave and no lay stands out", 0.0)]
+        text = (
+            f"a wave of {1e6 * length:.3g} um repeats along the profile, with {100 * share:.2g} % "
+        )
+        text += "of the mean square height: marks of a feed, chatter or vibration; the spectrum of "
+        text += "contact mechanics spreads it over its neighbours"
+        return [Result("pass", "height", text, share, noted=True)]
     return [Result("suspect", "height", why, 1.0)]
 
 
@@ -368,7 +376,7 @@ _PROFILE_CHECKS = (
         "May a self-affine law carry the spectrum on to shorter waves?",
         "Trust the measured part of the spectrum; contact and adhesion that rest on the "
         "extrapolated part are not those of this surface.",
-        {},
+        {"told": Limit(0.003, "1", "a wave with less of the mean square height moves no result")},
         _self_affine,
     ),
 )

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError
-from tribolab.surface.character import why_not_self_affine
+from tribolab.surface.character import repeating_wave, why_not_self_affine
 from tribolab.surface.form import fill_dropouts, remove_form
 from tribolab.surface.level import level_rows
 from tribolab.surface.psd import psd_1d
@@ -131,6 +131,15 @@ class ScanSubject:
         if "form_removed" not in scans.attrs:
             scans = remove_form(scans, "polynomial")
         return why_not_self_affine(scans)
+
+    @cached_property
+    def wave(self) -> tuple[float, float]:
+        """Share of the mean square height and length [m] of a wave that repeats; of none 0."""
+        if self.is_map:
+            return 0.0, float("nan")
+        _, profiles = self.form
+        rows = np.stack([profile.height.values for profile in profiles])
+        return repeating_wave(rows, float(self.x[-1] - self.x[0]) / (self.x.size - 1))
 
     @cached_property
     def spectra(self) -> list[xr.Dataset]:
