@@ -241,6 +241,8 @@ def _run_said(file: Path, dialect: Path) -> str:
     said = f"{Count(len(time)):row|rows} over {float(time[-1]):.4g} s"
     if run.attrs.get("rows_are") == "points":
         said = f"{Count(len(time)):result|results}, each at one speed"
+    if not {"friction_force", "friction_coefficient", "shear_stress"} & set(run.variables):
+        return f"{said}; no friction coefficient yet: nothing holds the friction"
     try:
         segments = find_segments(run)
         friction = friction_coefficient(run, segments)
