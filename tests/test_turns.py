@@ -105,6 +105,13 @@ def test_the_sliding_speed_of_a_disc_is_that_of_its_turns(tmp_path, unit):
     np.testing.assert_allclose(run["sliding_velocity"], speeds, rtol=1e-14)
 
 
+def test_a_radius_in_words_is_told_how_a_value_is_named(tmp_path):
+    (tmp_path / "disc.toml").write_text(DIALECT.replace("21.5 mm", "shaft_diameter / 2"))
+    (tmp_path / "disc.csv").write_text("t [s],n [rpm],F [N]\n0,37,1\n1,74,1\n")
+    with pytest.raises(ConfigError, match="write radius_value = .* scale = 0.5"):
+        tl.read(tmp_path / "disc.csv", tmp_path / "disc.toml")
+
+
 def test_a_single_value_counts_as_its_quantity_does_and_one_of_no_quantity_asks(tmp_path):
     value = '[[value]]\nname = "{}"\npattern = "n=(.*)"\nunit = "1/min"\n{}'
     file, dialect = tmp_path / "disc.csv", tmp_path / "disc.toml"

@@ -6,6 +6,7 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
+from tribolab.errors import shown
 from tribolab.io.dialects.checked_text import Strict
 from tribolab.units import positive
 
@@ -43,7 +44,13 @@ class Speed(Strict):
                 "belong together"
             )
         for key, unit in (("radius", "m"), ("stroke", "m"), ("frequency", "Hz")):
-            if text := getattr(self, key):
+            text = getattr(self, key)
+            if text and text.strip()[:1].isalpha():
+                raise ValueError(
+                    f"speed.{key}: '{shown(text)}' is no number with a unit; write {key}_value = "
+                    '"(name of the [[value]])", which may have scale = 0.5 for half of it'
+                )
+            if text:
                 positive(text, unit, f"speed.{key}")
         return self
 
