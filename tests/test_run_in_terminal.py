@@ -3,6 +3,7 @@
 import tomllib
 
 import numpy as np
+import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
@@ -89,3 +90,41 @@ def test_info_says_what_to_do_next(tmp_path):
     write_run(tmp_path / "disc 7.csv", np.repeat([6.0, 5.0, 4.0], 300))
     done = CliRunner().invoke(cli.app, ["info", str(tmp_path / "disc 7.csv")])
     assert f"tribolab run '{tmp_path / 'disc 7.csv'}'" in done.output
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("load", ["Normal force (N)", "Set load (N)"])
+@pytest.mark.parametrize("points", [True, False])
+def test_a_recorded_coefficient_under_two_loads_makes_two_curves(
+    tmp_path, monkeypatch, load, points
+):
+    monkeypatch.chdir(tmp_path)
+    rng, each = np.random.default_rng(8), 1 if points else 200
+    speeds = np.repeat(np.tile(np.geomspace(1, 100, 15).round(2), 2), each)
+    loads = np.repeat([3.0, 6.0], 15 * each)
+    mu = (0.4 - 0.05 * (loads > 5)) * (1 - 0.1 * np.log10(speeds))
+    mu = mu + 0.002 * rng.standard_normal(mu.size)
+    rows = [f"{v},{m:.5f},{w}" for v, m, w in zip(speeds, mu, loads, strict=True)]
+    head = f"Speed (mm/s),Friction coefficient,{load}"
+    if not points:
+        head, rows = f"Time (s),{head}", [f"{n / 10},{row}" for n, row in enumerate(rows)]
+    rows = [head, *rows]
+    (tmp_path / "cell.csv").write_text("\n".join(rows) + "\n")
+    done = CliRunner().invoke(cli.app, ["run", "cell.csv"])
+    assert done.exit_code == 0, done.output
+    table = pd.read_csv(tmp_path / "results" / "tables" / "stribeck.csv")
+    found = table.groupby("nominal_normal_force_N").friction_coefficient.mean()
+    assert found.index.tolist() == [3.0, 6.0]
+    mean = 1 - 0.1 * np.log10(speeds).mean()
+    np.testing.assert_allclose(found.values, [0.4 * mean, 0.35 * mean], rtol=0.01)
+
+
+@pytest.mark.parametrize("pattern", ["**/*.csv", "*/*.csv"])
+def test_results_lie_where_no_pattern_of_raw_files_reaches(tmp_path, pattern):
+    write_run(tmp_path / "disc.csv", np.repeat([6.0, 5.0, 4.0], 300))
+    write_run(tmp_path / "more" / "disc.csv", np.repeat([6.0, 5.0, 4.0], 300))
+    toml = f'[campaign]\nname = "disc"\nraw = "."\n[[run]]\nfiles = "{pattern}"\n'
+    (tmp_path / "campaign.toml").write_text(toml)
+    done = CliRunner().invoke(cli.app, ["run", str(tmp_path / "campaign.toml")])
+    assert "apart from the raw files" in done.output
+    assert not (tmp_path / "results").exists()

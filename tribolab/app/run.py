@@ -135,10 +135,19 @@ def run_campaign(
     return outcome.read_at(place, Catalogue.of(place), foreign)
 
 
+def _reached(campaign: Campaign, raw: Path, place: Path) -> bool:
+    """Whether a pattern of raw files could mean one in the results folder, the next time."""
+    depth = len(place.relative_to(raw).parts)
+    patterns = [p for entry in campaign.run for p in entry.files]
+    patterns += [p for surface in campaign.surface for p in surface.scans or ()]
+    wild = [pattern for pattern in patterns if not (raw / pattern).is_file()]
+    return depth == 0 or any("**" in p or len(Path(p).parts) > depth for p in wild)
+
+
 def _keep_apart(campaign: Campaign, place: Path) -> None:
     """Refuse a results folder that holds, or lies in, what the campaign reads."""
     raw = campaign.raw.resolve()
-    if place.is_relative_to(raw):
+    if place.is_relative_to(raw) and _reached(campaign, raw, place):
         raise ConfigError(
             f"{place}: results must lie apart from the raw files; choose another folder with "
             "--output"

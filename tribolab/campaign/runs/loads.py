@@ -49,6 +49,7 @@ def load_of(stated: float | None, signals: xr.Dataset, friction: xr.Dataset) -> 
         return RunLoad(None, "", None)
     force = friction["normal_force"].values
     lasts = friction["trimmed_stop"].values - friction["trimmed_start"].values
+    lasts = lasts if (lasts > 0).any() else np.ones(force.size)  # of results each counts as much
     good = np.isfinite(force) & (force > 0) & (lasts > 0)
     if not good.any():
         return RunLoad(None, "", None)

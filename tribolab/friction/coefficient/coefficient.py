@@ -386,6 +386,12 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr
         "trend": turn * _column(estimates, "trend"),
         "trend_change": turn * _column(estimates, "trend_change"),
     }
+    load = next((name for name in ("normal_force", "set_normal_force") if name in run), None)
+    if load is not None:  # under which the instrument found it
+        normal = run[load].values
+        loads = estimates_of((time[s], normal[s]) for s in one_by_one(parts))
+        for end, of in (("", "mean"), ("_std", "std"), ("_sem", "sem")):
+            data[f"normal_force{end}"] = _column(loads, of)
     few = np.array([_remark(estimate) for estimate in estimates], dtype=object)
     remarks = np.where(_column(estimates, "samples") == 0, "no samples that are numbers", few)
     return _table(data, remarks.astype(object), zero, run, both.middle)
