@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from tribolab.app.ranges import range_of
 from tribolab.app.scan_info import areal_lines, roughness_lines, stated_lines
 from tribolab.campaign.engine.stage import Stage
-from tribolab.draft.dialect.questions import how_to_keep
 from tribolab.draft.on_the_fly import holds_run, read_run
 from tribolab.errors import ReadError, TribolabError, shown, told
 from tribolab.io.companion import CompanionFacts, describe_companion
@@ -171,6 +170,9 @@ def _attribute_lines(attrs: Mapping[str, Any], path: str | Path) -> list[str]:
     if float(told.get("x_unevenness", 1.0)) < _ROUNDING:
         del told["x_unevenness"]
     if "to_keep_it" in told:  # to be typed where `info` was
+        # late: starting stays quick
+        from tribolab.draft.dialect.questions import how_to_keep
+
         told["to_keep_it"] = how_to_keep(str(path))
     return [f"  {key}: {shown(_said(value), _LONGEST)}" for key, value in told.items()]
 
