@@ -7,7 +7,7 @@ import pytest
 
 import tribolab as tl
 from tribolab.io.file_facts import file_facts
-from tribolab.io.runs import read_run
+from tribolab.io.runs import read_log
 
 REAL = {
     "actuator_friction_CC0/Circle_1bar.csv": ("pneumatic_actuator", 7139),
@@ -151,7 +151,7 @@ def test_tdms_marks_divide_the_run_into_steps(shared_data):
 
 def test_a_run_is_described_without_hiding_what_was_not_used(shared_data):
     path = shared_data / "cetr_umt2_MIT/HT-2n-6-4 2_001.csv"
-    told = file_facts(read_run(path, pair=False), path)
+    told = file_facts(read_log(path), path)
     assert told["instrument"] == "cetr_umt2" and told["rows"] == 217
     assert told["columns"]["normal_force"]["label"] == "Fz [gf]"
     assert "COF" in told["not_used"]

@@ -7,27 +7,26 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tribolab.app.quick import importing, plain_arrays_only
 from tribolab.app.ranges import range_of
 from tribolab.app.scan_info import areal_lines, roughness_lines, stated_lines
 from tribolab.campaign.engine.stage import Stage
-from tribolab.draft.on_the_fly import holds_run, read_run
+from tribolab.draft.on_the_fly import holds_run, read_log
 from tribolab.errors import ReadError, TribolabError, shown, told
-from tribolab.io.companion import CompanionFacts, describe_companion
+from tribolab.io.companion import CompanionFacts, describe_companion, has_companion
 from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.dialects.signature import peek
 from tribolab.io.file_facts import FileFacts, file_facts
 from tribolab.io.force_ratio import doubt_about, doubt_about_coefficient
 from tribolab.io.kinds import kind_of
 from tribolab.io.missing import missing_of
-from tribolab.io.runs import read_run as known_run
-from tribolab.io.scans.extent import doubt_about_heights
-from tribolab.io.scans.formats import NotSaidError
-from tribolab.io.scans.results import read_tester_results
+from tribolab.io.runs import read_log as known_log
+from tribolab.io.signals import Signals
 from tribolab.quantities import quantity
 from tribolab.words import Count, explain
 
 if TYPE_CHECKING:
-    import xarray as xr
+    import numpy as np
 
 _PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
 _PROVENANCE |= {"drafted_layout"}
@@ -50,11 +49,20 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
     kind = kind_of(path, instrument)
     drafted = kind == "unknown" and holds_run(path)
     if drafted or kind == "run":
-        run = read_run(path, instrument, pair=False)
-        facts = file_facts(run, path, instrument)
-        told = [] if drafted else companion_lines(describe_companion(path, instrument, run))
-        return run_lines(facts) + (told or missing_lines(facts)) + _doubts(run)
+        log = read_log(path, instrument)
+        facts = file_facts(log, path, instrument)
+        told = [] if drafted else _of_companion(path, instrument, log)
+        return run_lines(facts) + (told or missing_lines(facts)) + _doubts(log.columns)
+    with importing():
+        plain_arrays_only()
     return _results_lines(path) if kind == "results" else _scan_lines(path, instrument)
+
+
+def _of_companion(path: Path, instrument: str | Path | None, log: Signals) -> list[str]:
+    if has_companion(path, instrument):  # which wants datasets
+        with importing():
+            plain_arrays_only()
+    return companion_lines(describe_companion(path, instrument, log))
 
 
 @dataclass(frozen=True)
@@ -102,6 +110,7 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
     """Read the traces of a scan; what turns out to be none is told about as a run would be."""
     # late: starting stays quick
     from tribolab.draft.scans import read_traces
+    from tribolab.io.scans.formats import NotSaidError
 
     try:
         return read_traces(path, instrument)
@@ -110,7 +119,7 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
             # a map or profile, but for its units
             bare = isinstance(error, NotSaidError) and not holds_run(path, by_name=False)
             try:
-                known_run(path) if bare else read_run(path)  # says what is missing
+                known_log(path) if bare else read_log(path)  # says what is missing
             except ReadError as as_run:
                 if bare:
                     what = f"{as_run.what}; taken for a profile or map, {error.what}"
@@ -127,6 +136,9 @@ def _is_text(path: Path) -> bool:
 
 
 def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
+    # late: starting stays quick
+    from tribolab.io.scans.extent import doubt_about_heights
+
     traces = list(read_scan(path, instrument).values())
     scan = traces[0]
     name = str(scan.attrs.get("instrument", ""))
@@ -157,6 +169,9 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
 
 
 def _results_lines(path: Path) -> list[str]:
+    # late: starting stays quick
+    from tribolab.io.scans.results import read_tester_results
+
     results = read_tester_results(path)
     lines = [f"{path}: results of a roughness tester, no profile"]
     for name, values in results.data_vars.items():
@@ -240,14 +255,13 @@ def missing_lines(facts: FileFacts) -> list[str]:
     return [f"  missing: {lack}" for lack in missing_of(names)]
 
 
-def _doubts(run: xr.Dataset) -> list[str]:
+def _doubts(signals: Mapping[str, np.ndarray]) -> list[str]:
     """Say what cannot be: forces whose ratio is no friction coefficient, or such a coefficient."""
-    if "friction_coefficient" in run and "friction_force" not in run:
-        doubt = doubt_about_coefficient(run["friction_coefficient"].to_numpy())
-        return [f"  doubtful: {doubt}"] if doubt else []
-    if not {"friction_force", "normal_force"} <= set(run.data_vars):
-        return []
-    doubt = doubt_about(run["friction_force"].to_numpy(), run["normal_force"].to_numpy())
+    doubt = ""
+    if "friction_coefficient" in signals and "friction_force" not in signals:
+        doubt = doubt_about_coefficient(signals["friction_coefficient"])
+    elif {"friction_force", "normal_force"} <= set(signals):
+        doubt = doubt_about(signals["friction_force"], signals["normal_force"])
     return [f"  doubtful: {doubt}"] if doubt else []
 
 

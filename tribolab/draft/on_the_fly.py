@@ -7,14 +7,15 @@ from __future__ import annotations
 
 import functools
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Unpack
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, Unpack
 
 from tribolab.aliases import PathLike
 from tribolab.errors import LacksError, ReadError
 from tribolab.io import cures, runs
 from tribolab.io.dialects.find import Dialect, Instrument, UnknownFileError
+from tribolab.io.signals import Signals
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -22,6 +23,17 @@ if TYPE_CHECKING:
     from tribolab.draft.dialect.draft import Draft
 
 DRAFTED = "drafted from the file"
+
+
+class _Described(Protocol):
+    """A run in any form: it has attributes."""
+
+    @property
+    def attrs(self) -> dict[Any, Any]: ...
+
+
+_Run = TypeVar("_Run", bound=_Described)
+_Reader = Callable[[Instrument | None, bool], _Run]
 
 
 def read_run(
@@ -51,9 +63,24 @@ def read_run(
         If there is no such instrument.
     """
     paths = [Path(path)] if isinstance(path, PathLike) else [Path(name) for name in path]
+
+    def read(dialect: Instrument | None, drafted: bool) -> xr.Dataset:
+        how: runs.Reading = {**said, "pair": False} if drafted else said
+        return runs.read_run(path, dialect, **how)
+
+    return _by_any(paths, instrument, read)
+
+
+def read_log(path: PathLike, instrument: Instrument | None = None) -> Signals:
+    """Read one raw file by itself, as arrays; see `read_run` and `tribolab.io.runs.read_log`."""
+    return _by_any([Path(path)], instrument, lambda dialect, _: runs.read_log(path, dialect))
+
+
+def _by_any(paths: list[Path], instrument: Instrument | None, read: _Reader[_Run]) -> _Run:
+    """Read by the dialect that is known, else by one that is drafted from the file."""
     told: dict[str, str] = {}
     try:
-        return runs.read_run(path, instrument, **said)
+        return read(instrument, False)
     except UnknownFileError as error:
         if Path(error.where) != paths[0]:
             raise  # some files of the run are a known instrument's
@@ -63,9 +90,9 @@ def read_run(
         if other is None:
             raise
         dialect, told = other, {"known_layout_lacks": str(error.what)}
-    alone: runs.Reading = {**said, "pair": False}
-    run = runs.read_run(path, dialect, **alone)
-    return run.assign_attrs(_told(paths[0]) | told)
+    run = read(dialect, True)
+    run.attrs.update(_told(paths[0]) | told)
+    return run
 
 
 def holds_run(path: Path, *, by_name: bool = True) -> bool:

@@ -6,13 +6,14 @@ from pathlib import Path
 from typing import TypedDict
 
 import numpy as np
-import xarray as xr
 
 from tribolab.errors import ReadError
 from tribolab.io.dialects.find import load_dialect, recognise
+from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import peek
 from tribolab.io.logs import companion_name, companion_path
-from tribolab.io.runs import read_run, with_companion
+from tribolab.io.runs import read_log, with_companion
+from tribolab.io.signals import Signals, dataset_of
 
 
 class CompanionFacts(TypedDict, total=False):
@@ -28,7 +29,7 @@ class CompanionFacts(TypedDict, total=False):
 
 
 def describe_companion(
-    path: str | Path, instrument: str | Path | None = None, run: xr.Dataset | None = None
+    path: str | Path, instrument: str | Path | None = None, log: Signals | None = None
 ) -> CompanionFacts:
     """Say what was found of a raw file's companion log, and how the clocks were matched.
 
@@ -38,8 +39,8 @@ def describe_companion(
         The main log.
     instrument
         As for `tribolab.read`.
-    run
-        The main log alone, where it is read already.
+    log
+        Signals of the main log alone, where they are read already.
 
     Returns
     -------
@@ -50,16 +51,14 @@ def describe_companion(
         ``ways`` (name of a way to tell the shift -> what it tells).
     """
     try:
-        if peek(Path(path)).format == "netcdf":
-            return {}
-        dialect = load_dialect(instrument) if instrument else recognise(Path(path))
-        if dialect.pair is None or Path(path).stem.endswith(dialect.pair.other):
+        dialect = _pairing(Path(path), instrument)
+        if dialect is None:
             return {}
         other = companion_path(Path(path), dialect)
         if other is None or not other.is_file():
             return {"missing": companion_name(Path(path), dialect)}
-        run = read_run(path, instrument, pair=False) if run is None else run
-        attrs = with_companion(run, other, dialect).attrs
+        log = read_log(path, instrument) if log is None else log
+        attrs = with_companion(dataset_of(log), other, dialect).attrs
     except ReadError as error:
         return {"refused": error.told("terminal")}
     told: CompanionFacts = {
@@ -74,3 +73,22 @@ def describe_companion(
             "clock_shift_refused", "the friction force does not follow the motion"
         )
     return told
+
+
+def has_companion(path: Path, instrument: str | Path | None = None) -> bool:
+    """Whether the second log that an instrument writes lies beside a raw file."""
+    try:
+        dialect = _pairing(path, instrument)
+    except ReadError:
+        return False
+    other = None if dialect is None else companion_path(path, dialect)
+    return other is not None and other.is_file()
+
+
+def _pairing(path: Path, instrument: str | Path | None) -> Dialect | None:
+    """Return the dialect of a main log that has a second one."""
+    if peek(path).format == "netcdf":
+        return None
+    dialect = load_dialect(instrument) if instrument else recognise(path)
+    alone = dialect.pair is None or path.stem.endswith(dialect.pair.other)
+    return None if alone else dialect

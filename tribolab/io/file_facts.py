@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import TypedDict
 
 import numpy as np
-import xarray as xr
 
 from tribolab.aliases import PathLike
 from tribolab.io.dialects.find import Instrument, known_dialects, load_dialect
 from tribolab.io.row_counts import ROW_ATTRIBUTES, rows_in_words
+from tribolab.io.signals import Signals
 from tribolab.medians import median
+from tribolab.quantities import QUANTITIES
 
 
 class ColumnFacts(TypedDict):
@@ -40,13 +41,13 @@ class FileFacts(TypedDict):
     metadata: dict[str, object]
 
 
-def file_facts(run: xr.Dataset, path: PathLike, instrument: Instrument | None = None) -> FileFacts:
+def file_facts(log: Signals, path: PathLike, instrument: Instrument | None = None) -> FileFacts:
     """Say what was understood of one raw file.
 
     Parameters
     ----------
-    run
-        The run as read from it alone (time).
+    log
+        The signals as read from it alone.
     path, instrument
         What it was read from, and as which instrument's if that was said.
 
@@ -58,25 +59,25 @@ def file_facts(run: xr.Dataset, path: PathLike, instrument: Instrument | None = 
         ``longest_interval_s``, ``steps``, ``left_out`` (rows of the file that are not in the run,
         and why; empty if all are) and ``metadata``.
     """
-    time = run["time"].to_numpy()
+    time, signals, attrs = log
     gaps = np.diff(time)
-    labels = run.attrs.get("columns_used", {})
+    labels = attrs.get("columns_used", {})
     columns: dict[str, ColumnFacts] = {
-        str(name): {
-            "label": labels.get(str(name), ""),
-            "unit": run[name].attrs.get("units", ""),
-            "minimum": float(run[name].min()),
-            "maximum": float(run[name].max()),
+        name: {
+            "label": labels.get(name, ""),
+            "unit": QUANTITIES[name].unit if name in QUANTITIES else "",
+            "minimum": float(np.fmin.reduce(values.ravel())),
+            "maximum": float(np.fmax.reduce(values.ravel())),
         }
-        for name in run.data_vars
-        if run[name].dtype.kind in "fiu"
+        for name, values in signals.items()
+        if values.dtype.kind in "fiu"
     }
-    name = str(run.attrs.get("instrument", ""))
+    name = str(attrs.get("instrument", ""))
     known = known_dialects()
     title = load_dialect(instrument or name).title if instrument or name in known else ""
     known_attrs = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
     known_attrs |= {"columns_not_used", "columns_used", "instrument", *ROW_ATTRIBUTES}
-    unused = str(run.attrs.get("columns_not_used", ""))
+    unused = str(attrs.get("columns_not_used", ""))
     return {
         "file": str(path),
         "instrument": name,
@@ -84,11 +85,11 @@ def file_facts(run: xr.Dataset, path: PathLike, instrument: Instrument | None = 
         "columns": columns,
         "not_used": unused.split("; ") if unused else [],
         "rows": len(time),
-        "are_points": run.attrs.get("rows_are") == "points",
+        "are_points": attrs.get("rows_are") == "points",
         "duration_s": float(time[-1]) if len(time) else 0.0,
         "interval_s": float(median(gaps)) if len(gaps) else None,
         "longest_interval_s": float(gaps.max()) if len(gaps) else None,
-        "steps": int(np.unique(run["step"]).size) if "step" in run else None,
-        "left_out": rows_in_words(run.attrs),
-        "metadata": {k: v for k, v in run.attrs.items() if k not in known_attrs},
+        "steps": int(np.unique(signals["step"]).size) if "step" in signals else None,
+        "left_out": rows_in_words(attrs),
+        "metadata": {k: v for k, v in attrs.items() if k not in known_attrs},
     }

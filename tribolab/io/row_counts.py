@@ -10,14 +10,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from typing import Any
-
-import xarray as xr
+from typing import TYPE_CHECKING, Any
 
 from tribolab.io.clocks.clock import Mended
 from tribolab.io.content.model import Content
 from tribolab.io.dialects.model import Dialect
 from tribolab.untyped import Json
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 ROW_ATTRIBUTES = ("rows_in_file", "rows_left_out", "rows_left_out_why", "rows_left_out_meant")
 

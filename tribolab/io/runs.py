@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TypedDict
-
-import xarray as xr
+from typing import TYPE_CHECKING, TypedDict
 
 from tribolab.aliases import PathLike
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
-from tribolab.io.assemble import LogDialects, assemble
 from tribolab.io.dialects.find import Dialect, Instrument, is_scan, load_dialect, recognise
 from tribolab.io.dialects.signature import peek
+from tribolab.io.gather import LogDialects, gather
 from tribolab.io.logs import companion_name, companion_path
 from tribolab.io.row_counts import with_companion_rows
+from tribolab.io.signals import Signals, dataset_of, signals_of
 from tribolab.units import positive, to_si
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 class Reading(TypedDict, total=False):
@@ -60,21 +62,13 @@ def read_run(
     if not paths:
         raise ReadError("no file is given")
     shift = None if clock_shift is None else to_si(clock_shift, "s", "clock_shift")
-    other = instrument is not None and load_dialect(instrument).format in ("hdf5", "binary")
-    if len(paths) == 1 and not other and (first := peek(paths[0])).format == "netcdf":
-        # late: starting stays quick
-        from tribolab.io.own_run import read_own_run
-
-        return read_own_run(paths[0], first.path)
+    if len(paths) == 1 and (own := _own_run(paths[0], instrument)) is not None:
+        return own
     dialects = _dialects(paths, instrument)
-    for file, dialect in zip(paths, dialects, strict=True):
-        if is_scan(dialect):
-            what = f"this looks like a profile ({shown(dialect.title)})"
-            raise ReadError(what, where=file, cure=cures.PROFILE)
     main, companions = _sorted_out(paths, dialects)
     if pair and len(main) == 1 and not companions:
         companions = _companion(*main[0])
-    run = assemble(main, zero)
+    run = dataset_of(gather(main, zero))
     mass = main[0][1].moving_mass if moving_mass is None else moving_mass
     if len(companions) > 1:
         raise ReadError(f"{companions[0][0]}: more than one companion log is given")
@@ -83,6 +77,31 @@ def read_run(
     if pair and (expected := companion_name(*main[0])):
         run.attrs["companion_missing"] = expected
     return _without_inertia(run, mass)
+
+
+def read_log(path: PathLike, instrument: Instrument | None = None) -> Signals:
+    """Read one raw file by itself, as arrays: `read_run` without a companion, at once.
+
+    Parameters
+    ----------
+    path, instrument
+        As for `read_run`.
+
+    Raises
+    ------
+    ReadError
+        If the file cannot be read; the message says what, where and how to mend it.
+    ConfigError
+        If there is no such instrument.
+    """
+    file = Path(path)
+    if (own := _own_run(file, instrument)) is not None:
+        return signals_of(own)
+    (dialect,) = _dialects([file], instrument)
+    signals = gather([(file, dialect)])
+    if dialect.moving_mass is None:
+        return signals
+    return signals_of(_without_inertia(dataset_of(signals), dialect.moving_mass))
 
 
 def with_companion(run: xr.Dataset, path: Path, dialect: Dialect) -> xr.Dataset:
@@ -110,7 +129,7 @@ def _joined(run: xr.Dataset, companions: LogDialects, shift: float | None) -> xr
     # late: starting stays quick
     from tribolab.io.clocks.merge import merge
 
-    motion = assemble(companions)
+    motion = dataset_of(gather(companions))
     return with_companion_rows(merge(run, motion, shift), run, motion)
 
 
@@ -127,16 +146,34 @@ def _without_inertia(run: xr.Dataset, mass: str | float | None) -> xr.Dataset:
     )
 
 
+def _own_run(path: Path, instrument: Instrument | None) -> xr.Dataset | None:
+    """Return a run that stands in a netCDF file; None of any other file."""
+    if instrument is not None and load_dialect(instrument).format in ("hdf5", "binary"):
+        return None
+    if (first := peek(path)).format != "netcdf":
+        return None
+    # late: starting stays quick
+    from tribolab.io.own_run import read_own_run
+
+    return read_own_run(path, first.path)
+
+
 def _dialects(paths: list[Path], instrument: Instrument | None) -> list[Dialect]:
     """Dialect of each file; a companion log has its own, told by the ending of its name."""
     if instrument is None:
-        return [recognise(path) for path in paths]
-    dialect = load_dialect(instrument)
-    rule = dialect.pair
-    return [
-        load_dialect(rule.instrument) if rule and path.stem.endswith(rule.other) else dialect
-        for path in paths
-    ]
+        dialects = [recognise(path) for path in paths]
+    else:
+        dialect = load_dialect(instrument)
+        rule = dialect.pair
+        dialects = [
+            load_dialect(rule.instrument) if rule and path.stem.endswith(rule.other) else dialect
+            for path in paths
+        ]
+    for file, dialect in zip(paths, dialects, strict=True):
+        if is_scan(dialect):
+            what = f"this looks like a profile ({shown(dialect.title)})"
+            raise ReadError(what, where=file, cure=cures.PROFILE)
+    return dialects
 
 
 def _sorted_out(paths: list[Path], dialects: list[Dialect]) -> tuple[LogDialects, LogDialects]:

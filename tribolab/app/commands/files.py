@@ -96,10 +96,9 @@ def info(
     """
     with reported(debug):
         # late: starting stays quick
-        from tribolab.app.quick import importing, plain_arrays_only
+        from tribolab.app.quick import importing
 
         with importing():
-            plain_arrays_only()
             # late: starting stays quick
             from tribolab.app.file_info import Descriptions
             from tribolab.campaign.engine.stage import perform

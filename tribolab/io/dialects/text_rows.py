@@ -62,7 +62,7 @@ class RowParser:
     def _numbers(self, name: str, cells: pa.Array) -> np.ndarray:
         """Cells as numbers; dates and times as seconds."""
         if name not in self._dates:
-            return cells.to_numpy(zero_copy_only=False)
+            return floats_of(cells)
         form = str(self._dialect.time.format)
         missing = {*_NO_VALUE, *self._convert["null_values"]}
         try:
@@ -181,3 +181,22 @@ def _is_number(cell: str, decimal: str) -> bool:
     except ValueError:
         return False
     return True
+
+
+def floats_of(cells: pa.Array) -> np.ndarray:
+    """Return an arrow array of float64 as it lies in memory, with NaN where there is no value.
+
+    Arrow's own way loads pandas, which takes longer than a file of 5 MB to read.
+
+    >>> floats_of(pa.array([0.5, None, 2.5])[1:]).tolist()
+    [nan, 2.5]
+    """
+    if not len(cells):
+        return np.empty(0)
+    known, numbers = cells.buffers()
+    rows = slice(cells.offset, cells.offset + len(cells))
+    values = np.frombuffer(numbers, dtype=float)[rows]
+    if not cells.null_count:
+        return values
+    bits = np.unpackbits(np.frombuffer(known, dtype=np.uint8), bitorder="little")[rows]
+    return np.where(bits.astype(bool), values, np.nan)

@@ -1,4 +1,4 @@
-"""One run of the contents of its files: their columns in a row, on one clock, in SI."""
+"""Signals of a run from the contents of its files: columns in a row, on one clock, in SI."""
 
 from __future__ import annotations
 
@@ -6,9 +6,6 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
-import xarray as xr
-from xarray.indexes import PandasIndex
 
 from tribolab.errors import ReadError, shown
 from tribolab.io.clocks.clock import join_clocks, mended_time, recorded_at, set_time
@@ -26,20 +23,33 @@ from tribolab.io.dialects.formula import names_in, parse_formula
 from tribolab.io.dialects.signature import peek
 from tribolab.io.forces_agree import keep_forces_that_agree
 from tribolab.io.row_counts import row_attributes
+from tribolab.io.signals import Signals
 from tribolab.io.speed import add_speed, keep_settings
 from tribolab.io.two_rates import sampled_together
 from tribolab.io.zero_reading import take_zeros
 from tribolab.pieces import chosen, concatenated
 from tribolab.provenance import CONVENTIONS, as_text, history_line
 from tribolab.quantities import QUANTITIES
-from tribolab.stamping import stamp
 from tribolab.untyped import Json
 
 LogDialects = list[tuple[Path, Dialect]]
 
 
-def assemble(logs: LogDialects, zero: str | None = None) -> xr.Dataset:
-    """Make one run of the files of one instrument."""
+def gather(logs: LogDialects, zero: str | None = None) -> Signals:
+    """Make the signals of one run of the files of one instrument.
+
+    Parameters
+    ----------
+    logs
+        The files, each with its dialect.
+    zero
+        From where the zero of the friction signals is read, before what the dialect says.
+
+    Raises
+    ------
+    ReadError
+        If a file is not what its dialect says, or they do not make one run.
+    """
     logs = [(path, as_written(path, dialect)) for path, dialect in logs]
     dialect = logs[0][1]
     size = sum(peek(path).size for path, _ in logs) if len(logs) > 1 else 0
@@ -88,12 +98,7 @@ def assemble(logs: LogDialects, zero: str | None = None) -> xr.Dataset:
     attrs |= row_attributes(rows, contents, mended, dialect) | together
     if "joined" in joined:
         attrs["clock_joined"] = str(joined["joined"])
-    data = xr.Dataset(
-        {name: ("time", values) for name, values in columns.items()},
-        coords=xr.Coordinates.from_xindex(PandasIndex(pd.Index(time, copy=False), "time")),
-        attrs=attrs,
-    )
-    return stamp(data)
+    return Signals(time, columns, attrs)
 
 
 def _blank(path: Path, dialect: Dialect) -> dict[str, np.ndarray]:
