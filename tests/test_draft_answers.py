@@ -42,7 +42,7 @@ def command(*words, typed=None):
 def test_answers_make_a_dialect_that_reads_the_file_without_mending(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     file = write(tmp_path / "odd.csv", log())
-    typed = "1\nms\n2\nmN\nA3\nN\nyes\n\n-\n"
+    typed = "1\nms\n2\nmN\nA3\nN\nyes\n\n"
     done = command("dialect", file.name, "--ask", typed=typed)
     assert (done.exit_code, done.stderr) == (0, "")
     assert re.search(r"tried:  odd\.csv: 400 rows over 39\.9 s, 1 segment, friction coefficient "
@@ -58,11 +58,11 @@ def test_answers_make_a_dialect_that_reads_the_file_without_mending(tmp_path, mo
 def test_a_wrong_answer_is_told_and_asked_for_again(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     file = write(tmp_path / "odd.csv", log())
-    typed = "9\n1\nkg\n1\nms\n2\nmN\n3\nN\n\n\n\n"
+    typed = "9\n1\nkg\n1\nms\n2\nmN\n3\nN\n\n\n"
     done = command("dialect", file.name, "--ask", typed=typed)
     assert done.exit_code == 0, done.stdout
     assert "there is no column '9'" in done.stdout
-    assert "column 1 needs a unit of time, e.g. 's'" in done.stdout
+    assert "'kg' is no unit of time, e.g. 's', nor an amount of it" in done.stdout
     assert tl.read(file, "odd.toml").sizes["time"] == 400
 
 
@@ -149,15 +149,40 @@ def test_heights_without_positions_are_read_once_their_pitch_is_said(tmp_path, m
     np.testing.assert_allclose(scan.height[0], 1e-9 * heights, atol=1e-13)
 
 
-def test_a_torque_is_no_force_and_a_force_without_a_load_is_tried(tmp_path, monkeypatch):
-    """A column in a unit of something else was taken in the unit that the question proposed."""
+def test_a_torque_with_a_radius_is_a_force_and_a_load_may_be_a_weight(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     file = tmp_path / "ring.txt"
+    rows = "".join(f"{i / 10:.1f},{4 + i % 3},60,{100 + i % 2}\n" for i in range(400))
+    file.write_text("Time [s],M9 [mN m],Disc [rpm],Q [V]\n" + rows)
+    done = command("dialect", file.name, "--ask", typed="\n2\n2 kg\n\n10 mm\n")
+    assert done.exit_code == 0, done.output
+    run = tl.read(file, "ring.toml")
+    np.testing.assert_allclose(run.friction_force[:3], [0.4, 0.5, 0.6])
+    np.testing.assert_allclose(run.normal_force, 2 * 9.80665)
+    np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * 0.01)
+
+
+def test_volts_and_counts_are_forces_by_what_one_is_less_what_stands_without_contact(
+    tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "bridge.txt"
+    rows = "".join(f"{0.5 + 0.1 * (i > 99):.2f},{1000 + 500 * (i > 99)}\n" for i in range(400))
+    file.write_text("A [V],B\n" + rows)
+    typed = "100 Hz\n1\nmV\n1\n8,0 N/V\nfirst 0.9 s\n2\n0.02 N\n1000\n6 mm/min\n"
+    done = command("dialect", file.name, "--ask", typed=typed)
+    assert done.exit_code == 0, done.output
+    assert "column 1 is in V: how much is 1 V? (e.g. 8.2 N/V)" in done.output
+    run = tl.read(file, "bridge.toml")
+    np.testing.assert_allclose(run.friction_force[[0, -1]], [0, 0.8], atol=1e-12)
+    np.testing.assert_allclose(run.normal_force[[0, -1]], [0, 10])
+    assert float(run.time[-1]) == pytest.approx(3.99)
+    np.testing.assert_allclose(run.set_speed, 1e-4)
+
+
+def test_a_force_without_a_load_is_tried(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     rows = "".join(f"{i / 10:.1f},{4 + i % 3},{i}\n" for i in range(200))
-    file.write_text("Time [s],Torque [mN m],Ways [um]\n" + rows)
-    done = command("dialect", file.name, "--ask", typed="\n2\n0\n0\n0\n0\n0\n")
-    assert "measures no friction force" in done.output, done.output
-    assert "it is a torque; type -, and then the radius" in done.output
     file = tmp_path / "bare.txt"
     file.write_text("Time [s],Fx [N],Position [um]\n" + rows)
     done = command("dialect", file.name, "--no-ask")
@@ -178,7 +203,7 @@ def test_an_answer_stays_where_another_is_not_known_and_may_have_a_comma(tmp_pat
     file = tmp_path / "ring.txt"
     rows = "".join(f"{i / 10:.1f},{4 + i % 3},60\n" for i in range(200))
     file.write_text("Time [s],Torque [mN m],Rotation [rpm]\n" + rows)
-    done = command("dialect", file.name, "--ask", typed="\n-\n-\n-\n-\n-\n-\n46,0 N\n")
+    done = command("dialect", file.name, "--ask", typed="\n\n46,0 N\n\n-\n")
     assert "formula = \"'46.0 N'\"" in Path("ring.toml").read_text("utf-8"), done.output
     assert "a torque: with the radius at which it acts" in done.output
 

@@ -21,6 +21,8 @@ class DraftColumn(NamedTuple):
     has to say; `file_unit` what the file says. Only a column with ``used`` is read.
     `group` is that of a TDMS channel. A converter's counts are `counted`: what one is worth is to
     be said.
+    One of its numbers is `scale` units, and `zero` says from where its zero is read; `said` is what
+    a person called it that is no quantity: a torque.
     `options` is what it may be instead, where something is guessed; `form` that of its dates;
     `epoch` the moment that a column of time counts from.
     """
@@ -43,6 +45,10 @@ class DraftColumn(NamedTuple):
     epoch: str = ""
     group: str = ""
     counted: bool = False
+    scale: float = 1.0
+    offset: float = 0.0
+    zero: str = ""
+    said: Literal["", "torque"] = ""
 
     @property
     def read_unit(self) -> str | None:
@@ -54,8 +60,8 @@ class Understood(NamedTuple):
     """Columns of a table, what kind of file it is, and their numbers (rows, columns) as written.
 
     With `period` the column of time held intervals; its numbers are their sums by now.
-    `radius` and `load` (with their units) and `drive` are what a person said of a track, of what
-    presses, and of what drives it.
+    `radius`, `load`, `speed` and `rate` (with their units) and `drive` are what a person said of a
+    track, of what presses, of how fast it slides, of the rows, and of what drives it.
     Where no column is time, `rate_pattern` finds the sample rate before the table, if it is there;
     where no column is a position, `pitch_pattern` the distance of a profile's points,
     `length_pattern` its length, or `pitch` is what is known of the distance. With `points` each row
@@ -74,6 +80,8 @@ class Understood(NamedTuple):
     rate_unit: str = ""
     radius: str = ""
     load: str = ""
+    speed: str = ""
+    rate: str = ""
     drive: str = ""
     zero: str = ""
     pitch_pattern: str = ""

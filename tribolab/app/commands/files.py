@@ -161,7 +161,8 @@ def dialect(
     """
     with reported(debug):
         # late: starting stays quick
-        from tribolab.app.dialect import ask_about, try_on
+        from tribolab.app.asking import ask_about
+        from tribolab.app.dialect import try_on
         from tribolab.app.terminal import console
         from tribolab.draft.dialect.draft import (
             as_profile,
@@ -180,7 +181,7 @@ def dialect(
         if ask or (ask is None and sys.stdin.isatty() and sys.stdout.isatty()):
             before = draft
             draft = ask_about(draft, _prompt, say)
-            if draft is not before:
+            if draft.toml != before.toml:
                 print_signals(draft, console())
         if holds_heights(draft) and not draft.toml:
             check_target(target, force=force)

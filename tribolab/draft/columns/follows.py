@@ -108,13 +108,17 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
         values += programme_of(layout)
     track = _track(values, understood, rim=on_rim(layout))
     result = Follows()
-    timed = "time" in names or understood.rate_pattern
+    timed = "time" in names or understood.rate_pattern or understood.rate
     # rows that are counted as seconds make no speed of a position
     says_speed = _SAYS_SPEED if timed else _SAYS_SPEED - {"position"}
     # what is set, and a way of whatever, give way to what turns; what is set to what drives, too
     turned = "rotation_speed" in names and bool(track.formula)
     says_speed = says_speed - ({"set_speed", "position"} if turned else {"set_speed"})
-    if not names & says_speed:
+    if understood.speed:
+        about = "it was said that it slides so fast all along"
+        result = _and(result, DraftedFormula("set_speed", f"'{understood.speed}'", about))
+        result = result._replace(speed=SpeedBy("set speed"))
+    elif not names & says_speed:
         result = _with_speed(result, names, values, understood, words_said(layout), track)
     torque = torque_of(understood.columns)
     if not names & SAYS_FRICTION and torque is not None:

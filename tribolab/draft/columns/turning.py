@@ -30,11 +30,16 @@ _WHOLE = 0.5  # share of whole numbers from which a count goes on by whole turns
 def torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
     """Return the one column that holds a torque by its name, else by its unit; with its unit.
 
+    What a person called so goes before both.
+
     Parameters
     ----------
     columns
         The columns as they are understood.
     """
+    said = [column for column in columns if column.said == "torque"]
+    if said:
+        return said[0]
     units = [_name_and_unit(column)[1] for column in columns if not column.used]
     told = sum(bool(_TORQUE_UNIT.fullmatch(unit)) for unit in units) == 1
     named = _only_column(columns, _TORQUE.search, "N m")

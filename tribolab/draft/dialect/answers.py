@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, TypeVar
 from tribolab.draft.columns.clock import find_clock
 from tribolab.draft.dialect.drafted import Drafted
 from tribolab.draft.dialect.toml import dialect_toml
+from tribolab.draft.dialect.worth import TORQUE, Worth, si_unit_of
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn, Understood
 from tribolab.errors import ReadError
@@ -32,7 +33,13 @@ def fits(unit: str, name: str) -> bool:
 
 
 def corrected(
-    draft: AnyDraft, name: str, place: int | None, unit: str | None = None, sign: int = 1
+    draft: AnyDraft,
+    name: str,
+    place: int | None,
+    unit: str | None = None,
+    sign: int = 1,
+    *,
+    scale: float = 1.0,
 ) -> AnyDraft:
     """Return a draft in which a person has said which column holds a quantity.
 
@@ -41,13 +48,15 @@ def corrected(
     draft
         From `tribolab.draft.dialect.draft.draft_dialect`.
     name
-        The quantity.
+        The quantity; or "torque", which a radius makes a friction force.
     place
         Number of its column, from 1; None if no column holds it.
     unit
         What its numbers are written in; None if the file says it.
     sign
         -1 if it is counted the other way round.
+    scale
+        How many units one of its numbers is.
 
     Raises
     ------
@@ -62,12 +71,19 @@ def corrected(
     columns = []
     for column in before.columns:
         if column.place == place:
-            columns.append(_said(column, name, unit, sign, draft))
-        elif column.quantity == name:
+            columns.append(_said(column, Worth(name, unit or "", scale), sign, draft))
+        elif name in (column.quantity, column.said):
             note = "not this quantity, as was said"
             columns.append(
                 column._replace(
-                    quantity=None, used=False, guessed=(), fill_in="", unit=None, sign=1, note=note
+                    quantity=None,
+                    used=False,
+                    guessed=(),
+                    fill_in="",
+                    unit=None,
+                    sign=1,
+                    note=note,
+                    said="",
                 )
             )
         else:
@@ -86,21 +102,23 @@ def written(draft: AnyDraft, layout: Layout, understood: Understood) -> AnyDraft
     return draft._replace(kind=understood.kind, understood=understood, toml=toml)
 
 
-def _said(
-    column: DraftColumn, name: str, unit: str | None, sign: int, draft: Drafted
-) -> DraftColumn:
+def _said(column: DraftColumn, worth: Worth, sign: int, draft: Drafted) -> DraftColumn:
     """Return a column as a person describes it: nothing of it is a guess."""
-    si_unit = quantity(name).unit
+    name, unit, scale = worth
+    torque = name == TORQUE
     read = unit or column.file_unit
-    if not (read and fits(read, name)) and si_unit != "1":
+    si_unit = si_unit_of(name)
+    if not (read and (converts(read, si_unit) if torque else fits(read, name))) and si_unit != "1":
         raise ReadError(
             f"column {column.place} needs a unit of {name}, e.g. '{si_unit}'", where=draft.path
         )
     return column._replace(
-        quantity=name,
-        unit=unit if unit != column.file_unit or column.name is None else None,
+        quantity=None if torque else name,
+        unit=unit if unit and (unit != column.file_unit or column.name is None) else None,
         sign=sign,
-        used=True,
+        scale=scale,
+        used=not torque,
+        said=TORQUE if torque else "",
         guessed=(),
         options=(),
         fill_in="",

@@ -103,5 +103,6 @@ class Drafted(NamedTuple):
             if column.used and column.quantity:
                 scale, offset = unit_conversion(column.read_unit or "", column.quantity)
                 values = self.understood.numbers[:number, column.place - 1]
-                rows[column.quantity] = column.sign * scale * values + offset
+                values = column.sign * (column.scale * values + column.offset)
+                rows[column.quantity] = scale * values + offset
         return rows

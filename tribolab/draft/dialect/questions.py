@@ -63,7 +63,7 @@ def questions(draft: Drafted) -> list[Question]:
         asked.append(Question("lines of text", "the table goes on below", ("it ends there",)))
     if (
         understood.kind == "run"
-        and not (understood.rate_pattern or understood.points)
+        and not (understood.rate_pattern or understood.rate or understood.points)
         and not any(c.used and c.quantity == "time" for c in understood.columns)
     ):
         asked.append(Question("time", "rows are counted as seconds", _RATE))

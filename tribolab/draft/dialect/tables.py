@@ -58,8 +58,14 @@ def column_table(column: DraftColumn, values: np.ndarray) -> str:
         lines.append(f"unit = {quoted(column.unit)}")
     elif column.file_unit is None and not column.used and not _has_no_unit(column):
         lines.append('unit = "?"')
+    if column.scale != 1:
+        lines.append(f"scale = {column.scale:.12g}")
+    if column.offset:
+        lines.append(f"offset = {column.offset:.12g}")
     if column.sign < 0:
         lines.append("sign = -1")
+    if column.zero:
+        lines.append(f"zero = {quoted(column.zero)}")
     if column.optional:
         lines.append("optional = true")
     about = [f"# guessed: {comment(guess)}" for guess in column.guessed]

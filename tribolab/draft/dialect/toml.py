@@ -236,6 +236,8 @@ def _time_table(understood: Understood) -> str:
         lines += ['source = "rate"', f"rate_pattern = {quoted_pattern(understood.rate_pattern)}"]
         if understood.rate_unit != "Hz":
             lines.append(f"rate_unit = {quoted(understood.rate_unit)}")
+    elif not timed and understood.rate:
+        lines += ['source = "rate"', f"rate = {quoted(understood.rate)}"]
     elif not timed:
         lines.append('source = "none"')
         if understood.kind == "run" and not understood.points:

@@ -1,0 +1,354 @@
+"""What `tribolab dialect` asks: which column is what, and what no column holds."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+import numpy as np
+
+from tribolab.draft.columns.follows import lacking, what_follows
+from tribolab.draft.columns.may_say import may_say
+from tribolab.draft.columns.stated_load import stated_number
+from tribolab.draft.columns.turning import torque_of
+from tribolab.draft.dialect.answers import column_of, corrected, fits, written
+from tribolab.draft.dialect.draft import Draft, as_profile, holds_counts, holds_heights
+from tribolab.draft.dialect.worth import TORQUE, Worth, worth_of
+from tribolab.draft.file.header import converts, is_unit
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.model import DraftColumn, Understood, other_units
+from tribolab.draft.vocabulary import WEIGHTS
+from tribolab.errors import TribolabError, shown
+from tribolab.io.zero_reading import parse_zero
+from tribolab.quantities import quantity
+from tribolab.units import positive
+
+_NONE = "-"
+_COMMA = re.compile(r"^(\d+),(\d{1,2}|\d{4,})(?=\D)")  # no mark of thousands
+_WEIGHT = re.compile(rf"^(\s*[\d.]+(?:[eE][+-]?\d+)?\s*)({'|'.join(WEIGHTS)})\s*$")
+_NUMBER = re.compile(r"^[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?$")
+_FRICTION = ("friction_force", TORQUE, "friction_coefficient", "shear_stress")
+_LOAD = ("normal_force", "normal_stress")
+_MOTION = ("sliding_velocity", "rotation_speed", "position")
+_SCAN = {"x": "the coordinate along the profile", "height": "the height"}
+
+
+class Ask(Protocol):
+    """How a question is asked: it returns what was typed, or the default."""
+
+    def __call__(self, question: str, default: str) -> str:
+        """Ask."""
+
+
+Say = Callable[[str], None]
+
+
+def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
+    """Ask a person which column is what, in which unit, and what no column holds.
+
+    Parameters
+    ----------
+    draft
+        What was understood; its guesses are the defaults.
+    ask
+        How to ask.
+    say
+        How to say why an answer cannot be taken; it is then asked for again.
+
+    Returns
+    -------
+    Draft
+        The draft with the answers in it, which are no guesses any more.
+    """
+    if draft.layout is None or draft.understood is None:
+        return draft
+    if draft.kind == "table" and (holds_heights(draft) or holds_counts(draft)):
+        return _ask_for_pitch(draft, ask, say)
+    if draft.kind == "scan":
+        for name, words in _SCAN.items():
+            question = f"which column is {words}? (its number; {_NONE} for none)"
+            draft = _ask_for(draft, (name,), question, ask, say)
+        return draft
+    question = f"which column is the time? (its number; or the rate of the rows: 100 Hz; {_NONE})"
+    draft = _ask_for(draft, ("time",), question, ask, say, amount="rate")
+    question = "which column is the friction force (or its torque, or a friction coefficient)?"
+    draft = _ask_for(draft, _FRICTION, f"{question} (its number; {_NONE} for none)", ask, say)
+    if column_of(draft, "normal_force") or not column_of(draft, "friction_coefficient"):
+        question = "which column is the normal force? (its number; or the load itself: 20 N; "
+        draft = _ask_for(draft, _LOAD, f"{question}{_NONE} for none)", ask, say, amount="load")
+    question = "which column tells how it moves, by speed, rotation or position? (its number; or "
+    question += f"the sliding speed itself: 6 mm/min; {_NONE} for none)"
+    if not _told_by_settings(draft):
+        draft = _ask_for(draft, _MOTION, question, ask, say, amount="speed")
+    return _ask_for_motion(draft, ask, say) if draft.kind == "run" else draft
+
+
+def _told_by_settings(draft: Draft) -> bool:
+    """Whether what is stated tells the speed, and no column had to be guessed for it."""
+    if draft.layout is None or draft.understood is None or _held(draft, _MOTION) is not None:
+        return False
+    speed = what_follows(draft.layout, draft.understood).speed
+    return speed is not None and speed.source != "none"
+
+
+def _ask_for_motion(draft: Draft, ask: Ask, say: Say) -> Draft:
+    """Ask for what the speed follows from, if that is all that is missing."""
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return draft
+    speed = what_follows(layout, understood).speed
+    if speed is not None and speed.guess and speed.source == "stroke":
+        crank = f"does a crank drive it ({_NONE}: its speed is constant both ways)?"
+        drive = "constant speed" if ask(crank, "yes").strip() == _NONE else "crank"
+        understood = understood._replace(drive=drive)
+    return _ask_for_lengths(draft, layout, understood, ask, say)
+
+
+def _ask_for_lengths(
+    draft: Draft, layout: Layout, understood: Understood, ask: Ask, say: Say
+) -> Draft:
+    """Ask for the radius of the track, where the file does not say it, and for a stated zero."""
+    follows = what_follows(layout, understood)
+    lacks = " ".join(lacking(understood, follows))
+    if follows.zero_in_doubt is not None:
+        text = follows.zero_in_doubt.text
+        taken = ask(f"was '{text}' taken off the signal ({_NONE}: it is still in it)?", "yes")
+        understood = understood._replace(zero="in it" if taken.strip() == _NONE else "taken off")
+        follows = what_follows(layout, understood)
+    guessed = [value for value in follows.values if value.guess]
+    if guessed or "the radius of the track" in lacks:
+        guess = f"{stated_number(guessed[0]):.6g} {guessed[0].unit}" if guessed else _NONE
+        said = may_say(layout, follows, "the radius")
+        question = "what is the radius of the track, with its unit"
+        question += f"; is it in {said}?" if said else "?"
+        radius = _ask_amount(question, "radius", "m", guess, ask, say)
+        understood = understood._replace(radius=radius)
+    lacks = " ".join(lacking(understood, what_follows(layout, understood)))
+    if "the load" in lacks and (said := may_say(layout, follows, "the load")):
+        question = (
+            f"what is the load, with its unit, if it is one for all of the run; is it {said}?"
+        )
+        load = _ask_amount(question, "load", "N", _NONE, ask, say)
+        understood = understood._replace(load=load)
+    return written(draft, layout, understood)
+
+
+def _ask_for_pitch(draft: Draft, ask: Ask, say: Say) -> Draft:
+    """Ask how far heights lie apart that stand in a file without positions."""
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return draft
+    pitch = ""
+    if not understood.pitched:
+        question = "how far do neighbouring heights lie apart, with its unit?"
+        pitch = _ask_amount(question, "pitch", "m", _NONE, ask, say)
+    if not (pitch or understood.pitched):
+        return draft
+    if not holds_counts(draft):
+        guess = _unit_guess(understood.columns[0], "height")
+        unit = ask(f"in which unit does column {understood.columns[0].place} write it?", guess)
+        return as_profile(draft, pitch, unit.strip())
+    question = "how much is one count, with its unit (e.g. 0.5 nm)?"
+    count = _ask_amount(question, "count", "m", _NONE, ask, say)
+    return as_profile(draft, pitch, count) if count else draft
+
+
+def _ask_amount(question: str, name: str, si_unit: str, guess: str, ask: Ask, say: Say) -> str:
+    """Ask for a number with a unit until it is one; "" if it is not known."""
+    while True:
+        typed = ask(f"{question} ({_NONE}: not known)", guess).strip()
+        if typed == _NONE:
+            return ""
+        try:
+            return _amount(typed, name, si_unit)
+        except TribolabError as error:
+            say(str(error.what))
+
+
+def _amount(typed: str, name: str, si_unit: str) -> str:
+    """Return a number with a unit as a dialect takes it; a weight is the force of it."""
+    text = _COMMA.sub(r"\1.\2", typed)  # as the file may write it
+    if si_unit == "N" and (weight := _WEIGHT.match(text)):
+        text = f"{weight[1].strip()} {WEIGHTS[weight[2]]}"
+    positive(text, si_unit, f"the {name}")
+    return text
+
+
+_AMOUNTS = {"load": ("N",), "speed": ("m/s",), "rate": ("Hz", "s")}
+
+
+def _ask_for(
+    draft: Draft, names: Sequence[str], question: str, ask: Ask, say: Say, amount: str = ""
+) -> Draft:
+    """Ask which column holds one of several quantities, or for an amount in place of a column."""
+    held = _held(draft, names)
+    said = _said_amount(draft, amount)
+    while True:
+        typed = ask(question, str(held.place) if held else said or _NONE).strip()
+        if typed == _NONE:
+            return draft if held is None else _without(draft, names)
+        try:
+            if amount and (text := _as_amount(typed, amount)):
+                return _with_amount(_without(draft, names), amount, text)
+            column = _column(draft, typed)
+            if held and column.place == held.place and not held.guessed and not held.fill_in:
+                return draft
+            known = held if held and column.place == held.place else None
+            worth = _ask_worth(column, names, known, ask)
+            sign = _ask_sign(draft, column, worth.name, ask)
+            draft = _without(draft, names, but=worth.name)
+            draft = corrected(
+                draft, worth.name, column.place, worth.unit or None, sign, scale=worth.scale
+            )
+            return _ask_zero(draft, column, worth, ask, say)
+        except TribolabError as error:
+            say(str(error.what))
+
+
+def _held(draft: Draft, names: Sequence[str]) -> DraftColumn | None:
+    """Return the column that holds the first of the quantities that any holds."""
+    columns = draft.understood.columns if draft.understood else ()
+    for name in names:
+        held = torque_of(columns) if name == TORQUE else column_of(draft, name)
+        if held is not None:
+            return held
+    return None
+
+
+def _without(draft: Draft, names: Sequence[str], but: str = "") -> Draft:
+    """Return a draft in which no column holds any of the quantities, but one."""
+    for name in names:
+        if name != but and (name == TORQUE or column_of(draft, name) is not None):
+            draft = corrected(draft, name, None)
+    return draft
+
+
+def _as_amount(typed: str, amount: str) -> str:
+    """Return what was typed as a number with a unit; "" if it names a column."""
+    if _NUMBER.match(typed) or not typed[0].isdigit():
+        return ""
+    units = _AMOUNTS[amount]
+    for unit in units:
+        try:
+            return _amount(typed, amount, unit)
+        except TribolabError:
+            if unit == units[-1]:
+                raise
+    return ""
+
+
+def _said_amount(draft: Draft, amount: str) -> str:
+    understood = draft.understood
+    if understood is None:
+        return ""
+    return {"load": understood.load, "speed": understood.speed, "rate": understood.rate}.get(
+        amount, ""
+    )
+
+
+def _with_amount(draft: Draft, amount: str, text: str) -> Draft:
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return draft
+    if amount == "load":
+        understood = understood._replace(load=text)
+    elif amount == "speed":
+        understood = understood._replace(speed=text)
+    else:
+        understood = understood._replace(rate=text)
+    return written(draft, layout, understood)
+
+
+def _column(draft: Draft, typed: str) -> DraftColumn:
+    """Return the column that was named by its number or by its name."""
+    columns = draft.understood.columns if draft.understood else ()
+    for column in columns:
+        if typed.strip() in (str(column.place), column.label, column.name):
+            return column
+    raise TribolabError(f"there is no column '{shown(typed)}': type a number from 1 on")
+
+
+def _ask_worth(
+    column: DraftColumn, names: Sequence[str], held: DraftColumn | None, ask: Ask
+) -> Worth:
+    """Ask what one number of a column is; where the file says its unit and that fits, it is that.
+
+    Of a column that is known to hold a quantity, only the unit is asked.
+    """
+    name = next((name for name in names if held is not None and held.quantity == name), "")
+    asked = (name,) if name else tuple(names)
+    said = column.file_unit or ""
+    for wanted in asked if said else ():
+        if _fits(said, wanted) and (column.unit is None or wanted == TORQUE):
+            return Worth(wanted, "")
+    if name and quantity(name).unit == "1":
+        return Worth(name, "")
+    foreign = bool(said) and is_unit(said) and not any(_fits(said, wanted) for wanted in asked)
+    question = f"in which unit does column {column.place} write it?"
+    guess = _unit_guess(column, asked[0])
+    if foreign:
+        question = f"column {column.place} is in {shown(said)}: how much is 1 {shown(said)}?"
+        question += f" (e.g. 8.2 {guess}/{shown(said)})"
+        guess = "?"
+    elif "friction_force" in names or "normal_force" in names:
+        question = question.removesuffix("?") + ", or what is one count of it (0.5 mN)?"
+    typed = ask(question, guess).strip()
+    worth = worth_of(typed, asked, column.file_unit)
+    if foreign and not typed[:1].isdigit() and typed[:1] not in "+-.":
+        raise TribolabError(f"say how much of {shown(typed, 20)} 1 {shown(said)} is")
+    return worth
+
+
+def _fits(unit: str, name: str) -> bool:
+    return converts(unit, "N m") if name == TORQUE else fits(unit, name)
+
+
+def _unit_guess(column: DraftColumn, name: str) -> str:
+    if column.unit and fits(column.unit, name):
+        return column.unit
+    return other_units("height" if name == "height" else quantity(name).unit)[0]
+
+
+def _ask_sign(draft: Draft, column: DraftColumn, name: str, ask: Ask) -> int:
+    """Ask how a force is counted whose numbers are on one side of zero only, the wrong one."""
+    if name != "normal_force" or draft.understood is None:
+        return 1
+    values = draft.understood.numbers[:, column.place - 1]
+    values = values[np.isfinite(values)]
+    if not values.size or not values.min() < 0:
+        return 1
+    counted = f"{values.min():.4g} to {values.max():.4g}"
+    guess = "yes" if column.sign < 0 or values.max() <= 0 else "no"
+    typed = ask(f"column {column.place} goes from {counted}: is pressing negative?", guess)
+    return -1 if typed.strip().lower().startswith(("y", "j", "o", "s")) else 1
+
+
+def _ask_zero(draft: Draft, column: DraftColumn, worth: Worth, ask: Ask, say: Say) -> Draft:
+    """Ask what a column reads without contact, if its numbers are a converter's."""
+    layout, understood = draft.layout, draft.understood
+    forces = {*_FRICTION, *_LOAD}
+    if worth.scale == 1 or worth.name not in forces or layout is None or understood is None:
+        return draft
+    question = f"what does column {column.place} read without contact, in its own numbers? "
+    question += f"(or where it is so: first 5 s; {_NONE}: zero)"
+    while True:
+        typed = ask(question, _NONE).strip()
+        if typed == _NONE:
+            return draft
+        offset, zero = 0.0, ""
+        if _NUMBER.match(typed):
+            offset = -worth.scale * float(typed.replace(",", "."))
+            break
+        try:
+            parse_zero(typed)
+        except TribolabError as error:
+            say(str(error.what))
+            continue
+        zero = typed
+        break
+    columns = [
+        c._replace(offset=offset, zero=zero) if c.place == column.place else c
+        for c in understood.columns
+    ]
+    return written(draft, layout, understood._replace(columns=tuple(columns)))

@@ -1,0 +1,88 @@
+"""What one number of a column is worth, as a person says it: a unit, or an amount of it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+from tribolab.draft.file.header import converts
+from tribolab.errors import UnitError, shown
+from tribolab.quantities import QUANTITIES, quantity
+from tribolab.units import conversion
+
+TORQUE: Final = (
+    "torque"  # no quantity of a run, but a friction force with the radius at which it acts
+)
+_SAID = re.compile(r"^\s*([+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)?\s*(.*?)\s*$", re.DOTALL)
+_PER = re.compile(r"^(.*\S)\s*(?:/|\bper\b)\s*(\S+)$", re.DOTALL)
+
+
+class Worth(NamedTuple):
+    """A number of a column is ``scale`` times ``unit``, which measures ``name``."""
+
+    name: str
+    unit: str
+    scale: float = 1.0
+
+
+def worth_of(text: str, names: Sequence[str], read_unit: str | None = None) -> Worth:
+    """Understand a unit, or what one number of a column stands for.
+
+    Parameters
+    ----------
+    text
+        ``"mN"``, ``"0.5 mN"`` (one count is so much) or ``"8.2 N/V"``.
+    names
+        Quantities that it may measure, or `TORQUE`; the first whose unit it is.
+    read_unit
+        What the file says the column is written in.
+
+    Raises
+    ------
+    UnitError
+        If it measures none of them.
+
+    Examples
+    --------
+    >>> worth_of("8,2 N/V", ["friction_force"], "V")
+    Worth(name='friction_force', unit='N', scale=8.2)
+    >>> worth_of("mN m", ["friction_force", "torque"])
+    Worth(name='torque', unit='mN m', scale=1.0)
+    """
+    said = _SAID.match(text)
+    number, unit = (said[1] or "1", said[2]) if said else ("1", text)
+    scale = float(number.replace(",", "."))
+    if (name := _measured(unit, names)) is not None:
+        return Worth(name, unit, scale)
+    parts = _PER.match(unit)
+    if parts and (name := _measured(parts[1], names)) is not None:
+        return Worth(name, parts[1], scale * _ratio(read_unit, parts[2]))
+    known = " or ".join(_called(name) for name in names)
+    raise UnitError(f"'{shown(text, 40)}' is no unit of {known}, nor an amount of it")
+
+
+def si_unit_of(name: str) -> str:
+    """SI unit of a quantity, or of a torque."""
+    return "N m" if name == TORQUE else quantity(name).unit
+
+
+def _called(name: str) -> str:
+    return f"{name}, e.g. '{si_unit_of(name)}'"
+
+
+def _measured(unit: str, names: Sequence[str]) -> str | None:
+    for name in names:
+        bare = quantity(name).bare if name in QUANTITIES else None
+        if converts(unit, si_unit_of(name), bare) or (
+            si_unit_of(name) == "1" and unit in ("", "1")
+        ):
+            return name
+    return None
+
+
+def _ratio(read_unit: str | None, per: str) -> float:
+    """Return how many of what an amount is stated for one number of the column is."""
+    if not read_unit or not converts(read_unit, per):
+        return 1.0  # counts, digits, divisions
+    return conversion(read_unit, per)[0]
