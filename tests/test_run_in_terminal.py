@@ -128,3 +128,31 @@ def test_results_lie_where_no_pattern_of_raw_files_reaches(tmp_path, pattern):
     done = CliRunner().invoke(cli.app, ["run", str(tmp_path / "campaign.toml")])
     assert "apart from the raw files" in done.output
     assert not (tmp_path / "results").exists()
+
+
+@pytest.mark.slow
+def test_a_drafted_description_is_named_where_the_raw_file_is(tmp_path, monkeypatch):
+    """What a try without it left behind is no hindrance; what a person completed is."""
+    monkeypatch.chdir(tmp_path)
+    force = np.repeat([6.0, 5.0, 4.0], 300) + 0.05 * np.random.default_rng(6).standard_normal(900)
+    write_run(tmp_path / "odd.csv", force)
+    text = (tmp_path / "odd.csv").read_text()
+    (tmp_path / "odd.csv").write_text(text.replace("Friction force [N]", "K17"))
+    refused = CliRunner().invoke(cli.app, ["run", "odd.csv"])
+    assert refused.exit_code == 3 and "tribolab dialect odd.csv" in refused.output
+    assert "no segment" not in refused.output  # nothing was read in which one could be
+    asked = CliRunner().invoke(cli.app, ["dialect", "odd.csv", "--ask"], input="\n3\nN\n\n\n")
+    assert "next:  tribolab run odd.csv --instrument odd.toml" in asked.output.replace(
+        f"{tmp_path}/", ""
+    )
+    done = CliRunner().invoke(cli.app, ["run", "odd.csv", "--instrument", "odd.toml"])
+    assert done.exit_code == 0, done.output
+    assert any(line.split()[:1] == ["20"] and "0.200" in line for line in done.output.splitlines())
+    said = tomllib.loads((tmp_path / "campaign.toml").read_text("utf-8"))
+    assert said["run"] == [{"files": ["odd.csv"], "instrument": "odd.toml"}]
+    own = (tmp_path / "campaign.toml").read_text("utf-8") + 'normal_force = "20 N"\n'
+    (tmp_path / "campaign.toml").write_text(own)
+    other = CliRunner().invoke(cli.app, ["run", "odd.csv", "--instrument", "odd.toml"])
+    assert other.exit_code == 2 and (tmp_path / "campaign.toml").read_text("utf-8") == own
+    wrong = CliRunner().invoke(cli.app, ["run", "campaign.toml", "--instrument", "odd.toml"])
+    assert wrong.exit_code == 2 and "--instrument is for raw files" in wrong.output

@@ -20,7 +20,9 @@ _ABOUT = (
 )
 
 
-def campaign_file(paths: Sequence[Path], folder: Path) -> tuple[Path, bool]:
+def campaign_file(
+    paths: Sequence[Path], folder: Path, instrument: str | None = None
+) -> tuple[Path, bool]:
     """Return the campaign file that is meant; of raw files, one that is written for them.
 
     Parameters
@@ -28,7 +30,10 @@ def campaign_file(paths: Sequence[Path], folder: Path) -> tuple[Path, bool]:
     paths
         A campaign file, the folder that holds it, or raw files: runs and scans, in any folders.
     folder
-        Where a new one is written; one there that says the same is taken as it is.
+        Where a new one is written; one there that says the same is taken as it is, one that was
+        written for the same files without their instrument is written anew.
+    instrument
+        What the raw files are from: a name, or the file of a dialect.
 
     Returns
     -------
@@ -38,9 +43,15 @@ def campaign_file(paths: Sequence[Path], folder: Path) -> tuple[Path, bool]:
     Raises
     ------
     ConfigError
-        If another campaign file stands there, or several are named.
+        If another campaign file stands there, or several are named, or there is no such
+        instrument.
     """
     if len(paths) == 1 and (not paths[0].is_file() or _is_campaign(paths[0])):
+        if instrument is not None:
+            raise ConfigError(
+                "--instrument is for raw files",
+                cure="in a campaign file it is said in a [[run]] or [[surface]]: instrument = ...",
+            )
         return paths[0], False
     for path in paths:
         if not path.is_file() or _is_campaign(path):
@@ -48,13 +59,16 @@ def campaign_file(paths: Sequence[Path], folder: Path) -> tuple[Path, bool]:
             raise ConfigError(
                 f"{path}: {what}", cure="name one campaign file or folder, or raw files alone"
             )
-    text = _campaign_of([path.resolve() for path in paths], folder.resolve())
+    whole = [path.resolve() for path in paths]
+    text = _campaign_of(whole, folder.resolve(), instrument)
     file = folder / NAME
     try:
+        if instrument is not None and _says(file, _campaign_of(whole, folder.resolve())):
+            file.unlink()  # ours, of a try before; nobody has completed it
         with file.open("x", encoding="utf-8") as new:
             new.write(text)
     except FileExistsError:
-        if file.read_bytes() != text.encode():
+        if not _says(file, text):
             raise ConfigError(
                 f"{file} stands here already, and says something else",
                 cure="add the files to it ([[run]] files = ..., [[surface]] scans = ...) and run "
@@ -64,6 +78,10 @@ def campaign_file(paths: Sequence[Path], folder: Path) -> tuple[Path, bool]:
     except OSError as error:
         raise ConfigError(f"{file}: the campaign file cannot be written: {error}") from error
     return file, True
+
+
+def _says(file: Path, text: str) -> bool:
+    return file.is_file() and file.read_bytes() == text.encode()
 
 
 def _is_campaign(path: Path) -> bool:
@@ -76,23 +94,38 @@ def _is_campaign(path: Path) -> bool:
     return bool({"campaign", "run", "surface"} & told.keys())
 
 
-def _campaign_of(paths: Sequence[Path], folder: Path) -> str:
+def _campaign_of(paths: Sequence[Path], folder: Path, instrument: str | None = None) -> str:
     raw = Path(os.path.commonpath([path.parent for path in paths]))
     where = os.path.relpath(raw, folder) if raw.is_relative_to(folder) else str(raw)
     name = paths[0].stem if len(paths) == 1 else raw.name
     groups = [[Path(path) for path in group] for group in group_files(paths)]
-    runs = [group for group in groups if len(group) > 1 or _holds_run(group[0])]
+    runs = [group for group in groups if len(group) > 1 or _holds_run(group[0], instrument)]
     lines = [_ABOUT, "[campaign]", f"name = {quoted(name)}", f"raw = {quoted(where)}"]
     if runs:
         files = ",\n    ".join(quoted(str(path.relative_to(raw))) for run in runs for path in run)
-        lines += ["", "[[run]]", f"files = [\n    {files},\n]"]
+        lines += ["", "[[run]]", f"files = [\n    {files},\n]", *_said(instrument, folder)]
     for (path,) in (group for group in groups if group not in runs):
         scans = quoted(str(path.relative_to(raw)))
         lines += ["", "[[surface]]", f"name = {quoted(path.stem)}", f"scans = {scans}"]
+        lines += _said(instrument, folder)
     return "\n".join(lines) + "\n"
 
 
-def _holds_run(path: Path) -> bool:
+def _said(instrument: str | None, folder: Path) -> list[str]:
+    """Return the line that names an instrument; the file of a dialect relative to the campaign."""
+    if instrument is None:
+        return []
+    file = Path(instrument)
+    if file.suffix == ".toml":
+        whole = file.resolve()
+        inside = whole.is_relative_to(folder)
+        instrument = (whole.relative_to(folder) if inside else whole).as_posix()
+    return [f"instrument = {quoted(instrument)}"]
+
+
+def _holds_run(path: Path, instrument: str | None) -> bool:
+    if instrument is not None:
+        return kind_of(path, instrument) == "run"
     try:
         kind = kind_of(path)
         return kind == "run" or (kind == "unknown" and holds_run(path, by_name=False))

@@ -14,6 +14,16 @@ from tribolab.errors import ConfigError, TribolabError, UnitError
 USAGE, UNREADABLE, _INTERRUPTED = 2, 3, 130
 
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an error.")]
+InstrumentOption = Annotated[
+    str | None,
+    typer.Option(
+        "--instrument",
+        "-i",
+        help="Name of an instrument, or the .toml file that describes it.",
+        show_default="the files tell",
+    ),
+]
+
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="No progress bars.")]
 Jobs = Annotated[
     int | None,

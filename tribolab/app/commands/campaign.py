@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tribolab.app.progress import progress_bars
-from tribolab.app.reported import UNREADABLE, Debug, Jobs, Quiet, reported
+from tribolab.app.reported import UNREADABLE, Debug, InstrumentOption, Jobs, Quiet, reported
 from tribolab.app.streams import say
 
 if TYPE_CHECKING:
@@ -82,6 +82,7 @@ def run(
             help="The campaign file (TOML), the folder with campaign.toml, or raw files."
         ),
     ],
+    instrument: InstrumentOption = None,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -123,6 +124,8 @@ def run(
 
         tribolab run raw/disc_07.csv raw/disc_08.csv
 
+        tribolab run odd.txt --instrument odd.toml
+
         tribolab run campaign.toml --output /tmp/results --jobs 4
     """
     with reported(debug, audience="campaign"):
@@ -130,7 +133,7 @@ def run(
         from tribolab.app.first_campaign import campaign_file
         from tribolab.app.run import run_campaign
 
-        file, written = campaign_file(campaign, Path())
+        file, written = campaign_file(campaign, Path(), instrument)
         if written:
             say(f"{file} is written: complete it with what is known of the measurement")
         with progress_bars(quiet) as progress:
@@ -221,7 +224,7 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
     for crash in crashes if debug else ():
         say(crash, to_stderr=True)
     nothing = bool(outcome.campaign.run) and not outcome.segments
-    if nothing and outcome.runs:  # of those that could not be read that is told
+    if nothing and len(outcome.failed) < len(outcome.runs):  # else it is told why none was read
         say(
             "tribolab: no segment of constant speed was found in any run; in [segments], `drift` "
             "and `min_samples` say what is constant, and `stroke_middle = 0.5` takes half of each "

@@ -12,24 +12,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tribolab.app.progress import progress_bars
-from tribolab.app.reported import UNREADABLE, Debug, Jobs, Quiet, fail, reported
+from tribolab.app.reported import UNREADABLE, Debug, InstrumentOption, Jobs, Quiet, fail, reported
 from tribolab.app.streams import say
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
 _MANY = 12  # files, from which on it pays to start other processes
-
-
-InstrumentOption = Annotated[
-    str | None,
-    typer.Option(
-        "--instrument",
-        "-i",
-        help="Name of an instrument, or the .toml file that describes it.",
-        show_default="the files tell",
-    ),
-]
 
 
 def check(

@@ -84,8 +84,9 @@ def print_next(draft: Drafted, written: Path, console: Console) -> None:
         console.print(f"fill in {escape(str(written))} line {line}: {escape(what)}", soft_wrap=True)
     console.print(f"written: {escape(str(written))}", soft_wrap=True)
     file, toml = shlex.quote(str(draft.path)), shlex.quote(str(written))
+    command = "run" if draft.kind == "run" and not draft.to_fill_in else "info"
     console.print(
-        f"next:  tribolab info {escape(file)} --instrument {escape(toml)}", soft_wrap=True
+        f"next:  tribolab {command} {escape(file)} --instrument {escape(toml)}", soft_wrap=True
     )
 
 
