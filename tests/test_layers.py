@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import tribolab
 
 PROJECT = Path(tribolab.__file__).resolve().parents[1]
@@ -104,3 +106,26 @@ def test_import_is_lazy():
 def test_every_public_name_resolves():
     for name in tribolab.__all__:
         assert getattr(tribolab, name) is not None
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "# Linear slider, force log\nTime [s],Fx [N],Fz [N]",
+        "Slider of ours\nZeit [s],Reibkraft [mN],Normalkraft [N]",
+    ],
+)
+def test_a_run_of_one_file_is_told_without_what_takes_long_to_load(tmp_path, head):
+    """Known or drafted: pandas, xarray and pint each take longer than 5 MB of numbers to read."""
+    file = tmp_path / "log.csv"
+    rows = "".join(f"{n / 100:.2f},{1 + n % 3},5\n" for n in range(300))
+    file.write_text(f"{head}\n{rows}")
+    code = (
+        "import sys\nfrom tribolab.cli import main\n"
+        f"sys.argv = ['tribolab', 'info', {str(file)!r}]\n"
+        "try:\n    main()\nexcept SystemExit:\n    pass\n"
+        "print(sorted({'pandas', 'xarray', 'pint', 'scipy', 'netCDF4'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "300 rows over 2.99 s" in done.stdout, done.stdout
+    assert done.stdout.splitlines()[-1] == "[]"

@@ -56,6 +56,17 @@ def test_usual_units_are_what_the_units_library_says():
         assert conversion(unit, si_unit) == pytest.approx((one - zero, zero), rel=1e-14), unit
 
 
+def test_what_is_told_without_the_units_library_is_what_it_says():
+    ureg = registry()
+    for prefix in ("", "p", "n", "u", "m", "c", "k", "M", "G"):
+        for unit in ("s", "m", "N", "Pa", "V", "m/s"):
+            for asked in units._ASKED:
+                if units._measures_another(prefix + unit, asked):
+                    target = ureg.Unit(units.as_pint_writes(asked).replace(" ", "*"))
+                    assert not ureg.Unit(prefix + unit).is_compatible_with(target), (unit, asked)
+    assert not units._measures_another("mN", "N") and units._measures_another("mN", "m")
+
+
 def test_every_unit_in_the_dictionary_is_si():
     for known in QUANTITIES.values():
         assert conversion(known.unit, known.unit) == (1.0, 0.0), known.name

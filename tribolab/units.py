@@ -117,8 +117,8 @@ class _Units(NamedTuple):
 
 def _units(text: str) -> _Units:
     """Have pint look up the names of a unit; the text itself is parsed here and never evaluated."""
-    ureg = registry()
     factor, powers = parse_unit(as_pint_writes(text))
+    ureg = registry()
     product = ureg.Unit("")
     for name, power in powers.items():
         product = product * ureg.Unit(name) ** power
@@ -134,6 +134,24 @@ def _prefix(unit: str, si_unit: str) -> float | None:
     if re.fullmatch(r"(m|s|N|Pa|V|J)(/s|/m2| s)?", si_unit) and unit[1:] == si_unit:
         return _PREFIXES.get(unit[0])
     return None
+
+
+# what instruments write most, and units that are asked for of which no other measures the same
+_EVERYDAY = re.compile(r"[pnu\u00b5\u03bcmckMG]?(s|m|N|Pa|V|m/s)")
+_ASKED = frozenset(
+    ("", "1", "s", "m", "m2", "m3", "m4", "m/s", "m2/s", "1/m", "1/s", "Hz", "rad", "rad/s", "N")
+    + ("N/m", "N/s", "N m", "N2 m", "J/m2", "Pa", "1/Pa", "Pa s", "V", "ohm", "K", "m/s**2")
+    + ("m**2", "m**3", "m**2/s", "m**3/s", "m**2/N", "W", "W/m**2", "A", "A s", "S", "farad")
+    + ("kg", "kg/m**3", "S/m", "1/K", "T")
+)
+
+
+def _measures_another(unit: str, si_unit: str) -> bool:
+    """Whether an everyday unit is known to measure something else, without asking pint."""
+    everyday = _EVERYDAY.fullmatch(unit)
+    if everyday is None or si_unit not in _ASKED:
+        return False
+    return everyday[1] != si_unit
 
 
 @functools.lru_cache(maxsize=512)
@@ -170,6 +188,8 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
         return _USUAL[unit, si_unit]
     if (unit, si_unit) == ("mS", "s"):  # nobody times in siemens
         return 1e-3, 0.0
+    if _measures_another(unit, si_unit):
+        raise UnitError(f"unit '{shown(unit)}' cannot be turned into '{si_unit}'")
     if (spelt := plain_unit(unit)) != unit.strip() and len(unit) < _LONGEST:
         return conversion(spelt, si_unit, bare)
     if si_unit == "1" and bare == "cycles" and counts_turns(unit):
@@ -185,6 +205,11 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
     if counted and si_unit != (plain := f"1/{counted.per}"):  # seldom written, as "mm/s/mm" is
         scale = conversion(unit, plain, "nothing")[0]
         return scale * conversion(plain, si_unit, bare)[0], 0.0
+    try:
+        parse_unit(as_pint_writes(unit))  # what is no unit by its grammar is told without pint
+    except UnitError as error:
+        said = shown(unit)
+        raise UnitError(f"'{said}' is not a unit that is known; write e.g. '{si_unit}'") from error
     # late: pint takes long to load
     import pint
 

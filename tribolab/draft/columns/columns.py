@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 
 import numpy as np
-import pandas as pd
 
 from tribolab.draft.columns.assign import SIGNALS, assigned
 from tribolab.draft.columns.bridges import calibrated_forces
@@ -31,6 +30,7 @@ from tribolab.draft.columns.lengths import (
     metres,
     pitch_of_clock,
 )
+from tribolab.draft.columns.plain_numbers import plain_numbers
 from tribolab.draft.columns.ratio import disagreement, force_or_ratio
 from tribolab.draft.columns.results_table import are_points
 from tribolab.draft.columns.sampling import find_sampling
@@ -196,6 +196,12 @@ def _dated(
 
 def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
     """Numbers of all rows; for each column a text that is no number, and its words for no value."""
+    plain = plain_numbers(layout)
+    if plain is not None:
+        return _measured(plain), [""] * layout.width, [[] for _ in range(layout.width)]
+    # late: takes longer to load than a plain table to read
+    import pandas as pd
+
     blank = layout.delimiter == "whitespace"
     try:
         frame = pd.read_csv(
@@ -223,8 +229,8 @@ def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
     numbers[:, understood] = frame.loc[:, understood].to_numpy(dtype=float)
     for index in np.flatnonzero(~understood).tolist():
         column = frame[index]
-        plain = column.astype(str).str.replace(",", ".") if layout.decimal == "," else column
-        known = pd.to_numeric(plain, errors="coerce")
+        pointed = column.astype(str).str.replace(",", ".") if layout.decimal == "," else column
+        known = pd.to_numeric(pointed, errors="coerce")
         numbers[:, index] = known.to_numpy(dtype=float)
         odd = column[known.isna() & column.notna()].astype(str).str.strip()
         odd = odd[~odd.str.lower().isin(["nan", ""])]
@@ -232,10 +238,15 @@ def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
             text[index] = odd.iloc[0][:30]
         else:
             missing[index] = odd.unique()[:10].tolist()
+    return _measured(numbers), text, missing
+
+
+def _measured(numbers: np.ndarray) -> np.ndarray:
+    """Return numbers without those that stand for no value, as the reader leaves them out."""
     numbers[np.abs(numbers) > LARGEST] = np.nan
-    for values in numbers.T:  # the reader does so, too
+    for values in numbers.T:
         take_marks([values])
-    return numbers, text, missing
+    return numbers
 
 
 def _seconds(column: DraftColumn, numbers: np.ndarray) -> np.ndarray:
