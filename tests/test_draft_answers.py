@@ -180,6 +180,30 @@ def test_volts_and_counts_are_forces_by_what_one_is_less_what_stands_without_con
     np.testing.assert_allclose(run.set_speed, 1e-4)
 
 
+def test_a_set_speed_that_turns_over_tells_the_way_on_trial(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "wiper.txt"
+    rng = np.random.default_rng(4)
+    way = np.repeat([1, -1] * 4, 100)
+    rows = "".join(
+        f"{n / 20:.2f},{5 * w},{3 * w + 0.02 * e:.4f},10\n"
+        for n, (w, e) in enumerate(zip(way, rng.standard_normal(way.size), strict=True))
+    )
+    file.write_text("Time [s],Speed set [mm/s],Friction force [N],Normal force [N]\n" + rows)
+    done = command("dialect", file.name, "--no-ask")
+    assert "8 segments, friction coefficient 0.3" in done.output, done.output
+
+
+def test_lines_that_may_state_the_load_are_quoted(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "stage.txt"
+    rows = "".join(f"{n / 20:.2f},{3 + n % 3}\n" for n in range(200))
+    file.write_text(f"Thing on top: 102 gf\nTime [s],Friction force [N]\n{rows}")
+    done = command("dialect", file.name, "--ask", typed="\n\n102 gf\n1 mm/s\n")
+    assert "does 'Thing on top: 102 gf' say it?" in done.output, done.output
+    np.testing.assert_allclose(tl.read(file, "stage.toml").normal_force, 0.102 * 9.80665)
+
+
 def test_a_force_without_a_load_is_tried(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     rows = "".join(f"{i / 10:.1f},{4 + i % 3},{i}\n" for i in range(200))

@@ -124,13 +124,6 @@ def _ask_for_lengths(
         question += f"; is it in {said}?" if said else "?"
         radius = _ask_amount(question, "radius", "m", guess, ask, say)
         understood = understood._replace(radius=radius)
-    lacks = " ".join(lacking(understood, what_follows(layout, understood)))
-    if "the load" in lacks and (said := may_say(layout, follows, "the load")):
-        question = (
-            f"what is the load, with its unit, if it is one for all of the run; is it {said}?"
-        )
-        load = _ask_amount(question, "load", "N", _NONE, ask, say)
-        understood = understood._replace(load=load)
     return written(draft, layout, understood)
 
 
@@ -184,6 +177,8 @@ def _ask_for(
     """Ask which column holds one of several quantities, or for an amount in place of a column."""
     held = _held(draft, names)
     said = _said_amount(draft, amount)
+    if held is None and not said and (lines := _may_say(draft, amount)):
+        question += f"; does {lines} say it?"
     while True:
         typed = ask(question, str(held.place) if held else said or _NONE).strip()
         if typed == _NONE:
@@ -245,6 +240,17 @@ def _said_amount(draft: Draft, amount: str) -> str:
     return {"load": understood.load, "speed": understood.speed, "rate": understood.rate}.get(
         amount, ""
     )
+
+
+def _may_say(draft: Draft, amount: str) -> str:
+    """Quote the lines of the file that may state an amount; "" if none does."""
+    layout, understood = draft.layout, draft.understood
+    lack = {"load": "the load", "speed": "the sliding speed"}.get(amount, "")
+    if layout is None or understood is None or not lack:
+        return ""
+    follows = what_follows(layout, understood)
+    missing = any(said.startswith(lack) for said in lacking(understood, follows))
+    return may_say(layout, follows, lack) if missing else ""
 
 
 def _with_amount(draft: Draft, amount: str, text: str) -> Draft:

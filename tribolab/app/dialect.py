@@ -63,7 +63,7 @@ def _run_said(file: Path, dialect: Path) -> str:
     if "friction_coefficient" not in friction:
         return f"{said}, a friction force without a load: no friction coefficient"
     signal = "friction_force" if "friction_force" in run else "friction_coefficient"
-    turned = reversals(run[signal].values) if _undirected(segments) else 0
+    turned = reversals(run[signal].values) if _undirected(run, segments) else 0
     if turned:
         return (
             f"{said}; friction changes its sign {turned} times while nothing tells the way: it "
@@ -81,10 +81,12 @@ def _run_said(file: Path, dialect: Path) -> str:
     return f"{said}, friction coefficient {span} (standard error {width}, statistical only)"
 
 
-def _undirected(segments: xr.Dataset) -> bool:
-    """Whether nothing tells which way it slid."""
+def _undirected(run: xr.Dataset, segments: xr.Dataset) -> bool:
+    """Whether nothing tells which way it slid; a set-point that turns over does."""
     unknown = bool(segments["sliding_speed"].isnull().any())
-    return unknown or segments.attrs["velocity_source"] == "set speed"
+    by_set_speed = segments.attrs["velocity_source"] == "set speed"
+    signed = "set_speed" in run and bool((run["set_speed"] < 0).any())
+    return unknown or (by_set_speed and not signed)
 
 
 def _scan_said(file: Path, dialect: Path) -> str:
