@@ -162,6 +162,17 @@ def test_a_torque_with_a_radius_is_a_force_and_a_load_may_be_a_weight(tmp_path, 
     np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * 0.01)
 
 
+def test_an_angle_with_a_radius_is_a_way(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "table.txt"
+    rows = "".join(f"{i / 10:.1f},{4 + i % 3},{i / 100:.2f}\n" for i in range(400))
+    file.write_text("Time [s],Friction force [mN],E1\n" + rows)
+    done = command("dialect", file.name, "--ask", typed="\n\n2 N\n3\nturn\n10 mm\n")
+    assert done.exit_code == 0, done.output
+    run = tl.read(file, "table.toml")
+    np.testing.assert_allclose(np.diff(run.position), 2 * np.pi * 1e-4, rtol=1e-3)
+
+
 def test_volts_and_counts_are_forces_by_what_one_is_less_what_stands_without_contact(
     tmp_path, monkeypatch
 ):

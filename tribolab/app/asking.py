@@ -11,17 +11,17 @@ import numpy as np
 from tribolab.draft.columns.follows import lacking, what_follows
 from tribolab.draft.columns.may_say import may_say
 from tribolab.draft.columns.stated_load import stated_number
-from tribolab.draft.columns.turning import torque_of
+from tribolab.draft.columns.turning import angle_of, torque_of
 from tribolab.draft.dialect.answers import column_of, corrected, fits, written
 from tribolab.draft.dialect.draft import Draft, as_profile, holds_counts, holds_heights
-from tribolab.draft.dialect.worth import TORQUE, Worth, worth_of
+from tribolab.draft.dialect.worth import ANGLE, TORQUE, Worth, si_unit_of, worth_of
 from tribolab.draft.file.header import converts, is_unit
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn, Understood, other_units
 from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.errors import TribolabError, shown
 from tribolab.io.zero_reading import parse_zero
-from tribolab.quantities import quantity
+from tribolab.quantities import QUANTITIES, quantity
 from tribolab.units import positive
 
 _NONE = "-"
@@ -30,7 +30,7 @@ _WEIGHT = re.compile(rf"^(\s*[\d.]+(?:[eE][+-]?\d+)?\s*)({'|'.join(WEIGHTS)})\s*
 _NUMBER = re.compile(r"^[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?$")
 _FRICTION = ("friction_force", TORQUE, "friction_coefficient", "shear_stress")
 _LOAD = ("normal_force", "normal_stress")
-_MOTION = ("sliding_velocity", "rotation_speed", "position")
+_MOTION = ("sliding_velocity", "rotation_speed", "position", ANGLE)
 _SCAN = {"x": "the coordinate along the profile", "height": "the height"}
 
 
@@ -77,7 +77,9 @@ def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
     if column_of(draft, "normal_force") or not column_of(draft, "friction_coefficient"):
         question = "which column is the normal force? (its number; or the load itself: 20 N; "
         draft = _ask_for(draft, _LOAD, f"{question}{_NONE} for none)", ask, say, amount="load")
-    question = "which column tells how it moves, by speed, rotation or position? (its number; or "
+    question = (
+        "which column tells how it moves: a speed, turns, an angle or a position? (its number; or "
+    )
     question += f"the sliding speed itself: 6 mm/min; {_NONE} for none)"
     if not _told_by_settings(draft):
         draft = _ask_for(draft, _MOTION, question, ask, say, amount="speed")
@@ -205,7 +207,8 @@ def _held(draft: Draft, names: Sequence[str]) -> DraftColumn | None:
     """Return the column that holds the first of the quantities that any holds."""
     columns = draft.understood.columns if draft.understood else ()
     for name in names:
-        held = torque_of(columns) if name == TORQUE else column_of(draft, name)
+        by_name = {TORQUE: torque_of, ANGLE: angle_of}.get(name)
+        held = column_of(draft, name) if by_name is None else by_name(columns)
         if held is not None:
             return held
     return None
@@ -214,7 +217,7 @@ def _held(draft: Draft, names: Sequence[str]) -> DraftColumn | None:
 def _without(draft: Draft, names: Sequence[str], but: str = "") -> Draft:
     """Return a draft in which no column holds any of the quantities, but one."""
     for name in names:
-        if name != but and (name == TORQUE or column_of(draft, name) is not None):
+        if name != but and (name not in QUANTITIES or column_of(draft, name) is not None):
             draft = corrected(draft, name, None)
     return draft
 
@@ -286,7 +289,7 @@ def _ask_worth(
     asked = (name,) if name else tuple(names)
     said = column.file_unit or ""
     for wanted in asked if said else ():
-        if _fits(said, wanted) and (column.unit is None or wanted == TORQUE):
+        if _fits(said, wanted) and (column.unit is None or wanted not in QUANTITIES):
             return Worth(wanted, "")
     if name and quantity(name).unit == "1":
         return Worth(name, "")
@@ -307,7 +310,7 @@ def _ask_worth(
 
 
 def _fits(unit: str, name: str) -> bool:
-    return converts(unit, "N m") if name == TORQUE else fits(unit, name)
+    return fits(unit, name) if name in QUANTITIES else converts(unit, si_unit_of(name))
 
 
 def _unit_guess(column: DraftColumn, name: str) -> str:

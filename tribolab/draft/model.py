@@ -22,7 +22,7 @@ class DraftColumn(NamedTuple):
     `group` is that of a TDMS channel. A converter's counts are `counted`: what one is worth is to
     be said.
     One of its numbers is `scale` units, and `zero` says from where its zero is read; `said` is what
-    a person called it that is no quantity: a torque.
+    a person called it that is no quantity: a torque, or an angle.
     `options` is what it may be instead, where something is guessed; `form` that of its dates;
     `epoch` the moment that a column of time counts from.
     """
@@ -48,7 +48,7 @@ class DraftColumn(NamedTuple):
     scale: float = 1.0
     offset: float = 0.0
     zero: str = ""
-    said: Literal["", "torque"] = ""
+    said: Literal["", "torque", "angle"] = ""
 
     @property
     def read_unit(self) -> str | None:

@@ -183,6 +183,8 @@ def lacking(understood: Understood, follows: Follows) -> list[str]:
         names.add("sliding_velocity")
     if any(value.name == "set_normal_force" for value in follows.values):
         names.add("normal_force")
+    if _angle(understood) is not None:
+        names.add("rotation_speed")  # the radius makes a position of it
     if torque_of(understood.columns) is not None:
         names.add("torque")
     elif unknown_of(understood.columns):

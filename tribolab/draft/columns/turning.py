@@ -37,9 +37,8 @@ def torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
     columns
         The columns as they are understood.
     """
-    said = [column for column in columns if column.said == "torque"]
-    if said:
-        return said[0]
+    if (said := _said(columns, "torque")) is not None:
+        return said
     units = [_name_and_unit(column)[1] for column in columns if not column.used]
     told = sum(bool(_TORQUE_UNIT.fullmatch(unit)) for unit in units) == 1
     named = _only_column(columns, _TORQUE.search, "N m")
@@ -54,7 +53,7 @@ def angle_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
     columns
         The columns as they are understood.
     """
-    return _only_column(columns, _ANGLE.search, "rad")
+    return _said(columns, "angle") or _only_column(columns, _ANGLE.search, "rad")
 
 
 def turns_of(columns: Sequence[DraftColumn], numbers: np.ndarray) -> DraftColumn | None:
@@ -87,6 +86,11 @@ def radius_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
         The columns as they are understood.
     """
     return _only_column(columns, is_radius, "m")
+
+
+def _said(columns: Sequence[DraftColumn], name: str) -> DraftColumn | None:
+    """Return the column that a person called so."""
+    return next((column for column in columns if column.said == name), None)
 
 
 def _only_column(

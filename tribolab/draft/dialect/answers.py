@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, TypeVar
 from tribolab.draft.columns.clock import find_clock
 from tribolab.draft.dialect.drafted import Drafted
 from tribolab.draft.dialect.toml import dialect_toml
-from tribolab.draft.dialect.worth import TORQUE, Worth, si_unit_of
+from tribolab.draft.dialect.worth import ANGLE, TORQUE, Worth, si_unit_of
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn, Understood
 from tribolab.errors import ReadError
-from tribolab.quantities import quantity
+from tribolab.quantities import QUANTITIES, quantity
 
 if TYPE_CHECKING:
     from tribolab.draft.file.layout import Layout
@@ -48,7 +48,8 @@ def corrected(
     draft
         From `tribolab.draft.dialect.draft.draft_dialect`.
     name
-        The quantity; or "torque", which a radius makes a friction force.
+        The quantity; or "torque" or "angle", which a radius makes a friction force or
+        a position.
     place
         Number of its column, from 1; None if no column holds it.
     unit
@@ -105,20 +106,21 @@ def written(draft: AnyDraft, layout: Layout, understood: Understood) -> AnyDraft
 def _said(column: DraftColumn, worth: Worth, sign: int, draft: Drafted) -> DraftColumn:
     """Return a column as a person describes it: nothing of it is a guess."""
     name, unit, scale = worth
-    torque = name == TORQUE
+    measured = name in QUANTITIES
     read = unit or column.file_unit
     si_unit = si_unit_of(name)
-    if not (read and (converts(read, si_unit) if torque else fits(read, name))) and si_unit != "1":
+    fitting = read and (fits(read, name) if measured else converts(read, si_unit))
+    if not fitting and si_unit != "1":
         raise ReadError(
             f"column {column.place} needs a unit of {name}, e.g. '{si_unit}'", where=draft.path
         )
     return column._replace(
-        quantity=None if torque else name,
+        quantity=name if measured else None,
         unit=unit if unit and (unit != column.file_unit or column.name is None) else None,
         sign=sign,
         scale=scale,
-        used=not torque,
-        said=TORQUE if torque else "",
+        used=measured,
+        said=TORQUE if name == TORQUE else ANGLE if name == ANGLE else "",
         guessed=(),
         options=(),
         fill_in="",

@@ -11,9 +11,10 @@ from tribolab.errors import UnitError, shown
 from tribolab.quantities import QUANTITIES, quantity
 from tribolab.units import conversion
 
-TORQUE: Final = (
-    "torque"  # no quantity of a run, but a friction force with the radius at which it acts
-)
+# no quantities of a run, but what a radius makes a friction force and a position of
+TORQUE: Final = "torque"
+ANGLE: Final = "angle"
+_NO_QUANTITY = {TORQUE: "N m", ANGLE: "rad"}
 _SAID = re.compile(r"^\s*([+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)?\s*(.*?)\s*$", re.DOTALL)
 _PER = re.compile(r"^(.*\S)\s*(?:/|\bper\b)\s*(\S+)$", re.DOTALL)
 
@@ -34,7 +35,7 @@ def worth_of(text: str, names: Sequence[str], read_unit: str | None = None) -> W
     text
         ``"mN"``, ``"0.5 mN"`` (one count is so much) or ``"8.2 N/V"``.
     names
-        Quantities that it may measure, or `TORQUE`; the first whose unit it is.
+        Quantities that it may measure, `TORQUE`, or `ANGLE`; the first whose unit it is.
     read_unit
         What the file says the column is written in.
 
@@ -63,8 +64,8 @@ def worth_of(text: str, names: Sequence[str], read_unit: str | None = None) -> W
 
 
 def si_unit_of(name: str) -> str:
-    """SI unit of a quantity, or of a torque."""
-    return "N m" if name == TORQUE else quantity(name).unit
+    """SI unit of a quantity, of a torque, or of an angle."""
+    return _NO_QUANTITY.get(name) or quantity(name).unit
 
 
 def _called(name: str) -> str:
