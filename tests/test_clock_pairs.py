@@ -13,6 +13,7 @@ from tribolab.errors import ReadError
 from tribolab.io.clocks.basis import Play
 from tribolab.io.clocks.merge import merge
 from tribolab.io.clocks.motion import clean_motion
+from tribolab.io.signals import signals_of
 from tribolab.qc.run.checks import check_run
 
 # short logs of every kind and protocol; tests/benchmarks/clock_shift_coverage.py takes hundreds
@@ -36,7 +37,7 @@ def test_a_shift_that_is_told_lies_within_three_standard_errors(kind):
     seed, protocol = PAIRS[kind]
     pair = make_pair(seed, kind)
     assert pair.protocol == protocol
-    attrs = merge(pair.force, pair.motion).attrs
+    attrs = merge(signals_of(pair.force), signals_of(pair.motion)).attrs
     assert attrs["clock_shift_source"] == "estimated"
     error = abs(attrs["clock_shift_s"] - pair.shift)
     assert error < 3.0 * attrs["clock_shift_uncertainty_s"] < 0.3 * pair.shortest
@@ -93,7 +94,7 @@ def test_an_encoder_that_trembles_between_two_counts_rests():
 def test_strokes_lost_in_slack_leave_the_shift_open():
     """Three slow strokes only take up slack: the starts that are seen are not the first ones."""
     pair = make_pair(569, "slack")
-    attrs = merge(pair.force, pair.motion).attrs
+    attrs = merge(signals_of(pair.force), signals_of(pair.motion)).attrs
     assert attrs["clock_shift_source"] == "none"
     assert "do not tell whether they are seen" in attrs["clock_shift_refused"]
     assert np.isnan(attrs["clock_shift_uncertainty_s"])
@@ -121,7 +122,7 @@ def repeated(dated: bool):
 
 
 def test_motion_that_repeats_without_end_tells_no_shift():
-    attrs = merge(*repeated(dated=False)).attrs
+    attrs = merge(*map(signals_of, repeated(dated=False))).attrs
     assert attrs["clock_shift_source"] == "none"
     assert "the motion repeats" in attrs["clock_shift_refused"]
 

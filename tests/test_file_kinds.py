@@ -177,7 +177,7 @@ def test_a_diameter_of_the_track_and_the_turns_of_a_crank_are_understood(tmp_pat
 def test_a_person_is_asked_for_the_radius_of_the_track(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     file = write_kind("radius_unsaid", tmp_path).path
-    typed = "\n" * 5 + "25\n25 mm\n"
+    typed = "\n" * 4 + "25\n25 mm\n"
     done = CliRunner().invoke(cli.app, ["dialect", file.name, "--ask"], input=typed)
     assert done.exit_code == 0 and "what is the radius of the track" in done.stdout
     assert "3 segments, friction coefficient 0.38" in done.stdout

@@ -26,6 +26,7 @@ import numpy as np
 from tribolab.draft.read import read
 from tribolab.errors import ReadError
 from tribolab.io.clocks.merge import merge
+from tribolab.io.signals import signals_of
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
@@ -50,7 +51,7 @@ def examine(task: tuple[str, int, bool]) -> Row:
     pair = make_pair(seed, kind)
     try:
         if only_merge:
-            attrs = merge(pair.force, pair.motion).attrs
+            attrs = merge(signals_of(pair.force), signals_of(pair.motion)).attrs
         else:
             with tempfile.TemporaryDirectory() as folder:
                 attrs = read(write_pair(pair, Path(folder))).attrs

@@ -13,7 +13,7 @@ from tribolab.app.scan_info import areal_lines, roughness_lines, stated_lines
 from tribolab.campaign.engine.stage import Stage
 from tribolab.draft.on_the_fly import holds_run, read_log
 from tribolab.errors import ReadError, TribolabError, shown, told
-from tribolab.io.companion import CompanionFacts, describe_companion, has_companion
+from tribolab.io.companion import CompanionFacts, describe_companion
 from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.dialects.signature import peek
 from tribolab.io.file_facts import FileFacts, file_facts
@@ -21,7 +21,6 @@ from tribolab.io.force_ratio import doubt_about, doubt_about_coefficient
 from tribolab.io.kinds import kind_of
 from tribolab.io.missing import missing_of
 from tribolab.io.runs import read_log as known_log
-from tribolab.io.signals import Signals
 from tribolab.quantities import quantity
 from tribolab.words import Count, explain
 
@@ -51,18 +50,11 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
     if drafted or kind == "run":
         log = read_log(path, instrument)
         facts = file_facts(log, path, instrument)
-        told = [] if drafted else _of_companion(path, instrument, log)
+        told = [] if drafted else companion_lines(describe_companion(path, instrument, log))
         return run_lines(facts) + (told or missing_lines(facts)) + _doubts(log.columns)
     with importing():
         plain_arrays_only()
     return _results_lines(path) if kind == "results" else _scan_lines(path, instrument)
-
-
-def _of_companion(path: Path, instrument: str | Path | None, log: Signals) -> list[str]:
-    if has_companion(path, instrument):  # which wants datasets
-        with importing():
-            plain_arrays_only()
-    return companion_lines(describe_companion(path, instrument, log))
 
 
 @dataclass(frozen=True)

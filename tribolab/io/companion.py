@@ -13,7 +13,7 @@ from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import peek
 from tribolab.io.logs import companion_name, companion_path
 from tribolab.io.runs import read_log, with_companion
-from tribolab.io.signals import Signals, dataset_of
+from tribolab.io.signals import Signals
 
 
 class CompanionFacts(TypedDict, total=False):
@@ -58,7 +58,7 @@ def describe_companion(
         if other is None or not other.is_file():
             return {"missing": companion_name(Path(path), dialect)}
         log = read_log(path, instrument) if log is None else log
-        attrs = with_companion(dataset_of(log), other, dialect).attrs
+        attrs = with_companion(log, other, dialect).attrs
     except ReadError as error:
         return {"refused": error.told("terminal")}
     told: CompanionFacts = {
@@ -73,16 +73,6 @@ def describe_companion(
             "clock_shift_refused", "the friction force does not follow the motion"
         )
     return told
-
-
-def has_companion(path: Path, instrument: str | Path | None = None) -> bool:
-    """Whether the second log that an instrument writes lies beside a raw file."""
-    try:
-        dialect = _pairing(path, instrument)
-    except ReadError:
-        return False
-    other = None if dialect is None else companion_path(path, dialect)
-    return other is not None and other.is_file()
 
 
 def _pairing(path: Path, instrument: str | Path | None) -> Dialect | None:

@@ -10,15 +10,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from tribolab.io.clocks.clock import Mended
 from tribolab.io.content.model import Content
 from tribolab.io.dialects.model import Dialect
+from tribolab.io.signals import Signals
 from tribolab.untyped import Json
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 ROW_ATTRIBUTES = ("rows_in_file", "rows_left_out", "rows_left_out_why", "rows_left_out_meant")
 
@@ -78,19 +76,19 @@ def rows_in_words(attrs: Mapping[str, Any]) -> str:
     return f"{lost} of {rows} rows ({lost / rows:.2%}): {attrs.get('rows_left_out_why', '')}"
 
 
-def with_companion_rows(merged: xr.Dataset, run: xr.Dataset, motion: xr.Dataset) -> xr.Dataset:
+def with_companion_rows(merged: Signals, run: Signals, motion: Signals) -> Signals:
     """Add to a merged run's attributes what its two logs lost, and what only one of them covers.
 
     Parameters
     ----------
     merged
-        The run of both logs (time).
+        The run of both logs.
     run, motion
-        The logs (time).
+        The logs.
     """
-    companion = {
+    companion: Json = {
         f"companion_{key}": motion.attrs[key] for key in ROW_ATTRIBUTES if key in motion.attrs
     }
-    if alone := run.sizes["time"] - merged.sizes["time"]:
+    if alone := run.time.size - merged.time.size:
         companion["rows_not_covered"] = alone
-    return merged.assign_attrs(companion)
+    return merged._replace(attrs=merged.attrs | companion)

@@ -68,15 +68,15 @@ def read_run(
     main, companions = _sorted_out(paths, dialects)
     if pair and len(main) == 1 and not companions:
         companions = _companion(*main[0])
-    run = dataset_of(gather(main, zero))
+    log = gather(main, zero)
     mass = main[0][1].moving_mass if moving_mass is None else moving_mass
     if len(companions) > 1:
         raise ReadError(f"{companions[0][0]}: more than one companion log is given")
     if companions:
-        return _without_inertia(_joined(run, companions, shift), mass)
-    if pair and (expected := companion_name(*main[0])):
-        run.attrs["companion_missing"] = expected
-    return _without_inertia(run, mass)
+        log = _joined(log, companions, shift)
+    elif pair and (expected := companion_name(*main[0])):
+        log.attrs["companion_missing"] = expected
+    return _without_inertia(dataset_of(log), mass)
 
 
 def read_log(path: PathLike, instrument: Instrument | None = None) -> Signals:
@@ -104,13 +104,13 @@ def read_log(path: PathLike, instrument: Instrument | None = None) -> Signals:
     return signals_of(_without_inertia(dataset_of(signals), dialect.moving_mass))
 
 
-def with_companion(run: xr.Dataset, path: Path, dialect: Dialect) -> xr.Dataset:
-    """Return a run together with its second log, whose clock is matched by the signals.
+def with_companion(log: Signals, path: Path, dialect: Dialect) -> Signals:
+    """Return a log together with its second one, whose clock is matched by the signals.
 
     Parameters
     ----------
-    run
-        The main log (time).
+    log
+        The main log.
     path
         The second log.
     dialect
@@ -122,15 +122,15 @@ def with_companion(run: xr.Dataset, path: Path, dialect: Dialect) -> xr.Dataset:
         If the second log cannot be read, or does not belong to the run.
     """
     assert dialect.pair is not None  # whoever asks has found the second log by it
-    return _joined(run, [(path, load_dialect(dialect.pair.instrument))], None)
+    return _joined(log, [(path, load_dialect(dialect.pair.instrument))], None)
 
 
-def _joined(run: xr.Dataset, companions: LogDialects, shift: float | None) -> xr.Dataset:
+def _joined(log: Signals, companions: LogDialects, shift: float | None) -> Signals:
     # late: starting stays quick
     from tribolab.io.clocks.merge import merge
 
-    motion = dataset_of(gather(companions))
-    return with_companion_rows(merge(run, motion, shift), run, motion)
+    motion = gather(companions)
+    return with_companion_rows(merge(log, motion, shift), log, motion)
 
 
 def _without_inertia(run: xr.Dataset, mass: str | float | None) -> xr.Dataset:

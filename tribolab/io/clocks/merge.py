@@ -5,11 +5,10 @@ from __future__ import annotations
 import datetime as dt
 
 import numpy as np
-import xarray as xr
 
 from tribolab.errors import Cure, ReadError
 from tribolab.io.clocks.shift import estimate_clock_shift
-from tribolab.stamping import stamp
+from tribolab.io.signals import Signals
 from tribolab.untyped import Json
 
 _STEPWISE = {
@@ -22,22 +21,22 @@ _OTHER_DAY = 3600.0  # s between two logs, more than two computers' clocks diffe
 _OTHER_RUN = 60.0  # s between two logs: the signals are not believed
 
 
-def merge(run: xr.Dataset, motion: xr.Dataset, clock_shift: float | None = None) -> xr.Dataset:
+def merge(run: Signals, motion: Signals, clock_shift: float | None = None) -> Signals:
     """Bring a companion log's signals onto a run's clock.
 
     Parameters
     ----------
     run
-        The force log (time).
+        The force log.
     motion
-        The companion log (time).
+        The companion log.
     clock_shift
         Motion clock + shift = force clock [s]; estimated when not given.
 
     Returns
     -------
-    xarray.Dataset
-        The part of the run that both logs cover (time), with the companion's signals linearly
+    Signals
+        The part of the run that both logs cover, with the companion's signals linearly
         interpolated (set-points and step numbers: held). ``clock_shift_s``, its source
         ("estimated", "given", or "none" where the signals do not tell) and its uncertainty are
         attributes. An estimated shift is that in the middle of the companion log; where the
@@ -52,8 +51,8 @@ def merge(run: xr.Dataset, motion: xr.Dataset, clock_shift: float | None = None)
     ReadError
         If the logs do not overlap, or were recorded at quite different times.
     """
-    force_clock = run["time"].to_numpy() + run.attrs["time_origin_s"]
-    motion_clock = motion["time"].to_numpy() + motion.attrs["time_origin_s"]
+    force_clock = run.time + run.attrs["time_origin_s"]
+    motion_clock = motion.time + motion.attrs["time_origin_s"]
     shift, source, attrs = _shift(run, motion, force_clock, motion_clock, clock_shift)
     middle = 0.5 * (motion_clock[0] + motion_clock[-1])
     shifted = motion_clock + shift + attrs["clock_rate"] * (motion_clock - middle)
@@ -69,20 +68,17 @@ def merge(run: xr.Dataset, motion: xr.Dataset, clock_shift: float | None = None)
             where=names,
             cure=_say_shift(verb),
         )
-    merged = run.isel(time=slice(first, last))
     clock = force_clock[first:last]
-    signals = {
-        str(name): ("time", _resampled(str(name), motion[name].to_numpy(), shifted, clock))
-        for name in motion.data_vars
-        if name not in run.data_vars
+    columns = {name: values[first:last] for name, values in run.columns.items()}
+    columns |= {
+        name: _resampled(name, values, shifted, clock)
+        for name, values in motion.columns.items()
+        if name not in run.columns
     }
-    merged = merged.assign(signals).assign_coords(time=clock - clock[0])
-    merged.attrs.update(_joined(run, motion))
-    merged.attrs.update(attrs)
-    merged.attrs.update(
-        time_origin_s=float(clock[0]), clock_shift_s=shift, clock_shift_source=source
-    )
-    return stamp(merged)
+    attrs = run.attrs | _joined(run, motion) | attrs
+    attrs |= {"time_origin_s": float(clock[0])}
+    attrs |= {"clock_shift_s": shift, "clock_shift_source": source}
+    return Signals(clock - clock[0], columns, attrs)
 
 
 def _say_shift(say: str) -> Cure:
@@ -94,8 +90,8 @@ def _say_shift(say: str) -> Cure:
 
 
 def _shift(
-    run: xr.Dataset,
-    motion: xr.Dataset,
+    run: Signals,
+    motion: Signals,
     force_clock: np.ndarray,
     motion_clock: np.ndarray,
     given: float | None,
@@ -113,10 +109,11 @@ def _shift(
         )
     expected = 0.0 if apart is None else apart + force_clock[0] - motion_clock[0]
     velocity = _velocity(motion, motion_clock)
-    signal = next((run[n] for n in ("friction_force", "friction_coefficient") if n in run), None)
+    friction = ("friction_force", "friction_coefficient")
+    signal = next((run.columns[name] for name in friction if name in run.columns), None)
     if velocity is not None and signal is not None:
         estimate = estimate_clock_shift(
-            force_clock, signal.to_numpy(), motion_clock, velocity, expected, apart is not None
+            force_clock, signal, motion_clock, velocity, expected, apart is not None
         )
         if estimate is not None:
             ways = {
@@ -147,15 +144,15 @@ def _gap(apart: float, force_clock: np.ndarray, motion_clock: np.ndarray) -> flo
     return max(apart - float(np.ptp(force_clock)), -apart - float(np.ptp(motion_clock)), 0.0)
 
 
-def _velocity(motion: xr.Dataset, clock: np.ndarray) -> np.ndarray | None:
-    if "sliding_velocity" in motion:
-        return motion["sliding_velocity"].to_numpy()
-    if "position" in motion:
-        return np.gradient(motion["position"].to_numpy(), clock)
+def _velocity(motion: Signals, clock: np.ndarray) -> np.ndarray | None:
+    if "sliding_velocity" in motion.columns:
+        return motion.columns["sliding_velocity"]
+    if "position" in motion.columns:
+        return np.gradient(motion.columns["position"], clock)
     return None
 
 
-def _recorded_apart(run: xr.Dataset, motion: xr.Dataset) -> float | None:
+def _recorded_apart(run: Signals, motion: Signals) -> float | None:
     """Seconds from the start of the run to that of the companion, if both files say when."""
     try:
         begins = [dt.datetime.fromisoformat(data.attrs["recorded_at"]) for data in (run, motion)]
@@ -170,9 +167,9 @@ def _resampled(name: str, values: np.ndarray, clock: np.ndarray, wanted: np.ndar
     return np.interp(wanted, clock, values)
 
 
-def _joined(run: xr.Dataset, motion: xr.Dataset) -> dict[str, object]:
+def _joined(run: Signals, motion: Signals) -> Json:
     """Provenance of both logs."""
-    attrs: dict[str, object] = {
+    attrs: Json = {
         key: f"{run.attrs[key]}; {motion.attrs[key]}" for key in ("source", "source_sha256")
     }
     unused = [data.attrs["columns_not_used"] for data in (run, motion)]
