@@ -7,6 +7,7 @@ import io
 import numpy as np
 
 from tribolab.draft.columns.assign import SIGNALS, assigned
+from tribolab.draft.columns.axial import guesses_of_inclined
 from tribolab.draft.columns.bridges import calibrated_forces
 from tribolab.draft.columns.counts import with_worth
 from tribolab.draft.columns.either import told_by_load, without_means
@@ -93,6 +94,7 @@ def understand(layout: Layout) -> Understood:
     if kind == "run":
         columns = of_both_surfaces(layout, without_means(layout, columns))
         guesses += disagreement(columns, numbers)
+        guesses += guesses_of_inclined(layout, columns)
     columns = _dated(with_worth(layout, columns, numbers), layout, numbers, text)
     columns = [
         column._replace(

@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tribolab.draft.columns.axial import axial_force_of, find_inclined, radius_of_ball
 from tribolab.draft.columns.bridges import calibrated_forces
 from tribolab.draft.columns.counts import zero_in_counts
 from tribolab.draft.columns.lengths import find_arm, find_radius, on_rim
@@ -107,6 +108,9 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     if "step" in names:
         values += programme_of(layout)
     track = _track(values, understood, rim=on_rim(layout))
+    inclined = find_inclined(layout)
+    if inclined is not None and not track.formula:
+        track = _of_value(radius_of_ball(inclined, values))
     result = Follows()
     timed = "time" in names or understood.rate_pattern or understood.rate
     # rows that are counted as seconds make no speed of a position
@@ -154,16 +158,30 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
         return _and(result, DraftedFormula("normal_force", f"'{understood.load}'", about))
     if "set_normal_force" in names and names & SAYS_FRICTION and not names & SAYS_LOAD:
         about = "nothing measures it: the load that was set"
-        return _and(result, DraftedFormula("normal_force", "set_normal_force", about))
+        force = "set_normal_force"
+        force = inclined.load(force) if inclined is not None and inclined.cosine else force
+        return _and(result, DraftedFormula("normal_force", force, about))
     if "position" in names and result.speed is None:
         result = result._replace(values=(*result.values, *as_stated(values)))
     load = find_load(values)
-    if load is not None and names & SAYS_FRICTION and not names & SAYS_LOAD:
+    axial = axial_force_of(understood.columns)
+    by_angle = inclined is not None and inclined.cosine > 0
+    if inclined is not None and by_angle and axial is not None and _of_forces(names):
+        about = f"the contacts carry more than the axial force: '{inclined.text}'"
+        formula = DraftedFormula("normal_force", inclined.load("axial_force"), about)
+        result = _and(result, formula, (), (("axial_force", axial),))
+    elif load is not None and names & SAYS_FRICTION and not names & SAYS_LOAD:
         about = f"nothing measures it: '{load.text}' is taken for all of the run"
-        result = _and(result, DraftedFormula("normal_force", load.name, about), [load])
+        force = inclined.load(load.name) if inclined is not None and by_angle else load.name
+        result = _and(result, DraftedFormula("normal_force", force, about), [load])
     elif load is not None and not names & {"normal_force", "normal_stress", "set_normal_force"}:
         result = result._replace(values=(*result.values, load))  # under which a coefficient stands
     return result
+
+
+def _of_forces(names: set[str]) -> bool:
+    """Whether a friction coefficient is that of two forces, and not the instrument's own."""
+    return "friction_force" in names and "friction_coefficient" not in names
 
 
 def lacking(understood: Understood, follows: Follows) -> list[str]:

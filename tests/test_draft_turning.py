@@ -1,0 +1,77 @@
+"""Rigs that turn: what their files say of contacts, arms, radii, surfaces, loads and zeros."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import tribolab as tl
+from tribolab.draft.dialect.questions import GuessedError
+
+HOLD = 40  # rows at each speed
+TURNS = (0.0, 60.0, 120.0, 240.0)  # 1/min
+
+
+def columns(*, friction, load=10.0, turns=TURNS, noise=0.002, seed=1):
+    """Return times, turns, friction, load (row) at each speed, without slope, with some noise."""
+    rng = np.random.default_rng(seed)
+    rpm = np.repeat(turns, HOLD)
+    moving = rpm > 0
+    signal = friction * moving * (1 + noise * rng.standard_normal(rpm.size))
+    pressed = load * (1 + noise * rng.standard_normal(rpm.size))
+    return 0.1 * np.arange(rpm.size), rpm, signal, pressed
+
+
+def written(path, above, header, rows, *, delimiter="\t", encoding="utf-8", formats="%.6g"):
+    """Write a file of some lines, a header and rows, and return its path."""
+    formats = [formats] * len(rows) if isinstance(formats, str) else formats
+    body = [
+        delimiter.join(f % cell if isinstance(f, str) else f(cell) for f, cell in zip(formats, row, strict=True))
+        for row in zip(*rows, strict=True)
+    ]
+    text = "\n".join([*above, "", *([header] if isinstance(header, str) else header), *body])
+    path.write_text(text + "\n", encoding=encoding)
+    return path
+
+
+def coefficient(run):
+    """Return the median coefficient while it slides."""
+    fast = np.abs(run.sliding_velocity) > 0.5 * np.abs(run.sliding_velocity).max()
+    return float((run.friction_force / run.normal_force)[fast].median())
+
+
+@pytest.mark.parametrize(
+    ("said", "share"),
+    [
+        ("Cell: ball on 3 plates", 0.70711),
+        ("Messsystem: Kugel auf drei Platten, 45°", 0.70711),
+        ("bille sur trois plans", 0.70711),
+        ("Geometry\tball-on-pyramid", 0.70711),
+        ("Four-ball wear test ASTM D5183", 0.81650),
+        ("Vierkugelapparat", 0.81650),
+        ("四球摩擦试验机", 0.81650),
+    ],
+)
+def test_contacts_at_an_angle_carry_more_than_the_axial_force(said, share, tmp_path):
+    time, rpm, torque, axial = columns(friction=8.0)
+    above = [said, "Contact radius: 4.5 mm"]
+    header = "Time [s]\tSpeed [1/min]\tTorque [mN m]\tNormal Force [N]"
+    run = tl.read(written(tmp_path / "a.txt", above, header, (time, rpm, torque, axial)))
+    assert coefficient(run) == pytest.approx(8e-3 / 4.5e-3 / 10 * share, rel=2e-3)
+
+
+def test_a_stated_axial_load_is_shared_by_the_contacts_of_four_balls(tmp_path):
+    time, rpm, torque, _ = columns(friction=80.0)
+    above = ["Four ball tester", "Load: 392 N", "Ball diameter: 12.7 mm"]
+    header = "Time [s]\tSpeed [1/min]\tTorque [mN m]"
+    run = tl.read(written(tmp_path / "a.txt", above, header, (time, rpm, torque)))
+    assert coefficient(run) == pytest.approx(2**0.5 * 0.08 / (6.35e-3 * 392), rel=2e-3)
+    assert float(run.sliding_velocity.max()) == pytest.approx(8 * np.pi * 6.35e-3 / 3**0.5, rel=1e-3)
+
+
+def test_an_angle_of_contacts_that_is_not_said_is_asked(tmp_path):
+    time, rpm, torque, axial = columns(friction=8.0)
+    above = ["balls on cone", "Track radius: 4.5 mm"]
+    header = "Time [s]\tSpeed [1/min]\tTorque [mN m]\tNormal Force [N]"
+    with pytest.raises(GuessedError, match="cosine"):
+        tl.read(written(tmp_path / "a.txt", above, header, (time, rpm, torque, axial)))
