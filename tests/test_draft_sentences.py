@@ -134,7 +134,7 @@ def test_the_distance_of_heights_is_told_in_many_words(said, tmp_path):
 @pytest.mark.parametrize(
     ("name", "said", "guess"),
     [
-        ("disc_R21.5mm_b.txt", "Rig", "'R21.5mm' of the file's name is the radius of the track"),
+        ("disc_R21.5_b.txt", "Rig", "'R21.5' of the file's name is the radius of the track"),
         ("a.txt", "Geometry: ring; R = 21.5 mm", "'Geometry: ring; R = 21.5 mm' is the radius"),
         ("a.txt", "disc dia. 43 mm", "'disc dia. 43 mm' is twice the radius of the track"),
     ],

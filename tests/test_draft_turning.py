@@ -75,3 +75,25 @@ def test_an_angle_of_contacts_that_is_not_said_is_asked(tmp_path):
     header = "Time [s]\tSpeed [1/min]\tTorque [mN m]\tNormal Force [N]"
     with pytest.raises(GuessedError, match="cosine"):
         tl.read(written(tmp_path / "a.txt", above, header, (time, rpm, torque, axial)))
+
+
+@pytest.mark.parametrize(
+    ("name", "asked"),
+    [
+        ("POD_run07_r12p5mm.txt", ""),
+        ("disc7_r12.5mm_b.txt", ""),
+        ("a_rad12_5mm.txt", ""),
+        ("R12_5.txt", "'R12_5' of the file's name is the radius of the track in mm"),
+        ("pod-d25mm.txt", "'d25mm' of the file's name is twice the radius"),
+        ("disc_rad12.5.txt", "in mm"),
+    ],
+)
+def test_a_radius_in_the_name_of_a_file_is_taken_or_asked_about(name, asked, tmp_path):
+    time, rpm, friction, load = columns(friction=4.0)
+    header = "Time [s]\tDisc [rpm]\tFriction [N]\tLoad [N]"
+    path = written(tmp_path / name, ["POD"], header, (time, rpm, friction, load))
+    if asked:
+        with pytest.raises(GuessedError, match=asked):
+            tl.read(path)
+    run = tl.read(path, tl.draft_dialect(path).dialect if asked else None)
+    assert float(run.sliding_velocity.max()) == pytest.approx(8 * np.pi * 12.5e-3, rel=1e-6)

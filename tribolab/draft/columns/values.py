@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
+from tribolab.draft.columns.named_radius import radius_in_name
 from tribolab.draft.columns.sentences import Phrase, phrases
 from tribolab.draft.columns.stated_words import (
     ACROSS,
@@ -67,10 +68,6 @@ _SPEED_IN_NAME = re.compile(
     r"(?:^|[_\- ])(?P<number>\d+(?:\.\d+)?)(?P<unit>[mu]m)(?P<per>p?s|_s|-s| s)(?=[_\- .]|$)"
 )
 _IN_NAME = re.compile(r"(?:^|_)(?P<number>\d+(?:\.\d+)?)(?P<unit>N|mN)(?=_|$)")
-_RADIUS_IN_NAME = re.compile(
-    r"(?:^|[_\- ])(?P<key>(?:R|r|[Rr]adius|[Tt]rack)[_=-]?)(?P<number>\d+(?:\.\d+)?)"
-    r"(?P<unit>mm|cm)(?=[_\- .])"
-)
 _SET = {"normal_force": "set_normal_force", "sliding_velocity": "set_speed"}
 
 
@@ -121,8 +118,14 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
         A dozen at most, of heights more.
     """
     values: dict[str, DraftValue] = {}
-    if radius := _radius_in_name(layout.file.path.name):
-        values[radius.name] = radius
+    name = layout.file.path.name
+    if radius := radius_in_name(name):
+        values["track_radius"] = DraftValue(
+            *("track_radius", radius.pattern, radius.unit, "m", name, "file name", radius.unit),
+            scale=radius.scale,
+            key="trackradius",
+            guess=radius.guess,
+        )
     if speed := _speed_in_name(layout.file.path):
         values[speed.name] = speed
     in_name = _IN_NAME.search(layout.file.path.stem)
@@ -173,26 +176,6 @@ def _of_steps(value: DraftValue, layout: Layout) -> DraftValue:
     texts = ["\n".join(layout.lines[a:b]) for a, b in zip(edges[::2], edges[1::2], strict=False)]
     said = {match[1] for text in texts for match in re.finditer(value.pattern, text, re.MULTILINE)}
     return value._replace(source="step") if len(said) > 1 else value
-
-
-def _radius_in_name(name: str) -> DraftValue | None:
-    """Return the radius that a file's name states: disc_R21.5mm.txt."""
-    match = _RADIUS_IN_NAME.search(name)
-    if match is None:
-        return None
-    pattern = rf"{match['key']}(\d+(?:\.\d+)?){match['unit']}"
-    said = match[0].strip("_- ")
-    return DraftValue(
-        "track_radius",
-        pattern,
-        match["unit"],
-        "m",
-        name,
-        source="file name",
-        own_unit=match["unit"],
-        key="trackradius",
-        guess=f"'{said}' of the file's name is the radius of the track",
-    )
 
 
 def _speed_in_name(path: Path) -> DraftValue | None:

@@ -19,6 +19,8 @@ from tribolab.untyped import Json
 # 21,5 above a table with decimal points; 1,200 may be a thousand and is asked about
 _OWN_COMMA = re.compile(r"[-+]?(?:\d+,\d{1,2}|\d+,\d{4,}|0,\d+)(?:[eE][-+]?\d+)?")
 
+_OF_NAME = re.compile(r"(?<=\d)[,pP_](?=\d)")
+
 
 def single_values(content: Content, dialect: Dialect) -> dict[str, str | float]:
     """Attributes from the preamble and the file's name; the unit is in an attribute's name.
@@ -133,8 +135,12 @@ def converted(text: str, value: Value, content: Content, dialect: Dialect) -> st
     """
     if value.unit is None:
         return text
+    spelt = text.rstrip(".,")
     try:
-        number = _number(text.rstrip(".,"), dialect.text.decimal)
+        if value.source == "file name":  # "r12p5mm", "R12_5": names of files avoid points
+            number = float(_OF_NAME.sub(".", spelt))
+        else:
+            number = _number(spelt, dialect.text.decimal)
     except ValueError as error:
         raise ReadError(
             f"{content.path}: '{shown(text)}' ({value.name}) is not a number; see the value's "
