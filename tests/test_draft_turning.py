@@ -97,3 +97,36 @@ def test_a_radius_in_the_name_of_a_file_is_taken_or_asked_about(name, asked, tmp
             tl.read(path)
     run = tl.read(path, tl.draft_dialect(path).dialect if asked else None)
     assert float(run.sliding_velocity.max()) == pytest.approx(8 * np.pi * 12.5e-3, rel=1e-6)
+
+
+TWIN = {
+    "Chinese": ("上试样直径(mm):\t40", "下试样直径(mm):\t40", "上试样转速(r/min)", "下试样转速(r/min)"),
+    "German": ("Durchmesser obere Rolle: 40 mm", "Durchmesser untere Rolle: 40 mm")
+    + ("Drehzahl oben [1/min]", "Drehzahl unten [1/min]"),
+    "English": ("Twin-disc machine", "Disc diameter: 40 mm", "Speed 1 [rpm]", "Speed 2 [rpm]"),
+    "Hertz": ("Driving roller radius: 20 mm", "Driven roller radius: 20 mm")
+    + ("Driving roller [Hz]", "Driven roller [Hz]"),
+}
+
+
+@pytest.mark.parametrize("language", TWIN)
+def test_two_rollers_slide_at_the_difference_of_their_surfaces(language, tmp_path):
+    *above, one, other = TWIN[language]
+    time, rpm, torque, load = columns(friction=1.2, load=400)
+    speeds = (1.02 * rpm, rpm)
+    speeds = [speed / 60 for speed in speeds] if "Hz" in one else speeds
+    header = f"Time [s]\t{one}\t{other}\tTorque [N m]\tLoad [N]"
+    path = written(tmp_path / "a.txt", above, header, (time, *speeds, torque, load))
+    run = tl.read(path)
+    assert float(run.sliding_velocity.max()) == pytest.approx(0.02 * 8 * np.pi * 0.02, rel=1e-3)
+    assert float(run.rolling_speed.max()) == pytest.approx(1.01 * 8 * np.pi * 0.02, rel=1e-3)
+    assert coefficient(run) == pytest.approx(1.2 / 0.02 / 400, rel=2e-3)
+
+
+def test_a_ball_on_a_disc_slides_at_the_difference_of_both_speeds(tmp_path):
+    time, rpm, force, load = columns(friction=1.5)
+    header = "Time [s]\tDisc Speed [mm/s]\tBall Speed [mm/s]\tTraction [N]\tLoad [N]"
+    path = written(tmp_path / "a.txt", ["MTM"], header, (time, rpm, 0.8 * rpm, force, load))
+    run = tl.read(path)
+    assert float(run.sliding_velocity.max()) == pytest.approx(0.2 * 0.24)
+    assert float(run.rolling_speed.max()) == pytest.approx(0.9 * 0.24)

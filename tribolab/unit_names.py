@@ -8,7 +8,7 @@ _SAME = {
     "s": "Sec SEC Secs Seconds Second sekunde sekunden Sekunde Sekunden sek Sek segundo segundos "
     "seconde secondes secondo secondi с сек 秒 sn",
     "ms": "millisekunden Millisekunden millisecondes milisegundos msek мс 毫秒",
-    "min": "Min minuten Minuten minutos minuti мин 分 分钟",
+    "min": "Min minuten Minuten minutos minuti dk dak dakika perc хв мин 分 分钟 분",
     "h": "Std std Stunden heures horas ore ч 小时 時間",
     "day": "jours dias tage Tage giorni",
     "N": "Newton Newtons newtons Н 牛 牛顿",
@@ -41,7 +41,8 @@ _SAME = {
     "Mohm": "MOhm MOHM МОм",
     "uohm": "uOhm",
     "Hz": "Гц 赫兹",
-    "rev": "об оборот vuelta vueltas 转 轉 回転 Umdrehungen Umdr",
+    "rev": "об оборот vuelta vueltas dev devir ot otáček omdr omdrejninger kierr ford fordulat "
+    "转 轉 回転 Umdrehungen Umdr",
     "rpm": "RPMs Rpm vpm",
 }
 _NAMES = {said: name for name, words in _SAME.items() for said in words.split()}

@@ -17,6 +17,15 @@ from tribolab.draft.columns.stated_words import PER_MINUTE
 from tribolab.draft.columns.stated_zero import find_zero, reading_of, zero_in_doubt
 from tribolab.draft.columns.stroke_settings import as_stated, strokes_of_columns, strokes_of_values
 from tribolab.draft.columns.turning import angle_of, radius_of, torque_of, turns_of
+from tribolab.draft.columns.two_bodies import (
+    Pair,
+    Radii,
+    along_friction,
+    as_symbol,
+    pair_of,
+    radii_of,
+    shaft_of_torque,
+)
 from tribolab.draft.columns.values import DraftValue, find_values, words_said
 from tribolab.draft.columns.words import or_term, squeezed
 from tribolab.draft.file.layout import Layout
@@ -52,6 +61,7 @@ _ANOTHER_SPEED = re.compile(
 )
 _STEP = re.compile(rf"^{STEP_WORD}\d*n?$")
 _SAYS_SPEED = {"sliding_velocity", "position", "set_speed"}
+_SURFACES = ("first_surface", "second_surface")  # symbols of their speeds
 SAYS_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
 
@@ -118,15 +128,20 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     # what is set, and a way of whatever, give way to what turns; what is set to what drives, too
     turned = "rotation_speed" in names and bool(track.formula)
     says_speed = says_speed - ({"set_speed", "position"} if turned else {"set_speed"})
+    pair = _surfaces(layout, understood, names)
+    radii = radii_of(pair, values, understood.radius) if pair is not None else None
     if understood.speed:
         about = "it was said that it slides so fast all along"
         result = _and(result, DraftedFormula("set_speed", f"'{understood.speed}'", about))
         result = result._replace(speed=SpeedBy("set speed"))
-    elif not names & says_speed:
+    elif pair is not None and (radii is not None or not pair.turns):
+        result = _with_difference(result, names, pair, radii, understood)
+    elif pair is None and not names & says_speed:
         result = _with_speed(result, names, values, understood, words_said(layout), track)
     torque = torque_of(understood.columns)
     if not names & SAYS_FRICTION and torque is not None:
-        arm = track if track.formula else _of_value(find_arm(values))
+        arm = _of_shaft(layout, pair, radii) if pair is not None and radii is not None else track
+        arm = arm if arm.formula else _of_value(find_arm(values))
         if arm.formula:
             zero = find_zero(layout, values, "N m", understood.zero)
             about = "a torque and a radius" + (f", and '{zero.text}'" if zero else "")
@@ -319,6 +334,52 @@ def _with_speed(
         values=(*before.values, *of_strokes.values),
         symbols=(*before.symbols, *of_strokes.symbols),
     )
+
+
+def _surfaces(layout: Layout, understood: Understood, names: set[str]) -> Pair | None:
+    """Return the speeds of two surfaces, where no column holds how fast they slide."""
+    pair = pair_of(layout, understood.columns, understood.numbers)
+    held = {column.place for column in understood.columns if column.used}
+    taken = names & {"sliding_velocity", "rotation_speed"}
+    return None if pair is None or taken or pair.places & held else pair
+
+
+def _with_difference(
+    before: Follows,
+    names: set[str],
+    pair: Pair,
+    radii: Radii | None,
+    understood: Understood,
+) -> Follows:
+    """Let two surfaces slide at the difference of their speeds, and roll at the mean."""
+    columns = [as_symbol(column) for column in pair.columns]
+    symbols = tuple(
+        (name, column) for name, (column, _) in zip(_SURFACES, columns, strict=True)
+    )
+    speeds = [
+        f"{factor}{name} * {radius}" if pair.turns and radii is not None else name
+        for name, (_, factor), radius in zip(
+            _SURFACES, columns, radii.formulas if radii is not None else ("", ""), strict=True
+        )
+    ]
+    less, more = ("+", "-") if pair.opposed else ("-", "+")
+    friction = torque_of(understood.columns) or reading_of(understood.columns)
+    if not along_friction(pair, radii, understood.numbers, friction):
+        speeds = speeds[::-1]
+    about = "two surfaces slide at the difference of their speeds"
+    values = radii.values if radii is not None else ()
+    sliding = DraftedFormula("sliding_velocity", f"{speeds[0]} {less} {speeds[1]}", about)
+    result = _and(before, sliding, values, symbols)._replace(speed=SpeedBy("none"))
+    if "rolling_speed" in names:
+        return result
+    rolling = f"({speeds[0]} {more} {speeds[1]}) / 2"
+    return _and(result, DraftedFormula("rolling_speed", rolling, "their mean speed"))
+
+
+def _of_shaft(layout: Layout, pair: Pair, radii: Radii) -> _Track:
+    """Return the radius of the body on whose shaft the torque is; none where that is not said."""
+    shaft = 0 if radii.alike else shaft_of_torque(layout, pair)
+    return _Track() if shaft is None else _Track(radii.formulas[shaft], radii.values)
 
 
 def _is_rotation(value: DraftValue) -> bool:

@@ -17,6 +17,7 @@ from tribolab.io.dialects.checked_text import (
 )
 from tribolab.quantities import QUANTITIES, quantity
 from tribolab.turns import Counted, reciprocal
+from tribolab.unit_names import plain_unit
 from tribolab.units import base_unit, to_si
 
 _TURNING = {"cycles": "Hz", "radians": "rad/s"}
@@ -104,7 +105,7 @@ class Column(Strict):
             return quantity(self.quantity).unit
         if unit in (None, "", "1", "-", "%"):
             return "1"
-        turning = reciprocal(str(unit))  # cycles stay cycles
+        turning = reciprocal(plain_unit(str(unit)))  # cycles stay cycles
         return _TURNING.get(turning.counts if turning else "") or base_unit(str(unit))
 
     @property
