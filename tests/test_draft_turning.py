@@ -130,3 +130,22 @@ def test_a_ball_on_a_disc_slides_at_the_difference_of_both_speeds(tmp_path):
     run = tl.read(path)
     assert float(run.sliding_velocity.max()) == pytest.approx(0.2 * 0.24)
     assert float(run.rolling_speed.max()) == pytest.approx(0.9 * 0.24)
+
+
+@pytest.mark.parametrize(
+    ("name", "length", "kept"),
+    [
+        ("Reibweg [m]", lambda t, rpm: np.cumsum(np.abs(rpm)) * 2 * np.pi / 600 * 0.02, False),
+        ("Sliding distance [m]", lambda t, rpm: np.cumsum(rpm) * 2 * np.pi / 600 * 0.02, True),
+        ("Displacement [um]", lambda t, rpm: 0.1 * t + 0.5 * np.sin(t), False),
+        ("Przemieszczenie liniowe [µm]", lambda t, rpm: 3 * t**0.5, False),
+    ],
+)
+def test_the_turns_tell_whether_a_length_is_the_way(name, length, kept, tmp_path):
+    time, rpm, friction, load = columns(friction=4.0, turns=(0.0, 60.0, -60.0, 120.0))
+    header = f"Time [s]\tDisc [rpm]\tFriction [N]\tLoad [N]\t{name}"
+    above = ["POD", "Track radius: 20 mm"]
+    rows = (time, rpm, np.sign(rpm) * friction, load, length(time, rpm))
+    run = tl.read(written(tmp_path / "a.txt", above, header, rows))
+    assert ("position" in run) == kept
+    assert float(run.sliding_velocity.max()) == pytest.approx(4 * np.pi * 0.02)

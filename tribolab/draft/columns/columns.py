@@ -39,6 +39,7 @@ from tribolab.draft.columns.slip import of_both_surfaces
 from tribolab.draft.columns.stated_missing import take_stated_missing
 from tribolab.draft.columns.two_bodies import pair_of, without_surfaces
 from tribolab.draft.columns.values import DraftValue
+from tribolab.draft.columns.way import beside_turns
 from tribolab.draft.columns.words import Match, matches, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
@@ -94,6 +95,7 @@ def understand(layout: Layout) -> Understood:
     columns = told_by_load(layout, force_or_ratio(columns), numbers) if kind == "run" else columns
     if kind == "run":
         columns = without_surfaces(columns, pair_of(layout, columns, numbers))
+        columns = beside_turns(columns, numbers)
         columns = of_both_surfaces(layout, without_means(layout, columns))
         guesses += disagreement(columns, numbers)
         guesses += guesses_of_inclined(layout, columns)
