@@ -149,3 +149,39 @@ def test_the_turns_tell_whether_a_length_is_the_way(name, length, kept, tmp_path
     run = tl.read(written(tmp_path / "a.txt", above, header, rows))
     assert ("position" in run) == kept
     assert float(run.sliding_velocity.max()) == pytest.approx(4 * np.pi * 0.02)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        "Load cell not zeroed - first and last segment are pin lifted off",
+        "Anfangs 5 s ohne Last",
+        "début à vide, puis mise en charge",
+        "開始5秒 無負荷",
+        "Första 4 s utan last",
+        "Сначала без нагрузки",
+    ],
+)
+@pytest.mark.parametrize("torque", [False, True])
+def test_words_tell_where_the_zero_of_a_record_without_a_load_signal_is(said, torque, tmp_path):
+    time, rpm, friction, _ = columns(friction=4.0, turns=(0.0, 0.0, 60.0, 120.0))
+    signal = friction + 0.3 + 0.01 * np.sin(time * 9)
+    header = "Time [s]\tDisc [rpm]\t" + ("Torque [N cm]" if torque else "Friction [N]")
+    above = ["POD", said, "Track radius: 20 mm", "Load: 10 N"]
+    rows = (time, rpm, 2 * signal if torque else signal)
+    run = tl.read(written(tmp_path / "a.txt", above, header, rows))
+    assert coefficient(run) == pytest.approx(0.4, rel=3e-3)
+    assert run.attrs["friction_force_zero_N"] == pytest.approx(0.3, abs=0.003)
+
+
+def test_a_programme_holds_radius_and_turns_and_a_step_without_load(tmp_path):
+    step = np.repeat([0, 1, 2], HOLD)
+    signal = np.where(step > 0, 20.0, 0) + 1.5 + 0.01 * np.sin(np.arange(step.size) * 9)
+    above = ["試験機", "荷重[gf],100", "ステップ,回転半径[mm],回転数[rpm],時間[s],備考"]
+    above += ["0,-,0,5,無負荷(ゼロ点)", "1,3.0,60,4,", "2,6.0,60,4,"]
+    rows = (np.arange(step.size) * 0.1, step, signal)
+    header = "時間[s],ステップ,摩擦力[gf]"
+    run = tl.read(written(tmp_path / "a.csv", above, header, rows, delimiter=","))
+    speeds = 2 * np.pi * np.array([3e-3, 6e-3])
+    np.testing.assert_allclose(run.sliding_velocity[[HOLD, -1]], speeds, rtol=1e-6)
+    assert coefficient(run) == pytest.approx(0.2, rel=2e-3)

@@ -90,6 +90,13 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     of_steps = keep_settings(columns, _symbols(contents, dialect), attrs, where, dialect)
     assumed = add_assumed(attrs, dialect)
     add_derived(columns, _symbols(contents, dialect), attrs, time.size, where, dialect)
+    made = attrs.get("derived", {})
+    rules = {rule.quantity: rule.zero for rule in dialect.derived if rule.zero}
+    rules |= {name: zero for name in FRICTION_SIGNALS if zero is not None}
+    rules = {name: text for name, text in rules.items() if name in made}
+    read = take_zeros(columns, time, rules, blank, where)
+    if rules:
+        attrs |= read | {"zeros_read": attrs.get("zeros_read", {}) | read["zeros_read"]}
     tell_assumed(attrs, assumed, dialect)
     keep_forces_that_agree(columns, attrs)
     add_speed(columns, attrs, time, where, dialect, of_steps)
@@ -102,10 +109,16 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
 
 
 def _blank(path: Path, dialect: Dialect) -> dict[str, np.ndarray]:
-    """Return the columns of a blank run."""
+    """Return the columns of a blank run, and what follows from them."""
     content = read_content(path, dialect)
     set_time(content, dialect)
-    return _columns([content], dialect)
+    columns = _columns([content], dialect)
+    if dialect.derived:
+        attrs: Json = dict(single_values(content, dialect))
+        add_assumed(attrs, dialect)
+        rows = len(columns["time"])
+        add_derived(columns, _symbols([content], dialect), attrs, rows, str(path), dialect)
+    return columns
 
 
 def _symbols(contents: list[Content], dialect: Dialect) -> dict[str, str]:

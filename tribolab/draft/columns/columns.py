@@ -38,6 +38,7 @@ from tribolab.draft.columns.sampling import find_sampling
 from tribolab.draft.columns.slip import of_both_surfaces
 from tribolab.draft.columns.stated_missing import take_stated_missing
 from tribolab.draft.columns.two_bodies import pair_of, without_surfaces
+from tribolab.draft.columns.unloaded import with_zero
 from tribolab.draft.columns.values import DraftValue
 from tribolab.draft.columns.way import beside_turns
 from tribolab.draft.columns.words import Match, matches, squeezed
@@ -119,6 +120,7 @@ def understand(layout: Layout) -> Understood:
         guesses = [said for said in guesses if not any(text in said for text in spoken_for)]
     period = summed(columns, numbers)
     on_repeat, restart, columns = find_clock(layout, columns, numbers)
+    columns = with_zero(layout, columns, numbers) if kind == "run" else columns
     used = [column.place - 1 for column in columns if column.used]
     if kind == "scan":
         heights = [c.place - 1 for c in columns if c.used and c.quantity == "height"]

@@ -67,11 +67,12 @@ SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
 
 
 class DraftedFormula(NamedTuple):
-    """A quantity that follows: its name, the formula, and what it rests on."""
+    """A quantity that follows: its name, the formula, what it rests on, where its zero is read."""
 
     quantity: str
     formula: str
     about: str
+    zero: str = ""
 
 
 class SpeedBy(NamedTuple):
@@ -146,7 +147,9 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
             zero = find_zero(layout, values, "N m", understood.zero)
             about = "a torque and a radius" + (f", and '{zero.text}'" if zero else "")
             net = f"(torque - {zero.name})" if zero else "torque"
-            formula = DraftedFormula("friction_force", f"{net} / {arm.formula}", about)
+            read = torque.zero if zero is None else ""
+            formula = DraftedFormula("friction_force", f"{net} / {arm.formula}", about, read)
+            torque = torque._replace(zero="")
             used = arm.values if zero is None else (*arm.values, zero)
             result = _and(result, formula, used, (("torque", torque), *arm.symbols))
             names.add("friction_force")
@@ -285,7 +288,7 @@ def _with_speed(
     turning = "rotation_speed" in names
     if turning and understood.radius:
         return before._replace(speed=SpeedBy("rotation", (("radius", understood.radius),)))
-    if turning and any(value.source == "step" for value in track.values):
+    if turning and any(value.source in ("step", "programme") for value in track.values):
         about = "turns and the radius of each step"
         formula = DraftedFormula("sliding_velocity", f"rotation_speed * {track.formula}", about)
         return _and(before, formula, track.values)._replace(speed=SpeedBy("none"))

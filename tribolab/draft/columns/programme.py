@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 
-from tribolab.draft.columns.stated_words import LOAD, PER_MINUTE
+from tribolab.draft.columns.stated_words import ACROSS, LOAD, PER_MINUTE, RADIUS
 from tribolab.draft.columns.values import DraftValue
 from tribolab.draft.columns.words import matches, split_unit, squeezed, unit_in_words
 from tribolab.draft.file.header import converts, escaped
@@ -22,6 +22,8 @@ _FIRST = re.compile(
 )
 _NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
 _SAID = {"m/s": "set_speed", "N": "set_normal_force"}
+_TO = {"rad/s": "rotation", "m": "track_radius"}  # names of what is no quantity
+_NOTHING = re.compile(r"[-–—*/.]*|n/?a|none|off|無|无|なし", re.IGNORECASE)
 _DELIMITERS = ("\t", ";", ",", "whitespace")
 
 
@@ -36,7 +38,7 @@ def programme_of(layout: Layout) -> list[DraftValue]:
     Returns
     -------
     list of DraftValue
-        With ``source`` "programme": rotations (rad/s), speeds (m/s) and forces (N).
+        With ``source`` "programme": rotations (rad/s), radii (m), speeds (m/s) and forces (N).
     """
     lines = [line[:_LONGEST] for line in layout.text_above()]
     for index, line in enumerate(lines):
@@ -50,13 +52,19 @@ def programme_of(layout: Layout) -> list[DraftValue]:
 
 
 def _steps_below(lines: list[str], width: int, delimiter: str) -> int:
-    """Return how many rows of numbers stand right below that count from one step to the next."""
+    """Return how many rows stand right below that count from one step to the next.
+
+    Each holds numbers, but for marks of what a step has none of, and a last cell of remarks.
+    """
     count, before = 0, -1.0
     for line in lines:
         cells = [cell.strip().strip('"') for cell in split_row(line, delimiter)]
         if len(cells) < width or not cells[0].isdigit() or not float(cells[0]) > before:
             break
-        if any(cell and not _NUMBER.fullmatch(cell) for cell in cells[:width]):
+        own = cells[:width] if _NUMBER.fullmatch(cells[width - 1]) else cells[: width - 1]
+        if not all(_NUMBER.fullmatch(cell) or _NOTHING.fullmatch(cell) for cell in own):
+            break
+        if not any(_NUMBER.fullmatch(cell) for cell in own[1:]):
             break
         count, before = count + 1, float(cells[0])
     return count
@@ -70,8 +78,11 @@ def _values(line: str, names: list[str], delimiter: str) -> list[DraftValue]:
         unit = unit_in_words(unit) if unit else None
         turns = unit is not None and PER_MINUTE.fullmatch(unit)
         unit = "rpm" if turns else unit
-        to = next((si for si in ("rad/s", "m/s", "N") if unit and converts(unit, si)), None)
-        if unit is None or to is None or (to == "N" and not LOAD.search(squeezed(name))):
+        to = next((si for si in ("rad/s", "m/s", "N", "m") if unit and converts(unit, si)), None)
+        key = squeezed(name)
+        if unit is None or to is None or (to == "N" and not LOAD.search(key)):
+            continue
+        if to == "m" and not (RADIUS.search(key) or ACROSS.search(key)):
             continue
         options = matches(name, unit)
         known = options[0].quantity if options else ""
@@ -79,14 +90,15 @@ def _values(line: str, names: list[str], delimiter: str) -> list[DraftValue]:
             continue
         found.append(
             DraftValue(
-                _SAID.get(to, "rotation"),
+                _SAID.get(to) or _TO[to],
                 _pattern(place, len(names), delimiter),
                 unit,
                 None if to in _SAID else to,
                 line,
                 source="programme",
                 own_unit=unit,
-                key=squeezed(name),
+                scale=0.5 if to == "m" and ACROSS.search(key) else 1.0,
+                key=key,
             )
         )
     return found

@@ -90,6 +90,8 @@ def symbol_table(symbol: str, column: DraftColumn) -> str:
 def formula_table(formula: DraftedFormula) -> str:
     """Return a quantity that follows from others."""
     lines = ["[[derived]]", f'quantity = "{formula.quantity}"', f'formula = "{formula.formula}"']
+    if formula.zero:
+        lines.append(f"zero = {quoted(formula.zero)}")
     return "\n".join([f"# {comment(formula.about)}", *lines]) + "\n"
 
 

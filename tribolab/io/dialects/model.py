@@ -11,7 +11,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from tribolab.errors import nearest, shown
-from tribolab.io.dialects.checked_text import Formula, QuantityName, Strict
+from tribolab.io.dialects.checked_text import Formula, QuantityName, Strict, ZeroText
 from tribolab.io.dialects.column_rule import Column
 from tribolab.io.dialects.formula import names_in, parse_formula
 from tribolab.io.dialects.layout import Binary, Header, Marks, Pair, Recognise, Rows, Text
@@ -38,6 +38,9 @@ class Derived(Strict):
     )
     beside: tuple[str, ...] = Field(
         (), description="what the file has to hold besides, if the formula is to be used"
+    )
+    zero: ZeroText | None = Field(
+        None, description="where the zero of what follows is read and taken off, as for a column"
     )
 
 
