@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tribolab.draft.columns.counts import WORTH
+from tribolab.draft.columns.levers import weight_on_lever
 from tribolab.draft.columns.sentences import phrases
 from tribolab.draft.columns.stated_words import LOAD
 from tribolab.draft.columns.words import squeezed
@@ -118,6 +119,8 @@ def _missing(line: str) -> str:
     contacts = _CONTACTS.search(line)
     if contacts and 1 < int(contacts["after"] or contacts["before"]) <= _MOST_CONTACTS:
         return f"friction and load are both of all contacts, or both of one: '{shown(line, 40)}'"
+    if weight_on_lever(line):
+        return ""  # the load is the weight times the lever
     for ratio in _ONE_TO.finditer(line):
         key = line[: ratio.start()]
         named = _begins_a_word(_FACTOR, key) or _begins_a_word(_RATIO, key)

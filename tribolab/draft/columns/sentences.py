@@ -21,6 +21,8 @@ _CUTS = re.compile(
 _ACROSS_BEHIND = re.compile(
     r"\s?(?:(o\.?d\b)|in dia|dia(?:m\w*)?\b|ø|⌀|durchm|di[aá]met)", re.IGNORECASE
 )
+_SIZE = re.compile(r"oe|⌀|dia|diam|diamet\w{1,3}|durchmesser|srednica|prumer|aussendurchmesser|外径|直径")
+_LABEL = re.compile(r"\W*(?P<label>[^\W\d][^:;=\t：；]{0,40}?)[\s\"]*[:;=\t：；]")
 _CAPITALS = 3  # letters of a unit that may be written large
 _ENDS = " \t:=~≈＝：-–"
 _LITTLE = frozenset(
@@ -85,12 +87,24 @@ def phrases(line: str) -> list[Phrase]:
         clauses = [clause for clause in _CUTS.split(before) if clause.strip()]
         words = clauses[-1] if clauses else ""
         key = "".join(squeezed(w) for w in words.split() if squeezed(w) not in _LITTLE)
+        if _SIZE.fullmatch(key):  # "Shaft: Ø 80 mm" is that of the shaft
+            key = f"{label_of(line)}diameter" if label_of(line) else key
         if behind := _ACROSS_BEHIND.match(line[match.end() :][:20]):
             key += "od" if behind[1] else "diameter"
         number = match["number"].rstrip(".,")
         said.append(Phrase(key, number, unit, _pattern(line[: match.start()]), line))
         done = match.end()
     return said
+
+
+def label_of(line: str) -> str:
+    """Return what stands before the first colon or cell of a line, squeezed; "" if nothing does.
+
+    >>> label_of("Shaft: steel, Ø 80 mm"), label_of('"Anneau";"acier 4620"'), label_of("Ø 80 mm")
+    ('shaft', 'anneau', '')
+    """
+    label = _LABEL.match(line[:_LONGEST])
+    return squeezed(label["label"]) if label else ""
 
 
 def points_per_length(line: str) -> tuple[float, str] | None:

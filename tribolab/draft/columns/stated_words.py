@@ -42,6 +42,9 @@ LOAD = or_term(
     r"(?:do|da|de|del|della|des|du|aplicada|appliquee|applicato)\w{0,12}$"
     r"|^(?:total|gesamt|mean|mittlere)?(?:lip|lippen|seal|ring)?radial(?:force|load|kraft|last)"
     r"(?:total|gesamt)?$|径向力$"
+    r"|^(?:carico|forza|charge|force|effort|carga|fuerza|forca|obciazenie|nacisk|sila)"
+    r"(?:normal[ea]?|radial[ea]?|axial[ea]?|assiale|vertical[ea]?|tota[a-z]{1,3}|complessiv[ao]|globale?)+"
+    r"(?:(?:do|da|de|del|della|des|du|sul|sur|sobre|en|na|on)\w{0,16})?$"
     r"|^(?:dead|tot|eigen)(?:weight|gewicht|load|last)\w{0,20}$"
     r"|^(?:poids|peso)m(?:ort|uert)o?\w{0,20}$"
     r"|^(?:normal)?(?:load|force|weight)(?:on|per|onto|upon)(?!cell)\w{0,12}$"
@@ -197,7 +200,8 @@ OUTER = re.compile(
 
 # what the sensor shows without friction, and whether it is still in the signal
 ZERO = re.compile(
-    r"zero|offset|nullpunkt|nulllage|nullwert|nullsignal|^null|tara|tare|nollpunkt|nollage|nulpunt"
+    r"zero|offset|(?:torque|moment|couple|coppia|koppel)\w{0,6}(?:noload|unloaded|idle|leerlauf|avide|avuoto|envacio|emvazio|zonderlast)"
+    r"|(?:noload|unloaded|idle|idling|bearing|spindle|leerlauf|lager|parasitic|drag)\w{0,6}(?:torque|moment)|nullpunkt|nulllage|nullwert|nullsignal|^null|tara|tare|nollpunkt|nollage|nulpunt"
     r"|nulstil|nolla|cero|零点|零位|ゼロ|ноль|нуль|영점|sifir|nula|nulov"
 )
 NOT_TAKEN_OFF = re.compile(

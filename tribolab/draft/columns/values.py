@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tribolab.draft.columns.named_radius import radius_in_name
-from tribolab.draft.columns.sentences import Phrase, phrases
+from tribolab.draft.columns.levers import weight_on_lever
+from tribolab.draft.columns.sentences import Phrase, label_of, phrases
 from tribolab.draft.columns.stated_words import (
     ACROSS,
     ARM,
@@ -287,8 +288,12 @@ def _of_phrase(phrase: Phrase) -> DraftValue | None:
     dimension = next((d for d in DIMENSIONS if converts(phrase.unit, d)), None)
     weight = phrase.unit in WEIGHTS
     wanted = _WANTED.get("N" if weight else dimension or "", ())
+    label = label_of(phrase.line)
+    if LOAD in wanted and LOAD.search(label) and _one_force(phrase):
+        phrase = phrase._replace(key=label)  # "Load: dead weights of 5 kg"
     if not any(words.search(phrase.key) for words in wanted):
         return None
+    lever = weight_on_lever(phrase.line) if weight else 0.0
     speed = dimension == "m/s"
     return DraftValue(
         "set_speed" if speed else _name(phrase.key),
@@ -297,8 +302,16 @@ def _of_phrase(phrase: Phrase) -> DraftValue | None:
         None if weight or speed else dimension,
         phrase.line,
         own_unit=phrase.unit,
+        scale=lever or 1.0,
         key=phrase.key,
     )
+
+
+def _one_force(phrase: Phrase) -> bool:
+    """Whether the only force or weight of a line is the first number in it: no range of several."""
+    forces = [said for said in phrases(phrase.line) if converts(said.unit, "N") or said.unit in WEIGHTS]
+    before = phrase.line[: phrase.line.find(phrase.number)]
+    return len(forces) == 1 and not re.search(r"\d", before)
 
 
 _STEP_TITLE = re.compile(rf"\W*{STEP_WORD}\W*\d", re.IGNORECASE)
