@@ -185,3 +185,34 @@ def test_a_programme_holds_radius_and_turns_and_a_step_without_load(tmp_path):
     speeds = 2 * np.pi * np.array([3e-3, 6e-3])
     np.testing.assert_allclose(run.sliding_velocity[[HOLD, -1]], speeds, rtol=1e-6)
     assert coefficient(run) == pytest.approx(0.2, rel=2e-3)
+
+
+def test_a_seal_on_a_shaft_has_its_load_its_drag_and_a_clock_of_days(tmp_path):
+    time, rpm, torque, _ = columns(friction=40.0, noise=1e-4)
+    above = ["Banco prova paraolio", "Albero: Ø 80 mm, C45 temprato, Ra 0,3 µm"]
+    above += ["Carico radiale totale del labbro (misurato a parte): 20,0 N"]
+    above += ["Coppia a vuoto senza anello: 1,8 N·cm (da sottrarre)"]
+    header = "Data/ora;Velocità albero [giri/min];Coppia [N·cm];T olio [°C]"
+    days = 44987.36458333 + time / 86400
+    rows = (days, rpm, torque + 1.8, 24 + 0 * time)
+    path = written(tmp_path / "a.csv", above, header, rows, delimiter=";", formats="%.8f")
+    path.write_text(path.read_text("utf-8").replace(".", ",").replace("1,8", "1,8"), "utf-8")
+    run = tl.read(path)
+    assert coefficient(run) == pytest.approx(0.4 / 0.04 / 20, rel=2e-3)
+    assert float(run.time[-1]) == pytest.approx(time[-1], abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        '"Charge";"masses posées 5 kg, rapport de levier 10:1"',
+        "Load: dead weight 5 kg, lever 1:10",
+        "Belastung: Gewichte 5 kg am Hebel 10:1",
+    ],
+)
+def test_a_weight_on_a_lever_presses_more(said, tmp_path):
+    time, rpm, torque, _ = columns(friction=0.86)
+    above = ["Essai bloc sur anneau", '"Anneau";"acier 4620, diamètre 35 mm, largeur 8,74 mm"', said]
+    run = tl.read(written(tmp_path / "a.txt", above, "Time [s]\tn [1/min]\tM [N m]", (time, rpm, torque)))
+    assert float(run.normal_force[0]) == pytest.approx(50 * 9.80665)
+    assert coefficient(run) == pytest.approx(0.86 / 0.0175 / 490.3325, rel=2e-3)
