@@ -216,3 +216,37 @@ def test_a_weight_on_a_lever_presses_more(said, tmp_path):
     run = tl.read(written(tmp_path / "a.txt", above, "Time [s]\tn [1/min]\tM [N m]", (time, rpm, torque)))
     assert float(run.normal_force[0]) == pytest.approx(50 * 9.80665)
     assert coefficient(run) == pytest.approx(0.86 / 0.0175 / 490.3325, rel=2e-3)
+
+
+BEARINGS = {
+    "Swedish": ("Glidlagerrigg", "Axeldiameter: 60 mm", "Momentarm: 250 mm")
+    + ("Last: två cylindrar, A och B (summan = lagerlast)", "LastA [kN]\tLastB [kN]\tArmkraft [N]"),
+    "German": ("Gleitlager", "Wellendurchmesser: 60 mm", "Hebelarm: 250 mm")
+    + ("-", "Last links [kN]\tLast rechts [kN]\tHebelkraft [N]"),
+    "English": ("Journal bearing rig", "Shaft diameter: 60 mm", "Torque arm: 250 mm")
+    + ("Load: 2 kN", "Load 1 [kN]\tLoad 2 [kN]\tArm force [N]"),
+}
+
+
+@pytest.mark.parametrize("language", BEARINGS)
+def test_a_force_on_an_arm_and_two_loads_make_the_friction_of_a_bearing(language, tmp_path):
+    time, rpm, force, load = columns(friction=10.0, load=1.0, turns=(0.0, 60.0, 120.0, 240.0))
+    *above, header = BEARINGS[language]
+    rows = (time, rpm / 60, load, load, force)
+    run = tl.read(written(tmp_path / "a.txt", above, f"t [s]\tn [Hz]\t{header}", rows))
+    assert float(run.normal_force[0]) == pytest.approx(2000, rel=0.01)
+    assert coefficient(run) == pytest.approx(10 * 0.25 / 0.03 / 2000, rel=2e-3)
+    assert float(run.sliding_velocity.max()) == pytest.approx(8 * np.pi * 0.03)
+
+
+def test_whether_numbered_loads_add_up_is_asked_and_what_each_states_is_no_sum(tmp_path):
+    time, rpm, force, load = columns(friction=1.0)
+    header = "t [s]\tn [1/min]\tLoad 1 [N]\tLoad 2 [N]\tFriction [N]"
+    rows = (time, rpm, load, load, force)
+    above = ["Pin on disc", "Track radius: 20 mm"]
+    path = written(tmp_path / "a.txt", above, header, rows)
+    with pytest.raises(GuessedError, match="the sum of columns 3 and 4"):
+        tl.read(path)
+    path = written(tmp_path / "b.txt", [*above, "Load: 10 N"], header, rows)
+    with pytest.raises(GuessedError, match="of several columns for normal_force"):
+        tl.read(path)

@@ -30,6 +30,7 @@ from tribolab.draft.columns.lengths import (
     find_unit_along,
     metres,
     pitch_of_clock,
+    sure_at_arm,
 )
 from tribolab.draft.columns.plain_numbers import plain_numbers
 from tribolab.draft.columns.ratio import disagreement, force_or_ratio
@@ -37,6 +38,7 @@ from tribolab.draft.columns.results_table import are_points
 from tribolab.draft.columns.sampling import find_sampling
 from tribolab.draft.columns.slip import of_both_surfaces
 from tribolab.draft.columns.stated_missing import take_stated_missing
+from tribolab.draft.columns.sums import adding_up
 from tribolab.draft.columns.two_bodies import pair_of, without_surfaces
 from tribolab.draft.columns.unloaded import with_zero
 from tribolab.draft.columns.values import DraftValue
@@ -96,7 +98,8 @@ def understand(layout: Layout) -> Understood:
     columns = told_by_load(layout, force_or_ratio(columns), numbers) if kind == "run" else columns
     if kind == "run":
         columns = without_surfaces(columns, pair_of(layout, columns, numbers))
-        columns = beside_turns(columns, numbers)
+        columns = sure_at_arm(layout, columns)
+        columns = adding_up(layout, beside_turns(columns, numbers), numbers)
         columns = of_both_surfaces(layout, without_means(layout, columns))
         guesses += disagreement(columns, numbers)
         guesses += guesses_of_inclined(layout, columns)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from tribolab.draft.columns.axial import axial_force_of, find_inclined, radius_of_ball
 from tribolab.draft.columns.bridges import calibrated_forces
 from tribolab.draft.columns.counts import zero_in_counts
-from tribolab.draft.columns.lengths import find_arm, find_radius, on_rim
+from tribolab.draft.columns.lengths import find_arm, find_radius, is_at_arm, on_rim
 from tribolab.draft.columns.programme import programme_of
 from tribolab.draft.columns.slip import stated_ratio
 from tribolab.draft.columns.stated_load import find_load
@@ -17,11 +17,13 @@ from tribolab.draft.columns.stated_words import PER_MINUTE
 from tribolab.draft.columns.stated_zero import find_zero, reading_of, zero_in_doubt
 from tribolab.draft.columns.stroke_settings import as_stated, strokes_of_columns, strokes_of_values
 from tribolab.draft.columns.turning import angle_of, radius_of, torque_of, turns_of
+from tribolab.draft.columns.sums import loads_that_add
 from tribolab.draft.columns.two_bodies import (
     Pair,
     Radii,
     along_friction,
     as_symbol,
+    has_turning_surfaces,
     pair_of,
     radii_of,
     shaft_of_torque,
@@ -155,7 +157,22 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
             names.add("friction_force")
             doubt = zero_in_doubt(layout, values, "N m", understood.zero)
             result = result._replace(zero_in_doubt=doubt)
+    loads = loads_that_add(understood.columns)
+    if len(loads) > 1 and "normal_force" not in names:
+        symbols = tuple((f"load_{number}", column) for number, column in enumerate(loads, 1))
+        together = " + ".join(name for name, _ in symbols)
+        about = "loads that add up"
+        result = _and(result, DraftedFormula("normal_force", together, about), (), symbols)
+        names.add("normal_force")
     reading = reading_of(understood.columns)
+    arm = find_arm(values) if reading is not None and is_at_arm(reading) else None
+    if reading is not None and arm is not None and track.formula:
+        about = f"a force on an arm: '{arm.text}'"
+        what = f"arm_force * {arm.name} / {track.formula}"
+        symbols = (("arm_force", reading._replace(zero="")), *track.symbols)
+        formula = DraftedFormula("friction_force", what, about, reading.zero)
+        result = _and(result, formula, (arm, *track.values), symbols)
+        reading = None
     zero = None if reading is None else find_zero(layout, values, "N", understood.zero)
     if reading is not None and zero is None:  # what a converter counts was not tared
         zero = zero_in_counts(values, reading, understood.numbers[:, reading.place - 1])
@@ -165,7 +182,7 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     if reading is not None and zero is not None:
         what = f"friction_reading - {zero.name}"
         formula = DraftedFormula("friction_force", what, f"'{zero.text}'")
-        result = _and(result, formula, [zero], (("friction_reading", reading),))
+        result = _and(result, formula, [zero], (("friction_reading", reading._replace(zero="")),))
     for force in calibrated_forces(layout, understood.columns):
         about = f"a signal in volts, and '{force.value.text}'"
         formula = DraftedFormula(force.quantity, force.formula, about)
@@ -219,9 +236,14 @@ def lacking(understood: Understood, follows: Follows) -> list[str]:
         names.add("sliding_velocity")
     if any(value.name == "set_normal_force" for value in follows.values):
         names.add("normal_force")
-    if _angle(understood) is not None:
-        names.add("rotation_speed")  # the radius makes a position of it
-    if torque_of(understood.columns) is not None:
+    if _angle(understood) is not None or has_turning_surfaces(understood.columns):
+        names.add("rotation_speed")  # the radius makes a position, or a speed, of it
+    reading = reading_of(understood.columns)
+    made = any(formula.quantity == "friction_force" for formula in follows.formulas)
+    if reading is not None and is_at_arm(reading) and not made:
+        names.remove("friction_force")  # without the radius an arm's force is none of the contact
+        names.add("torque")
+    elif torque_of(understood.columns) is not None:
         names.add("torque")
     elif unknown_of(understood.columns):
         names.add("friction_force")  # it is asked whether one of them holds it

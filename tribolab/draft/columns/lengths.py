@@ -13,6 +13,7 @@ from tribolab.draft.columns.stated_words import (
     ACROSS,
     ALONG,
     ARM,
+    AT_ARM,
     DIAMETER,
     HEIGHT_UNIT,
     NO_HEIGHT,
@@ -25,6 +26,7 @@ from tribolab.draft.columns.stated_words import (
     PROFILE_LENGTH,
     RADIUS,
     RATE,
+    SHAFT,
     TRAVERSE_SPEED,
     TURNING,
     UNIT,
@@ -34,6 +36,8 @@ from tribolab.draft.columns.values import DraftValue, find_values, words_said
 from tribolab.draft.columns.words import length_unit, matches, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
+from tribolab.draft.model import DraftColumn
+from tribolab.io.dialects.cells import split_name
 from tribolab.units import conversion
 
 _ENDS = (
@@ -253,7 +257,7 @@ def find_radius(values: Sequence[DraftValue], *, rim: bool = False) -> DraftValu
     perhaps = perhaps or [
         v._replace(guess=f"'{v.text}' is twice the radius of the track")
         for v in across
-        if TURNING.search(v.key) or v.key == "d"
+        if TURNING.search(v.key) or SHAFT.search(v.key) or v.key == "d"
     ]
     return perhaps[0] if len(perhaps) == 1 else None
 
@@ -268,6 +272,33 @@ def find_arm(values: Sequence[DraftValue]) -> DraftValue | None:
     """
     arms = [v for v in values if _is_length(v) and ARM.search(v.key)]
     return arms[0]._replace(to="m") if len(arms) == 1 else None
+
+
+def is_at_arm(column: DraftColumn) -> bool:
+    """Whether a column's name says that its force is one on an arm, which makes a torque.
+
+    Parameters
+    ----------
+    column
+        Of a force.
+    """
+    return AT_ARM.search(squeezed(split_name(column.label)[0])) is not None
+
+
+def sure_at_arm(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftColumn]:
+    """Let a force that is named as one on an arm be no guess where the text states the arm.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    columns
+        The columns as they are understood.
+    """
+    held = [c for c in columns if c.used and c.quantity == "friction_force" and is_at_arm(c)]
+    if len(held) != 1 or find_arm(find_values(layout)) is None:
+        return list(columns)
+    return [c._replace(guessed=(), options=()) if c is held[0] else c for c in columns]
 
 
 def _is_length(value: DraftValue) -> bool:

@@ -156,7 +156,17 @@ RADIUS = or_term(
     "track_radius",
 )
 ARM = re.compile(
-    r"lever|hebelarm|arm(?:length|laenge)|torquearm|levier|palanca|braccio|力臂|アーム"
+    r"lever(?!ratio)|hebelarm|arm(?:length|laenge|lengde|laengd)|torquearm|momentarm|kraftarm|^arm$|levier|brasde"
+    r"|palanca|brazo|braccio|vipuvarsi|ramie|rameno|плечо|力臂|杠杆臂|アーム|腕の長さ"
+)
+# a force that acts on an arm, by its name
+AT_ARM = re.compile(
+    r"^(?:moment|torque|lever|hebel|tork)?arm(?:force|kraft|load)?$|arm(?:force|kraft|kracht|load)$|hebelkraft|leverforce|(?:force|load)(?:on|at|of)?(?:the)?(?:arm|lever)$"
+    r"|kraft(?:am|an)?(?:hebel|arm)(?:arm)?$|(?:force|effort)(?:au|sur|du)?(?:le)?(?:bras|levier)|fuerza(?:en|del|de)?(?:el|la)?(?:brazo|palanca)"
+    r"|forza(?:al|sul|del)?(?:la)?(?:braccio|leva)|сила(?:на)?(?:плече|рычаге)|силанарычаге|臂力|力臂力|アーム力|アーム荷重"
+)
+SHAFT = re.compile(
+    r"shaft|journal|welle(?!n?laenge)|zapfen|arbre|tourillon|albero|perno|^eje|arbol|eixo|hridel|aksel|^axel|^axl|walek|czop|^as(?:diameter)|вал|шейк|轴|軸|축"
 )
 OTHER_RADIUS = re.compile(
     "ball|tip|sphere|kugel|probe|pin|stylus|cylinder|bille|bola|sfera|球|针|探|curvature|fillet|nose"
@@ -188,6 +198,7 @@ ON_RIM = re.compile(
     r"|(?:lip|shaft|rotary|rotating)[\s_-]*seals?|wellendicht|\brwdr\b|simmerring"
     r"|joint\w* (?:à|a) l[eè]vre|joint\w* (?:rotatif|tournant)|paraolio|retentor|ret[eé]n(?:es)? de"
     r"|油封|旋转密封|オイルシール|오일씰"
+    r"|glidlager|glideleje|glidelager|glijlager|liukulaaker|подшипник\w* скольжения|сальник|манжет"
     r"|journal bearing|plain bearing|gleitlager|radiallager|palier lisse|滑动轴承|すべり軸受"
     r"|cojinete|cuscinett\w+ (?:liscio|radente)|mancal|łożysk\w* ślizg|kluzn\w* lo[zž]isk"
     r"|g[uü]feron?\b|hř[ií]delov",

@@ -20,6 +20,7 @@ from tribolab.turns import reciprocal
 from tribolab.unit_names import plain_unit
 
 _LONGEST = 200  # characters of a line that are looked at
+_SURFACE = "the speed of one of two surfaces"
 _SPEEDS = ("rotation_speed", "sliding_velocity")
 # what the one of two bodies is called, and the other
 _BODIES = tuple(
@@ -136,13 +137,23 @@ def without_surfaces(columns: Sequence[DraftColumn], pair: Pair | None) -> list[
         From `pair_of`.
     """
     places = pair.places if pair is not None else set()
-    note = "the speed of one of two surfaces"
     return [
-        c._replace(quantity=None, used=False, guessed=(), options=(), fill_in="", note=note)
+        c._replace(quantity=None, used=False, guessed=(), options=(), fill_in="", note=_SURFACE)
         if c.place in places
         else c
         for c in columns
     ]
+
+
+def has_turning_surfaces(columns: Sequence[DraftColumn]) -> bool:
+    """Whether two surfaces turn, each at a speed of its own.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    """
+    return any(c.note == _SURFACE and not c.used and _speed_of(c) == _SPEEDS[0] for c in columns)
 
 
 def radii_of(pair: Pair, values: Sequence[DraftValue], said: str) -> Radii | None:

@@ -78,7 +78,7 @@ def with_zero(
     numbers
         Their numbers (rows, columns) as written.
     """
-    held = {c.quantity for c in columns if c.used}
+    held = {c.quantity for c in columns if c.used or c.quantity == "normal_force"}
     line = unloaded_words(layout)
     force = next((c for c in columns if c.used and c.quantity == "friction_force"), None)
     signal = force or (None if "friction_coefficient" in held else torque_of(columns))
