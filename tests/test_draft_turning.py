@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import tribolab as tl
+from tribolab.draft.dialect.answers import corrected
 from tribolab.draft.dialect.questions import GuessedError
 
 HOLD = 40  # rows at each speed
@@ -250,3 +251,27 @@ def test_whether_numbered_loads_add_up_is_asked_and_what_each_states_is_no_sum(t
     path = written(tmp_path / "b.txt", [*above, "Load: 10 N"], header, rows)
     with pytest.raises(GuessedError, match="of several columns for normal_force"):
         tl.read(path)
+
+
+def test_of_a_torque_in_divisions_only_what_one_is_worth_is_missing(tmp_path):
+    time, rpm, torque, load = columns(friction=40.0, load=50.0)
+    above = ["Схема: ролик - колодка. Ролик диаметром 50 мм, сталь 45; колодка - баббит"]
+    header = "Время, с;n, об/мин;P, кгс;Mтр, дел.;t, °C"
+    rows = (time, rpm, load, torque, 30 + 0 * time)
+    path = written(tmp_path / "a.txt", above, header, rows, delimiter=";", encoding="cp1251")
+    with pytest.raises(GuessedError) as error:
+        tl.read(path)
+    assert not error.value.asked
+    assert [lack[:40] for lack in error.value.lacks] == ["what one number of the torque 'Mтр, дел.'"[:40]]
+    draft = corrected(tl.draft_dialect(path), "torque", 4, "N m", scale=0.0125)
+    run = tl.read(path, draft.dialect)
+    assert coefficient(run) == pytest.approx(40 * 0.0125 / 0.025 / (50 * 9.80665), rel=2e-3)
+
+
+@pytest.mark.parametrize("unit", ["dev/dk", "об/мин", "ot/min", "U/min", "giri/min", "r/min"])
+def test_turns_a_minute_are_read_in_many_languages(unit, tmp_path):
+    time, rpm, friction, load = columns(friction=4.0)
+    header = f"Time [s]\tn ({unit})\tFriction [N]\tLoad [N]"
+    above = ["POD", "Track radius: 20 mm"]
+    run = tl.read(written(tmp_path / "a.txt", above, header, (time, rpm, friction, load)))
+    assert float(run.sliding_velocity.max()) == pytest.approx(8 * np.pi * 0.02)

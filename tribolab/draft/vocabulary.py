@@ -58,7 +58,7 @@ RUN_WORDS = (
     ),
     Word(
         "normal_force",
-        _words("fn fz fnorm fnormal w l nf fv normal"),
+        _words("fn fz fnorm fnormal w l nf fv normal p n"),
         _words(
             "normalforce normalload normload normforce axialforce axialload "
             "verticalforce verticalload "

@@ -16,7 +16,13 @@ from tribolab.draft.columns.stated_load import find_load
 from tribolab.draft.columns.stated_words import PER_MINUTE
 from tribolab.draft.columns.stated_zero import find_zero, reading_of, zero_in_doubt
 from tribolab.draft.columns.stroke_settings import as_stated, strokes_of_columns, strokes_of_values
-from tribolab.draft.columns.turning import angle_of, radius_of, torque_of, turns_of
+from tribolab.draft.columns.turning import (
+    angle_of,
+    radius_of,
+    torque_of,
+    turns_of,
+    unscaled_torque_of,
+)
 from tribolab.draft.columns.sums import loads_that_add
 from tribolab.draft.columns.two_bodies import (
     Pair,
@@ -245,6 +251,15 @@ def lacking(understood: Understood, follows: Follows) -> list[str]:
         names.add("torque")
     elif torque_of(understood.columns) is not None:
         names.add("torque")
+    elif (torque := unscaled_torque_of(understood.columns)) is not None and not (
+        names & SAYS_FRICTION
+    ):
+        names.add("friction_force")
+        worth = (
+            f"what one number of the torque '{shown(torque.label, 30)}' is, for the friction: unit "
+            'and scale of its [[column]] with symbol = "torque" in a dialect'
+        )
+        return [worth, *missing_of(names)]
     elif unknown_of(understood.columns):
         names.add("friction_force")  # it is asked whether one of them holds it
     return missing_of(names)
@@ -259,6 +274,7 @@ def unknown_of(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
         The columns as they are understood.
     """
     turning = (torque_of(columns), angle_of(columns), radius_of(columns))
+    turning = (*turning, unscaled_torque_of(columns))
     places = {column.place for column in turning if column is not None}
     unknown = (c for c in columns if c.note and not c.quantity and c.label)
     return [column for column in unknown if column.place not in places]

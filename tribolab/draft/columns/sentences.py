@@ -15,7 +15,7 @@ _NUMBER = re.compile(
     r"(?P<unit>[^\W\d_][^\s;,:()\[\]\"，；：（）、。]*|%|°[A-Za-z]?)"
 )
 _CUTS = re.compile(
-    r"[;:,=|()\[\]：；，（）、。]"
+    r"[;:,=|()\[\]：；，（）、。]|\.\s+(?=[^\W\d_a-zа-яё])"
     r"|\b(?:at|(?<!load )(?<!force )(?<!weight )on|and|with|bei|und|mit|et|con|avec)\b"
 )
 _ACROSS_BEHIND = re.compile(

@@ -178,7 +178,7 @@ DIAMETER = or_term(
     "track_diameter",
 )
 ACROSS = or_term(
-    r"dia|durchmesser|diametr|srednica|prumer|直径|外径|轴径|軸径|내경|외경|축경|^(?:ø|oe|⌀)$|^d$|od$",
+    r"dia|durchmesser|diametr|диаметр|srednica|prumer|直径|外径|轴径|軸径|내경|외경|축경|^(?:ø|oe|⌀)$|^d$|od$",
     "track_diameter",
 )
 ON_TRACK = or_term(_TRACK, "track_radius")
@@ -198,6 +198,8 @@ ON_RIM = re.compile(
     r"|(?:lip|shaft|rotary|rotating)[\s_-]*seals?|wellendicht|\brwdr\b|simmerring"
     r"|joint\w* (?:à|a) l[eè]vre|joint\w* (?:rotatif|tournant)|paraolio|retentor|ret[eé]n(?:es)? de"
     r"|油封|旋转密封|オイルシール|오일씰"
+    r"|ролик\w*[\s–-]+(?:колодк|частичн)\w*|колодк\w*[\s–-]+(?:по[\s-]+)?(?:ролик|вал|кольц)\w*|вал\w*[\s–-]+(?:втулк|колодк|вкладыш)\w*"
+    r"|(?:roller|wheel|shaft|rolle|welle|galet|rullo)[\s/–-]+(?:shoe|block|pad|segment|backe|klotz|sabot|patin|ceppo)"
     r"|glidlager|glideleje|glidelager|glijlager|liukulaaker|подшипник\w* скольжения|сальник|манжет"
     r"|journal bearing|plain bearing|gleitlager|radiallager|palier lisse|滑动轴承|すべり軸受"
     r"|cojinete|cuscinett\w+ (?:liscio|radente)|mancal|łożysk\w* ślizg|kluzn\w* lo[zž]isk"
@@ -206,7 +208,7 @@ ON_RIM = re.compile(
 )
 OUTER = re.compile(
     r"ring|rim|roll|wheel|shaft|outer|outside|aussen|exter|anneau|anello|anillo|galet|hjul|welle"
-    r"|arbre|albero|eje|arbol|eixo|hridel|aksel|axel|wal|リング|环|環|外|轴|軸|축|od$"
+    r"|ролик|кольц|вал|arbre|albero|eje|arbol|eixo|hridel|aksel|axel|wal|リング|环|環|外|轴|軸|축|od$"
 )
 
 # what the sensor shows without friction, and whether it is still in the signal

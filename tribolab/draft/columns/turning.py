@@ -8,14 +8,14 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from tribolab.draft.columns.stated_words import is_radius
-from tribolab.draft.columns.words import or_term, split_unit, squeezed
+from tribolab.draft.columns.words import is_count, or_term, split_unit, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn
 from tribolab.io.dialects.cells import split_name
 
 _TORQUE = or_term(
     r"torque|drehmoment|reibmoment|moment|couple|coppia|momento|binario|koppel|扭矩|转矩|力矩|トルク"
-    r"|parmotor|^(?:m|mr|mf|md|tq|par)$",
+    r"|момент|tork|토크|parmotor|^(?:m|mr|mf|md|tq|par)$|^[mм](?:тр|кр|к|tr)$",
     "torque",
 )
 _TORQUE_UNIT = re.compile(r"[cmkuµμ]?N\s?[·⋅・∙•*.]?\s?[cmuµμ]?m")  # and no J
@@ -43,6 +43,26 @@ def torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
     told = sum(bool(_TORQUE_UNIT.fullmatch(unit)) for unit in units) == 1
     named = _only_column(columns, _TORQUE.search, "N m")
     return named or (_only_column(columns, str, "N m") if told else None)
+
+
+def unscaled_torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
+    """Return the one column that is named as a torque, but holds divisions, counts or volts.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    """
+    if torque_of(columns) is not None:
+        return None
+    fitting = []
+    for column in columns:
+        name, unit = _name_and_unit(column)
+        bare = name.split(",")[0]
+        other = unit and not (converts(unit, "V") or is_count(unit))
+        if not column.used and _TORQUE.search(squeezed(bare)) and not other:
+            fitting.append(column)
+    return fitting[0] if len(fitting) == 1 else None
 
 
 def angle_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:

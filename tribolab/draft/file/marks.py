@@ -12,7 +12,7 @@ from tribolab.draft.file.lines import Grammar
 # what steps of a programme are called
 STEP_WORD = (
     r"(?:step|stage|segment|block|interval|phase|schritt|stufe|abschnitt|intervall|[eé]tape|palier"
-    r"|phase|etapa|paso|fase|passo|krok|etap|stap|steg|trinn?|vaihe|l[eé]p[eé]s|ad[ıi]m|kademe|stupe[nň]|treapta|bieg|ступень|етап|крок|прогон|шаг|этап|단계|步骤|步驟|阶段|段|ステップ)"
+    r"|phase|etapa|paso|fase|passo|krok|etap|stap|steg|trinn?|vaihe|l[eé]p[eé]s|ad[ıi]m|kademe|stupe[nň]|treapta|bieg|ступень|етап|крок|прогон|шаг|этап|режим|단계|步骤|步驟|阶段|段|ステップ)"
 )
 _ENDED = r"(?:end(?:e|ed|s)?|begin\w*|start\w*|finished|done|fin|fine|结束|開始|开始|終了|完成)"
 _TITLE = re.compile(
