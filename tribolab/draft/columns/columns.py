@@ -38,7 +38,8 @@ from tribolab.draft.columns.results_table import are_points
 from tribolab.draft.columns.sampling import find_sampling
 from tribolab.draft.columns.slip import of_both_surfaces
 from tribolab.draft.columns.stated_missing import take_stated_missing
-from tribolab.draft.columns.sums import adding_up
+from tribolab.draft.columns.sums import adding_up, loads_that_add
+from tribolab.draft.columns.turning import angle_of, torque_of
 from tribolab.draft.columns.two_bodies import pair_of, without_surfaces
 from tribolab.draft.columns.unloaded import with_zero
 from tribolab.draft.columns.values import DraftValue
@@ -148,7 +149,9 @@ def understand(layout: Layout) -> Understood:
         )
     if kind != "table" and not [c for c in columns if c.used and (c.quantity != "time")]:
         # time alone is a run only if something can be filled in
-        kind = "run" if any(c.quantity == "time" and c.used for c in columns) else "table"
+        timed = any(c.quantity == "time" and c.used for c in columns)
+        made = torque_of(columns) is not None or angle_of(columns) is not None
+        kind = "run" if timed or made or loads_that_add(columns) else "table"
     result = Understood(
         kind, tuple(columns), numbers, tuple(words), on_repeat, restart, tuple(guesses), period
     )

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from tribolab.draft.columns.axial import axial_force_of, find_inclined, radius_of_ball
 from tribolab.draft.columns.bridges import calibrated_forces
 from tribolab.draft.columns.counts import zero_in_counts
+from tribolab.draft.columns.from_axis import radius_from_axis
 from tribolab.draft.columns.lengths import find_arm, find_radius, is_at_arm, on_rim
 from tribolab.draft.columns.programme import programme_of
 from tribolab.draft.columns.slip import stated_ratio
@@ -127,6 +128,9 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     if "step" in names:
         values += programme_of(layout)
     track = _track(values, understood, rim=on_rim(layout))
+    if not track.formula:
+        away = radius_from_axis(layout, understood.columns, understood.numbers)
+        track = _Track(away.formula, (), (("stage", away.column),)) if away else track
     inclined = find_inclined(layout)
     if inclined is not None and not track.formula:
         track = _of_value(radius_of_ball(inclined, values))
@@ -335,7 +339,7 @@ def _with_speed(
         return before._replace(speed=speed, values=(*before.values, *track.values))
     if turning and track.symbols:
         formula = DraftedFormula(
-            "sliding_velocity", "rotation_speed * radius", "turns and a radius"
+            "sliding_velocity", f"rotation_speed * {track.formula}", "turns and a radius"
         )
         return _and(before, formula, (), track.symbols)._replace(speed=SpeedBy("none"))
     angle = None if turning or not track.formula else _angle(understood)

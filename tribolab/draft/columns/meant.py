@@ -7,7 +7,7 @@ import numpy as np
 from tribolab.draft.columns.fill_in import Bare
 from tribolab.draft.columns.roles import role_of
 from tribolab.draft.columns.strokes import is_frequency, lengths_beside_frequencies
-from tribolab.draft.columns.turning import torque_of
+from tribolab.draft.columns.turning import angle_of, torque_of
 from tribolab.draft.columns.words import KNOWN_WORD, Match, is_axis, squeezed
 from tribolab.draft.model import DraftColumn
 
@@ -30,7 +30,7 @@ def meant(
     """
     matched = _without_rows(bare, numbers, matched)
     matched = _without_weak(columns, bare, _across_if_moved(bare, matched))
-    return _without_lengths(bare, _without_axes(bare, matched))
+    return _without_lengths(bare, _without_axes(columns, bare, matched))
 
 
 def _without_rows(
@@ -98,9 +98,12 @@ def _without_lengths(bare: list[Bare], matched: list[list[Match]]) -> list[list[
     ]
 
 
-def _without_axes(bare: list[Bare], matched: list[list[Match]]) -> list[list[Match]]:
+def _without_axes(
+    columns: list[DraftColumn], bare: list[Bare], matched: list[list[Match]]
+) -> list[list[Match]]:
     """Where something turns, the axes of the machine's stage are no sliding position."""
-    if not any(options and options[0].quantity == "rotation_speed" for options in matched):
+    turns = any(options and options[0].quantity == "rotation_speed" for options in matched)
+    if not turns and angle_of(columns) is None:
         return matched
     return [
         [option for option in options if option.quantity != "position"]

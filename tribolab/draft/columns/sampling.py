@@ -10,6 +10,7 @@ from tribolab.draft.columns.values import find_values
 from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.header import converts, escaped
 from tribolab.draft.file.layout import Layout
+from tribolab.draft.file.lvm import interval_above
 
 # "# Cadence d'acquisition : 1000 pts/s", "Rate (kS/s) = 1"; "1000 samples per second" alone
 _GROUPS = r"[1-9]\d{0,2}(?:[ \u00a0\u202f']\d{3})+"  # 1 000
@@ -61,6 +62,8 @@ def find_sampling(layout: Layout) -> Sampling | None:
     layout
         From `tribolab.draft.file.layout.find_layout`.
     """
+    if (above := interval_above(layout)) is not None:
+        return Sampling(*above)
     guessed = None
     for line in layout.text_above(bare=layout.width == 1):
         if (said := _of_line(line.rstrip(), layout.decimal)) is None:

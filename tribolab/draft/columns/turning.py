@@ -20,6 +20,11 @@ _TORQUE = or_term(
 )
 _TORQUE_UNIT = re.compile(r"[cmkuµμ]?N\s?[·⋅・∙•*.]?\s?[cmuµμ]?m")  # and no J
 _ANGLE = re.compile(r"angle|winkel|angolo|angulo|角|phi|^(?:theta|rotation)$")
+# what turns, where its unit is one of angles
+_TURNS_IN_ANGLES = re.compile(
+    r"encoder|resolver|codeur|drehgeber|turntable|drehteller|drehtisch|spindle|spindel|dis[ck]|scheibe|rotor"
+    r"|shaft|welle|rotat|turn|dreh|giro|編碼|编码|回転|旋转|encod"
+)
 _TURNS = re.compile(
     r"^(?:number|no|nr|n)?(?:of)?(?:revolution|turn|rev|rotation|umdrehung)(?:s|en)?$"
 )
@@ -73,7 +78,8 @@ def angle_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
     columns
         The columns as they are understood.
     """
-    return _said(columns, "angle") or _only_column(columns, _ANGLE.search, "rad")
+    named = _said(columns, "angle") or _only_column(columns, _ANGLE.search, "rad")
+    return named or _only_column(columns, _TURNS_IN_ANGLES.search, "rad")
 
 
 def turns_of(columns: Sequence[DraftColumn], numbers: np.ndarray) -> DraftColumn | None:
@@ -120,13 +126,14 @@ def _only_column(
     for column in columns:
         name, unit = _name_and_unit(column)
         if not column.used and is_named(squeezed(name)) and converts(unit, si_unit):
-            own = None if column.file_unit and column.name is not None else unit
+            said = column.unit is None and column.file_unit and column.name is not None
+            own = None if said else unit
             fitting.append(column._replace(unit=own))
     return fitting[0] if len(fitting) == 1 else None
 
 
 def _name_and_unit(column: DraftColumn) -> tuple[str, str]:
     name, unit = split_name(column.label)
-    if unit is None and column.file_unit is None:
+    if unit is None and column.file_unit is None and column.unit is None:
         name, unit = split_unit(name)
-    return name, column.file_unit or unit or ""
+    return name, column.unit or column.file_unit or unit or ""
