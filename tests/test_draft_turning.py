@@ -27,7 +27,10 @@ def written(path, above, header, rows, *, delimiter="\t", encoding="utf-8", form
     """Write a file of some lines, a header and rows, and return its path."""
     formats = [formats] * len(rows) if isinstance(formats, str) else formats
     body = [
-        delimiter.join(f % cell if isinstance(f, str) else f(cell) for f, cell in zip(formats, row, strict=True))
+        delimiter.join(
+            f % cell if isinstance(f, str) else f(cell)
+            for f, cell in zip(formats, row, strict=True)
+        )
         for row in zip(*rows, strict=True)
     ]
     text = "\n".join([*above, "", *([header] if isinstance(header, str) else header), *body])
@@ -67,7 +70,9 @@ def test_a_stated_axial_load_is_shared_by_the_contacts_of_four_balls(tmp_path):
     header = "Time [s]\tSpeed [1/min]\tTorque [mN m]"
     run = tl.read(written(tmp_path / "a.txt", above, header, (time, rpm, torque)))
     assert coefficient(run) == pytest.approx(2**0.5 * 0.08 / (6.35e-3 * 392), rel=2e-3)
-    assert float(run.sliding_velocity.max()) == pytest.approx(8 * np.pi * 6.35e-3 / 3**0.5, rel=1e-3)
+    assert float(run.sliding_velocity.max()) == pytest.approx(
+        8 * np.pi * 6.35e-3 / 3**0.5, rel=1e-3
+    )
 
 
 def test_an_angle_of_contacts_that_is_not_said_is_asked(tmp_path):
@@ -101,7 +106,12 @@ def test_a_radius_in_the_name_of_a_file_is_taken_or_asked_about(name, asked, tmp
 
 
 TWIN = {
-    "Chinese": ("上试样直径(mm):\t40", "下试样直径(mm):\t40", "上试样转速(r/min)", "下试样转速(r/min)"),
+    "Chinese": (
+        "上试样直径(mm):\t40",
+        "下试样直径(mm):\t40",
+        "上试样转速(r/min)",
+        "下试样转速(r/min)",
+    ),
     "German": ("Durchmesser obere Rolle: 40 mm", "Durchmesser untere Rolle: 40 mm")
     + ("Drehzahl oben [1/min]", "Drehzahl unten [1/min]"),
     "English": ("Twin-disc machine", "Disc diameter: 40 mm", "Speed 1 [rpm]", "Speed 2 [rpm]"),
@@ -213,8 +223,14 @@ def test_a_seal_on_a_shaft_has_its_load_its_drag_and_a_clock_of_days(tmp_path):
 )
 def test_a_weight_on_a_lever_presses_more(said, tmp_path):
     time, rpm, torque, _ = columns(friction=0.86)
-    above = ["Essai bloc sur anneau", '"Anneau";"acier 4620, diamètre 35 mm, largeur 8,74 mm"', said]
-    run = tl.read(written(tmp_path / "a.txt", above, "Time [s]\tn [1/min]\tM [N m]", (time, rpm, torque)))
+    above = [
+        "Essai bloc sur anneau",
+        '"Anneau";"acier 4620, diamètre 35 mm, largeur 8,74 mm"',
+        said,
+    ]
+    run = tl.read(
+        written(tmp_path / "a.txt", above, "Time [s]\tn [1/min]\tM [N m]", (time, rpm, torque))
+    )
     assert float(run.normal_force[0]) == pytest.approx(50 * 9.80665)
     assert coefficient(run) == pytest.approx(0.86 / 0.0175 / 490.3325, rel=2e-3)
 
@@ -262,7 +278,9 @@ def test_of_a_torque_in_divisions_only_what_one_is_worth_is_missing(tmp_path):
     with pytest.raises(GuessedError) as error:
         tl.read(path)
     assert not error.value.asked
-    assert [lack[:40] for lack in error.value.lacks] == ["what one number of the torque 'Mтр, дел.'"[:40]]
+    assert [lack[:40] for lack in error.value.lacks] == [
+        "what one number of the torque 'Mтр, дел.'"[:40]
+    ]
     draft = corrected(tl.draft_dialect(path), "torque", 4, "N m", scale=0.0125)
     run = tl.read(path, draft.dialect)
     assert coefficient(run) == pytest.approx(40 * 0.0125 / 0.025 / (50 * 9.80665), rel=2e-3)

@@ -26,7 +26,9 @@ _ON = (
     r"(?:the |der |die |den |les |las |los |le |as )?"
 )
 _BALL = r"(?:balls?|kugeln?|billes?|bolas?|esferas?|sfer[ae]|kul[aeiky]*|golyó|шар\w*|球|ボール|볼)"
-_THREE = r"(?:3|three|drei|trois|tr[eê]s|tre|trzech|trzy|t[rř]ech|tři|három|drie|tr[eé]s|тр[её]х|三|３)"
+_THREE = (
+    r"(?:3|three|drei|trois|tr[eê]s|tre|trzech|trzy|t[rř]ech|tři|három|drie|tr[eé]s|тр[её]х|三|３)"
+)
 _PLATES = (
     r"(?:plates?|pins?|platten?|plättchen|stifte?n?|plaqu\w+|plans?|pions|placas?|pastillas?|piastr\w+|lastre"
     r"|perni|pinos|pinnen|płyt\w*|trzpien\w*|desk\w*|пластин\w*|плоскост\w*|штифт\w*|板|盘|销|プレート|ピン|판|핀)"
@@ -106,8 +108,8 @@ def find_inclined(layout: Layout) -> Inclined | None:
     angle = _USUAL if plates and angle is None else angle
     if angle is None:
         guess = (
-            f"'{shown(text, 40)}': the load on inclined contacts is the axial force over the cosine "
-            "of their angle, which is not said; the force is read as it stands"
+            f"'{shown(text, 40)}': the load on inclined contacts is the axial force over the "
+            "cosine of their angle, which is not said; the force is read as it stands"
         )
         return Inclined(text, 0.0, 0.0, guess)
     cosine, sine = math.cos(math.radians(angle)), math.sin(math.radians(angle))

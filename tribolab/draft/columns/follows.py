@@ -17,6 +17,7 @@ from tribolab.draft.columns.stated_load import find_load
 from tribolab.draft.columns.stated_words import PER_MINUTE
 from tribolab.draft.columns.stated_zero import find_zero, reading_of, zero_in_doubt
 from tribolab.draft.columns.stroke_settings import as_stated, strokes_of_columns, strokes_of_values
+from tribolab.draft.columns.sums import loads_that_add
 from tribolab.draft.columns.turning import (
     angle_of,
     radius_of,
@@ -24,7 +25,6 @@ from tribolab.draft.columns.turning import (
     turns_of,
     unscaled_torque_of,
 )
-from tribolab.draft.columns.sums import loads_that_add
 from tribolab.draft.columns.two_bodies import (
     Pair,
     Radii,
@@ -398,9 +398,7 @@ def _with_difference(
 ) -> Follows:
     """Let two surfaces slide at the difference of their speeds, and roll at the mean."""
     columns = [as_symbol(column) for column in pair.columns]
-    symbols = tuple(
-        (name, column) for name, (column, _) in zip(_SURFACES, columns, strict=True)
-    )
+    symbols = tuple((name, column) for name, (column, _) in zip(_SURFACES, columns, strict=True))
     speeds = [
         f"{factor}{name} * {radius}" if pair.turns and radii is not None else name
         for name, (_, factor), radius in zip(

@@ -16,9 +16,7 @@ _TIMES = re.compile(
     rf"(?:ratio|[üu]bersetzung|rapport|relaci[óo]n|rapporto|[x×])\W{{0,3}}(?P<times>{_NUMBER})(?![\d:.,/]|\s?[^\W\d_]{{1,2}}\b)",
     re.IGNORECASE,
 )
-_WEIGHT = re.compile(
-    rf"(?<![\d.,]){_NUMBER}\s?(?:kg|g|lbs?|oz)(?![^\W\d_]|[/·*])", re.IGNORECASE
-)
+_WEIGHT = re.compile(rf"(?<![\d.,]){_NUMBER}\s?(?:kg|g|lbs?|oz)(?![^\W\d_]|[/·*])", re.IGNORECASE)
 
 
 def weight_on_lever(line: str) -> float:

@@ -6,8 +6,10 @@ import re
 from typing import NamedTuple
 
 _IN_NAME = re.compile(
-    r"(?:^|(?<=[_\- ]))(?P<key>(?:track|trk|wear|spur|laufbahn)?[_-]?(?:radius|rad|track|r(?=[\d=_-])|diam?|d(?=[\d=_-])|ø)"
-    r"[_=-]?)(?P<number>\d{1,3}(?:[.,pP_]\d{1,2}(?=mm|cm|[_\- .]|$))?)[_ ]?(?P<unit>mm|cm)?(?=[_\- .]|$)",
+    r"(?:^|(?<=[_\- ]))(?P<key>(?:track|trk|wear|spur|laufbahn)?[_-]?(?:radius|rad|track"
+    r"|r(?=[\d=_-])|diam?|d(?=[\d=_-])|ø)"
+    r"[_=-]?)(?P<number>\d{1,3}(?:[.,pP_]\d{1,2}(?=mm|cm|[_\- .]|$))?)[_ ]?(?P<unit>mm"
+    r"|cm)?(?=[_\- .]|$)",
     re.IGNORECASE,
 )
 _ACROSS = re.compile(r"d|ø", re.IGNORECASE)
@@ -25,7 +27,7 @@ class NamedRadius(NamedTuple):
 
 
 def radius_in_name(name: str) -> NamedRadius | None:
-    """Return the radius that a file's name states; it is a guess without a unit, or of a diameter.
+    r"""Return the radius that a file's name states; it is a guess without a unit, or of a diameter.
 
     Parameters
     ----------
@@ -36,7 +38,7 @@ def radius_in_name(name: str) -> NamedRadius | None:
     --------
     >>> value = radius_in_name("run07_r12p5mm.txt")
     >>> value.pattern, value.unit, value.guess
-    ('r(\\\\d+(?:[.,pP_]\\\\d+)?)mm', 'mm', '')
+    ('r(\\d+(?:[.,pP_]\\d+)?)mm', 'mm', '')
     >>> radius_in_name("disc_rad15.txt").guess
     "'rad15' of the file's name is the radius of the track in mm"
     >>> radius_in_name("r2_d30mm.txt").guess
@@ -49,7 +51,9 @@ def radius_in_name(name: str) -> NamedRadius | None:
     if match is None:
         return None
     key, unit = match["key"], match["unit"] or "mm"
-    across = _ACROSS.match(key.lstrip("_-")) is not None or key.lower().rstrip("_=-").endswith("dia")
+    across = _ACROSS.match(key.lstrip("_-")) is not None or key.lower().rstrip("_=-").endswith(
+        "dia"
+    )
     size = float(re.sub("[,pP_]", ".", match["number"])) * _MM[unit.lower()]
     what = "twice the radius" if across else "the radius"
     guess = f"'{match[0]}' of the file's name is {what} of the track"

@@ -20,13 +20,18 @@ _LONGEST = 300  # characters of a line that are looked at
 _ADDS = "one of several loads that add up"
 # endings or beginnings of names: of the first and of the other; whether they surely carry together
 _SIDES = (
-    ("left|links|li|l|gauche|sinistr[ao]|sx|izq\\w*|izquierd[ao]|venster|vanster|лев\\w*|左", "right|rechts|re|r|droite?|destr[ao]|dx|der\\w*|derech[ao]|hoger|hoeger|прав\\w*|右", True),
+    (
+        "left|links|li|l|gauche|sinistr[ao]|sx|izq\\w*|izquierd[ao]|venster|vanster|лев\\w*|左",
+        "right|rechts|re|r|droite?|destr[ao]|dx|der\\w*|derech[ao]|hoger|hoeger|прав\\w*|右",
+        True,
+    ),
     ("front|vorne?|avant|前", "rear|back|hinten|arriere|后|後", True),
     ("a", "b", False),
     ("1|i|one", "2|ii|two", False),
 )
 _SUM = re.compile(
-    r"\bsum(?:me|s|a|ma|men)?\b|\bsumm(?:an|e|ed|iert)\b|\badd(?:ed|s)?\b|together|\bin total\b|\btotal (?:normal )?load|zusammen|addier|gesamtlast"
+    r"\bsum(?:me|s|a|ma|men)?\b|\bsumm(?:an|e|ed|iert)\b|\badd(?:ed|s)?\b|together"
+    r"|\bin total\b|\btotal (?:normal )?load|zusammen|addier|gesamtlast"
     r"|somme|ensemble|somma|insieme|suma\b|juntos|soma\b|tillsammans|summen|samen|yhteens|razem|součet|spolu"
     r"|összeg|toplam|сумм|вместе|之和|总和|合计|合計|総和|합계",
     re.IGNORECASE,
@@ -113,7 +118,9 @@ def _are_sides(one: DraftColumn, other: DraftColumn) -> bool | None:
     names = [squeezed(bare_name(c)[0]) for c in (one, other)]
     for first, second, sure in _SIDES:
         for form in (r"^(?P<rest>.{{2,}}?)(?:{})$", r"^(?:{})(?P<rest>.{{2,}})$"):
-            told = [re.match(form.format(p), n) for p, n in zip((first, second), names, strict=True)]
+            told = [
+                re.match(form.format(p), n) for p, n in zip((first, second), names, strict=True)
+            ]
             if told[0] and told[1] and told[0]["rest"] == told[1]["rest"]:
                 return sure
     return None

@@ -26,20 +26,34 @@ _SPEEDS = ("rotation_speed", "sliding_velocity")
 _BODIES = tuple(
     (re.compile(one), re.compile(other))
     for one, other in (
-        ("upper|top|ober|oben|sup[eé]rieur|superior|верхн|g[oó]rn|horn[íi]|[üu]st|上", "lower|bottom|unter|unten|inf[eé]rieur|inferior|нижн|doln|alt|下"),
-        ("dis[ck]|scheibe|disque|disco|disk|диск|tarcz|盘|ディスク", "ball|kugel|bille|bola|sfera|шар|kul|球|ボール|roller|rolle|galet|rullo|ролик|pin|barrel"),
+        (
+            "upper|top|ober|oben|sup[eé]rieur|superior|верхн|g[oó]rn|horn[íi]|[üu]st|上",
+            "lower|bottom|unter|unten|inf[eé]rieur|inferior|нижн|doln|alt|下",
+        ),
+        (
+            "dis[ck]|scheibe|disque|disco|disk|диск|tarcz|盘|ディスク",
+            "ball|kugel|bille|bola|sfera|шар|kul|球|ボール|roller|rolle|galet|rullo|ролик|pin|barrel",
+        ),
         ("ring|anneau|anello|anillo|кольц|环", "roller|rolle|galet|rullo|rodillo|ролик"),
-        ("driving|driver|treibend|menant|moteur|conductor|motric|ведущ|主动|駆動", "driven|getrieben|men[ée]e?|conducid|condott|ведом|从动|従動|被動"),
+        (
+            "driving|driver|treibend|menant|moteur|conductor|motric|ведущ|主动|駆動",
+            "driven|getrieben|men[ée]e?|conducid|condott|ведом|从动|従動|被動",
+        ),
         ("left|links|gauche|sinistr|izquierd|лев|左", "right|rechts|droite?|destr|derech|прав|右"),
-        ("specimen|sample|probe|[ée]chantillon|prov[ií]no|试样", "counter|gegen|antagonist|contre|对磨|陪试"),
+        (
+            "specimen|sample|probe|[ée]chantillon|prov[ií]no|试样",
+            "counter|gegen|antagonist|contre|对磨|陪试",
+        ),
     )
 )
 # so little tells bodies apart only where the text speaks of two
 _NUMBERED = ((re.compile("1$"), re.compile("2$")),)
 _TWIN = re.compile(
     r"twin|two[\s-]?(?:dis[ck]|roller)|roller[\s-]?(?:on|against)[\s-]?(?:roller|dis[ck])|2[\s-]?dis[ck]|disc[\s-]?on[\s-]?disc"
-    r"|zwei[\s-]?scheiben|zwei[\s-]?rollen|bi[\s-]?disque|deux (?:galets|disques)|bi[\s-]?disco|dos discos|due (?:rulli|dischi)"
-    r"|двухроликов|ролик[\s-]+ролик|双盘|双辊|滚动接触|二円筒|2円筒|ローラ|amsler|rolling contact|w[äa]lz",
+    r"|zwei[\s-]?scheiben|zwei[\s-]?rollen|bi[\s-]?disque|deux (?:galets|disques)"
+    r"|bi[\s-]?disco|dos discos|due (?:rulli|dischi)"
+    r"|двухроликов|ролик[\s-]+ролик|双盘|双辊|滚动接触|二円筒|2円筒|ローラ|amsler"
+    r"|rolling contact|w[äa]lz",
     re.IGNORECASE,
 )
 _TORQUE = re.compile(r"torque|moment|couple|coppia|koppel|扭矩|转矩|力矩|トルク|момент|moment[io]?")
@@ -71,9 +85,7 @@ class Radii(NamedTuple):
         return len({value.number * value.scale for value in self.values}) < 2
 
 
-def pair_of(
-    layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray
-) -> Pair | None:
+def pair_of(layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray) -> Pair | None:
     """Return the two columns of how fast two surfaces go, where their names are those of bodies.
 
     Parameters
@@ -90,12 +102,7 @@ def pair_of(
         mine = [column for column, held in known if held == quantity]
         twin = len(mine) == 2 and any(_TWIN.search(t[:_LONGEST]) for t in _texts(layout))
         for bodies in (*_BODIES, *(_NUMBERED if twin else ())):
-            pairs = [
-                (a, b)
-                for a in mine
-                for b in mine
-                if a is not b and _is(bodies, a, b)
-            ]
+            pairs = [(a, b) for a in mine for b in mine if a is not b and _is(bodies, a, b)]
             if len(pairs) == 1:
                 first, second = (numbers[:, c.place - 1] for c in pairs[0])
                 opposed = bool(np.nanmedian(np.sign(first * second)) < 0)
@@ -123,7 +130,9 @@ def _speed_of(column: DraftColumn) -> str:
     options = [match.quantity for match in matches(name, unit)]
     if unit is None or (options and not set(options) & set(_SPEEDS)):
         return ""
-    return next((held for held, si in zip(_SPEEDS, ("Hz", "m/s"), strict=True) if converts(unit, si)), "")
+    return next(
+        (held for held, si in zip(_SPEEDS, ("Hz", "m/s"), strict=True) if converts(unit, si)), ""
+    )
 
 
 def without_surfaces(columns: Sequence[DraftColumn], pair: Pair | None) -> list[DraftColumn]:

@@ -23,20 +23,29 @@ _FEWEST = 20  # samples that tell a zero
 _LEFT = 0.12  # of the highest signal: so far from its first level, and there is contact
 _SAFE = 0.9  # of the stretch: a load comes on gradually
 _UNLOADED = re.compile(
-    r"unloaded|\bno[\s-]?load(?!\s?cell)|without (?:a |any )?(?:load|contact)|not (?:yet )?(?:loaded|in contact)"
-    r"|no contact|out of contact|\blifted|lift(?:ed)?[\s-]?off|pin (?:is )?(?:up|off)|before (?:loading|contact)"
-    r"|unbelastet|ohne (?:last|kontakt|auflast|belastung)|lastfrei|abgehoben|leerlauf|vor (?:dem )?belast"
-    r"|[àa] vide|sans (?:charge|contact)|d[ée]gag[ée]|relev[ée]|soulev[ée]|sin (?:carga|contacto)|en vac[ií]o"
-    r"|levantad|a vuoto|senza (?:carico|contatto)|sollevat|sem (?:carga|contato|contacto)|utan (?:last|kontakt|belastning)"
-    r"|avlastad|obelastad|uden (?:last|belastning|kontakt)|uten (?:last|kontakt)|zonder (?:last|belasting|contact)|onbelast"
-    r"|ilman (?:kuormaa|kuormitusta)|bez (?:obci[ąa][żz]enia|kontaktu|zat[íi][žz]en[íi]|nacisku)|nieobci[ąa][żz]on"
+    r"unloaded|\bno[\s-]?load(?!\s?cell)|without (?:a |any )?(?:load|contact)"
+    r"|not (?:yet )?(?:loaded|in contact)"
+    r"|no contact|out of contact|\blifted|lift(?:ed)?[\s-]?off|pin (?:is )?(?:up|off)"
+    r"|before (?:loading|contact)"
+    r"|unbelastet|ohne (?:last|kontakt|auflast|belastung)|lastfrei|abgehoben|leerlauf"
+    r"|vor (?:dem )?belast"
+    r"|[àa] vide|sans (?:charge|contact)|d[ée]gag[ée]|relev[ée]|soulev[ée]|sin (?:carga"
+    r"|contacto)|en vac[ií]o"
+    r"|levantad|a vuoto|senza (?:carico|contatto)|sollevat|sem (?:carga|contato|contacto)"
+    r"|utan (?:last|kontakt|belastning)"
+    r"|avlastad|obelastad|uden (?:last|belastning|kontakt)|uten (?:last|kontakt)"
+    r"|zonder (?:last|belasting|contact)|onbelast"
+    r"|ilman (?:kuormaa|kuormitusta)|bez (?:obci[ąa][żz]enia|kontaktu|zat[íi][žz]en[íi]"
+    r"|nacisku)|nieobci[ąa][żz]on"
     r"|terhel[ée]s n[ée]lk[üu]l|y[üu]ks[üu]z|без (?:нагрузки|контакта)|до нагружения|холост"
     r"|未加载|未加載|无载|空载|无负载|无接触|抬起|無負荷|無荷重|非接触|無接触|무부하|비접촉",
     re.IGNORECASE,
 )
 _START = re.compile(
-    r"\bfirst\b|\bstart|\bbegin|\binitial|\bbefore\b|\bat rest before|\berste|anfang|beginn|zu beginn|\bd[ée]but|premi[eè]r"
-    r"|au d[ée]part|inicio|primer|inizio|prim[ioa]\b|in[ií]cio|primeir|f[öo]rsta|b[öo]rjan|f[øo]rste|begynn|eerste"
+    r"\bfirst\b|\bstart|\bbegin|\binitial|\bbefore\b|\bat rest before|\berste|anfang|beginn"
+    r"|zu beginn|\bd[ée]but|premi[eè]r"
+    r"|au d[ée]part|inicio|primer|inizio|prim[ioa]\b|in[ií]cio|primeir|f[öo]rsta|b[öo]rjan"
+    r"|f[øo]rste|begynn|eerste"
     r"|alussa|ensimm|pierwsz|pocz[ąa]t|prvn|za[čc][áa]t|els[őo]|ilk|ba[şs]lang|перв|начал|开始|開始|最初|先頭|前|처음|시작"
     rf"|{STEP_WORD}\W{{0,3}}0(?!\d)",
     re.IGNORECASE,

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from tribolab.draft.columns.named_radius import radius_in_name
 from tribolab.draft.columns.levers import weight_on_lever
+from tribolab.draft.columns.named_radius import radius_in_name
 from tribolab.draft.columns.sentences import Phrase, label_of, phrases
 from tribolab.draft.columns.stated_words import (
     ACROSS,
@@ -309,7 +309,9 @@ def _of_phrase(phrase: Phrase) -> DraftValue | None:
 
 def _one_force(phrase: Phrase) -> bool:
     """Whether the only force or weight of a line is the first number in it: no range of several."""
-    forces = [said for said in phrases(phrase.line) if converts(said.unit, "N") or said.unit in WEIGHTS]
+    forces = [
+        said for said in phrases(phrase.line) if converts(said.unit, "N") or said.unit in WEIGHTS
+    ]
     before = phrase.line[: phrase.line.find(phrase.number)]
     return len(forces) == 1 and not re.search(r"\d", before)
 

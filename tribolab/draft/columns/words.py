@@ -86,9 +86,12 @@ _TURNS = re.compile(r"rpm|(?:rev|r|U|tr|ot|obr|giri|omw)\.?/\s?(?:min|s)", re.IG
 _RPM = re.compile(r"(?<![^\W_])rpm(?![^\W_])", re.IGNORECASE)  # a name that is its unit: "rpm_set"
 _GLUED = re.compile(r"(?P<name>[^\W\d_]*[a-z]{2})(?P<unit>[A-Z]{1,2})")  # "tempC", "forceN"
 _NUMBERED = re.compile(r"#?\s*(?:N[°ºr]|No|№)\.?", re.IGNORECASE)  # rows, and not how fast it turns
-_COUNTS = frozenset("count counts cts digit digits lsb bit bits raw adc increments "
-    "div div. divs divs. divisions skt skt. skalenteile teilstriche tlstr div/skala graduations divisiones divisioni "
-    "dzialki dz. dílky dílek дел дел. деление делений 格 目盛".split())
+_COUNTS = frozenset(
+    "count counts cts digit digits lsb bit bits raw adc increments "
+    "div div. divs divs. divisions skt skt. skalenteile teilstriche tlstr div/skala "
+    "graduations divisiones divisioni "
+    "dzialki dz. dílky dílek дел дел. деление делений 格 目盛".split()
+)
 # a speed that was set is not how fast it slid
 _AS_SET = {"sliding_velocity": "set_speed", "normal_force": "set_normal_force"}
 
