@@ -36,7 +36,10 @@ RUN_WORDS = (
     ),
     Word(
         "friction_force",
-        _words("fx ff fr ft fric frict freib ffric fq ftan ftang lf flat ffriction fs fh fy"),
+        _words(
+            "fx ff fr ft fric frict freib ffric ffr fq ftan ftang lf flat ffriction ftr fтр froz "
+            "fs fh fy"
+        ),
         _words(
             "frictionforce frictionalforce fricforce tangentialforce tangforce lateralforce "
             "horizontalforce horizontalload latforce "
@@ -48,7 +51,9 @@ RUN_WORDS = (
             "forzadiattrito forzadattrito forzatangenziale attrito "
             "forcadeatrito forcatangencial atrito silatarcia tarcie trecisila friktionskraft "
             "kitkavoima surlodasiero suertuenmekuvveti suertuenme "
-            "силатрения тангенциальнаясила 마찰력 접선력 摩擦力 切向力 剪切力 せん断力 接線力"
+            "силатрения тангенциальнаясила 마찰력 접선력 摩擦力 切向力 剪切力 せん断力 接線力 摩擦 "
+            "tangenziale tangenzial tangentielle tangentiel tangencial styczna тангенциальн "
+            "касательн"
         ),
         _words(
             "standardkraft pruefkraft "
@@ -58,7 +63,7 @@ RUN_WORDS = (
     ),
     Word(
         "normal_force",
-        _words("fn fz fnorm fnormal w l nf fv normal p n"),
+        _words("fn fz fnorm fnormal w l nf fv normal normale normalna p n"),
         _words(
             "normalforce normalload normload normforce axialforce axialload "
             "verticalforce verticalload "
@@ -89,7 +94,7 @@ RUN_WORDS = (
             "coefficientediattrito coefficientedattrito coeffdiattrito coeffdattrito attrito "
             "coeficientedeatrito coefdeatrito wspolczynniktarcia koeficienttreni souciniteltreni "
             "friktionskoefficient kitkakerroin suertuenmekatsayisi коэффициенттрения 마찰계수 "
-            "摩擦系数 摩擦係數 摩擦因数 摩擦係数"
+            "摩擦系数 摩擦係數 摩擦因数 摩擦係数 摩擦"
         ),
     ),
     Word(
@@ -214,7 +219,14 @@ RUN_WORDS = (
     Word("voltage", ("u",), _words("voltage spannung tension tensione voltaje 电压 電圧")),
     Word(
         "step",
-        _words("step schritt segment stage etape paso passo block phase stap 步骤"),
+        _words(
+            "step schritt segment stage etape paso passo block phase stap 步骤 "
+            "specimen specimenno specimennumber pull pullno prober probekoerper probennr pruefling "
+            "probekoerpernr eprouvette eprouvetteno noeprouvette probeta probetano nprobeta "
+            "provino nprovino corpodeprova cuerpodeprueba probka nrprobki vzorek образец "
+            "номеробразца "
+            "试样 试样号 试样编号 試験片 試験片番号 시편 시편번호"
+        ),
         _words("stepno stepnumber"),
     ),
     Word(

@@ -10,13 +10,15 @@ from tribolab.draft.columns.axial import axial_force_of, find_inclined, radius_o
 from tribolab.draft.columns.bridges import calibrated_forces
 from tribolab.draft.columns.counts import zero_in_counts
 from tribolab.draft.columns.from_axis import radius_from_axis
+from tribolab.draft.columns.gains import stated_gains
 from tribolab.draft.columns.lengths import find_arm, find_radius, is_at_arm, on_rim
 from tribolab.draft.columns.programme import programme_of
 from tribolab.draft.columns.slip import stated_ratio
 from tribolab.draft.columns.stated_load import find_load
 from tribolab.draft.columns.stated_words import PER_MINUTE
 from tribolab.draft.columns.stated_zero import find_zero, reading_of, zero_in_doubt
-from tribolab.draft.columns.stroke_settings import as_stated, strokes_of_columns, strokes_of_values
+from tribolab.draft.columns.stroke_settings import as_stated, strokes_of
+from tribolab.draft.columns.strokes import STROKE
 from tribolab.draft.columns.sums import loads_that_add
 from tribolab.draft.columns.turning import (
     angle_of,
@@ -58,7 +60,7 @@ _SPEED_OF_TURNS = or_term(
 )
 # what nothing else may be than how fast it slides or turns
 _ITS_SPEED = or_term(
-    r"^(?:test|set|nominal|sliding|gleit|linear|surface|track|rotary|rotation(?:al)?|spindle|dis[ck])?"
+    r"^(?:test|set|nominal|sliding|gleit|linear|surface|crosshead|stage|track|rotary|rotation(?:al)?|spindle|dis[ck])?"
     r"(?:speed|velocity|rpm|geschwindigkeit|drehzahl|rotation)$",
     "sliding_velocity",
     "rotation_speed",
@@ -193,7 +195,19 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
         what = f"friction_reading - {zero.name}"
         formula = DraftedFormula("friction_force", what, f"'{zero.text}'")
         result = _and(result, formula, [zero], (("friction_reading", reading._replace(zero="")),))
+    gains = stated_gains(layout, understood.columns)
+    for gain in gains:
+        if gain.quantity == "position" and (result.speed is not None or names & _SAYS_SPEED):
+            continue
+        formula = DraftedFormula(gain.quantity, gain.formula, gain.about)
+        result = _and(result, formula, gain.values, ((gain.symbol, gain.column),))
+        names.add(gain.quantity)
+        if gain.quantity == "position" and timed:
+            result = result._replace(speed=SpeedBy("position"))
+    made = {gain.quantity for gain in gains}
     for force in calibrated_forces(layout, understood.columns):
+        if force.quantity in made:
+            continue
         about = f"a signal in volts, and '{force.value.text}'"
         formula = DraftedFormula(force.quantity, force.formula, about)
         result = _and(result, formula, [force.value], ((force.symbol, force.column),))
@@ -356,15 +370,16 @@ def _with_speed(
         about = f"'{ratio.text}' is the sliding speed over the mean speed of both surfaces"
         formula = DraftedFormula("sliding_velocity", f"{ratio.name} * rolling_speed", about)
         return _and(before, formula, (ratio,))._replace(speed=SpeedBy("none"))
-    by_values = strokes_of_values(values)
-    of_strokes = by_values or strokes_of_columns(understood)
-    if of_strokes is None or (by_values is None and "rotation_speed" in names):
+    of_strokes = strokes_of(values, understood)
+    if of_strokes is None or (of_strokes.symbols and "rotation_speed" in names):
         known = turning or "set_speed" in names
         return before if known else _with_set_speed(before, values, track)
     settings = of_strokes.settings
     said = [text.lower() for key, text in words if _DRIVE.search(squeezed(key))]
     modes = [text.lower() for key, text in words if _MODE.search(squeezed(key))]
-    said += [text for text in modes if _SINE.search(text)]  # a constant load is a mode, too
+    # a constant load is a mode, too, and a stroke may be said to be a sine
+    lengths = [text.lower() for key, text in words if STROKE.search(squeezed(key))]
+    said += [text for text in (*modes, *lengths) if _SINE.search(text)]
     drive, guess = understood.drive or "crank", ""
     options: tuple[str, ...] = ()
     if not understood.drive and any(_EVEN.search(text) for text in said):
