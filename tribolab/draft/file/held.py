@@ -11,12 +11,14 @@ from pathlib import Path
 
 import numpy as np
 
-from tribolab.draft.file.held_column import ROWS, HeldColumn, leaf, others_alike
+from tribolab.draft.file.held_column import ROWS, HeldColumn, better_name, leaf, others_alike
 from tribolab.draft.file.layout import Held, Layout, find_layout
-from tribolab.draft.file.sheets import read_sheet
+from tribolab.draft.file.sheets import main_sheet, read_sheet
+from tribolab.draft.file.steps import HeldSteps, find_steps, lines_of, unit_beside
 from tribolab.draft.model import Understood
 from tribolab.errors import ReadError
 from tribolab.io.dialects.cells import split_name
+from tribolab.io.dialects.held_tables import HELD_IN_GROUPS, open_sheets, open_tables
 from tribolab.io.dialects.signature import HEAD, File
 from tribolab.io.tables import columnar
 from tribolab.io.tables.columnar import seconds_of
@@ -24,6 +26,9 @@ from tribolab.io.tables.mat5 import read_variables
 from tribolab.io.tables.tdms_file import INCREMENT_PATTERN, on_one_grid, open_tdms
 
 _CELL = 16  # bytes of a number as text
+_FILLED = 0.9  # of what is looked at, by rows of steps: their settings want room, too
+_FORMS = {"netcdf": "hdf5"}  # both begin alike
+_WITH_ZERO = {"friction_force", "normal_force", "friction_coefficient", None}
 
 
 def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
@@ -40,11 +45,14 @@ def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
         If it holds no columns of numbers of one length, or is damaged.
     """
     try:
-        held, columns = READERS[file.format](file.path)
+        steps = _steps(file)
+        held, columns = (Held(file.format), []) if steps else READERS[file.format](file.path)
     except (ReadError, ImportError):
         raise
     except Exception as error:  # each of these libraries has its own ways to say "damaged"
         raise ReadError(f"this {file.format} file cannot be read", where=file.path) from error
+    if steps is not None:
+        return _layout_of_steps(file, *steps)
     every = [_in_numbers(c) for c in columns if c.values.dtype.kind in "fiuMm" and c.values.size]
     length = max((c.values.size for c in every), default=0)
     columns = [c for c in every if c.values.size == length]
@@ -58,13 +66,67 @@ def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
     table = np.column_stack([np.asarray(c.values[:rows], dtype=float) for c in columns])
     np.savetxt(text, table, "%.9g", "\t", header=labels, comments="", encoding="utf-8")
     beside = f"{held.text}\n\n" if held.text else ""
-    head = beside.encode() + text.getvalue()
-    layout = find_layout(File(file.path, "text", len(head), head))
-    if layout.width != len(columns) or layout.heading is None:
-        raise ReadError("its columns have no names", where=file.path)
+    layout = _laid_out(file, beside.encode() + text.getvalue(), columns)
     guesses = (f"the longest of several alike is meant, not {held.others}",) if held.others else ()
     layout = layout._replace(held=held, encoding="utf-8", guesses=(*layout.guesses, *guesses))
     return layout, tuple(columns)
+
+
+def _laid_out(file: File, head: bytes, columns: Sequence[HeldColumn]) -> Layout:
+    layout = find_layout(File(file.path, "text", len(head), head))
+    if layout.width != len(columns) or layout.heading is None:
+        raise ReadError("its columns have no names", where=file.path)
+    return layout
+
+
+def _steps(file: File) -> tuple[Held, HeldSteps] | None:
+    """Return tables that are steps of one run, and how a dialect finds them; None if none are."""
+    if file.format == "excel":
+        held, names = main_sheet(file.path)
+        wanted = [split_name(name)[0] for name in names]
+        tables = open_sheets(file.path, wanted, held.line, units_below=held.units_below)
+    elif file.format in HELD_IN_GROUPS:
+        held, tables = (
+            Held(_FORMS.get(file.format, file.format)),
+            open_tables(file.path, file.format),
+        )
+    else:
+        return None
+    found = find_steps(tables)
+    if found is None:
+        return None
+    clocked = file.format == "tdms" and "wf_increment:" in found.steps[0].text
+    increment = 1.0 if clocked else 0.0  # the text of each step says its own
+    return held._replace(steps=found.pattern, zero=found.zero, increment=increment), found
+
+
+def _layout_of_steps(
+    file: File, held: Held, found: HeldSteps
+) -> tuple[Layout, tuple[HeldColumn, ...]]:
+    """Lay steps out as the text of a file that has a table for each."""
+    first, said = found.steps[0], "\n".join([found.text, found.steps[0].text])
+    meanings = first.meanings or ("",) * len(first.names)
+    columns = []
+    for place, (name, unit, meaning) in enumerate(
+        zip(first.names, first.units, meanings, strict=True)
+    ):
+        beside = None if unit else unit_beside(said, name)
+        values = np.concatenate([table.arrays[place] for table in found.steps])
+        column = HeldColumn(name, unit or beside, values, said=beside is None)
+        if values.dtype.kind not in "Mm" and (better := better_name(name, meaning)):
+            column = column._replace(shown=better)
+        columns.append(_in_numbers(column))
+    tables = tuple(t._replace(arrays=tuple(map(_seconds, t.arrays))) for t in found.steps)
+    most = max(int(_FILLED * HEAD) // (_CELL * len(columns) * len(tables)), 2)
+    text = lines_of(found._replace(steps=tables), [_label(c) for c in columns], min(most, ROWS))
+    layout = _laid_out(file, text.encode("utf-8", "replace"), columns)
+    zeros = {column: table for table in found.zeros for column in table.names}
+    columns = [c._replace(zeroed=c.name in zeros) for c in columns]
+    return layout._replace(held=held, encoding="utf-8"), tuple(columns)
+
+
+def _seconds(values: np.ndarray) -> np.ndarray:
+    return seconds_of(values) if values.dtype.kind in "Mm" else values
 
 
 def as_held(understood: Understood, columns: Sequence[HeldColumn], held: Held) -> Understood:
@@ -72,7 +134,9 @@ def as_held(understood: Understood, columns: Sequence[HeldColumn], held: Held) -
     named = []
     for column, own in zip(understood.columns, columns, strict=True):
         unit = column.unit if own.said or column.unit is not None else own.unit
-        named.append(column._replace(name=own.name, unit=unit, group=own.group, occurrence=1))
+        zero = held.zero if own.zeroed and column.quantity in _WITH_ZERO else ""
+        place = {"name": own.name, "group": own.group, "occurrence": 1}
+        named.append(column._replace(unit=unit, zero=zero, **place))
     timed = any(column.used and column.quantity == "time" for column in named)
     if held.increment and understood.kind == "run" and not timed:
         understood = understood._replace(rate_pattern=INCREMENT_PATTERN, rate_unit="s")

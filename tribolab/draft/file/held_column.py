@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.draft.file.header import names_any
+from tribolab.draft.vocabulary import RUN_WORDS
 from tribolab.errors import shown
 
 ROWS = 20_000  # rows looked at
@@ -17,7 +20,8 @@ class HeldColumn(NamedTuple):
     """A column: its name (and group) as the reader finds it, its unit, its numbers.
 
     `said` is whether the reader finds the unit by itself; `shown` is what it is called for whoever
-    looks for its meaning, where that is not its name.
+    looks for its meaning, where that is not its name. Of a column that is `zeroed` a table without
+    contact holds the zero.
     """
 
     name: str
@@ -26,6 +30,7 @@ class HeldColumn(NamedTuple):
     group: str = ""
     said: bool = True
     shown: str = ""
+    zeroed: bool = False
 
 
 def leaf(name: str) -> str:
@@ -36,6 +41,19 @@ def leaf(name: str) -> str:
     """
     name = name.rsplit("/", 1)[-1]
     return name.rsplit(".", 1)[-1] if " " not in name else name
+
+
+def better_name(name: str, meaning: str) -> str:
+    """Return what a file says that a column means, where its name alone says nothing; else "".
+
+    >>> better_name("F_nrm", "normal force, by the leaf spring"), better_name("Fx", "lateral force")
+    ('normal force', '')
+    """
+    words = re.split(r"[,;:(\[]|\s[-–—]\s", meaning)[0].strip()
+    quantities = [word.quantity for word in RUN_WORDS]
+    if not words or names_any(name, *quantities) or not names_any(words, *quantities):
+        return ""
+    return words
 
 
 def others_alike(chosen: Sequence[HeldColumn], every: Sequence[HeldColumn]) -> str:

@@ -14,7 +14,7 @@ from tribolab.errors import nearest, shown
 from tribolab.io.dialects.checked_text import Formula, QuantityName, Strict
 from tribolab.io.dialects.column_rule import Column
 from tribolab.io.dialects.formula import names_in, parse_formula
-from tribolab.io.dialects.layout import Binary, Header, Marks, Pair, Recognise, Rows, Text
+from tribolab.io.dialects.layout import Binary, Header, Marks, Pair, Recognise, Rows, Tables, Text
 from tribolab.io.dialects.pitch_rule import check_pitch
 from tribolab.io.dialects.speed_rule import Speed
 from tribolab.io.dialects.time_rule import Time
@@ -72,6 +72,7 @@ class Dialect(Strict):
     )
     pair: Pair | None = None
     marks: Marks | None = None
+    tables: Tables | None = None
     binary: Binary | None = None
     column: tuple[Column, ...] = Field(min_length=1)
     value: tuple[Value, ...] = ()
@@ -102,6 +103,10 @@ class Dialect(Strict):
             positive(self.moving_mass, "kg", "moving_mass")
         if (self.format == "binary") != (self.binary is not None):
             raise ValueError("format = 'binary' and [binary] belong together")
+        if self.tables is not None and self.format in ("text", "binary", "parquet", "feather"):
+            raise ValueError(
+                f"[tables] is for files that hold several tables by name, not {self.format}"
+            )
         without_header = self.header.line is None and self.header.pattern is None
         if without_header and self.text.delimiter == "any":
             raise ValueError("text.delimiter = 'any' needs header.line or header.pattern")

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribolab.errors import ReadError, brief
+from tribolab.io.tables.settings_text import setting_lines
 
 _DAMAGE = (
     *(ValueError, KeyError, IndexError, TypeError, OSError, EOFError, struct.error),
@@ -17,6 +18,7 @@ _DAMAGE = (
 
 # how the text of a TDMS file says the time from row to row
 INCREMENT_PATTERN = r"^wf_increment: (\S+)"
+_UNITS = ("unit_string", "NI_UnitDescription", "unit", "units", "Unit")
 _WHOLE = 1e-3  # of an interval, how far the ratio of two may be from a whole number
 
 
@@ -67,6 +69,17 @@ def on_one_grid(channels: list[Any]) -> Grid | None:
 
 def _number(said: object) -> float:
     return float(said) if isinstance(said, int | float) and np.isfinite(said) else 0.0
+
+
+def properties_of(item: Any) -> list[str]:
+    """Return the properties of a file or a group as lines."""
+    return [line for key, value in item.properties.items() for line in setting_lines(key, value)]
+
+
+def unit_of(channel: Any) -> str | None:
+    """Return the unit that a channel's properties say; None if none."""
+    said = (str(channel.properties.get(key, "")).strip() for key in _UNITS)
+    return next((unit for unit in said if unit), None)
 
 
 def channel_names(path: Path) -> set[str]:
