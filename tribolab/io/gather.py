@@ -92,7 +92,7 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     assumed = add_assumed(attrs, dialect)
     signals = {name: columns[name] for name in rules if name in units and name in columns}
     add_derived(columns, _symbols(contents, dialect), attrs, time.size, where, dialect)
-    zeros_of_derived(columns, signals, attrs, units)
+    zeros_of_derived(columns, signals, attrs)
     tell_assumed(attrs, assumed, dialect)
     keep_forces_that_agree(columns, attrs)
     add_speed(columns, attrs, time, where, dialect, of_steps)

@@ -100,7 +100,7 @@ def take_zeros(
     where
         The run, for messages.
     units
-        SI units of what is no quantity.
+        SI units of what is no quantity: of these the attributes have no unit in their names.
 
     Returns
     -------
@@ -125,7 +125,7 @@ def take_zeros(
             _zero_of(name, text, _samples(name, rule, columns, time, blank, where, source), where)
             for source in sources
         ]
-        unit = (units or {}).get(name) or quantity(name).unit
+        unit = "1" if name in (units or {}) else quantity(name).unit
         ending = "" if unit == "1" else f"_{unit}"
         zero = float(np.mean([mean for mean, _ in read]))
         error = float(np.hypot.reduce([error for _, error in read])) / len(read)
@@ -146,7 +146,6 @@ def zeros_of_derived(
     columns: Mapping[str, np.ndarray],
     signals: Mapping[str, np.ndarray],
     attrs: Json,
-    units: Mapping[str, str],
 ) -> None:
     """Say of a force that follows from a signal whose zero was read that its own was, too.
 
@@ -158,21 +157,20 @@ def zeros_of_derived(
         Signals of which a zero was taken off, by symbol (time).
     attrs
         Attributes of the run, with ``derived`` and from `take_zeros`; added to.
-    units
-        SI units of the symbols.
     """
     for name, formula in dict(attrs.get("derived", {})).items():
         used = [symbol for symbol in signals if re.search(rf"\b{symbol}\b", str(formula))]
-        if len(used) != 1 or name not in columns:
+        if len(used) != 1 or name not in columns or f"{used[0]}_zero" not in attrs:
             continue
-        signal, ending = signals[used[0]], f"_{units[used[0]]}"
+        signal, unit = signals[used[0]], quantity(name).unit
         large = np.abs(signal) > 0.5 * np.nanmax(np.abs(signal))
-        factor = abs(float(np.median(columns[name][large] / signal[large])))  # times a constant
-        unit = quantity(name).unit
-        for key in ("zero_sem", "zero_uncertainty"):
-            if f"{used[0]}_{key}{ending}" in attrs:
-                attrs[f"{name}_{key}_{unit}"] = factor * attrs[f"{used[0]}_{key}{ending}"]
-        attrs["zeros_read"] = {**attrs["zeros_read"], name: attrs["zeros_read"][used[0]]}
+        factor = float(np.median(columns[name][large] / signal[large]))  # times a constant
+        for key in ("zero", "zero_sem", "zero_uncertainty"):
+            if (value := attrs.pop(f"{used[0]}_{key}", None)) is not None:
+                times = factor if key == "zero" else abs(factor)
+                attrs[f"{name}_{key}_{unit}"] = times * value
+        read = {**attrs["zeros_read"], name: attrs["zeros_read"][used[0]]}
+        attrs["zeros_read"] = {k: v for k, v in read.items() if k != used[0]}
 
 
 def _zero_of(name: str, text: str, values: np.ndarray, where: str) -> tuple[float, float]:

@@ -36,6 +36,7 @@ from tribolab.draft.columns.results_table import are_points
 from tribolab.draft.columns.sampling import find_sampling
 from tribolab.draft.columns.slip import of_both_surfaces
 from tribolab.draft.columns.stated_missing import take_stated_missing
+from tribolab.draft.columns.told_by_settings import told_by_settings
 from tribolab.draft.columns.values import DraftValue
 from tribolab.draft.columns.words import Match, matches, squeezed
 from tribolab.draft.file.header import converts
@@ -112,6 +113,8 @@ def understand(layout: Layout) -> Understood:
         spoken_for = [shown(force.value.text, 40) for force in calibrated_forces(layout, columns)]
         guesses = [said for said in guesses if not any(text in said for text in spoken_for)]
     period = summed(columns, numbers)
+    if kind == "run":
+        columns = told_by_settings(layout, columns, numbers)
     on_repeat, restart, columns = find_clock(layout, columns, numbers)
     used = [column.place - 1 for column in columns if column.used]
     if kind == "scan":

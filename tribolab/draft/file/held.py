@@ -18,12 +18,18 @@ from tribolab.draft.file.steps import HeldSteps, find_steps, lines_of, unit_besi
 from tribolab.draft.model import Understood
 from tribolab.errors import ReadError
 from tribolab.io.dialects.cells import split_name
-from tribolab.io.dialects.held_tables import HELD_IN_GROUPS, open_sheets, open_tables
+from tribolab.io.dialects.held_tables import HELD_IN_GROUPS, open_sheets, open_tables, settings_text
 from tribolab.io.dialects.signature import HEAD, File
 from tribolab.io.tables import columnar
 from tribolab.io.tables.columnar import seconds_of
 from tribolab.io.tables.mat5 import read_variables
-from tribolab.io.tables.tdms_file import INCREMENT_PATTERN, on_one_grid, open_tdms
+from tribolab.io.tables.tdms_file import (
+    INCREMENT_PATTERN,
+    on_one_grid,
+    open_tdms,
+    text_beside,
+    unit_of,
+)
 
 _CELL = 16  # bytes of a number as text
 _FILLED = 0.9  # of what is looked at, by rows of steps: their settings want room, too
@@ -165,9 +171,11 @@ def _of_table(form: str) -> Callable[[Path], tuple[Held, list[HeldColumn]]]:
     def read(path: Path) -> tuple[Held, list[HeldColumn]]:
         table = columnar.open_columns(path, form, columnar.ColumnLayout())
         columns = []
+        meanings = table.meanings or ("",) * len(table.names)
         for place, (label, unit) in enumerate(zip(table.names, table.units, strict=True)):
             name, own = split_name(label)
-            columns.append(HeldColumn(name, unit or own, table.column(place)))
+            better = better_name(leaf(name), meanings[place])
+            columns.append(HeldColumn(name, unit or own, table.column(place), shown=better))
         return Held(form, text=table.text), columns
 
     return read
@@ -175,15 +183,19 @@ def _of_table(form: str) -> Callable[[Path], tuple[Held, list[HeldColumn]]]:
 
 def _mat(path: Path) -> tuple[Held, list[HeldColumn]]:
     columns = []
-    for name, numbers in read_variables(path):
+    variables = read_variables(path)
+    text = settings_text(variables)
+    for name, numbers, *_ in variables:
         if numbers is not None and numbers.size and numbers.size == max(numbers.shape):
-            columns.append(HeldColumn(name, None, numbers.ravel()))
-    return Held("mat"), columns
+            unit = unit_beside(text, leaf(name))
+            columns.append(HeldColumn(name, unit, numbers.ravel(), said=unit is None))
+    return Held("mat", text=text), columns
 
 
 def _tdms(path: Path) -> tuple[Held, list[HeldColumn]]:
     """Return the channels of the group that holds most numbers, and what shares its clock."""
-    groups = open_tdms(path, "read").groups()
+    file = open_tdms(path, "read")
+    groups = file.groups()
     size = [sum(len(channel) for channel in group.channels()) for group in groups]
     if not groups:
         return Held("tdms"), []
@@ -197,11 +209,12 @@ def _tdms(path: Path) -> tuple[Held, list[HeldColumn]]:
     columns = []
     for channel, numbers in zip(channels, values, strict=True):
         name, unit = split_name(channel.name)
-        stated = str(channel.properties.get("unit_string", "")).strip() or None
-        columns.append(
-            HeldColumn(name, unit or stated, numbers, channel.group_name, said=unit is not None)
-        )
-    return Held("tdms", increment=grid.increment if grid else 0.0), columns
+        better = better_name(name, str(channel.properties.get("description", "")))
+        own, said = unit or unit_of(channel), unit is not None
+        columns.append(HeldColumn(name, own, numbers, channel.group_name, said, better))
+    increment = grid.increment if grid else 0.0
+    read = [group for group in groups if group.name in {c.group_name for c in channels}]
+    return Held("tdms", increment=increment, text=text_beside(file, read, increment)), columns
 
 
 READERS: dict[str, Callable[[Path], tuple[Held, list[HeldColumn]]]] = {

@@ -16,7 +16,7 @@ from tribolab.errors import ReadError
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.tables.mat5 import Variable, read_variables
 from tribolab.io.tables.settings_text import folder_and_leaf, setting_lines, text_of
-from tribolab.io.tables.tdms_file import on_one_grid, open_tdms, properties_of, unit_of
+from tribolab.io.tables.tdms_file import on_one_grid, open_tdms, properties_of, text_beside, unit_of
 from tribolab.io.tables.workbook import Cells, settings_above, sheets_of, table_below
 
 _ABOVE = 40  # rows of a sheet above its names
@@ -132,6 +132,10 @@ def _mat(path: Path) -> HeldFile:
     return found.file(sort=False)
 
 
+def _own(folder: str) -> str:
+    return folder.rsplit("/", 1)[-1].rsplit(".", 1)[-1]
+
+
 def settings_of(variable: Variable) -> list[str]:
     """Return what a variable that is no column says: a single number or a text.
 
@@ -140,17 +144,24 @@ def settings_of(variable: Variable) -> list[str]:
     variable
         From `tribolab.io.tables.mat5.read_variables`.
     """
-    _, name = folder_and_leaf(variable.name)
+    folder, name = folder_and_leaf(variable.name)
+    if _own(folder).lower() in ("unit", "units", "einheit", "einheiten"):
+        name = f"{name}_unit"
     if variable.numbers is not None:
         single = variable.numbers.size == 1
         return setting_lines(name, variable.numbers.ravel()) if single else []
     return setting_lines(name, variable.text or list(variable.texts))
 
 
+def settings_text(variables: Sequence[Variable]) -> str:
+    """Return what the variables of a MAT file say that are no columns, a line for each."""
+    return text_of([line for variable in variables for line in settings_of(variable)])
+
+
 def _tdms(path: Path) -> HeldFile:
     file = open_tdms(path, "read")
     found = _Gathered()
-    found.said[""] = properties_of(file)
+    found.said[""] = text_beside(file, [], 0.0).split("\n")
     for group in file.groups():
         channels = [channel for channel in group.channels() if len(channel)]
         grid = on_one_grid(channels)

@@ -26,12 +26,16 @@ class ColumnLayout(NamedTuple):
 
 
 class NamedColumns(NamedTuple):
-    """Names of columns, units where the file says them, what gives the numbers; text beside."""
+    """Names of columns, units where the file says them, what gives the numbers; text beside.
+
+    `meanings` is what the file says of each column besides, if it does.
+    """
 
     names: list[str]
     units: list[str | None]
     column: Callable[[int], np.ndarray]
     text: str = ""
+    meanings: tuple[str, ...] = ()
 
 
 def open_columns(path: Path, form: str, layout: ColumnLayout) -> NamedColumns:
@@ -114,9 +118,9 @@ def _hdf5(path: Path, layout: ColumnLayout) -> NamedColumns:
     # late: h5py takes long to load
     from tribolab.io.tables.hdf5 import read_hdf5
 
-    names, units, arrays, _, said = read_hdf5(path)
+    names, units, arrays, meanings, said = read_hdf5(path)
     text = text_of([line for lines in said.values() for line in lines])
-    return NamedColumns(names, units, arrays.__getitem__, text)
+    return NamedColumns(names, units, arrays.__getitem__, text, tuple(meanings))
 
 
 def _excel_sheet(path: Path, layout: ColumnLayout) -> NamedColumns:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from tribolab.errors import ReadError, brief
-from tribolab.io.tables.settings_text import setting_lines
+from tribolab.io.tables.settings_text import setting_lines, text_of
 
 _DAMAGE = (
     *(ValueError, KeyError, IndexError, TypeError, OSError, EOFError, struct.error),
@@ -74,6 +75,22 @@ def _number(said: object) -> float:
 def properties_of(item: Any) -> list[str]:
     """Return the properties of a file or a group as lines."""
     return [line for key, value in item.properties.items() for line in setting_lines(key, value)]
+
+
+def text_beside(file: Any, groups: Iterable[Any], increment: float) -> str:
+    """Return what a file says beside its channels, as the text of a file stands above a table.
+
+    Parameters
+    ----------
+    file, groups
+        From nptdms: the file, and those of its groups whose channels are read.
+    increment
+        The time [s] from row to row; 0 where there is none for all.
+    """
+    clock = [f"wf_increment: {increment!r}"] if increment else []
+    own = [f"{key}: {value}" for key, value in file.properties.items()]
+    more = [line for item in (file, *groups) for line in properties_of(item)]
+    return text_of([*clock, *own, *more])
 
 
 def unit_of(channel: Any) -> str | None:
