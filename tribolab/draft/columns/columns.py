@@ -6,6 +6,7 @@ import io
 
 import numpy as np
 
+from tribolab.draft.columns.against_motion import against_motion
 from tribolab.draft.columns.assign import SIGNALS, assigned
 from tribolab.draft.columns.bridges import calibrated_forces
 from tribolab.draft.columns.counts import with_worth
@@ -114,7 +115,7 @@ def understand(layout: Layout) -> Understood:
         guesses = [said for said in guesses if not any(text in said for text in spoken_for)]
     period = summed(columns, numbers)
     if kind == "run":
-        columns = told_by_settings(layout, columns, numbers)
+        columns = against_motion(told_by_settings(layout, columns, numbers), numbers)
     on_repeat, restart, columns = find_clock(layout, columns, numbers)
     used = [column.place - 1 for column in columns if column.used]
     if kind == "scan":

@@ -11,7 +11,7 @@ from tribolab.draft.columns.counts import zero_in_counts
 from tribolab.draft.columns.lengths import find_arm, find_radius, on_rim
 from tribolab.draft.columns.programme import programme_of
 from tribolab.draft.columns.slip import stated_ratio
-from tribolab.draft.columns.stated_load import find_load
+from tribolab.draft.columns.stated_load import find_load, lifted_on_return
 from tribolab.draft.columns.stated_words import PER_MINUTE
 from tribolab.draft.columns.stated_zero import find_zero, reading_of, zero_in_doubt
 from tribolab.draft.columns.stroke_settings import as_stated, strokes_of_columns, strokes_of_values
@@ -56,11 +56,15 @@ SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
 
 
 class DraftedFormula(NamedTuple):
-    """A quantity that follows: its name, the formula, and what it rests on."""
+    """A quantity that follows: its name, the formula, and what it rests on.
+
+    With `way` it is so on the way out alone: nothing presses on the way back.
+    """
 
     quantity: str
     formula: str
     about: str
+    way: str = ""
 
 
 class SpeedBy(NamedTuple):
@@ -160,7 +164,10 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     load = find_load(values)
     if load is not None and names & SAYS_FRICTION and not names & SAYS_LOAD:
         about = f"nothing measures it: '{load.text}' is taken for all of the run"
-        result = _and(result, DraftedFormula("normal_force", load.name, about), [load])
+        out = "position" in names and lifted_on_return(layout)
+        about += ", but for ways back, on which it is lifted" if out else ""
+        formula = DraftedFormula("normal_force", load.name, about, "out" if out else "")
+        result = _and(result, formula, [load])
     elif load is not None and not names & {"normal_force", "normal_stress", "set_normal_force"}:
         result = result._replace(values=(*result.values, load))  # under which a coefficient stands
     return result

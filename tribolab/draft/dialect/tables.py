@@ -90,6 +90,7 @@ def symbol_table(symbol: str, column: DraftColumn) -> str:
 def formula_table(formula: DraftedFormula) -> str:
     """Return a quantity that follows from others."""
     lines = ["[[derived]]", f'quantity = "{formula.quantity}"', f'formula = "{formula.formula}"']
+    lines += [f'way = "{formula.way}"'] if formula.way else []
     return "\n".join([f"# {comment(formula.about)}", *lines]) + "\n"
 
 

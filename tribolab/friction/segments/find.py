@@ -83,9 +83,10 @@ def find_segments(
         stroke is a segment, and of it this share of its length about the middle counts ("40 %" of
         a sinusoidal stroke is within 9 % of its highest speed). Neither `trim` nor what concerns
         constant speed applies then; what lies before the first and after the last turn is
-        omitted. By default half of each stroke of a run that is never at
-        constant speed (or for a twentieth of the time at most, by chance) and whose speed follows
-        from a stroke and a frequency (attribute ``stroke_m``), or whose position and friction tell that it goes stroke after stroke, each
+        omitted. By default half of each stroke of a run that is never (or for less than a
+        twentieth of the time) at constant speed and whose speed follows from a stroke and a
+        frequency (attribute ``stroke_m``), or whose position and friction tell that it goes stroke
+        after stroke, each
         like the last; unless a `position_range` is given.
 
     Returns

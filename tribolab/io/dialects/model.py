@@ -36,6 +36,11 @@ class Derived(Strict):
         description="left out of files that do not hold all that the formula needs; of several "
         "such formulas for one quantity the first that can be worked out is taken",
     )
+    way: Literal["both", "out"] = Field(
+        "both",
+        description="'out': on ways back, against the first way, it is zero, as of a normal force "
+        "where a sled is lifted; the position tells the ways",
+    )
     beside: tuple[str, ...] = Field(
         (), description="what the file has to hold besides, if the formula is to be used"
     )

@@ -1,0 +1,63 @@
+"""Ways on which nothing presses: a sled that is lifted while its carriage goes back."""
+
+from __future__ import annotations
+
+import numpy as np
+
+_BLOCKS = 4000  # of rows, whose means tell where it turns
+_WAY = 0.05  # of the whole range: what is shorter is no way
+_SLOW = 0.25  # of the usual speed on a way back: what is slower is a rest at its end
+
+
+def goes_back(position: np.ndarray) -> np.ndarray:
+    """Return which rows lie on a way against the first one (time).
+
+    Parameters
+    ----------
+    position
+        Along the sliding direction (time); rows without a value do not go back.
+
+    Notes
+    -----
+    Rests at the ends belong to no way. Where it turns is told by means of blocks of rows, so that
+    noise of the reading turns nothing.
+
+    Examples
+    --------
+    >>> way = np.concatenate([np.zeros(10), np.arange(20), np.full(10, 19), 19 - np.arange(20.0)])
+    >>> back = goes_back(way)
+    >>> back[:40].any(), back[42:58].all()
+    (np.False_, np.True_)
+    """
+    size = position.size
+    edges = np.unique(np.linspace(0, size, min(_BLOCKS, size) + 1).astype(int))
+    counts = np.add.reduceat(np.isfinite(position).astype(float), edges[:-1])
+    sums = np.add.reduceat(np.nan_to_num(position), edges[:-1])
+    known = np.flatnonzero(counts > 0)
+    if known.size < 3:
+        return np.zeros(size, dtype=bool)
+    middle = 0.5 * (edges[known] + edges[known + 1])
+    means = np.interp(0.5 * (edges[:-1] + edges[1:]), middle, sums[known] / counts[known])
+    turns = _turns(means, _WAY * float(np.ptp(means)))
+    back = np.zeros(means.size, dtype=bool)
+    for first, last in zip(turns[1::2], turns[2::2], strict=False):
+        steps = np.abs(np.diff(means[first : last + 1]))
+        moving = np.flatnonzero(steps > _SLOW * np.median(steps[steps > 0])) if steps.any() else []
+        if len(moving):
+            back[first + moving[0] : first + moving[-1] + 2] = True
+    return np.repeat(back, np.diff(edges))
+
+
+def _turns(means: np.ndarray, least: float) -> list[int]:
+    """Return where a way begins or ends; the first is the beginning of the first way."""
+    turns, low, high, way = [0], 0, 0, 0
+    for place, value in enumerate(means.tolist()):
+        low = place if value <= means[low] else low
+        high = place if value >= means[high] else high
+        if way >= 0 and means[high] - value > least:  # it went up, or nobody knew
+            turns += [high] if way else []
+            way, low = -1, place
+        elif way <= 0 and value - means[low] > least:
+            turns += [low] if way else []
+            way, high = 1, place
+    return [*turns, high if way > 0 else low]
