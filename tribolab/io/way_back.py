@@ -19,14 +19,14 @@ def goes_back(position: np.ndarray) -> np.ndarray:
 
     Notes
     -----
-    Rests at the ends belong to no way. Where it turns is told by means of blocks of rows, so that
+    Rests at the ends, and blocks in which it sets off or stops, belong to no way. Where it turns is told by means of blocks of rows, so that
     noise of the reading turns nothing.
 
     Examples
     --------
     >>> way = np.concatenate([np.zeros(10), np.arange(20), np.full(10, 19), 19 - np.arange(20.0)])
     >>> back = goes_back(way)
-    >>> back[:40].any(), back[42:58].all()
+    >>> back[:41].any(), back[42:58].all()
     (np.False_, np.True_)
     """
     size = position.size
@@ -44,7 +44,7 @@ def goes_back(position: np.ndarray) -> np.ndarray:
         steps = np.abs(np.diff(means[first : last + 1]))
         moving = np.flatnonzero(steps > _SLOW * np.median(steps[steps > 0])) if steps.any() else []
         if len(moving):
-            back[first + moving[0] : first + moving[-1] + 2] = True
+            back[first + moving[0] + 1 : first + moving[-1] + 1] = True
     return np.repeat(back, np.diff(edges))
 
 
