@@ -6,6 +6,7 @@ import numpy as np
 
 _BLOCKS = 4000  # of rows, whose means tell where it turns
 _WAY = 0.05  # of the whole range: what is shorter is no way
+_BEGINNING, _CLEAR = 5, 4.0  # rows, and times the scatter: beyond it, it has set off
 _SLOW = 0.25  # of the usual speed on a way back: what is slower is a rest at its end
 
 
@@ -19,14 +20,14 @@ def goes_back(position: np.ndarray) -> np.ndarray:
 
     Notes
     -----
-    Rests at the ends, and blocks in which it sets off or stops, belong to no way. Where it turns is told by means of blocks of rows, so that
+    Rests at the ends belong to no way. Where it turns is told by means of blocks of rows, so that
     noise of the reading turns nothing.
 
     Examples
     --------
     >>> way = np.concatenate([np.zeros(10), np.arange(20), np.full(10, 19), 19 - np.arange(20.0)])
     >>> back = goes_back(way)
-    >>> back[:41].any(), back[42:58].all()
+    >>> back[:40].any(), back[42:58].all()
     (np.False_, np.True_)
     """
     size = position.size
@@ -39,13 +40,29 @@ def goes_back(position: np.ndarray) -> np.ndarray:
     middle = 0.5 * (edges[known] + edges[known + 1])
     means = np.interp(0.5 * (edges[:-1] + edges[1:]), middle, sums[known] / counts[known])
     turns = _turns(means, _WAY * float(np.ptp(means)))
-    back = np.zeros(means.size, dtype=bool)
+    back = np.zeros(size, dtype=bool)
     for first, last in zip(turns[1::2], turns[2::2], strict=False):
         steps = np.abs(np.diff(means[first : last + 1]))
-        moving = np.flatnonzero(steps > _SLOW * np.median(steps[steps > 0])) if steps.any() else []
-        if len(moving):
-            back[first + moving[0] + 1 : first + moving[-1] + 1] = True
-    return np.repeat(back, np.diff(edges))
+        usual = np.median(steps[steps > 0.1 * steps.max(initial=0.0)]) if steps.any() else 0.0
+        moving = first + np.flatnonzero(steps > _SLOW * usual)
+        if moving.size:
+            start, stop = edges[moving[0]], edges[min(moving[-1] + 2, means.size)]
+            back[
+                start + _still(position[start:stop]) : stop - _still(position[start:stop][::-1])
+            ] = True
+    return back
+
+
+def _still(way: np.ndarray) -> int:
+    """Return how many rows at the beginning of a way, less than all, do not leave its first place.
+
+    The scatter of the reading is that of its differences from row to row.
+    """
+    steps = np.diff(way[np.isfinite(way)])
+    scatter = 1.4826 * float(np.median(np.abs(steps - np.median(steps)))) if steps.size else 0.0
+    first = np.nanmedian(way[:_BEGINNING]) if np.isfinite(way[:_BEGINNING]).any() else way[0]
+    there = np.flatnonzero(np.abs(way[: way.size // 2] - first) <= _CLEAR * scatter)
+    return int(there[-1]) + 1 if there.size else 0
 
 
 def _turns(means: np.ndarray, least: float) -> list[int]:
