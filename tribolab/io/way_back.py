@@ -7,6 +7,7 @@ import numpy as np
 _BLOCKS = 4000  # of rows, whose means tell where it turns
 _WAY = 0.05  # of the whole range: what is shorter is no way
 _BEGINNING, _CLEAR = 5, 4.0  # rows, and times the scatter: beyond it, it has set off
+_MORE = 3  # rows
 _SLOW = 0.25  # of the usual speed on a way back: what is slower is a rest at its end
 
 
@@ -26,8 +27,9 @@ def goes_back(position: np.ndarray) -> np.ndarray:
     Examples
     --------
     >>> way = np.concatenate([np.zeros(10), np.arange(20), np.full(10, 19), 19 - np.arange(20.0)])
+    >>> way = np.repeat(way, 3)
     >>> back = goes_back(way)
-    >>> back[:40].any(), back[42:58].all()
+    >>> back[:110].any(), back[125:175].all()
     (np.False_, np.True_)
     """
     size = position.size
@@ -47,9 +49,10 @@ def goes_back(position: np.ndarray) -> np.ndarray:
         moving = first + np.flatnonzero(steps > _SLOW * usual)
         if moving.size:
             start, stop = edges[moving[0]], edges[min(moving[-1] + 2, means.size)]
-            back[
-                start + _still(position[start:stop]) : stop - _still(position[start:stop][::-1])
-            ] = True
+            # a few rows more: none of the way is left that seems to be under load
+            start += max(_still(position[start:stop]) - _MORE, 0)
+            stop -= max(_still(position[start:stop][::-1]) - _MORE, 0)
+            back[start:stop] = True
     return back
 
 
