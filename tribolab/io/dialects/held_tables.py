@@ -101,9 +101,10 @@ class _Gathered:
             names, units, arrays, meanings = zip(*self._columns[name], strict=True)
             text = text_of([name, *self.said.get(name, [])] if name else [])
             tables.append(HeldTable(name, names, units, arrays, text, meanings))
-        beside = [x for name, lines in self.said.items() if name not in order for x in lines]
-        own = self.said.get("", []) if "" in order else []
-        return HeldFile(tuple(tables), text_of([*own, *beside]))
+        # one column beside settings is one of them
+        apart = {name for name in order if name and len(self._columns[name]) > 1}
+        beside = [x for name, lines in self.said.items() if name not in apart for x in lines]
+        return HeldFile(tuple(tables), text_of(beside))
 
 
 def _hdf5(path: Path) -> HeldFile:

@@ -86,6 +86,8 @@ class _Found:
                 self._take(f"{name}/{label}", matrix[:, place], own[place])
         elif item.dtype.kind == "O" and self._h5py.check_dtype(ref=item.dtype):
             self._elements(name, item)
+        elif _is_char(item):
+            return
         elif item.dtype.kind in "fiu" and item.size == max(item.shape, default=0):
             unit = units if isinstance(units, str) else None
             self._take(name, item[()], unit, meaning if isinstance(meaning, str) else "")
