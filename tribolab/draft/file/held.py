@@ -11,7 +11,14 @@ from pathlib import Path
 
 import numpy as np
 
-from tribolab.draft.file.held_column import ROWS, HeldColumn, better_name, leaf, others_alike
+from tribolab.draft.file.held_column import (
+    ROWS,
+    HeldColumn,
+    better_name,
+    leaf,
+    one_of_each,
+    others_alike,
+)
 from tribolab.draft.file.layout import Held, Layout, find_layout
 from tribolab.draft.file.sheets import main_sheet, read_sheet
 from tribolab.draft.file.steps import HeldSteps, find_steps, lines_of, unit_beside
@@ -33,6 +40,7 @@ from tribolab.io.tables.tdms_file import (
 
 _CELL = 16  # bytes of a number as text
 _FILLED = 0.9  # of what is looked at, by rows of steps: their settings want room, too
+_UNLOADED = 0.3  # of the usual load; its zero may be as large
 _FORMS = {"netcdf": "hdf5"}  # both begin alike
 _WITH_ZERO = {"friction_force", "normal_force", "friction_coefficient", None}
 
@@ -61,7 +69,7 @@ def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
         return _layout_of_steps(file, *steps)
     every = [_in_numbers(c) for c in columns if c.values.dtype.kind in "fiuMm" and c.values.size]
     length = max((c.values.size for c in every), default=0)
-    columns = [c for c in every if c.values.size == length]
+    columns = one_of_each([c for c in every if c.values.size == length])
     if held.form != "excel":
         held = held._replace(others=others_alike(columns, every))
     if not columns or length < 2:
@@ -116,8 +124,9 @@ def _layout_of_steps(
     for place, (name, unit, meaning) in enumerate(
         zip(first.names, first.units, meanings, strict=True)
     ):
-        beside = None if unit else unit_beside(said, name)
         values = np.concatenate([table.arrays[place] for table in found.steps])
+        counted = values.dtype.kind in "iu"
+        beside = None if unit else unit_beside(said, name, counted=counted)
         column = HeldColumn(name, unit or beside, values, said=beside is None)
         if values.dtype.kind not in "Mm" and (better := better_name(name, meaning)):
             column = column._replace(shown=better)
@@ -126,8 +135,8 @@ def _layout_of_steps(
     most = max(int(_FILLED * HEAD) // (_CELL * len(columns) * len(tables)), 2)
     text = lines_of(found._replace(steps=tables), [_label(c) for c in columns], min(most, ROWS))
     layout = _laid_out(file, text.encode("utf-8", "replace"), columns)
-    zeros = {column: table for table in found.zeros for column in table.names}
-    columns = [c._replace(zeroed=c.name in zeros) for c in columns]
+    zeros = {n: a for table in found.zeros for n, a in zip(table.names, table.arrays, strict=True)}
+    columns = [column._replace(unloaded=zeros.get(column.name)) for column in columns]
     return layout._replace(held=held, encoding="utf-8"), tuple(columns)
 
 
@@ -138,15 +147,29 @@ def _seconds(values: np.ndarray) -> np.ndarray:
 def as_held(understood: Understood, columns: Sequence[HeldColumn], held: Held) -> Understood:
     """Return what was understood, with the columns named as the file's reader finds them."""
     named = []
+    loaded = held.zero and _is_loaded(understood, columns)
     for column, own in zip(understood.columns, columns, strict=True):
         unit = column.unit if own.said or column.unit is not None else own.unit
-        zero = held.zero if own.zeroed and column.quantity in _WITH_ZERO else ""
+        told = own.unloaded is not None and column.quantity in _WITH_ZERO and not loaded
+        zero = held.zero if told else ""
         place = {"name": own.name, "group": own.group, "occurrence": 1}
         named.append(column._replace(unit=unit, zero=zero, **place))
+    if loaded:
+        guess = f"{held.zero} is no step of the run by its name, though it is under load"
+        understood = understood._replace(guesses=(*understood.guesses, guess))
     timed = any(column.used and column.quantity == "time" for column in named)
     if held.increment and understood.kind == "run" and not timed:
         understood = understood._replace(rate_pattern=INCREMENT_PATTERN, rate_unit="s")
     return understood._replace(columns=tuple(named), missing=())
+
+
+def _is_loaded(understood: Understood, columns: Sequence[HeldColumn]) -> bool:
+    """Whether a table that is named as one without contact has a load all the same."""
+    for column, own in zip(understood.columns, columns, strict=True):
+        if column.quantity == "normal_force" and own.unloaded is not None:
+            usual = float(np.nanpercentile(np.abs(own.values), 75))
+            return abs(float(np.nanmedian(own.unloaded))) > _UNLOADED * usual
+    return False
 
 
 def _in_numbers(column: HeldColumn) -> HeldColumn:
@@ -175,7 +198,12 @@ def _of_table(form: str) -> Callable[[Path], tuple[Held, list[HeldColumn]]]:
         for place, (label, unit) in enumerate(zip(table.names, table.units, strict=True)):
             name, own = split_name(label)
             better = better_name(leaf(name), meanings[place])
-            columns.append(HeldColumn(name, unit or own, table.column(place), shown=better))
+            values = table.column(place)
+            counted = values.dtype.kind in "iu"
+            beside = None if unit or own else unit_beside(table.text, leaf(name), counted=counted)
+            columns.append(
+                HeldColumn(name, unit or own or beside, values, said=beside is None, shown=better)
+            )
         return Held(form, text=table.text), columns
 
     return read
@@ -187,7 +215,7 @@ def _mat(path: Path) -> tuple[Held, list[HeldColumn]]:
     text = settings_text(variables)
     for name, numbers, *_ in variables:
         if numbers is not None and numbers.size and numbers.size == max(numbers.shape):
-            unit = unit_beside(text, leaf(name))
+            unit = unit_beside(text, leaf(name), counted=numbers.dtype.kind in "iu")
             columns.append(HeldColumn(name, unit, numbers.ravel(), said=unit is None))
     return Held("mat", text=text), columns
 
@@ -222,6 +250,7 @@ READERS: dict[str, Callable[[Path], tuple[Held, list[HeldColumn]]]] = {
     "parquet": _of_table("parquet"),
     "feather": _of_table("feather"),
     "hdf5": _of_table("hdf5"),
+    "npz": _of_table("npz"),
     "netcdf": _of_table("hdf5"),  # both begin alike
     "tdms": _tdms,
     "mat": _mat,

@@ -20,8 +20,8 @@ class HeldColumn(NamedTuple):
     """A column: its name (and group) as the reader finds it, its unit, its numbers.
 
     `said` is whether the reader finds the unit by itself; `shown` is what it is called for whoever
-    looks for its meaning, where that is not its name. Of a column that is `zeroed` a table without
-    contact holds the zero.
+    looks for its meaning, where that is not its name. `unloaded` are its numbers in a table without
+    contact, if there is one.
     """
 
     name: str
@@ -30,7 +30,7 @@ class HeldColumn(NamedTuple):
     group: str = ""
     said: bool = True
     shown: str = ""
-    zeroed: bool = False
+    unloaded: np.ndarray | None = None
 
 
 def leaf(name: str) -> str:
@@ -56,6 +56,31 @@ def better_name(name: str, meaning: str) -> str:
     return words
 
 
+def one_of_each(columns: Sequence[HeldColumn]) -> list[HeldColumn]:
+    """Leave out tables that lie in groups beside another with columns of the same names.
+
+    Parameters
+    ----------
+    columns
+        The columns, all of one length; they may come from several tables that belong together.
+    """
+    kept: dict[str, set[str]] = {}
+    left: set[str] = set()
+    tables: dict[str, list[str]] = {}
+    for column in columns:
+        tables.setdefault(_table(column), []).append(leaf(column.name))
+    for table, names in tables.items():
+        if len(names) > 1 and any(len(set(names) & known) > 1 for known in kept.values()):
+            left.add(table)
+        else:
+            kept[table] = set(names)
+    return [column for column in columns if _table(column) not in left]
+
+
+def _table(column: HeldColumn) -> str:
+    return column.name.removesuffix(leaf(column.name)).rstrip("/.") or column.group
+
+
 def others_alike(chosen: Sequence[HeldColumn], every: Sequence[HeldColumn]) -> str:
     """Name the tables besides the chosen columns that have columns of the same names; "" if none.
 
@@ -70,7 +95,7 @@ def others_alike(chosen: Sequence[HeldColumn], every: Sequence[HeldColumn]) -> s
     alike: dict[str, int] = {}
     for column in every:
         if not any(column is c for c in chosen) and leaf(column.name) in names:
-            table = column.name.removesuffix(leaf(column.name)).rstrip("/.") or column.group
+            table = _table(column)
             alike[table] = alike.get(table, 0) + 1
     tables = [f"'{shown(table, 30)}'" for table, count in alike.items() if table and count > 1]
     return ", ".join(tables[:_TOLD])

@@ -90,15 +90,39 @@ def find_steps(file: HeldFile) -> HeldSteps | None:
     return HeldSteps(tuple(_with(t, common) for t in steps), pattern, tuple(zeros), file.text)
 
 
-def unit_beside(text: str, name: str) -> str | None:
+def unit_beside(text: str, name: str, *, counted: bool = False) -> str | None:
     r"""Return the unit that a line of its own says of a column: "fric_unit: V".
 
+    Parameters
+    ----------
+    text
+        What the file says beside its tables.
+    name
+        What the column is called.
+    counted
+        Whether it holds whole numbers: then what one is worth is its unit, too.
+
+    Examples
+    --------
     >>> unit_beside("rig: A\nfric_unit: V", "fric"), unit_beside("load_units: kN", "fric")
     ('V', None)
+    >>> unit_beside("F scale: 0.002 N", "F", counted=True), unit_beside("F scale: 0.002 N", "F")
+    ('0.002 N', None)
     """
-    words = rf"^{re.escape(name)}[_. ]?(?:units?|einheit|unite)\s*[:=]\s*[\[(]?([^\s\])]+)"
+    start = rf"^{re.escape(name)}[_. ]"
+    words = rf"{start}?(?:units?|einheit|unite)\s*[:=]\s*[\[(]?([^\s\])]+)"
     match = re.search(words, text, re.MULTILINE | re.IGNORECASE)
-    return match[1] if match and is_unit(match[1]) else None
+    if match and is_unit(match[1]):
+        return match[1]
+    worth = rf"{start}(?:scal\w*|factor|gain|lsb|resolution|slope|per_?count)\s*[:=]\s*"
+    match = re.search(
+        rf"{worth}(\d+(?:\.\d*)?(?:[eE][+-]?\d+)?)\s+(\S+)", text, re.MULTILINE | re.IGNORECASE
+    )
+    if match is None or not is_unit(match[2]):
+        return None
+    if float(match[1]) == 1:
+        return match[2]
+    return f"{match[1]} {match[2]}" if counted else None
 
 
 def lines_of(found: HeldSteps, labels: Sequence[str], most: int) -> str:

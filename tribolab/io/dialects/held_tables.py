@@ -15,6 +15,7 @@ import numpy as np
 from tribolab.errors import ReadError
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.tables.mat5 import Variable, read_variables
+from tribolab.io.tables.npz import read_npz
 from tribolab.io.tables.settings_text import folder_and_leaf, setting_lines, text_of
 from tribolab.io.tables.tdms_file import on_one_grid, open_tdms, properties_of, text_beside, unit_of
 from tribolab.io.tables.workbook import Cells, settings_above, sheets_of, table_below
@@ -229,10 +230,20 @@ def _row_of_names(rows: Cells, wanted: set[str], line: int) -> int | None:
     return best + 1 if counts.get(best, 0) >= min(2, len(wanted)) else None
 
 
+def _npz(path: Path) -> HeldFile:
+    found = _Gathered()
+    columns, found.said = read_npz(path)
+    for table, label, values in columns:
+        name, unit = split_name(label)
+        found.column(table, name, unit, values)
+    return found.file(sort=False)
+
+
 _READERS: dict[str, Callable[[Path], HeldFile]] = {
     "hdf5": _hdf5,
     "netcdf": _hdf5,  # both begin alike
     "mat": _mat,
     "tdms": _tdms,
+    "npz": _npz,
 }
 HELD_IN_GROUPS = frozenset(_READERS)

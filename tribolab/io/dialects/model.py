@@ -51,9 +51,12 @@ class Dialect(Strict):
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
     title: str = Field(description="what the instrument is, for people")
-    format: Literal["text", "mat", "tdms", "hdf5", "parquet", "feather", "excel", "binary"] = Field(
+    format: Literal[
+        "text", "mat", "tdms", "hdf5", "parquet", "feather", "excel", "npz", "binary"
+    ] = Field(
         "text",
-        description="hdf5 is MATLAB 7.3, too; files of all formats may be compressed (gz, zip)",
+        description="hdf5 is MATLAB 7.3, too; npz an archive of NumPy's arrays; files of all "
+        "formats may be compressed (gz, zip)",
     )
     recognise: Recognise = Recognise()
     text: Text = Text()

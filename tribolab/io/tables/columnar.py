@@ -46,7 +46,7 @@ def open_columns(path: Path, form: str, layout: ColumnLayout) -> NamedColumns:
     path
         The file.
     form
-        "parquet", "feather", "hdf5", "excel" or "binary".
+        "parquet", "feather", "hdf5", "excel", "npz" or "binary".
     layout
         Where its columns are.
 
@@ -123,6 +123,16 @@ def _hdf5(path: Path, layout: ColumnLayout) -> NamedColumns:
     return NamedColumns(names, units, arrays.__getitem__, text, tuple(meanings))
 
 
+def _npz(path: Path, layout: ColumnLayout) -> NamedColumns:
+    # late: starting stays quick
+    from tribolab.io.tables.npz import read_npz
+
+    columns, said = read_npz(path)
+    names = [f"{table}/{name}" if table else name for table, name, _ in columns]
+    text = text_of([line for lines in said.values() for line in lines])
+    return NamedColumns(names, [None] * len(names), lambda place: columns[place][2], text)
+
+
 def _excel_sheet(path: Path, layout: ColumnLayout) -> NamedColumns:
     # late: starting stays quick
     from tribolab.io.tables.workbook import read_sheet
@@ -151,5 +161,6 @@ _READERS: dict[str, Callable[[Path, ColumnLayout], NamedColumns]] = {
     "feather": _feather,
     "hdf5": _hdf5,
     "excel": _excel_sheet,
+    "npz": _npz,
     "binary": _binary,
 }
