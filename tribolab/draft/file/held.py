@@ -152,8 +152,8 @@ def as_held(understood: Understood, columns: Sequence[HeldColumn], held: Held) -
         unit = column.unit if own.said or column.unit is not None else own.unit
         told = own.unloaded is not None and column.quantity in _WITH_ZERO and not loaded
         zero = held.zero if told else ""
-        place = {"name": own.name, "group": own.group, "occurrence": 1}
-        named.append(column._replace(unit=unit, zero=zero, **place))
+        column = column._replace(name=own.name, group=own.group, occurrence=1)
+        named.append(column._replace(unit=unit, zero=zero))
     if loaded:
         guess = f"{held.zero} is no step of the run by its name, though it is under load"
         understood = understood._replace(guesses=(*understood.guesses, guess))
