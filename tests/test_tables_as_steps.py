@@ -284,6 +284,17 @@ def test_friction_that_is_counted_against_the_motion_is_turned(tmp_path):
     assert run.attrs["counted_negative"] == "friction_force"
 
 
+@pytest.mark.parametrize("offset", [0.0, -10.0])
+def test_friction_that_falls_from_a_creep_to_fast_sliding_keeps_its_sign(offset, tmp_path):
+    speed = np.repeat([0.1, 10.0, 100.0], 200)
+    force = np.repeat([3.0, 2.5, 1.5], 200) + offset + 0.02 * NOISE.standard_normal(600)
+    columns = (np.arange(600) / 10, speed, force, 10.0 + 0.05 * np.sin(np.arange(600)))
+    rows = "\n".join(",".join(f"{x:.4f}" for x in row) for row in zip(*columns, strict=True))
+    (tmp_path / "run.csv").write_text(f"time [s],speed [mm/s],Fx [N],Fz [N]\n{rows}\n")
+    run = tl.read(tmp_path / "run.csv")
+    np.testing.assert_allclose(run.friction_force, np.round(force, 4), atol=1e-9)
+
+
 def test_of_a_crank_a_plateau_by_chance_is_not_taken_for_all_strokes():
     chance = np.random.default_rng(3)  # of six such records this has one stretch that seems even
     told = ((0.5, 6), (1, 10), (2, 60), (5, 60))  # Hz, cycles

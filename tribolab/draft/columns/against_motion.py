@@ -11,6 +11,7 @@ from tribolab.draft.model import DraftColumn
 _MOVES, _RESTS = 0.05, 0.005  # of the highest speed
 _FEWEST = 20  # rows
 _NEARLY_ALL = 0.95  # of the rows that move
+_CLEAR = 3.0  # times the scatter
 _SPEEDS = ("sliding_velocity", "rotation_speed")
 COUNTED_SO = "it is counted against the motion: no friction drives what slides"
 
@@ -27,8 +28,9 @@ def against_motion(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[
 
     Notes
     -----
-    What the signal shows at rest is taken off before, as an offset of the sensor has any sign; of a
-    record without rests nothing is known.
+    It has to be so with what the signal shows at rest taken off and with it, as an offset of the
+    sensor has any sign. Of a record without rests nothing is known: what creeps at a low speed
+    rests by no means, and may have more friction than what goes fast.
     """
     speed = next((c for c in columns if c.used and c.quantity in _SPEEDS), None)
     force = [c for c in columns if c.used and c.quantity == "friction_force" and not c.optional]
@@ -41,9 +43,16 @@ def against_motion(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[
     rests, moves = known & (size < _RESTS * top), known & (size > _MOVES * top)
     if min(np.count_nonzero(rests), np.count_nonzero(moves)) < _FEWEST:
         return list(columns)
-    along = np.sign(velocity[moves]) * (signal[moves] - np.median(signal[rests]))
-    scatter = 1.4826 * float(np.median(np.abs(signal[rests] - np.median(signal[rests]))))
-    if not (along < 0).mean() > _NEARLY_ALL or not -np.median(along) > scatter:
+    if abs(float(np.median(velocity[rests]))) > _CLEAR * _scatter(velocity[rests]):
+        return list(columns)  # it slides, only slowly
+    way, zero = np.sign(velocity[moves]), float(np.median(signal[rests]))
+    shown, along = way * signal[moves], way * (signal[moves] - zero)
+    against = min((shown < 0).mean(), (along < 0).mean()) > _NEARLY_ALL
+    if not against or not -np.median(along) > max(_CLEAR * _scatter(signal[rests]), abs(zero)):
         return list(columns)
     turned = force[0]._replace(sign=-1, note=force[0].note or COUNTED_SO)
     return [turned if column is force[0] else column for column in columns]
+
+
+def _scatter(values: np.ndarray) -> float:
+    return 1.4826 * float(np.median(np.abs(values - np.median(values))))
