@@ -149,22 +149,15 @@ def test_channels_with_clocks_of_their_own_are_brought_together(tmp_path):
         tl.read(file)
 
 
-def test_of_several_tables_alike_it_is_asked_which_is_meant(tmp_path):
+def test_of_signals_that_stand_twice_it_is_asked_which_are_meant(tmp_path):
     import h5py
-    import pandas as pd
 
     with h5py.File(tmp_path / "runs.h5", "w") as file:
-        for name, rows in (("run1", N), ("run2", N - 50)):
+        for name, lost in (("raw", 0.0), ("filtered", 0.01)):
             for label, values in COLUMNS.items():
-                file[f"{name}/{label}"] = values[:rows]
-    with pytest.raises(tl.TribolabError, match="not 'run2'"):
+                file[f"{name}/{label}"] = values * (1 - lost * (label == "Ff_N"))
+    with pytest.raises(tl.TribolabError, match="not 'raw'"):
         tl.read(tmp_path / "runs.h5")
-    with pd.ExcelWriter(tmp_path / "runs.xlsx") as book:
-        frame(**{"Time [s]": T}).to_excel(book, sheet_name="first", index=False)
-        frame(**{"Time [s]": T})[:-50].to_excel(book, sheet_name="second", index=False)
-        pd.DataFrame({"Mean": [1.0, 2.0], "Max": [3.0, 4.0]}).to_excel(book, sheet_name="about")
-    with pytest.raises(tl.TribolabError, match="not 'second'"):
-        tl.read(tmp_path / "runs.xlsx")
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ class DraftColumn(NamedTuple):
     One of its numbers is `scale` units, and `zero` says from where its zero is read; `said` is what
     a person called it that is no quantity: a torque, or an angle.
     `options` is what it may be instead, where something is guessed; `form` that of its dates;
-    `epoch` the moment that a column of time counts from.
+    `epoch` the moment that a column of time counts from; `zero` where its zero is read.
     """
 
     place: int

@@ -15,6 +15,7 @@ from tribolab.aliases import PathLike
 from tribolab.errors import LacksError, ReadError
 from tribolab.io import cures, runs
 from tribolab.io.dialects.find import Dialect, Instrument, UnknownFileError
+from tribolab.io.dialects.signature import peek
 from tribolab.io.signals import Signals
 
 if TYPE_CHECKING:
@@ -98,7 +99,18 @@ def _by_any(paths: list[Path], instrument: Instrument | None, read: _Reader[_Run
 def holds_run(path: Path, *, by_name: bool = True) -> bool:
     """Whether a file that no dialect knows holds a run, by names in its header or at all."""
     draft = draft_of(path)
-    return draft is not None and draft.kind == "run" and (draft.named or not by_name)
+    if draft is None:
+        return _holds_signals(path)
+    in_columns = draft.layout is not None and draft.layout.held is not None  # which have names
+    return draft.kind == "run" and (draft.named or not by_name or in_columns)
+
+
+def _holds_signals(path: Path) -> bool:
+    """Whether a file is of a format that no profilometer writes."""
+    try:
+        return peek(path).format in ("tdms", "parquet", "feather")
+    except ReadError:
+        return False
 
 
 def _drafted(path: Path, error: UnknownFileError) -> Dialect:

@@ -11,6 +11,7 @@ from tribolab.io.content.read import measurable
 from tribolab.io.dialects.formula import Operand, evaluate, in_base_units, names_in, parse_formula
 from tribolab.io.dialects.model import Derived, Dialect
 from tribolab.io.dialects.value_rule import Value
+from tribolab.io.way_back import goes_back
 from tribolab.medians import median
 from tribolab.pieces import lowered
 from tribolab.quantities import QUANTITIES, quantity
@@ -68,6 +69,8 @@ def add_derived(
         unit = quantity(rule.quantity).unit
         values = _evaluated(rule, known, unit, where)
         columns[rule.quantity] = measurable(np.broadcast_to(values, rows).astype(float))
+        if rule.way == "out" and "position" in columns:
+            columns[rule.quantity][goes_back(columns["position"])] = 0.0
         known[rule.quantity] = in_base_units(columns[rule.quantity], unit)
         said[rule.quantity] = rule.formula
     if missing:

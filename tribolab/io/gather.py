@@ -26,7 +26,7 @@ from tribolab.io.row_counts import row_attributes
 from tribolab.io.signals import Signals
 from tribolab.io.speed import add_speed, keep_settings
 from tribolab.io.two_rates import sampled_together
-from tribolab.io.zero_reading import take_zeros
+from tribolab.io.zero_reading import take_zeros, zeros_of_derived
 from tribolab.pieces import chosen, concatenated
 from tribolab.provenance import CONVENTIONS, as_text, history_line
 from tribolab.quantities import QUANTITIES
@@ -84,12 +84,15 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
         rules |= {name: zero for name in FRICTION_SIGNALS if name in columns}
 
     def blank(name: str) -> Mapping[str, np.ndarray]:
-        return _blank(contents[0].path.parent / name, dialect)
+        return _blank(contents[0].path, name, dialect)
 
-    attrs |= take_zeros(columns, time, rules, blank, where)
+    units = _symbols(contents, dialect)
+    attrs |= take_zeros(columns, time, rules, blank, where, units)
     of_steps = keep_settings(columns, _symbols(contents, dialect), attrs, where, dialect)
     assumed = add_assumed(attrs, dialect)
+    signals = {name: columns[name] for name in rules if name in units and name in columns}
     add_derived(columns, _symbols(contents, dialect), attrs, time.size, where, dialect)
+    zeros_of_derived(columns, signals, attrs)
     made = attrs.get("derived", {})
     rules = {rule.quantity: rule.zero for rule in dialect.derived if rule.zero}
     rules |= {name: zero for name in FRICTION_SIGNALS if zero is not None}
@@ -108,8 +111,14 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     return Signals(time, columns, attrs)
 
 
-def _blank(path: Path, dialect: Dialect) -> dict[str, np.ndarray]:
-    """Return the columns of a blank run, and what follows from them."""
+def _blank(run: Path, name: str, dialect: Dialect) -> dict[str, np.ndarray]:
+    """Return the columns of a blank run, a file beside the run's or a table in it, and what follows."""
+    if dialect.tables is not None and name.startswith("table "):
+        # late: starting stays quick
+        from tribolab.io.content.held import read_table
+
+        return read_table(peek(run).path, dialect, name.removeprefix("table "))
+    path = run.parent / name
     content = read_content(path, dialect)
     set_time(content, dialect)
     columns = _columns([content], dialect)

@@ -72,8 +72,18 @@ def of_the_file(error: ReadError, inside: Path, path: Path) -> ReadError:
     return ReadError(what, where=renamed(error.where), function=error.function, cure=cure)
 
 
+def holds_arrays(path: Path) -> bool:
+    """Whether an archive holds NumPy's arrays and nothing else."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            names = archive.namelist()
+    except (zipfile.BadZipFile, OSError, ValueError):
+        return False
+    return bool(names) and all(name.endswith(".npy") for name in names)
+
+
 def _members(path: Path) -> list[str] | None:
-    """Names of the files in a plain archive; None if it is an Office file, an x3p or no archive."""
+    """Names of the files in a plain archive; None of Office files, x3p, NumPy."""
     try:
         with zipfile.ZipFile(path) as archive:
             names = [info.filename for info in archive.infolist() if not info.is_dir()]
@@ -81,6 +91,8 @@ def _members(path: Path) -> list[str] | None:
         return None
     if any(name.split("/")[-1] in _OFFICE for name in names):
         return None
+    if holds_arrays(path):
+        return None  # an archive of NumPy's arrays is read as a whole
     return [name for name in names if not name.startswith("__MACOSX/")]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
@@ -17,18 +18,23 @@ from tribolab.untyped import Json
 _SAMPLES = re.compile(r"^\s*first\s+(\d+)\s+samples?\s*$")
 _FIRST = re.compile(r"^\s*first\s+(\S.*?)\s*$")
 _BETWEEN = re.compile(r"^\s*(\S.*?)\s+to\s+(\S.*?)\s*$")
+_TABLES = re.compile(r"^\s*table\s+(\S.*?)(?:\s+to\s+table\s+(\S.*?))?\s*$")
 _BLANK = re.compile(r"^\s*file\s+(\S.*?)\s*$")
 _FEWEST = 10  # samples
 _BATCHES = 16  # means whose scatter says how well the zero is known
 
 
 class ZeroRule(NamedTuple):
-    """Where a zero is read: samples from the start, from and to [s], or the name of a file."""
+    """Where a zero is read: samples from the start, from and to [s], a file, or tables of the file.
+
+    Of two tables the first was recorded before the run and the second behind it.
+    """
 
     samples: int = 0
     start: float = -np.inf
     stop: float = np.inf
     file: str = ""
+    tables: tuple[str, ...] = ()
 
 
 def parse_zero(text: str) -> ZeroRule:
@@ -38,7 +44,8 @@ def parse_zero(text: str) -> ZeroRule:
     ----------
     text
         ``"first 200 samples"``, ``"first 2 s"``, ``"1.5 s to 3 s"`` (time from the first sample) or
-        ``"file blank.csv"`` (beside the run's own file).
+        ``"file blank.csv"`` (beside the run's own file), ``"table zero"`` (of the run's own file),
+        ``"table zero to table after"`` (before and behind the run).
 
     Raises
     ------
@@ -51,18 +58,22 @@ def parse_zero(text: str) -> ZeroRule:
     (200, 3.0)
     >>> parse_zero("file blank.csv").file
     'blank.csv'
+    >>> parse_zero("table zero before to table zero after").tables
+    ('zero before', 'zero after')
     """
     if match := _SAMPLES.match(text):
         return ZeroRule(samples=int(match[1]))
     if match := _BLANK.match(text):
         return ZeroRule(file=match[1])
+    if match := _TABLES.match(text):
+        return ZeroRule(tables=tuple(name for name in match.groups() if name))
     if match := _FIRST.match(text):
         return ZeroRule(stop=to_si(match[1], "s", "zero"))
     if match := _BETWEEN.match(text):
         return ZeroRule(start=to_si(match[1], "s", "zero"), stop=to_si(match[2], "s", "zero"))
     raise UnitError(
         f"zero: '{shown(text)}' does not say where the zero is read; write 'first 200 samples', "
-        "'first 2 s', '1.5 s to 3 s' or 'file blank.csv'"
+        "'first 2 s', '1.5 s to 3 s', 'file blank.csv' or 'table zero'"
     )
 
 
@@ -72,6 +83,7 @@ def take_zeros(
     rules: Mapping[str, str],
     blank: Callable[[str], Mapping[str, np.ndarray]],
     where: str,
+    units: Mapping[str, str] | None = None,
 ) -> Json:
     """Take the zeros of signals off them.
 
@@ -84,15 +96,18 @@ def take_zeros(
     rules
         Where each quantity's zero is read, see `parse_zero`.
     blank
-        Gives the columns of a file that stands in a rule.
+        Gives the columns of a file, or of "table ...", that stands in a rule.
     where
         The run, for messages.
+    units
+        SI units of what is no quantity: of these the attributes have no unit in their names.
 
     Returns
     -------
     dict
         Attributes: ``<quantity>_zero_N``, its standard error where it was read, from the scatter of
-        16 batches (``..._zero_sem_N``), and ``zeros_read``, where that was.
+        16 batches (``..._zero_sem_N``), and ``zeros_read``, where that was. Between two tables it
+        goes evenly from one to the other, and ``..._zero_uncertainty_N`` says how far that is.
 
     Raises
     ------
@@ -104,26 +119,72 @@ def take_zeros(
     for name, text in rules.items():
         if name not in columns:
             continue
-        values = _samples(name, parse_zero(text), columns, time, blank, where)
-        values = values[np.isfinite(values)]
-        if values.size < _FEWEST:
-            raise ReadError(
-                f"zero of {name}: '{shown(text)}' holds {values.size} numbers, and {_FEWEST} are "
-                "needed",
-                where=where,
-                cure=Cure(*["name a longer stretch in `zero`"] * 3),
-            )
-        batches = np.array([part.mean() for part in np.array_split(values, _BATCHES) if part.size])
-        zero = float(values.mean())
-        error = float(batches.std(ddof=1) / np.sqrt(batches.size))
-        columns[name] = lowered(columns[name], zero)
-        unit = quantity(name).unit
+        rule = parse_zero(text)
+        sources = [f"table {table}" for table in rule.tables] or [""]
+        read = [
+            _zero_of(name, text, _samples(name, rule, columns, time, blank, where, source), where)
+            for source in sources
+        ]
+        unit = "1" if name in (units or {}) else quantity(name).unit
         ending = "" if unit == "1" else f"_{unit}"
+        zero = float(np.mean([mean for mean, _ in read]))
+        error = float(np.hypot.reduce([error for _, error in read])) / len(read)
+        columns[name] = lowered(columns[name], read[0][0])
+        if len(read) > 1:  # it went on from the one to the other
+            change = read[1][0] - read[0][0]
+            columns[name] = columns[name] - np.interp(time, [time[0], time[-1]], [0.0, change])
+            own = math.hypot(error, change / math.sqrt(12))
+            attrs[f"{name}_zero_uncertainty{ending}"] = own
         attrs |= {f"{name}_zero{ending}": zero, f"{name}_zero_sem{ending}": error}
         said[name] = text
     if said:
         attrs["zeros_read"] = said
     return attrs
+
+
+def zeros_of_derived(
+    columns: Mapping[str, np.ndarray],
+    signals: Mapping[str, np.ndarray],
+    attrs: Json,
+) -> None:
+    """Say of a force that follows from a signal whose zero was read that its own was, too.
+
+    Parameters
+    ----------
+    columns
+        Arrays in SI by quantity (time).
+    signals
+        Signals of which a zero was taken off, by symbol (time).
+    attrs
+        Attributes of the run, with ``derived`` and from `take_zeros`; added to.
+    """
+    for name, formula in dict(attrs.get("derived", {})).items():
+        used = [symbol for symbol in signals if re.search(rf"\b{symbol}\b", str(formula))]
+        if len(used) != 1 or name not in columns or f"{used[0]}_zero" not in attrs:
+            continue
+        signal, unit = signals[used[0]], quantity(name).unit
+        large = np.abs(signal) > 0.5 * np.nanmax(np.abs(signal))
+        factor = float(np.median(columns[name][large] / signal[large]))  # times a constant
+        for key in ("zero", "zero_sem", "zero_uncertainty"):
+            if (value := attrs.pop(f"{used[0]}_{key}", None)) is not None:
+                times = factor if key == "zero" else abs(factor)
+                attrs[f"{name}_{key}_{unit}"] = times * value
+        read = {**attrs["zeros_read"], name: attrs["zeros_read"][used[0]]}
+        attrs["zeros_read"] = {k: v for k, v in read.items() if k != used[0]}
+
+
+def _zero_of(name: str, text: str, values: np.ndarray, where: str) -> tuple[float, float]:
+    """Return the mean of samples that tell a zero, and its standard error."""
+    values = values[np.isfinite(values)]
+    if values.size < _FEWEST:
+        raise ReadError(
+            f"zero of {name}: '{shown(text)}' holds {values.size} numbers, and {_FEWEST} are "
+            "needed",
+            where=where,
+            cure=Cure(*["name a longer stretch in `zero`"] * 3),
+        )
+    batches = np.array([part.mean() for part in np.array_split(values, _BATCHES) if part.size])
+    return float(values.mean()), float(batches.std(ddof=1) / np.sqrt(batches.size))
 
 
 def _samples(
@@ -133,12 +194,13 @@ def _samples(
     time: np.ndarray,
     blank: Callable[[str], Mapping[str, np.ndarray]],
     where: str,
+    table: str,
 ) -> np.ndarray:
     """Return the samples that tell a zero."""
-    if rule.file:
-        of_file = blank(rule.file)
+    if other := table or rule.file:
+        of_file = blank(other)
         if name not in of_file:
-            raise ReadError(f"{rule.file}: the blank run holds no {name}", where=where)
+            raise ReadError(f"{other}: the blank run holds no {name}", where=where)
         return of_file[name]
     if rule.samples:
         return columns[name][: rule.samples]

@@ -6,6 +6,7 @@ import io
 
 import numpy as np
 
+from tribolab.draft.columns.against_motion import against_motion
 from tribolab.draft.columns.assign import SIGNALS, assigned
 from tribolab.draft.columns.axial import guesses_of_inclined
 from tribolab.draft.columns.bridges import calibrated_forces
@@ -39,6 +40,7 @@ from tribolab.draft.columns.sampling import find_pace, find_sampling
 from tribolab.draft.columns.slip import of_both_surfaces
 from tribolab.draft.columns.stated_missing import take_stated_missing
 from tribolab.draft.columns.sums import adding_up, loads_that_add
+from tribolab.draft.columns.told_by_settings import told_by_settings
 from tribolab.draft.columns.turning import angle_of, torque_of
 from tribolab.draft.columns.two_bodies import pair_of, without_surfaces
 from tribolab.draft.columns.unloaded import with_zero
@@ -123,6 +125,8 @@ def understand(layout: Layout) -> Understood:
         spoken_for = [shown(force.value.text, 40) for force in calibrated_forces(layout, columns)]
         guesses = [said for said in guesses if not any(text in said for text in spoken_for)]
     period = summed(columns, numbers)
+    if kind == "run":
+        columns = against_motion(told_by_settings(layout, columns, numbers), numbers)
     on_repeat, restart, columns = find_clock(layout, columns, numbers)
     columns = with_zero(layout, columns, numbers) if kind == "run" else columns
     used = [column.place - 1 for column in columns if column.used]

@@ -14,7 +14,7 @@ from tribolab.draft.columns.gains import stated_gains
 from tribolab.draft.columns.lengths import find_arm, find_radius, is_at_arm, on_rim
 from tribolab.draft.columns.programme import programme_of
 from tribolab.draft.columns.slip import stated_ratio
-from tribolab.draft.columns.stated_load import find_load
+from tribolab.draft.columns.stated_load import find_load, lifted_on_return
 from tribolab.draft.columns.stated_words import PER_MINUTE
 from tribolab.draft.columns.stated_zero import find_zero, reading_of, zero_in_doubt
 from tribolab.draft.columns.stroke_settings import as_stated, strokes_of
@@ -78,12 +78,16 @@ SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
 
 
 class DraftedFormula(NamedTuple):
-    """A quantity that follows: its name, the formula, what it rests on, where its zero is read."""
+    """A quantity that follows: its name, the formula, what it rests on, where its zero is read.
+
+    With `way` it is so on the way out alone: nothing presses on the way back.
+    """
 
     quantity: str
     formula: str
     about: str
     zero: str = ""
+    way: str = ""
 
 
 class SpeedBy(NamedTuple):
@@ -232,7 +236,10 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     elif load is not None and names & SAYS_FRICTION and not names & SAYS_LOAD:
         about = f"nothing measures it: '{load.text}' is taken for all of the run"
         force = inclined.load(load.name) if inclined is not None and by_angle else load.name
-        result = _and(result, DraftedFormula("normal_force", force, about), [load])
+        out = "position" in names and lifted_on_return(layout)
+        about += ", but for ways back, on which it is lifted" if out else ""
+        formula = DraftedFormula("normal_force", force, about, way="out" if out else "")
+        result = _and(result, formula, [load])
     elif load is not None and not names & {"normal_force", "normal_stress", "set_normal_force"}:
         result = result._replace(values=(*result.values, load))  # under which a coefficient stands
     return result

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from tribolab.draft.columns.stated_words import LOAD
 from tribolab.draft.columns.values import DraftValue
 from tribolab.draft.file.header import converts
+from tribolab.draft.file.layout import Layout
 from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.io.dialects.patterns import guarded
 
@@ -32,6 +34,49 @@ def find_load(values: Sequence[DraftValue]) -> DraftValue | None:
     if not fitting and len(of_name) == 1:
         return of_name[0]
     return fitting[0] if len(fitting) == 1 else None
+
+
+def lifted_on_return(layout: Layout) -> bool:
+    """Whether the text says that nothing presses on the way back: a sled that is lifted.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    """
+    lines = (line[:_LONGEST] for line in layout.text_above())
+    return any(_says_lifted(line) and _BACK.search(line) for line in lines)
+
+
+def _says_lifted(line: str) -> bool:
+    """Whether a line says so, and no word before it denies it.
+
+    >>> _says_lifted("Sled lifted, cell not tared"), _says_lifted("The sled is not lifted")
+    (True, False)
+    """
+    lifted = _LIFTED.search(line)
+    return lifted is not None and not _NOT.search(line[: lifted.start()][-_NEAR:])
+
+
+_LONGEST = 300  # characters of a line that are looked at
+_NEAR = 12  # characters before a word that may deny it
+_LIFTED = re.compile(
+    r"lift|rais(?:ed|ing)|unload|off the (?:surface|sample|film|table)|(?:ab|an)gehoben|hebt"
+    r"|entlastet|unbelastet|soulev|relev|d[ée]charg|[àa] vide|levantad|elevad|sin carga|descarg"
+    r"|sollevat|alzat|scaric|a vuoto|opgetild|onbelast|lyft|l[øo]ftet|uniesion|podniesion|zvednut"
+    r"|odlehč|kaldır|emel|подн|приподн|без нагруз|抬|提起|卸载|持ち上げ|離し|浮か|들어",
+    re.IGNORECASE,
+)
+_BACK = re.compile(
+    r"return|way back|backward|revers|r[üu]ck(?:weg|lauf|hub|fahrt|w[äa]rts)|retour|arri[èe]re"
+    r"|regres|retorn|vuelta|ritorno|terug|retur|tillbaka|tilbage|powr[oó]t|zp[ěe]t|d[öo]n[üu][şs]"
+    r"|visszafel|paluu|возврат|обратн|返回|回程|回退|戻り|復路|복귀",
+    re.IGNORECASE,
+)
+_NOT = re.compile(
+    r"\b(?:not|never|without|nicht|kein\w*|pas|sans|non|no|n[ãa]o|sin|nie|не|inte|ikke)\b|未|不",
+    re.IGNORECASE,
+)
 
 
 def stated_number(value: DraftValue) -> float:

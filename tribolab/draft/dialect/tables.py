@@ -92,6 +92,7 @@ def formula_table(formula: DraftedFormula) -> str:
     lines = ["[[derived]]", f'quantity = "{formula.quantity}"', f'formula = "{formula.formula}"']
     if formula.zero:
         lines.append(f"zero = {quoted(formula.zero)}")
+    lines += [f'way = "{formula.way}"'] if formula.way else []
     return "\n".join([f"# {comment(formula.about)}", *lines]) + "\n"
 
 

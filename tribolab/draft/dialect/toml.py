@@ -51,7 +51,7 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
     used = [column for column in columns if column.used and column.place not in taken]
     parts = [_head(name, layout, understood)]
     names = dict.fromkeys(c.name for c in used if c.name and not c.optional)
-    if layout.heading and names and not (layout.held and layout.held.form == "tdms"):
+    if layout.heading and names and not _of_groups(layout):
         parts.append("[recognise]\nheader = [" + ", ".join(map(quoted, names)) + "]\n")
     elif not layout.heading:
         parts.append(f"[recognise]\ncolumns = {layout.width}\n")
@@ -73,6 +73,12 @@ def dialect_toml(name: str, layout: Layout, understood: Understood) -> str:
         parts += _wanted_tables(understood, follows)
     text = "\n".join(part for part in parts if part)
     return text.encode("utf-8", "replace").decode()  # the file's name may hold any bytes
+
+
+def _of_groups(layout: Layout) -> bool:
+    """Whether columns are channels of groups, which are not known by their names alone."""
+    held = layout.held
+    return held is not None and held.form == "tdms" and not held.steps
 
 
 def _values(
@@ -194,6 +200,10 @@ def _text_table(layout: Layout, understood: Understood) -> str:
 def _header_table(layout: Layout, used: list[DraftColumn]) -> str:
     held = layout.held
     if held is not None:
+        if held.steps:
+            tables = f"[tables]\nsteps = {quoted_pattern(held.steps)}\n"
+            line = f"[header]\nline = {held.line}\n" + ('units = "row"\n' * held.units_below)
+            return f"{line}\n{tables}" if held.form == "excel" else tables
         below = 'units = "row"\n' if held.units_below else ""
         sheet = f"[header]\nline = {held.line}\n{below}sheet = {quoted(held.sheet)}\n"
         return sheet if held.sheet else ""

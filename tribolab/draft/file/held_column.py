@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.draft.file.header import names_any
+from tribolab.draft.vocabulary import RUN_WORDS
 from tribolab.errors import shown
 
 ROWS = 20_000  # rows looked at
@@ -17,7 +20,8 @@ class HeldColumn(NamedTuple):
     """A column: its name (and group) as the reader finds it, its unit, its numbers.
 
     `said` is whether the reader finds the unit by itself; `shown` is what it is called for whoever
-    looks for its meaning, where that is not its name.
+    looks for its meaning, where that is not its name. `unloaded` are its numbers in a table without
+    contact, if there is one.
     """
 
     name: str
@@ -26,6 +30,7 @@ class HeldColumn(NamedTuple):
     group: str = ""
     said: bool = True
     shown: str = ""
+    unloaded: np.ndarray | None = None
 
 
 def leaf(name: str) -> str:
@@ -36,6 +41,44 @@ def leaf(name: str) -> str:
     """
     name = name.rsplit("/", 1)[-1]
     return name.rsplit(".", 1)[-1] if " " not in name else name
+
+
+def better_name(name: str, meaning: str) -> str:
+    """Return what a file says that a column means, where its name alone says nothing; else "".
+
+    >>> better_name("F_nrm", "normal force, by the leaf spring"), better_name("Fx", "lateral force")
+    ('normal force', '')
+    """
+    words = re.split(r"[,;:(\[]|\s[-–—]\s", meaning)[0].strip()
+    quantities = [word.quantity for word in RUN_WORDS]
+    if not words or names_any(name, *quantities) or not names_any(words, *quantities):
+        return ""
+    return words
+
+
+def one_of_each(columns: Sequence[HeldColumn]) -> list[HeldColumn]:
+    """Leave out tables that lie in groups beside another with columns of the same names.
+
+    Parameters
+    ----------
+    columns
+        The columns, all of one length; they may come from several tables that belong together.
+    """
+    kept: dict[str, set[str]] = {}
+    left: set[str] = set()
+    tables: dict[str, list[str]] = {}
+    for column in columns:
+        tables.setdefault(_table(column), []).append(leaf(column.name))
+    for table, names in tables.items():
+        if len(names) > 1 and any(len(set(names) & known) > 1 for known in kept.values()):
+            left.add(table)
+        else:
+            kept[table] = set(names)
+    return [column for column in columns if _table(column) not in left]
+
+
+def _table(column: HeldColumn) -> str:
+    return column.name.removesuffix(leaf(column.name)).rstrip("/.") or column.group
 
 
 def others_alike(chosen: Sequence[HeldColumn], every: Sequence[HeldColumn]) -> str:
@@ -52,7 +95,7 @@ def others_alike(chosen: Sequence[HeldColumn], every: Sequence[HeldColumn]) -> s
     alike: dict[str, int] = {}
     for column in every:
         if not any(column is c for c in chosen) and leaf(column.name) in names:
-            table = column.name.removesuffix(leaf(column.name)).rstrip("/.") or column.group
+            table = _table(column)
             alike[table] = alike.get(table, 0) + 1
     tables = [f"'{shown(table, 30)}'" for table, count in alike.items() if table and count > 1]
     return ", ".join(tables[:_TOLD])

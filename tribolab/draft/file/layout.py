@@ -53,7 +53,8 @@ class Held(NamedTuple):
 
     `increment` is the time [s] from row to row where the file has a clock and no column of it;
     `others` names tables besides the chosen one that have columns of the same names, `text` is
-    what stands beside the table: other cells, attributes.
+    what stands beside the table: other cells, attributes. `steps` is the pattern of the names of
+    tables that are steps, `zero` where a zero is read, as a dialect says both.
     """
 
     form: str
@@ -63,6 +64,8 @@ class Held(NamedTuple):
     increment: float = 0.0
     others: str = ""
     text: str = ""
+    steps: str = ""
+    zero: str = ""
 
 
 class Layout(NamedTuple):

@@ -19,8 +19,8 @@ _ABOVE = 40  # rows of a sheet above its names
 _MOMENTS = (dt.datetime, dt.time, dt.timedelta)
 
 
-def read_sheet(path: Path) -> tuple[Held, list[HeldColumn]]:
-    """Return the columns of the sheet that holds most rows of numbers below names.
+def main_sheet(path: Path) -> tuple[Held, set[str]]:
+    """Return where the sheet is that holds most rows of numbers below names, and these names.
 
     Parameters
     ----------
@@ -49,7 +49,23 @@ def read_sheet(path: Path) -> tuple[Held, list[HeldColumn]]:
         raise ReadError("no sheet holds numbers below names", where=path)
     _, held, names = max(tables, key=lambda table: table[0])
     alike = [t[1].sheet for t in tables if t[1] is not held and len(t[2] & names) > 1]
-    held = held._replace(others=", ".join(f"'{shown(sheet, 30)}'" for sheet in alike[:4]))
+    return held._replace(others=", ".join(f"'{shown(sheet, 30)}'" for sheet in alike[:4])), names
+
+
+def read_sheet(path: Path) -> tuple[Held, list[HeldColumn]]:
+    """Return the columns of the sheet that holds most rows of numbers below names.
+
+    Parameters
+    ----------
+    path
+        The workbook.
+
+    Raises
+    ------
+    ReadError
+        If no sheet holds such rows.
+    """
+    held, _ = main_sheet(path)
     layout = columnar.ColumnLayout(held.sheet, held.line, held.units_below)
     table = columnar.open_columns(path, "excel", layout)
     columns = []

@@ -32,6 +32,7 @@ from tribolab.units import to_si
 _OF_STROKE = 5  # samples of a middle, at least: many short strokes tell as much as a long one
 _OF_STROKES = 5  # degree of the polynomial through the positions of a stroke
 _MIDDLE = 0.5  # of each stroke that a crank drives: its speed changes there by an eighth
+_BY_CHANCE = 0.05  # of the time: of strokes a few may seem to hold their speed for a moment
 _LABELS = ("set_speed", "set_normal_force", "step", "cycle", "rolling_speed", "slide_roll_ratio")
 
 
@@ -83,9 +84,10 @@ def find_segments(
         stroke is a segment, and of it this share of its length about the middle counts ("40 %" of
         a sinusoidal stroke is within 9 % of its highest speed). Neither `trim` nor what concerns
         constant speed applies then; what lies before the first and after the last turn is
-        omitted. By default half of each stroke of a run that is never at
-        constant speed and whose speed follows from a stroke and a frequency (attribute
-        ``stroke_m``), or whose position and friction tell that it goes stroke after stroke, each
+        omitted. By default half of each stroke of a run that is never (or for less than a
+        twentieth of the time) at constant speed and whose speed follows from a stroke and a
+        frequency (attribute ``stroke_m``), or whose position and friction tell that it goes stroke
+        after stroke, each
         like the last; unless a `position_range` is given.
 
     Returns
@@ -161,7 +163,10 @@ def find_segments(
     ]
     stretches = loaded(run, stretches, limits)
     plateaus = measured(run, stretches, source, share, position_range)
-    if plateaus.sizes["segment"] or position_range is not None:
+    by_chance = plateaus.sizes["segment"] and _covered(run, plateaus) < _BY_CHANCE
+    if position_range is not None or (plateaus.sizes["segment"] and not by_chance):
+        return plateaus
+    if by_chance and not shuttles(run):
         return plateaus
     if run.attrs.get("rows_are") == "either":
         return _of_points(run, source)
@@ -171,6 +176,13 @@ def find_segments(
         return _of_strokes(run, source, _MIDDLE, min(min_samples, _OF_STROKE))
     except AnalysisError:  # it does not move to and fro: why no plateau was found says more
         return plateaus
+
+
+def _covered(run: xr.Dataset, plateaus: xr.Dataset) -> float:
+    """Return the share of a run's time that its plateaus take."""
+    time = run["time"].values
+    lasted = float((plateaus["stop"] - plateaus["start"]).sum())
+    return lasted / float(time[-1] - time[0]) if time[-1] > time[0] else 1.0
 
 
 def _of_points(run: xr.Dataset, source: str) -> xr.Dataset:

@@ -48,13 +48,13 @@ def set_time(content: Content, dialect: Dialect) -> None:
     if dialect.time.source == "position":
         _by_way(content, dialect)
         return
-    step = stated_interval(content, dialect)
-    start = 0
-    for piece in content.pieces:
+    steps = [stated_interval(content, dialect, piece) for piece in content.pieces]
+    start = 0.0
+    for piece, step, following in zip(content.pieces, steps, [*steps[1:], 1.0], strict=True):
         rows = len(next(iter(piece.columns.values())))
         piece.columns["time"] = _even(start, rows, step)
         if dialect.time.restart == "error":
-            start += rows
+            start = (start + rows) * (step / following)
 
 
 def recorded_at(started: dt.datetime | None, origin: float, dialect: Dialect) -> dt.datetime | None:
@@ -111,7 +111,7 @@ def _by_way(content: Content, dialect: Dialect) -> None:
         piece.columns["time"] = np.abs(position - position[0]) / pace
 
 
-def _even(start: int, rows: int, step: float) -> np.ndarray:
+def _even(start: float, rows: int, step: float) -> np.ndarray:
     time = room(rows)
     for first, last in pieces(0, rows):
         time[first:last] = (start + np.arange(first, last)) * step

@@ -9,6 +9,7 @@ import numpy as np
 from tribolab.errors import ReadError, shown
 from tribolab.io.content.model import Content, Piece
 from tribolab.io.dialects.columns import resolve, scales_of, symbols
+from tribolab.io.dialects.held_tables import settings_text
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.tables.mat5 import read_variables
 from tribolab.provenance import sha256_of_file
@@ -29,7 +30,8 @@ def read_mat(path: Path, dialect: Dialect) -> Content:
     ReadError
         If the file is damaged, a variable is missing, or their lengths differ.
     """
-    content = {variable.name: variable.numbers for variable in read_variables(path)}
+    variables = read_variables(path)
+    content = {variable.name: variable.numbers for variable in variables}
     names = list(content)
     signals, unused = resolve(str(path), names, [None] * len(names), len(names), dialect)
     columns = {}
@@ -46,7 +48,7 @@ def read_mat(path: Path, dialect: Dialect) -> Content:
     if len(lengths) > 1:
         raise ReadError(f"{path}: the variables differ in length: {sorted(lengths)}")
     labels = {signal.quantity: f"{signal.label} [{signal.unit}]" for signal in signals}
-    pieces = [Piece(columns)]
+    pieces = [Piece(columns, before=settings_text(variables))]
     sha256 = sha256_of_file(path)
     own, scales = symbols(signals, dialect), scales_of(signals)
     return Content(path, sha256, pieces, labels, tuple(unused), symbols=own, scales=scales)

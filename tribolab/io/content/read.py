@@ -53,7 +53,12 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
             f"{dialect.format}"
         )
     dialect = as_written(file, dialect)
-    if dialect.format == "mat":
+    if dialect.tables is not None:
+        # late: starting stays quick
+        from tribolab.io.content.held import read_steps
+
+        content = read_steps(file.path, dialect)
+    elif dialect.format == "mat":
         # late: starting stays quick
         from tribolab.io.content.mat import read_mat
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from tribolab.errors import ReadError, shown
-from tribolab.io.content.model import Content
+from tribolab.io.content.model import Content, Piece
 from tribolab.io.content.steps import last_match
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.time_rule import sampling_interval
@@ -15,7 +15,7 @@ _THOUSANDS = re.compile(r"[1-9]\d{0,2}(?:[ \u00a0\u202f',]\d{3})+")  # "1 000"
 _COMMA = re.compile(r"\d+,\d+(?:[eE][-+]?\d+)?")
 
 
-def stated_interval(content: Content, dialect: Dialect) -> float:
+def stated_interval(content: Content, dialect: Dialect, piece: Piece) -> float:
     """Return the time [s] from a sample to the next; a second where nothing is stated.
 
     Parameters
@@ -24,13 +24,15 @@ def stated_interval(content: Content, dialect: Dialect) -> float:
         The file: in the text before its table the rate or the interval may stand.
     dialect
         Says which of both, or where.
+    piece
+        One of its tables: what stands before it goes before what the file says.
 
     Raises
     ------
     ReadError
         If it does not stand there, or is no rate and no interval.
     """
-    stated = _stated(content, dialect)
+    stated = _stated(content, dialect, piece)
     return sampling_interval(stated, _where(content, dialect)) if stated else 1.0
 
 
@@ -47,19 +49,21 @@ def stated_pace(content: Content, dialect: Dialect) -> float:
     ReadError
         If it does not stand there, or is no speed.
     """
-    return positive(_stated(content, dialect), "m/s", _where(content, dialect))
+    return positive(_stated(content, dialect, content.pieces[0]), "m/s", _where(content, dialect))
 
 
 def _where(content: Content, dialect: Dialect) -> str:
     return "time.rate" if dialect.time.rate else str(content.path)
 
 
-def _stated(content: Content, dialect: Dialect) -> str:
+def _stated(content: Content, dialect: Dialect, piece: Piece) -> str:
     """Return what the dialect or the file states, with its unit; "" if neither does."""
     rule = dialect.time
     if rule.rate or not rule.rate_pattern:
         return rule.rate or ""
-    number = last_match(rule.rate_pattern, content.pieces[0].before)
+    number = last_match(rule.rate_pattern, piece.before)
+    if number is None:
+        number = last_match(rule.rate_pattern, content.pieces[0].before)
     if number is None:
         raise ReadError(
             f"{content.path}: no sample rate matches '{shown(rule.rate_pattern)}' "

@@ -14,7 +14,7 @@ from tribolab.io.dialects.columns import resolve, scales_of, symbols
 from tribolab.io.dialects.layout import Marks
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import guarded
-from tribolab.io.tables.tdms_file import on_one_grid, open_tdms
+from tribolab.io.tables.tdms_file import on_one_grid, open_tdms, text_beside
 from tribolab.provenance import sha256_of_file
 from tribolab.units import conversion
 
@@ -51,8 +51,8 @@ def read_tdms(path: Path, dialect: Dialect) -> Content:
     lengths = {len(column) for column in columns.values()}
     if len(lengths) > 1:
         raise ReadError(f"{path}: the channels differ in length: {sorted(lengths)}")
-    text = "\n".join(f"{key}: {value}" for key, value in file.properties.items())
-    text = f"wf_increment: {grid.increment!r}\n{text}" if grid else text
+    read = [group for group in file.groups() if group.name in groups]
+    text = text_beside(file, read, grid.increment if grid else 0.0)
     notes = _incomplete(file)
     if dialect.marks is not None:
         columns["step"], more = _steps(path, file, columns["time"], dialect.marks)

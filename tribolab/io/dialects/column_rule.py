@@ -57,7 +57,8 @@ class Column(Strict):
     zero: ZeroText | None = Field(
         None,
         description="where its zero is read and taken off: 'first 200 samples', 'first 2 s', "
-        "'1.5 s to 3 s', or 'file blank.csv' for a run without contact beside it",
+        "'1.5 s to 3 s', 'file blank.csv' for a run without contact beside it, 'table zero' for "
+        "such a table in the file, 'table zero to table after' for one before and one after it",
     )
     rectified: bool | None = Field(
         None, description="recorded without sign (true) or surely with it (false): friction only"
@@ -82,7 +83,7 @@ class Column(Strict):
                 )
         if self.sign == "pressed" and self.quantity != "normal_force":
             raise ValueError(f"column '{self.key}': sign = 'pressed' is for normal_force only")
-        if self.zero is not None and (self.symbol or self.quantity in ("time", "x", "y")):
+        if self.zero is not None and self.quantity in ("time", "x", "y"):
             raise ValueError(f"column '{self.key}': only a signal has a zero")
         if self.zero_uncertainty is not None:
             key = f"column '{self.key}': zero_uncertainty"

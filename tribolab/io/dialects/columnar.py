@@ -5,7 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from tribolab.io.dialects.cells import split_name
+from tribolab.io.dialects.held_tables import HeldFile, HeldTable, open_sheets, open_tables
 from tribolab.io.dialects.model import Dialect
+from tribolab.io.dialects.patterns import guarded
 from tribolab.io.tables.columnar import ColumnLayout, NamedColumns, open_columns
 
 
@@ -29,9 +31,32 @@ def named(table: NamedColumns) -> tuple[list[str], list[str | None]]:
     return [name for name, _ in split], units
 
 
+def held_file(path: Path, dialect: Dialect) -> HeldFile:
+    """Open a file of several tables as a dialect says where they are."""
+    if dialect.format == "excel":
+        wanted = [column.name for column in dialect.column if column.name]
+        below = dialect.header.units == "row"
+        return open_sheets(path, wanted, dialect.header.line or 1, units_below=below)
+    return open_tables(path, dialect.format)
+
+
+def steps_of(file: HeldFile, dialect: Dialect) -> list[HeldTable]:
+    """Return the tables that are steps of the run, in their order."""
+    assert dialect.tables is not None  # whoever asks has looked
+    pattern = guarded(dialect.tables.steps)
+    return [table for table in file.tables if pattern.search(table.name)]
+
+
+def _label(name: str, unit: str | None) -> str:
+    return f"{name} [{unit}]" if unit else name
+
+
 def column_names(path: Path, dialect: Dialect) -> set[str]:
     """Return the names of a file's columns, with and without their units; none if it is damaged."""
     try:
+        if dialect.tables is not None:
+            tables = steps_of(held_file(path, dialect), dialect)
+            return {x for t in tables[:1] for x in (*t.names, *map(_label, t.names, t.units))}
         names, units = named(open_columns(path, dialect.format, layout_of(dialect)))
     except Exception:  # it cannot be this instrument's
         return set()

@@ -140,6 +140,16 @@ class Marks(Strict):
     labels: Pattern | None = Field(None, description="properties of the group that hold labels")
 
 
+class Tables(Strict):
+    """Several tables of the same columns in one file: sheets, groups, elements of a structure."""
+
+    steps: Pattern = Field(
+        description="tables whose name matches are steps of the run, in the order of the file: a "
+        "sheet, the path of an HDF5 group, a TDMS group, an element of a structure as in MATLAB "
+        "('exp.stage(2)'); columns are named without it, settings of a step are its text"
+    )
+
+
 class Binary(Strict):
     """Binary only: records of one kind, one behind the other."""
 

@@ -14,7 +14,7 @@ from tribolab.errors import nearest, shown
 from tribolab.io.dialects.checked_text import Formula, QuantityName, Strict, ZeroText
 from tribolab.io.dialects.column_rule import Column
 from tribolab.io.dialects.formula import names_in, parse_formula
-from tribolab.io.dialects.layout import Binary, Header, Marks, Pair, Recognise, Rows, Text
+from tribolab.io.dialects.layout import Binary, Header, Marks, Pair, Recognise, Rows, Tables, Text
 from tribolab.io.dialects.pitch_rule import check_pitch
 from tribolab.io.dialects.speed_rule import Speed
 from tribolab.io.dialects.time_rule import Time
@@ -36,6 +36,11 @@ class Derived(Strict):
         description="left out of files that do not hold all that the formula needs; of several "
         "such formulas for one quantity the first that can be worked out is taken",
     )
+    way: Literal["both", "out"] = Field(
+        "both",
+        description="'out': on ways back, against the first way, it is zero, as of a normal force "
+        "where a sled is lifted; the position tells the ways",
+    )
     beside: tuple[str, ...] = Field(
         (), description="what the file has to hold besides, if the formula is to be used"
     )
@@ -49,9 +54,12 @@ class Dialect(Strict):
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
     title: str = Field(description="what the instrument is, for people")
-    format: Literal["text", "mat", "tdms", "hdf5", "parquet", "feather", "excel", "binary"] = Field(
+    format: Literal[
+        "text", "mat", "tdms", "hdf5", "parquet", "feather", "excel", "npz", "binary"
+    ] = Field(
         "text",
-        description="hdf5 is MATLAB 7.3, too; files of all formats may be compressed (gz, zip)",
+        description="hdf5 is MATLAB 7.3, too; npz an archive of NumPy's arrays; files of all "
+        "formats may be compressed (gz, zip)",
     )
     recognise: Recognise = Recognise()
     text: Text = Text()
@@ -75,6 +83,7 @@ class Dialect(Strict):
     )
     pair: Pair | None = None
     marks: Marks | None = None
+    tables: Tables | None = None
     binary: Binary | None = None
     column: tuple[Column, ...] = Field(min_length=1)
     value: tuple[Value, ...] = ()
@@ -107,6 +116,10 @@ class Dialect(Strict):
             positive(self.moving_mass, "kg", "moving_mass")
         if (self.format == "binary") != (self.binary is not None):
             raise ValueError("format = 'binary' and [binary] belong together")
+        if self.tables is not None and self.format in ("text", "binary", "parquet", "feather"):
+            raise ValueError(
+                f"[tables] is for files that hold several tables by name, not {self.format}"
+            )
         without_header = self.header.line is None and self.header.pattern is None
         if without_header and self.text.delimiter == "any":
             raise ValueError("text.delimiter = 'any' needs header.line or header.pattern")

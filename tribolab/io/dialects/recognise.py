@@ -39,12 +39,12 @@ def mismatch(file: File, dialect: Dialect) -> str | None:
         return "the dialect has no rules to recognise it by"
     if rules.file_name and not guarded(rules.file_name).search(file.path.name):
         return "its name does not fit"
-    if dialect.format == "mat":
+    if dialect.format == "mat" and dialect.tables is None:
         # late: starting stays quick
         from tribolab.io.tables.mat5 import variable_names
 
         return _names_missing(rules, variable_names(file.path))
-    if dialect.format == "tdms":
+    if dialect.format == "tdms" and dialect.tables is None:
         # late: starting stays quick
         from tribolab.io.tables.tdms_file import channel_names
 

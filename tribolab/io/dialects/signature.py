@@ -12,7 +12,7 @@ from tribolab.errors import ReadError
 from tribolab.io import cures
 from tribolab.io.dialects.arranged import holds_names
 from tribolab.io.patterns import why_missing
-from tribolab.io.unpacked import ZIP, unpacked
+from tribolab.io.unpacked import ZIP, holds_arrays, unpacked
 
 HEAD = 1 << 20  # bytes looked at for preamble and header
 
@@ -114,6 +114,8 @@ def _format(path: Path, head: bytes, *, binary: bool) -> str:
             return name
     if head.startswith(ZIP) and _is_workbook(path):
         return "excel"
+    if head.startswith(ZIP) and holds_arrays(path):
+        return "npz"
     if binary and b"\0" in head:
         return "binary"
     for magic, name in _FOREIGN.items():

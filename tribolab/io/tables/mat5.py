@@ -19,18 +19,25 @@ _TYPES = dict(
 )
 _CLASSES = dict(zip(range(6, 16), "f8 f4 i1 u1 i2 u2 i4 u4 i8 u8".split(), strict=True))
 _COMPLEX = 0x0800
-_STRUCTURE = 2
+_CELLS, _STRUCTURE, _TEXT = 1, 2, 4
+_LETTERS = {2: "latin-1", 4: "utf-16", 16: "utf-8", 17: "utf-16"}  # u1, u2, and as UTF
 _DEEPEST = 8  # structures within structures
+_MOST_ELEMENTS = 500  # of an array of structures
+_LONGEST = 2000  # letters of a text
+_MOST_CELLS = 200  # texts of cells
 
 
 class Variable(NamedTuple):
     """One variable: its name, and its numbers (None: text, cells, a complex array).
 
-    A field of a structure is called as in MATLAB: ``data.force``.
+    A field of a structure is called as in MATLAB: ``data.force``, of an array of structures
+    ``data(2).force``. `text` is what a text says, `texts` what cells of texts say.
     """
 
     name: str
     numbers: np.ndarray | None
+    text: str = ""
+    texts: tuple[str, ...] = ()
 
 
 def read_variables(path: Path) -> list[Variable]:
@@ -110,8 +117,15 @@ def _variables(data: memoryview, order: str, within: str = "", depth: int = 0) -
     if len(flags) < 1 or len(shape) < 2 or (shape < 0).any():
         raise ValueError(f"the size of variable '{name[:40]}' is not given")
     kind = int(flags[0]) & 0xFF
-    if kind == _STRUCTURE and (shape == 1).all() and len(parts) > 4 and depth < _DEEPEST:
-        return _fields(name, parts, order, depth)
+    if kind == _STRUCTURE and 0 < shape.prod() and len(parts) > 4 and depth < _DEEPEST:
+        if shape.prod() <= _MOST_ELEMENTS:
+            return _fields(name, parts, order, depth, int(shape.prod()))
+    if kind == _TEXT and len(parts) > 3:
+        return [Variable(name, None, _letters(parts[3], shape, order))]
+    if kind == _CELLS and depth < _DEEPEST and len(parts) - 3 <= _MOST_CELLS:
+        cells = [_variables(d, order, name, depth + 1) for k, d in parts[3:] if k == _MATRIX and d]
+        texts = tuple(cell[0].text for cell in cells if len(cell) == 1 and cell[0].text)
+        return [Variable(name, None, texts=texts if len(texts) == len(cells) else ())]
     if kind not in _CLASSES or int(flags[0]) & _COMPLEX:
         return [Variable(name, None)]
     numbers = _numbers(parts[3], order) if len(parts) > 3 else np.empty(0)
@@ -125,21 +139,35 @@ def _variables(data: memoryview, order: str, within: str = "", depth: int = 0) -
 
 
 def _fields(
-    name: str, parts: list[tuple[int, memoryview]], order: str, depth: int
+    name: str, parts: list[tuple[int, memoryview]], order: str, depth: int, count: int
 ) -> list[Variable]:
-    """Return the fields of one structure: all names have one length, their values follow."""
+    """Return the fields of structures: all names have one length, the values of each follow."""
     longest = _numbers(parts[3], order)
     text = bytes(parts[4][1])
     size = int(longest[0]) if len(longest) else 0
-    if size < 1 or len(text) != size * len(parts[5:]):
+    if size < 1 or len(text) * count != size * len(parts[5:]):
         raise ValueError(f"the fields of structure '{name[:40]}' are not named")
     variables = []
+    wide = len(text) // size
     for number, (kind, data) in enumerate(parts[5:]):
-        field = text[number * size : (number + 1) * size].split(b"\0")[0]
-        label = f"{name}.{field.decode('utf-8', errors='replace')}"
+        element, place = divmod(number, wide)
+        field = text[place * size : (place + 1) * size].split(b"\0")[0]
+        which = f"({element + 1})" if count > 1 else ""
+        label = f"{name}{which}.{field.decode('utf-8', errors='replace')}"
         if kind == _MATRIX and len(data):
             variables += _variables(data, order, label, depth + 1)
     return variables
+
+
+def _letters(part: tuple[int, memoryview], shape: np.ndarray, order: str) -> str:
+    """Return a text of one row; of several rows the first."""
+    kind, data = part
+    encoding = _LETTERS.get(kind, "latin-1")
+    if encoding == "utf-16":
+        encoding += "-le" if order == "<" else "-be"
+    text = bytes(data[: 4 * _LONGEST]).decode(encoding, errors="replace")
+    rows = int(shape[0]) if len(shape) else 1
+    return text[::rows][:_LONGEST].strip("\0 ") if rows > 1 else text[:_LONGEST].strip("\0 ")
 
 
 def _numbers(part: tuple[int, memoryview], order: str) -> np.ndarray:

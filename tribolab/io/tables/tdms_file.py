@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import struct
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from tribolab.errors import ReadError, brief
+from tribolab.io.tables.settings_text import setting_lines, text_of
 
 _DAMAGE = (
     *(ValueError, KeyError, IndexError, TypeError, OSError, EOFError, struct.error),
@@ -17,6 +19,7 @@ _DAMAGE = (
 
 # how the text of a TDMS file says the time from row to row
 INCREMENT_PATTERN = r"^wf_increment: (\S+)"
+_UNITS = ("unit_string", "NI_UnitDescription", "unit", "units", "Unit")
 _WHOLE = 1e-3  # of an interval, how far the ratio of two may be from a whole number
 
 
@@ -67,6 +70,33 @@ def on_one_grid(channels: list[Any]) -> Grid | None:
 
 def _number(said: object) -> float:
     return float(said) if isinstance(said, int | float) and np.isfinite(said) else 0.0
+
+
+def properties_of(item: Any) -> list[str]:
+    """Return the properties of a file or a group as lines."""
+    return [line for key, value in item.properties.items() for line in setting_lines(key, value)]
+
+
+def text_beside(file: Any, groups: Iterable[Any], increment: float) -> str:
+    """Return what a file says beside its channels, as the text of a file stands above a table.
+
+    Parameters
+    ----------
+    file, groups
+        From nptdms: the file, and those of its groups whose channels are read.
+    increment
+        The time [s] from row to row; 0 where there is none for all.
+    """
+    clock = [f"wf_increment: {increment!r}"] if increment else []
+    own = [f"{key}: {value}" for key, value in file.properties.items()]
+    more = [line for item in (file, *groups) for line in properties_of(item)]
+    return text_of([*clock, *own, *more])
+
+
+def unit_of(channel: Any) -> str | None:
+    """Return the unit that a channel's properties say; None if none."""
+    said = (str(channel.properties.get(key, "")).strip() for key in _UNITS)
+    return next((unit for unit in said if unit), None)
 
 
 def channel_names(path: Path) -> set[str]:

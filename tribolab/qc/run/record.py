@@ -9,6 +9,7 @@ import numpy as np
 
 from tribolab.errors import AnalysisError, shown
 from tribolab.friction.oscillation.noise import quantisation_step
+from tribolab.io.dialects.formula import names_in, parse_formula
 from tribolab.pieces import anywhere, one_by_one
 from tribolab.qc import signals
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
@@ -146,7 +147,7 @@ def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = []
     for name, values in one_by_one(subject.force_signals.items()):
         steady = bool(np.nanmin(values) == np.nanmax(values))
-        if name in stated and (steady or stated[name] == "stated"):
+        if name in stated and (steady or _is_stated(subject, name)):
             good = uniform(values.size, GOOD)
             told = (
                 f"{'one value for all of the run: it is ' if steady else ''}stated and not measured"
@@ -179,9 +180,21 @@ def _is_set(subject: RunSubject, load: np.ndarray) -> bool:
     return any(np.nanmin(values) < np.nanmax(values) for values in others)
 
 
+def _is_stated(subject: RunSubject, name: str) -> bool:
+    """Whether a force follows from what texts state alone, from step to step or way to way."""
+    formula = subject.run.attrs.get("derived", {}).get(name)
+    if formula is None or formula == "stated":
+        return formula is not None
+    return not names_in(parse_formula(formula)) & set(subject.run.attrs.get("columns_used", {}))
+
+
 def _saturation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     results = []
     for name, values in one_by_one(subject.force_signals.items()):
+        if _is_stated(subject, name):
+            told = "stated and not measured"
+            results.append(Result("pass", name, told, 0.0, flags=uniform(values.size, GOOD)))
+            continue
         flags = _without_rests(subject, values, signals.saturation(values))
         ends = f"{np.nanmax(values):.6g} or {np.nanmin(values):.6g} {subject.unit(name)}"
         text = f"{{count:sample lies|samples lie}} at the end of the range ({ends}): "
@@ -195,6 +208,9 @@ def _quantisation(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
     for name, values in one_by_one(subject.force_signals.items()):
         if np.nanmin(values) == np.nanmax(values):
             results.append(Result("pass", name, "one value for all of the run", 0.0))
+            continue
+        if _is_stated(subject, name):
+            results.append(Result("pass", name, "stated and not measured", 0.0))
             continue
         step, noise = quantisation_step(values), subject.noise(name)
         if step == 0:

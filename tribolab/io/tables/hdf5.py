@@ -1,0 +1,194 @@
+"""HDF5 and MATLAB 7.3: datasets are columns, attributes and single values say what holds for them.
+
+A field of a structure array of MATLAB 7.3 is a dataset of references to what each element holds;
+its columns are called as in MATLAB: ``stage(2)/force``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tribolab.io.seal import is_sealed
+from tribolab.io.tables.settings_text import plain, setting_lines
+from tribolab.trials import try_out
+
+_OF_HDF5 = {
+    *("units", "unit", "CLASS", "NAME", "TITLE", "VERSION", "DIMENSION_LIST", "_FillValue"),
+    *("MATLAB_class", "MATLAB_fields", "MATLAB_int_decode", "MATLAB_empty", "REFERENCE_LIST"),
+    *("_Netcdf4Dimid", "_NCProperties", "long_name", "description", "columns", "column_names"),
+}
+_OF_LIBRARY = ("#refs#", "#subsystem#")
+_NAMES = ("columns", "column_names", "names", "labels", "channels", "fields")
+_UNITS = ("units", "unit", "column_units", "Units", "Unit", "unit_string")
+_MEANINGS = ("long_name", "description", "standard_name", "label", "title")
+_MOST_ELEMENTS = 500  # of a structure array
+
+
+class Hdf5Columns(NamedTuple):
+    """Columns by their paths, units and meanings where attributes say them; settings by group."""
+
+    names: list[str]
+    units: list[str | None]
+    arrays: list[np.ndarray]
+    meanings: list[str]
+    said: dict[str, list[str]]
+
+
+def read_hdf5(path: Path) -> Hdf5Columns:
+    """Read the columns of an HDF5 file and what its attributes and single values say.
+
+    Parameters
+    ----------
+    path
+        The file.
+    """
+    # late: h5py takes long to load
+    import h5py
+
+    if not is_sealed(path):
+        try_out(path, "HDF5")
+    found = _Found(h5py)
+    with h5py.File(path, "r") as file:
+        found.tell("", file)
+        file.visititems(found.visit)
+    return found.columns
+
+
+class _Found:
+    """What was found of a file until now."""
+
+    def __init__(self, h5py: Any) -> None:
+        self._h5py = h5py
+        self.columns = Hdf5Columns([], [], [], [], {})
+
+    def visit(self, name: str, item: Any) -> None:
+        if name.startswith(_OF_LIBRARY):
+            return
+        self.tell(name, item)
+        if not isinstance(item, self._h5py.Dataset) or item.size is None:
+            return
+        units = _first(item, _UNITS)
+        meaning = _first(item, _MEANINGS)
+        labels = _labels_of_matrix(item)
+        if item.dtype.names:  # rows of several numbers, as tables are kept
+            own = _each_its_own(units, len(item.dtype.names))
+            for place, field in enumerate(item.dtype.names):
+                unit = own[place] or _of_field(item, place)
+                self._take(f"{name}/{field}", item[field], unit)
+        elif labels:
+            matrix = item[()]
+            for place, label in enumerate(labels):
+                own = _each_its_own(units, len(labels))
+                self._take(f"{name}/{label}", matrix[:, place], own[place])
+        elif item.dtype.kind == "O" and self._h5py.check_dtype(ref=item.dtype):
+            self._elements(name, item)
+        elif _is_char(item):
+            return
+        elif item.dtype.kind in "fiu" and item.size == max(item.shape, default=0):
+            unit = units if isinstance(units, str) else None
+            self._take(name, item[()], unit, meaning if isinstance(meaning, str) else "")
+
+    def tell(self, name: str, item: Any) -> None:
+        """Keep what attributes and single values say, by the group that they stand in."""
+        is_data = isinstance(item, self._h5py.Dataset)
+        group, own = name, name.rsplit("/", 1)[-1]
+        if is_data and not item.dtype.names:
+            group = name.rpartition("/")[0]
+        for key, value in getattr(item, "attrs", {}).items():
+            if key not in _OF_HDF5 and not key.startswith(("FIELD_", "_nc", "_Netcdf4")):
+                if np.size(value) == 1:
+                    self._say(group, key, value)
+        if is_data and item.size == 1 and item.dtype.kind in "fiu" and not _is_char(item):
+            unit = _first(item, _UNITS)
+            text = f"{plain(item[()])} {unit if isinstance(unit, str) else ''}".strip()
+            self._say(group, own, text)
+        elif is_data and item.shape == () and item.dtype.kind in "OS":
+            self._say(group, own, item[()])
+        elif is_data and _is_char(item):
+            self._say(group, own, _matlab_text(item))
+
+    def _say(self, group: str, key: str, value: object) -> None:
+        self.columns.said.setdefault(group, []).extend(setting_lines(key, value))
+
+    def _take(self, name: str, values: np.ndarray, unit: object, meaning: str = "") -> None:
+        if values.dtype.kind not in "fiu" or values.size == 0:
+            return
+        if values.size != max(values.shape, default=0):
+            return  # not one column
+        names, units, arrays, meanings, _ = self.columns
+        names.append(name)
+        units.append(str(unit) if unit is not None else None)
+        arrays.append(values.ravel())
+        meanings.append(meaning)
+
+    def _elements(self, name: str, item: Any) -> None:
+        """Take a field of a structure array: each element's value lies elsewhere."""
+        group, _, field = name.rpartition("/")
+        for number, reference in enumerate(item[()].ravel()[:_MOST_ELEMENTS], start=1):
+            target = item.file[reference] if reference else None
+            if not isinstance(target, self._h5py.Dataset):
+                continue
+            element = f"{group}({number})" if group else f"({number})"
+            if _is_char(target):
+                self._say(element, field, _matlab_text(target))
+            elif target.dtype.kind in "fiu" and target.size == 1:
+                self._say(element, field, plain(target[()]))
+            elif target.dtype.kind in "fiu" and target.size:
+                self._take(f"{element}/{field}", target[()], None)
+
+
+def _is_char(item: Any) -> bool:
+    return bool(plain(item.attrs.get("MATLAB_class", "")) == "char")
+
+
+def _matlab_text(item: Any) -> str:
+    """Return text that is kept as the numbers of its letters."""
+    if item.attrs.get("MATLAB_empty", 0) or item.dtype.kind not in "u":
+        return ""
+    return "".join(chr(code) for code in np.asarray(item[()]).T.ravel()[:500].tolist())
+
+
+def _first(item: Any, keys: Sequence[str]) -> object:
+    """Return the first of some attributes that is there: a text, or a list of texts."""
+    for key in keys:
+        if key in item.attrs:
+            said = plain(item.attrs[key])
+            if isinstance(said, list):
+                said = [plain(each) for each in said]
+            if isinstance(said, str) and said.strip() or isinstance(said, list):
+                return said
+    return None
+
+
+def _each_its_own(units: object, width: int) -> list[str | None]:
+    """Return the units of a table's columns, of a list of them or of a text that lists them."""
+    if isinstance(units, str):
+        mark = next((mark for mark in (";", ",", "\t", "|") if mark in units), " ")
+        units = [unit.strip() for unit in units.split(mark)]
+    if not isinstance(units, list) or len(units) != width:
+        return [None] * width
+    return [str(unit).strip() or None for unit in units]
+
+
+def _of_field(item: Any, place: int) -> str | None:
+    said = plain(item.attrs.get(f"FIELD_{place}_UNITS", item.attrs.get(f"FIELD_{place}_UNIT")))
+    return str(said) if said is not None else None
+
+
+def _labels_of_matrix(item: Any) -> list[str]:
+    """Return the names of a matrix' columns, where its attributes say them."""
+    if len(item.shape) != 2 or item.dtype.names:
+        return []
+    for key in _NAMES:
+        if key not in item.attrs:
+            continue
+        said = plain(item.attrs[key])
+        if isinstance(said, str):
+            said = [text.strip() for text in said.replace(";", ",").split(",")]
+        if isinstance(said, list) and len(said) == item.shape[1]:
+            return [str(plain(text)) for text in said]
+    return []

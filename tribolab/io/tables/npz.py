@@ -1,0 +1,119 @@
+"""NumPy archives: arrays by name are columns; single values, texts and JSON say what holds for all.
+
+An array of two columns whose first rises is a signal with its own times; where all such times are
+the same they are one column, ``time``.
+"""
+
+from __future__ import annotations
+
+import re
+import zipfile
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.errors import ReadError, shown
+from tribolab.io.tables.settings_text import plain, setting_lines
+
+_MOST = 1 << 33  # bytes of what is unpacked
+_NAMES = re.compile(r"(?:columns?|names?|labels?|channels?|fields?|headers?|keys)$", re.IGNORECASE)
+_STEP = re.compile(  # step2_force, force_s03, run1/load
+    r"(?:(?P<table>[^\W\d_]+[_-]?\d+)[_./-](?P<name>\D\w*)|(?P<own>\D\w*?)[_./-](?P<last>[^\W\d_]*\d+))"
+)
+
+
+class NpzColumns(NamedTuple):
+    """Columns as (table, name, numbers), and lines of settings by table."""
+
+    columns: list[tuple[str, str, np.ndarray]]
+    said: dict[str, list[str]]
+
+
+def read_npz(path: Path) -> NpzColumns:
+    """Read the arrays of an archive.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Raises
+    ------
+    ReadError
+        If it is damaged, unpacks to more than 8 GB, or holds objects of Python.
+    """
+    try:
+        with zipfile.ZipFile(path) as archive:
+            size = sum(info.file_size for info in archive.infolist())
+        if size > _MOST:
+            raise ReadError(f"this archive unpacks to {size / 1e9:.0f} GB", where=path)
+        with np.load(path, allow_pickle=False) as archive:
+            arrays = {name: archive[name] for name in archive.files}
+    except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile) as error:
+        what = f"this archive of arrays cannot be read: {shown(str(error), 120)}"
+        raise ReadError(what, where=path) from error
+    said: dict[str, list[str]] = {}
+    columns = _columns_of(arrays, said)
+    tables = {table for table, _, _ in columns}
+    numbered = {name: _STEP.fullmatch(name) for table, name, _ in columns if not table}
+    steps = [match[match.lastgroup or 0] for match in numbered.values() if match is not None]
+    if tables == {""} and len(set(steps)) > 1 and len(steps) == len(columns):
+        return _by_steps(columns, numbered, said)
+    return NpzColumns(columns, said)
+
+
+def _columns_of(
+    arrays: dict[str, np.ndarray], said: dict[str, list[str]]
+) -> list[tuple[str, str, np.ndarray]]:
+    columns: list[tuple[str, str, np.ndarray]] = []
+    names = [_texts(a) for key, a in arrays.items() if a.dtype.kind in "US" and _NAMES.search(key)]
+    pairs: list[tuple[str, np.ndarray]] = []
+    for key, array in arrays.items():
+        if array.dtype.names:
+            columns += [(key, field, array[field].ravel()) for field in array.dtype.names]
+        elif array.size == 1 or array.dtype.kind in "US":
+            said.setdefault("", []).extend(setting_lines(key, plain(array)))
+        elif array.dtype.kind not in "fiubMm":
+            continue
+        elif array.ndim == 1 or array.size == max(array.shape, default=0):
+            columns.append(("", key, array.ravel()))
+        elif array.ndim == 2:
+            table = array if array.shape[0] >= array.shape[1] else array.T
+            own = next((n for n in names if len(n) == table.shape[1]), None)
+            if own is not None:
+                columns += [("", name, table[:, place]) for place, name in enumerate(own)]
+            elif table.shape[1] == 2 and (np.diff(table[:, 0]) > 0).all():
+                pairs.append((key, table))
+    return columns + _on_one_clock(pairs)
+
+
+def _on_one_clock(pairs: list[tuple[str, np.ndarray]]) -> list[tuple[str, str, np.ndarray]]:
+    """Return signals with times of their own at those of the longest, of slower ones between."""
+    if not pairs:
+        return []
+    clock = max((table[:, 0] for _, table in pairs), key=len)
+    columns = [("", "time", clock)]
+    for key, table in pairs:
+        values = np.interp(clock, table[:, 0], table[:, 1], left=np.nan, right=np.nan)
+        columns.append(("", key, values))
+    return columns
+
+
+def _by_steps(
+    columns: list[tuple[str, str, np.ndarray]],
+    numbered: dict[str, re.Match[str] | None],
+    said: dict[str, list[str]],
+) -> NpzColumns:
+    parted = []
+    for _, name, values in columns:
+        match = numbered[name]
+        assert match is not None  # whoever parts them has looked
+        parted.append(
+            (match["table"] or match["last"], match["name"] or match["own"].rstrip("_"), values)
+        )
+    return NpzColumns(parted, said)
+
+
+def _texts(array: np.ndarray) -> list[str]:
+    return [str(plain(text)) for text in array.ravel().tolist()]

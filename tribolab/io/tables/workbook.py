@@ -1,0 +1,179 @@
+"""Workbooks: the sheets, the columns of one of them, and what stands beside its table."""
+
+from __future__ import annotations
+
+import datetime as dt
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.errors import ReadError, shown
+from tribolab.trials import workbook_tried
+
+_MOST_CELLS = 50_000_000  # of a sheet
+_MOST_ROWS, _MOST_WIDE = 100, 12  # of settings that stand in cells
+_SHORT = 200  # characters of a setting
+Cells = Sequence[Sequence[object]]
+
+
+class SheetColumns(NamedTuple):
+    """Names and units of a table's columns, what gives their numbers, and the text beside it."""
+
+    names: list[str]
+    units: list[str | None]
+    column: Callable[[int], np.ndarray]
+    text: str
+
+
+def sheets_of(path: Path) -> dict[str, list[list[object]]]:
+    """Return the cells of every sheet by its name, in the order of the workbook.
+
+    Raises
+    ------
+    ReadError
+        If a sheet is larger than a table of numbers.
+    """
+    # late: python_calamine takes long to load
+    from python_calamine import CalamineWorkbook
+
+    cells: dict[str, list[list[object]]] = {}
+    with workbook_tried(path):
+        book = CalamineWorkbook.from_path(path)
+        for name in book.sheet_names:
+            page = book.get_sheet_by_name(name)
+            _check_size(path, name, page)
+            cells[name] = [list(row) for row in page.to_python(skip_empty_area=False)]
+    return cells
+
+
+def read_sheet(
+    path: Path, sheet: str | None, line: int, skip: int = 0, *, units_below: bool = False
+) -> SheetColumns:
+    """Read the table of one sheet.
+
+    Parameters
+    ----------
+    path
+        The workbook.
+    sheet
+        Name of the sheet; else the first.
+    line, skip
+        The row of names, from 1, and how many rows below it are passed over.
+    units_below
+        Whether units stand in the row below the names.
+
+    Raises
+    ------
+    ReadError
+        If there is no such sheet, or it ends before the table.
+    """
+    # late: python_calamine takes long to load
+    from python_calamine import CalamineWorkbook
+
+    with workbook_tried(path):
+        book = CalamineWorkbook.from_path(path)
+        sheet = sheet or book.sheet_names[0]
+        if sheet not in book.sheet_names:
+            there = ", ".join(map(shown, book.sheet_names[:8]))
+            raise ReadError(f"there is no sheet '{shown(sheet)}'; there are {there}", where=path)
+        page = book.get_sheet_by_name(sheet)
+        _check_size(path, sheet, page)
+        rows = page.to_python(skip_empty_area=False)
+    table = table_below(path, sheet, rows, line, skip, units_below=units_below)
+    others = (book.get_sheet_by_name(name) for name in book.sheet_names if name != sheet)
+    few = (page.to_python(skip_empty_area=False) for page in others if is_small(page))
+    text = [table.text, *map(settings_above, few)]
+    return table._replace(text="\n".join(filter(None, text)))
+
+
+def table_below(
+    path: Path, sheet: str, rows: Cells, line: int, skip: int = 0, *, units_below: bool = False
+) -> SheetColumns:
+    """Return the table below a row of names, and what stands above that.
+
+    Parameters
+    ----------
+    path, sheet
+        For messages.
+    rows
+        Cells of the sheet.
+    line, skip, units_below
+        As for `read_sheet`.
+
+    Raises
+    ------
+    ReadError
+        If the sheet ends before the table.
+    """
+    if len(rows) <= line:
+        raise ReadError(f"sheet '{shown(sheet)}' ends before row {line + 1}", where=path)
+    names = [str(cell) for cell in rows[line - 1]]
+    units: list[str | None] = [None] * len(names)
+    first = line + skip
+    if units_below:
+        units = [str(cell).strip("[]() ") or None for cell in rows[line]]
+        units += [None] * (len(names) - len(units))
+        first += 1
+    body = rows[first:]
+
+    def column(place: int) -> np.ndarray:
+        cells = [row[place] if place < len(row) else "" for row in body]
+        # an empty row ends the table
+        filled = [n for n, cell in enumerate(cells) if cell != ""]
+        return of_cells(path, cells[: filled[-1] + 1 if filled else 0])
+
+    above = settings_above(rows[: line - 1][:_MOST_ROWS])
+    return SheetColumns(names, units[: len(names)], column, above)
+
+
+def _check_size(path: Path, sheet: str, page: object) -> None:
+    height, width = (getattr(page, f"total_{side}") for side in ("height", "width"))
+    if height * width > _MOST_CELLS:
+        raise ReadError(f"sheet '{shown(sheet)}' is larger than a table of numbers", where=path)
+
+
+def is_small(page: object) -> bool:
+    """Whether a sheet (of calamine) may hold settings rather than a table."""
+    height, width = (getattr(page, f"total_{side}") for side in ("height", "width"))
+    return bool(height <= _MOST_ROWS and width <= _MOST_WIDE)
+
+
+def settings_above(rows: Sequence[Sequence[object]]) -> str:
+    """Return rows of cells as lines, such as a text file has above its table."""
+    lines = []
+    for row in rows:
+        cells = [" ".join(str(cell).split()) for cell in row[:_MOST_WIDE] if cell not in ("", None)]
+        if cells and any(map(str.isalpha, "".join(cells))):
+            lines.append("\t".join(cells)[:_SHORT])
+    return "\n".join(lines)
+
+
+def of_cells(path: Path, cells: Sequence[object]) -> np.ndarray:
+    """Return the numbers of a sheet's column, or its moments or times of day."""
+    first = next((cell for cell in cells if cell != ""), None)
+    if isinstance(first, dt.datetime):
+        moments = [c if isinstance(c, dt.datetime) else None for c in cells]
+        return np.array(moments, dtype="datetime64[us]")
+    if isinstance(first, dt.time | dt.timedelta):
+        return np.array([_passed(cell) for cell in cells], dtype="timedelta64[us]")
+    return np.array([_cell(path, cell) for cell in cells])
+
+
+def _passed(cell: object) -> dt.timedelta | None:
+    if isinstance(cell, dt.time):
+        return dt.datetime.combine(dt.date.min, cell) - dt.datetime.min
+    return cell if isinstance(cell, dt.timedelta) else None
+
+
+def _cell(path: Path, cell: object) -> float:
+    if isinstance(cell, int | float):
+        return float(cell)
+    text = str(cell).strip()
+    if not text:
+        return np.nan
+    try:
+        return float(text.replace(",", "."))
+    except ValueError as error:
+        raise ReadError(f"'{shown(text, 40)}' is not a number", where=path) from error

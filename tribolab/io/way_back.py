@@ -1,0 +1,83 @@
+"""Ways on which nothing presses: a sled that is lifted while its carriage goes back."""
+
+from __future__ import annotations
+
+import numpy as np
+
+_BLOCKS = 4000  # of rows, whose means tell where it turns
+_WAY = 0.05  # of the whole range: what is shorter is no way
+_BEGINNING, _CLEAR = 5, 4.0  # rows, and times the scatter: beyond it, it has set off
+_MORE = 3  # rows
+_SLOW = 0.25  # of the usual speed on a way back: what is slower is a rest at its end
+
+
+def goes_back(position: np.ndarray) -> np.ndarray:
+    """Return which rows lie on a way against the first one (time).
+
+    Parameters
+    ----------
+    position
+        Along the sliding direction (time); rows without a value do not go back.
+
+    Notes
+    -----
+    Rests at the ends belong to no way. Where it turns is told by means of blocks of rows, so that
+    noise of the reading turns nothing.
+
+    Examples
+    --------
+    >>> way = np.concatenate([np.zeros(10), np.arange(20), np.full(10, 19), 19 - np.arange(20.0)])
+    >>> way = np.repeat(way, 3)
+    >>> back = goes_back(way)
+    >>> back[:110].any(), back[125:175].all()
+    (np.False_, np.True_)
+    """
+    size = position.size
+    edges = np.unique(np.linspace(0, size, min(_BLOCKS, size) + 1).astype(int))
+    counts = np.add.reduceat(np.isfinite(position).astype(float), edges[:-1])
+    sums = np.add.reduceat(np.nan_to_num(position), edges[:-1])
+    known = np.flatnonzero(counts > 0)
+    if known.size < 3:
+        return np.zeros(size, dtype=bool)
+    middle = 0.5 * (edges[known] + edges[known + 1])
+    means = np.interp(0.5 * (edges[:-1] + edges[1:]), middle, sums[known] / counts[known])
+    turns = _turns(means, _WAY * float(np.ptp(means)))
+    back = np.zeros(size, dtype=bool)
+    for first, last in zip(turns[1::2], turns[2::2], strict=False):
+        steps = np.abs(np.diff(means[first : last + 1]))
+        usual = np.median(steps[steps > 0.1 * steps.max(initial=0.0)]) if steps.any() else 0.0
+        moving = first + np.flatnonzero(steps > _SLOW * usual)
+        if moving.size:
+            start, stop = edges[moving[0]], edges[min(moving[-1] + 2, means.size)]
+            # a few rows more: none of the way is left that seems to be under load
+            start += max(_still(position[start:stop]) - _MORE, 0)
+            stop -= max(_still(position[start:stop][::-1]) - _MORE, 0)
+            back[start:stop] = True
+    return back
+
+
+def _still(way: np.ndarray) -> int:
+    """Return how many rows at the beginning of a way, less than all, do not leave its first place.
+
+    The scatter of the reading is that of its differences from row to row.
+    """
+    steps = np.diff(way[np.isfinite(way)])
+    scatter = 1.4826 * float(np.median(np.abs(steps - np.median(steps)))) if steps.size else 0.0
+    first = np.nanmedian(way[:_BEGINNING]) if np.isfinite(way[:_BEGINNING]).any() else way[0]
+    there = np.flatnonzero(np.abs(way[: way.size // 2] - first) <= _CLEAR * scatter)
+    return int(there[-1]) + 1 if there.size else 0
+
+
+def _turns(means: np.ndarray, least: float) -> list[int]:
+    """Return where a way begins or ends; the first is the beginning of the first way."""
+    turns, low, high, way = [0], 0, 0, 0
+    for place, value in enumerate(means.tolist()):
+        low = place if value <= means[low] else low
+        high = place if value >= means[high] else high
+        if way >= 0 and means[high] - value > least:  # it went up, or nobody knew
+            turns += [high] if way else []
+            way, low = -1, place
+        elif way <= 0 and value - means[low] > least:
+            turns += [low] if way else []
+            way, high = 1, place
+    return [*turns, high if way > 0 else low]
