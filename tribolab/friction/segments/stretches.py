@@ -94,7 +94,7 @@ def from_velocity(run: xr.Dataset, limits: ConstancyLimits, max_gap: float | Non
     if time.size < 2:
         return _nothing(run, time.size)
     pieces, share = locate(time, velocity, limits), 0.05
-    pieces = moving(time, pieces, limits)
+    pieces = moving(time, pieces, limits, velocity)
     pieces = held(MeanVelocities(time, velocity=velocity), pieces, limits)
     return _in_time(run, time, pieces, limits, max_gap, share)
 
