@@ -12,6 +12,9 @@ from tribolab.io.dialects.arranged import (
     is_listed,
     listed_columns,
 )
+from tribolab.io.dialects.cells import split_name
+from tribolab.io.dialects.explained import explained
+from tribolab.io.dialects.long_table import is_long
 
 _FRICTION = ("friction_force", "friction_coefficient")
 _FIRST = 400  # lines that tell
@@ -25,9 +28,11 @@ def arranged(lines: tuple[str, ...]) -> tuple[tuple[str, ...], Arrangement]:
     lines
         Those of the file.
     """
-    if not holds_names(lines[:_FIRST]):
-        return lines, "below names"
-    return _anew(lines, "names in rows", ";")
+    if holds_names(lines[:_FIRST]):
+        return _anew(lines, "names in rows", ";")
+    if is_long(lines):
+        return _anew(lines, "a channel to a row", ";")
+    return lines, "below names"
 
 
 def arranged_table(
@@ -54,7 +59,17 @@ def arranged_table(
     told = any(names_any(cell, "time", "position") for cell in own)
     if groups > 1 and told and any(names_any(cell, *_FRICTION) for cell in own):
         return _anew(lines, "side by side", delimiter)
+    if heading.units is None and heading.aligned:
+        told = explained(lines[: heading.names], heading.cells)
+        if _says_more(heading.cells, told):
+            return _anew(lines, "names explained", delimiter)
     return None
+
+
+def _says_more(names: tuple[str, ...], told: list[str]) -> bool:
+    """Whether explanations say units, or what a column is whose name says nothing."""
+    units = [split_name(name)[1] for name in told if name not in names]
+    return any(units) and not any(split_name(name)[1] for name in names)
 
 
 def _anew(

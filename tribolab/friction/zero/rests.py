@@ -89,9 +89,9 @@ def unloaded_rests(
     -------
     tuple
         Zeros of the friction force and of the normal force, in the order of time; None where no
-        rest tells them, nor a stretch without load that moves, in whatever way. The first reads less than a tenth of
-        the load; a later one no more than that above the one before, so that a zero may drift
-        further.
+        rest tells them, nor a stretch without load that moves, in whatever way. The first reads
+        less than a tenth of the load; a later one no more than that above the one before, so that
+        a zero may drift further.
     """
     rests = _resting(run, segments, load)
     if rests is None:

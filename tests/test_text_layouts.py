@@ -1,0 +1,98 @@
+"""Arrangements of text that other labs write: read with their names, units and settings."""
+
+import zipfile
+
+import numpy as np
+import pytest
+
+import tribolab as tl
+from tribolab.draft.dialect.draft import draft_dialect, save_draft
+
+RNG = np.random.default_rng(21)
+TIME = np.round(0.1 * np.arange(300), 3)
+FORCE = np.round(1.2 + 0.02 * RNG.normal(size=TIME.size), 4)
+LOAD = np.round(10 + 0.05 * RNG.normal(size=TIME.size), 3)
+
+
+def both_ways(path):
+    """Return a run as drafted on the fly, and as read by the dialect that was kept."""
+    kept = save_draft(draft_dialect(path), path.with_suffix(".toml"))
+    return tl.read(path), tl.read(path, instrument=kept)
+
+
+def test_a_log_of_several_messages_with_tags_and_glued_units_is_a_table(tmp_path):
+    stamp = "2024-05-14 09:31:{0:06.3f} "
+    lines = [stamp.format(1) + "[main] INFO config: pin=steel track_radius=8.5mm rate=5Hz"]
+    for n, (force, load) in enumerate(zip(FORCE, LOAD, strict=True)):
+        at = stamp.format(2 + n / 10)
+        lines.append(f"{at}[daq] DATA seq={n} n=30.0rpm FT={force}N FN={load}N flags=0x1f")
+        if n % 40 == 7:
+            lines.append(at + "[env] STAT rh=44.0% room=22.0C")
+            lines.append(at + "[usb] WARN crc error")
+    (tmp_path / "a.log").write_text("\n".join(lines) + "\n")
+    for run in both_ways(tmp_path / "a.log"):
+        np.testing.assert_allclose(run.friction_force, FORCE)
+        np.testing.assert_allclose(run.normal_force, LOAD)
+        np.testing.assert_allclose(run.sliding_velocity, 0.0085 * np.pi)
+        np.testing.assert_allclose(np.diff(run.time), 0.1, rtol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("mark", "comma", "units"), [(",", False, True), (";", True, True), ("\t", False, False)]
+)
+def test_a_number_to_a_row_beside_its_channel_is_a_column(tmp_path, mark, comma, units):
+    own = {"FT": ("N", FORCE, 0.0), "FN": ("N", LOAD, 0.01), "Position": ("mm", 2 * TIME, 0.03)}
+    rows = []
+    for name, (unit, values, late) in own.items():
+        label = "PLC1." + name if units else f"{name} [{unit}]"
+        for at, value in zip(TIME + late, values + 2 * late * (name == "Position"), strict=True):
+            rows.append((at, label, f"{value:.4f}", unit))
+    rows += [(1e-4 + 10 * n, "SYS.ALIVE", "1", "-") for n in range(3)]
+    lines = ["# export of a historian", mark.join(["time_s", "tag", "value", "unit"][: 3 + units])]
+    for at, *cells in sorted(rows):
+        line = mark.join([f"{at:.4f}", *cells[: 2 + units]])
+        lines.append(line.replace(".", ",").replace("PLC1,", "PLC1.") if comma else line)
+    (tmp_path / "a.csv").write_text("\n".join(lines) + "\n")
+    for run in both_ways(tmp_path / "a.csv"):
+        np.testing.assert_allclose(run.friction_force, FORCE)
+        assert float(np.abs(run.normal_force.values[1:] - LOAD[1:]).max()) < 0.03
+        np.testing.assert_allclose(run.position[1:], 2e-3 * TIME[1:], atol=1e-7)
+
+
+LEGENDS = {
+    "list": "columns:\n  t     time, s (10 per second)\n  a     tangential force, N, raw\n"
+    "  b     normal force on the pin, N\n  c     sliding speed, mm/s\n",
+    "colons": "# t: time in s\n# a: friction force (N)\n# b: load [N]\n# c: speed / mm/s\n",
+    "one line": "# t time (s), a friction force (N), b normal force (N), c sliding speed (mm/s)\n",
+}
+
+
+@pytest.mark.parametrize("legend", LEGENDS)
+@pytest.mark.parametrize("mark", [";", " "])
+def test_short_names_mean_what_the_text_above_explains(tmp_path, legend, mark):
+    rows = [mark.join(map(str, row)) for row in zip(TIME, FORCE, LOAD, 0 * TIME + 5, strict=True)]
+    text = LEGENDS[legend] + "\n" + mark.join("tabc") + "\n" + "\n".join(rows) + "\n"
+    (tmp_path / "a.txt").write_text(text)
+    for run in both_ways(tmp_path / "a.txt"):
+        np.testing.assert_allclose(run.friction_force, FORCE)
+        np.testing.assert_allclose(run.normal_force, LOAD)
+        np.testing.assert_allclose(run.sliding_velocity, 5e-3)
+
+
+def test_settings_are_no_explanations(tmp_path):
+    rows = [",".join(map(str, row)) for row in zip(TIME, FORCE, LOAD, strict=True)]
+    head = "Load: constant\nFriction: raw signal\nTime: 12:30\nspeed: 5 mm/s\n"
+    text = head + "Time [s],Friction [N],Load [N]\n" + "\n".join(rows) + "\n"
+    (tmp_path / "a.txt").write_text(text)
+    assert draft_dialect(tmp_path / "a.txt").layout.arrangement == "below names"
+
+
+def test_the_readme_of_an_archive_is_the_header_of_its_table(tmp_path):
+    rows = [";".join(map(str, row)) for row in zip(TIME, FORCE, LOAD, 0 * TIME + 5, strict=True)]
+    with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
+        archive.writestr("x/README.txt", LEGENDS["list"])
+        archive.writestr("x/photo.jpg", b"\xff\xd8\0")
+        archive.writestr("x/12.csv", "t;a;b;c\n" + "\n".join(rows) + "\n")
+    for run in both_ways(tmp_path / "a.zip"):
+        np.testing.assert_allclose(run.friction_force, FORCE)
+        np.testing.assert_allclose(run.normal_force, LOAD)
