@@ -1,5 +1,6 @@
 """Arrangements of text that other labs write: read with their names, units and settings."""
 
+import json
 import zipfile
 
 import numpy as np
@@ -96,3 +97,68 @@ def test_the_readme_of_an_archive_is_the_header_of_its_table(tmp_path):
     for run in both_ways(tmp_path / "a.zip"):
         np.testing.assert_allclose(run.friction_force, FORCE)
         np.testing.assert_allclose(run.normal_force, LOAD)
+
+
+def columnar():
+    return {"t": TIME.tolist(), "Ft": FORCE.tolist(), "Fn": LOAD.tolist(), "v": [5.0] * TIME.size}
+
+
+UNITS = {"t": "s", "Ft": "N", "Fn": "N", "v": "mm/s"}
+
+
+def of_segments():
+    half = TIME.size // 2
+    parts = [slice(0, half), slice(half, None)]
+    segments = [
+        {"name": f"part {k}", "set": {"v": 5}, "data": {n: v[p] for n, v in columnar().items()}}
+        for k, p in enumerate(parts)
+    ]
+    return {"meta": {"units": UNITS, "operator": "x"}, "segments": segments}
+
+
+JSON = {
+    "segments": of_segments,
+    "split": lambda: {
+        "columns": [f"{n} [{u}]" for n, u in UNITS.items()],
+        "data": [list(row) for row in zip(*columnar().values(), strict=True)],
+    },
+    "records": lambda: [
+        {
+            f"{n}_{u.replace('/', '_')}": value
+            for (n, u), value in zip(UNITS.items(), row, strict=True)
+        }
+        for row in zip(*columnar().values(), strict=True)
+    ],
+    "channels": lambda: {
+        "test": {"radius": {"value": 4, "unit": "cm"}},
+        "channels": [{"name": n, "unit": UNITS[n], "samples": v} for n, v in columnar().items()],
+    },
+    "counted": lambda: {
+        f"{n} [{UNITS[n]}]": {str(k): value for k, value in enumerate(v)}
+        for n, v in columnar().items()
+    },
+}
+
+
+@pytest.mark.parametrize("form", JSON)
+@pytest.mark.parametrize("indent", [None, 1])
+def test_columns_in_json_are_a_table(tmp_path, form, indent):
+    (tmp_path / "a.json").write_text(json.dumps(JSON[form](), indent=indent))
+    for run in both_ways(tmp_path / "a.json"):
+        np.testing.assert_allclose(run.friction_force, FORCE)
+        np.testing.assert_allclose(run.normal_force, LOAD)
+        np.testing.assert_allclose(run.sliding_velocity, 5e-3)
+        np.testing.assert_allclose(np.diff(run.time), 0.1, rtol=1e-6)
+        assert ("step" in run) == (form == "segments")
+
+
+def test_settings_in_objects_of_json_are_found(tmp_path):
+    said = {"geometry": {"contact_radius_mm": 15.0}, "load": {"value": 3, "unit": "N"}}
+    data = {"t": TIME.tolist(), "M": (1000 * FORCE).tolist(), "rpm": [30.0] * TIME.size}
+    units = {"t": "s", "M": "uN.m", "rpm": "1/min"}
+    document = {"meta": {"units": units, **said}, "data": data}
+    (tmp_path / "a.json").write_text(json.dumps(document))
+    run = tl.read(tmp_path / "a.json")
+    np.testing.assert_allclose(run.friction_force, FORCE * 1e-3 / 0.015)
+    np.testing.assert_allclose(run.sliding_velocity, 0.015 * np.pi)
+    np.testing.assert_allclose(run.normal_force, 3)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from tribolab.draft.file.header import names_any
 from tribolab.draft.file.marks import Block
 from tribolab.io.dialects.arranged import (
@@ -35,6 +37,18 @@ def arranged(lines: tuple[str, ...]) -> tuple[tuple[str, ...], Arrangement]:
     return lines, "below names"
 
 
+def from_json(path: Path, encoding: str) -> tuple[tuple[str, ...], Arrangement]:
+    """Return the lines of text that say what a file of JSON does.
+
+    Parameters
+    ----------
+    path, encoding
+        The file, which is read as a whole.
+    """
+    text = path.read_text(encoding, errors="replace").removeprefix("\ufeff")
+    return tuple(below_names(text, "json", ";").split("\n")), "json"
+
+
 def arranged_table(
     lines: tuple[str, ...], block: Block, delimiter: str
 ) -> tuple[tuple[str, ...], Arrangement] | None:
@@ -60,8 +74,8 @@ def arranged_table(
     if groups > 1 and told and any(names_any(cell, *_FRICTION) for cell in own):
         return _anew(lines, "side by side", delimiter)
     if heading.units is None and heading.aligned:
-        told = explained(lines[: heading.names], heading.cells)
-        if _says_more(heading.cells, told):
+        names = explained(lines[: heading.names], heading.cells)
+        if _says_more(heading.cells, names):
             return _anew(lines, "names explained", delimiter)
     return None
 

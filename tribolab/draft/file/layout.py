@@ -9,7 +9,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tribolab.draft.file.arrangement import arranged, arranged_table
+from tribolab.draft.file.arrangement import arranged, arranged_table, from_json
 from tribolab.draft.file.blocks import find_blocks, main_blocks
 from tribolab.draft.file.header import Heading
 from tribolab.draft.file.lines import (
@@ -165,7 +165,10 @@ def find_layout(file: File) -> Layout:
     if thousands := find_thousands(lines):
         apart = any("\t" in line or ";" in line for line in lines[-_FEW:])
         lines = tuple(without_thousands(x, thousands, ";" if apart else ",") for x in lines)
-    lines, arrangement = arranged(lines)
+    if file.is_json:
+        lines, arrangement = from_json(file.path, encoding)
+    else:
+        lines, arrangement = arranged(lines)
     grammar = find_grammar(lines)
     if grammar is None:
         raise ReadError(
@@ -223,7 +226,7 @@ def find_layout(file: File) -> Layout:
         step=step_pattern(lines, main) if repeats else None,
         end=end,
         skip_lines=skip_lines,
-        whole=file.size <= HEAD,
+        whole=file.size <= HEAD or arrangement == "json",
         notes=tuple(notes),
         guesses=tuple(guesses),
         thousands=thousands,

@@ -9,11 +9,17 @@ from typing import Literal
 
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.explained import explained
+from tribolab.io.dialects.json_tables import tables_as_text
 from tribolab.io.dialects.long_table import one_channel_to_a_column
 
 Arrangement = Literal[
-    *("below names", "columns listed", "names in rows", "side by side", "names explained"),
-    *("a channel to a row",),
+    "below names",
+    "columns listed",
+    "names in rows",
+    "names explained",
+    "side by side",
+    "a channel to a row",
+    "json",
 ]
 
 _MARK = ";"  # between the cells of rows that hold names
@@ -74,7 +80,8 @@ def below_names(text: str, arrangement: Arrangement, delimiter: str) -> str:
     arrangement
         How the numbers stand: each column is listed on a line of its own above them, each number
         stands behind its name, tables of the same columns stand side by side, short names are
-        explained above the table, or each row holds a moment, a channel's name and its number.
+        explained above the table, each row holds a moment, a channel's name and its number, or all
+        is JSON.
     delimiter
         What parts the cells; of "names in rows" it is the semicolon thereafter.
 
@@ -85,6 +92,8 @@ def below_names(text: str, arrangement: Arrangement, delimiter: str) -> str:
     """
     if arrangement == "below names":
         return text
+    if arrangement == "json":
+        return "\n".join(tables_as_text(text))
     lines = text.split("\n")
     if arrangement == "columns listed":
         return "\n".join(_headed(lines, delimiter))

@@ -138,12 +138,17 @@ def _label(text: str) -> str:
     for pattern in _UNIT_SAID:
         for said in pattern.finditer(text):
             unit = said["unit"].rstrip(".")
-            if _is_unit(unit):
+            if is_unit(unit):
                 return f"{text[: min(said.start(), len(what))].strip() or what} [{unit}]"
     return what
 
 
-def _is_unit(text: str) -> bool:
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit of something that instruments record.
+
+    >>> is_unit("mm/s"), is_unit("degC"), is_unit("raw"), is_unit("3")
+    (True, True, False, False)
+    """
     if text in _WEIGHTS or text.lower() in _NO_UNIT:
         return True
     if not re.fullmatch(r"[^\W\d_µμ°]*[\w/*^.·°%²³µμ-]*", text) or text.isdigit():

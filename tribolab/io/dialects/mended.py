@@ -38,11 +38,12 @@ def _with_usual_lines(file: File, dialect: Dialect, head_only: bool) -> bytes | 
     if not (wide or odd_ends or spaced):
         return None
     try:
-        content = head if head_only else file.path.read_bytes()
+        cut = head_only and dialect.text.arrangement != "json"  # which is read as a whole or not
+        content = head if cut else file.path.read_bytes()
         if wide:
             marked = head[:2] in (b"\xff\xfe", b"\xfe\xff")
             decoder = codecs.getincrementaldecoder("utf-16" if marked else dialect.text.encoding)()
-            told = line_feeds(decoder.decode(content, final=not head_only))
+            told = line_feeds(decoder.decode(content, final=not cut))
             text = dialect.text
             content = below_names(told, text.arrangement, text.delimiter).encode()
     except (OSError, UnicodeDecodeError) as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import re
 import zipfile
@@ -45,6 +46,11 @@ class File(NamedTuple):
     format: str
     size: int
     head: bytes
+
+    @property
+    def is_json(self) -> bool:
+        """Whether text is JSON as a whole, and no record to a line."""
+        return self.format == "text" and _is_json(self.head)
 
 
 def peek(path: str | Path, *, binary: bool = False) -> File:
@@ -91,6 +97,7 @@ def fits_format(format_of_file: str, format_of_dialect: str) -> bool:
     return format_of_file == format_of_dialect or (format_of_file, format_of_dialect) in _SAME
 
 
+_MOST_JSON = 1 << 28  # bytes: it is read as a whole
 _LINES = 100  # that tell whether each is a record of its own
 
 
@@ -128,10 +135,29 @@ def _format(path: Path, head: bytes, *, binary: bool) -> str:
             where=path,
             cure=cures.PERHAPS_PROFILE,
         )
-    if _is_json(head):
+    if _is_json(head) and not _holds_columns(path):
         cure = "write its columns as a table, e.g. in Python pandas.DataFrame(...).to_csv(...)"
         raise ReadError("this is JSON, of which no table is read", where=path, cure=cure)
     return "text"
+
+
+def _holds_columns(path: Path) -> bool:
+    try:
+        state = path.stat()
+    except OSError:
+        return False
+    return state.st_size <= _MOST_JSON and _holds_tables(path, state.st_size, state.st_mtime_ns)
+
+
+@functools.lru_cache(maxsize=16)  # a file is looked at more than once
+def _holds_tables(path: Path, size: int, changed: int) -> bool:
+    # late: starting stays quick
+    from tribolab.io.dialects.json_tables import holds_tables
+
+    try:
+        return holds_tables(path.read_text("utf-8-sig"))
+    except (OSError, UnicodeDecodeError):
+        return False
 
 
 def _is_workbook(path: Path) -> bool:
