@@ -162,3 +162,78 @@ def test_settings_in_objects_of_json_are_found(tmp_path):
     np.testing.assert_allclose(run.friction_force, FORCE * 1e-3 / 0.015)
     np.testing.assert_allclose(run.sliding_velocity, 0.015 * np.pi)
     np.testing.assert_allclose(run.normal_force, 3)
+
+
+SIGNALS = {"Time": "s", "Friction force": "N", "Normal force": "N", "Speed": "mm/s"}
+COLUMNS = (TIME, FORCE, LOAD, 0 * TIME + 5)
+
+
+def check(path):
+    for run in both_ways(path):
+        np.testing.assert_allclose(run.friction_force, FORCE)
+        np.testing.assert_allclose(run.normal_force, LOAD)
+        np.testing.assert_allclose(run.sliding_velocity, 5e-3)
+        np.testing.assert_allclose(np.diff(run.time), 0.1, rtol=1e-6)
+
+
+@pytest.mark.parametrize("mark", [";", ",", "\t"])
+@pytest.mark.parametrize("apart", [True, False])
+def test_a_signal_to_a_row_is_a_column(tmp_path, mark, apart):
+    lines = ["Sample: PTFE"]
+    for (name, unit), values in zip(SIGNALS.items(), COLUMNS, strict=True):
+        head = [name, unit] if apart else [f"{name} [{unit}]"]
+        lines.append(mark.join([*head, *map(str, values)]))
+    (tmp_path / "a.txt").write_text("\n".join(lines) + "\n")
+    check(tmp_path / "a.txt")
+
+
+def test_long_signals_in_rows_are_read_as_a_whole(tmp_path):
+    many = 60_000
+    rows = [f"{name} [{unit}]" for name, unit in SIGNALS.items()]
+    values = (0.01 * np.arange(many), np.full(many, 1.5), np.full(many, 10), np.full(many, 5))
+    text = [";".join([n, *(f"{x:.6f}" for x in v)]) for n, v in zip(rows, values, strict=True)]
+    (tmp_path / "a.csv").write_text("\n".join(text) + "\n")
+    assert tl.read(tmp_path / "a.csv").sizes["time"] == many
+
+
+@pytest.mark.parametrize("left", [True, False])
+def test_numbers_that_touch_are_parted_at_the_ends_of_their_columns(tmp_path, left):
+    way = "<" if left else ">"
+    heads = [("TIME", "FRIC", "LOAD", "SPEED"), ("[S]", "[mN]", "[N]", "[MM/S]")]
+    lines = ["".join(f"{word:{way}8}" for word in head).rstrip() for head in heads]
+    rows = zip(TIME, -1e3 * FORCE, LOAD, 0 * TIME + 1000.5, strict=True)
+    lines += [f"{a:{way}8.2f}{b:{way}8.2f}{c:{way}8.4f}{d:{way}8.3f}" for a, b, c, d in rows]
+    (tmp_path / "a.txt").write_text("\n".join(lines) + "\n")
+    for run in both_ways(tmp_path / "a.txt"):
+        np.testing.assert_allclose(run.friction_force, -FORCE, atol=1e-5)
+        np.testing.assert_allclose(run.normal_force, LOAD)
+        np.testing.assert_allclose(run.sliding_velocity, 1.0005)
+
+
+def test_names_that_stand_twice_are_told_apart_by_the_row_above(tmp_path):
+    head = ";Tangential;;Normal;;Drive\nTime;Force;Temp;Force;Temp;Speed\ns;N;C;N;C;mm/s\n"
+    rows = (f"{t};{f};21;{n};22;5\n" for t, f, n in zip(TIME, FORCE, LOAD, strict=True))
+    (tmp_path / "a.csv").write_text(head + "".join(rows))
+    check(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize("mark", [";", ","])
+def test_columns_with_clocks_of_their_own_are_put_on_one(tmp_path, mark):
+    head = ["t1 [s]", "FT [N]", "t2 [s]", "FN [N]", "t3 [s]", "x [mm]"]
+    lines = [mark.join(head)]
+    for n, (t, force, load) in enumerate(zip(TIME, FORCE, LOAD, strict=True)):
+        slow = [f"{TIME[2 * n]}", f"{10 * TIME[2 * n]:.4f}"] if 2 * n < TIME.size else ["", ""]
+        lines.append(mark.join([f"{t}", f"{force}", f"{t}", f"{load}", *slow]))
+    (tmp_path / "a.csv").write_text("\n".join(lines) + "\n")
+    for run in both_ways(tmp_path / "a.csv"):
+        np.testing.assert_allclose(run.friction_force, FORCE)
+        np.testing.assert_allclose(run.normal_force, LOAD)
+        np.testing.assert_allclose(run.position[:-1], 1e-2 * TIME[:-1], atol=1e-9)
+
+
+@pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
+def test_wide_letters_without_a_mark_are_text(tmp_path, encoding):
+    head = "\t".join(f"{name} [{unit}]" for name, unit in SIGNALS.items())
+    rows = ("\t".join(map(str, row)).replace(".", ",") for row in zip(*COLUMNS, strict=True))
+    (tmp_path / "a.txt").write_bytes("\r\n".join([head, *rows, ""]).encode(encoding))
+    check(tmp_path / "a.txt")

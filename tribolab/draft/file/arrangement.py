@@ -14,9 +14,15 @@ from tribolab.io.dialects.arranged import (
     is_listed,
     listed_columns,
 )
-from tribolab.io.dialects.cells import split_name
+from tribolab.io.dialects.cells import split_name, split_row
 from tribolab.io.dialects.explained import explained
 from tribolab.io.dialects.long_table import is_long
+from tribolab.io.dialects.turned import (
+    fields_that_touch,
+    groups_with_clocks,
+    joined_names,
+    signals_in_rows,
+)
 
 _FRICTION = ("friction_force", "friction_coefficient")
 _FIRST = 400  # lines that tell
@@ -34,6 +40,10 @@ def arranged(lines: tuple[str, ...]) -> tuple[tuple[str, ...], Arrangement]:
         return _anew(lines, "names in rows", ";")
     if is_long(lines):
         return _anew(lines, "a channel to a row", ";")
+    if signals_in_rows(lines):
+        return _anew(lines, "a signal to a row", "whitespace")
+    if fields_that_touch(lines):
+        return _anew(lines, "touching", "whitespace")
     return lines, "below names"
 
 
@@ -73,11 +83,29 @@ def arranged_table(
     told = any(names_any(cell, "time", "position") for cell in own)
     if groups > 1 and told and any(names_any(cell, *_FRICTION) for cell in own):
         return _anew(lines, "side by side", delimiter)
+    if heading.aligned and groups_with_clocks(heading.cells):
+        return _anew(lines, "clocks of their own", delimiter)
+    if heading.aligned and delimiter != "whitespace" and _in_two_rows(lines, block, delimiter):
+        return _anew(lines, "names in two rows", delimiter)
     if heading.units is None and heading.aligned:
         names = explained(lines[: heading.names], heading.cells)
         if _says_more(heading.cells, names):
             return _anew(lines, "names explained", delimiter)
     return None
+
+
+def _in_two_rows(lines: tuple[str, ...], block: Block, delimiter: str) -> bool:
+    """Whether names that stand twice are told apart by the row above them."""
+    heading = block.heading
+    assert heading is not None  # whoever asks has looked
+    places = [heading.names]
+    if heading.units is not None and heading.units > heading.names + 1:
+        places.append(heading.names + 1)  # the row above was taken for the names
+    for place in places:
+        above, names = (split_row(lines[k], delimiter) for k in (place - 1, place))
+        if place and joined_names(above, names) != names:
+            return True
+    return False
 
 
 def _says_more(names: tuple[str, ...], told: list[str]) -> bool:

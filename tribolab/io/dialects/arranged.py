@@ -11,6 +11,7 @@ from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.explained import explained
 from tribolab.io.dialects.json_tables import tables_as_text
 from tribolab.io.dialects.long_table import one_channel_to_a_column
+from tribolab.io.dialects.turned import on_one_clock, parted, turned, with_joined_names
 
 Arrangement = Literal[
     "below names",
@@ -18,7 +19,11 @@ Arrangement = Literal[
     "names in rows",
     "names explained",
     "side by side",
+    "names in two rows",
     "a channel to a row",
+    "a signal to a row",
+    "clocks of their own",
+    "touching",
     "json",
 ]
 
@@ -80,8 +85,9 @@ def below_names(text: str, arrangement: Arrangement, delimiter: str) -> str:
     arrangement
         How the numbers stand: each column is listed on a line of its own above them, each number
         stands behind its name, tables of the same columns stand side by side, short names are
-        explained above the table, each row holds a moment, a channel's name and its number, or all
-        is JSON.
+        explained above the table or told apart by the row above, each row holds a moment, a
+        channel's name and its number, or a whole signal, columns have clocks of their own or touch
+        one another, or all is JSON.
     delimiter
         What parts the cells; of "names in rows" it is the semicolon thereafter.
 
@@ -103,6 +109,14 @@ def below_names(text: str, arrangement: Arrangement, delimiter: str) -> str:
         return "\n".join(_without_names(lines))
     if arrangement == "a channel to a row":
         return "\n".join(one_channel_to_a_column(lines))
+    if arrangement == "a signal to a row":
+        return "\n".join(turned(lines))
+    if arrangement == "touching":
+        return "\n".join(parted(lines))
+    if arrangement == "clocks of their own":
+        return "\n".join(on_one_clock(lines, delimiter))
+    if arrangement == "names in two rows":
+        return "\n".join(with_joined_names(lines, delimiter))
     return "\n".join(_below_each_other(lines, delimiter))
 
 

@@ -37,6 +37,8 @@ _FOREIGN = {
 }
 _PERHAPS_PROFILE = (b"PK\x03\x04",)
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
+_WIDE_HEAD = 4096  # bytes that tell how wide letters are
+_FEWEST_BYTES = 64
 
 
 class File(NamedTuple):
@@ -82,10 +84,35 @@ def peek(path: str | Path, *, binary: bool = False) -> File:
     inner = unpacked(path, head)
     if inner != path:
         return peek(inner)
-    wide = head.startswith(_UTF16)
+    wide = bool(wide_encoding(head))
     if not head.strip(b"\xef\xbb\xbf \t\r\n" + b"\xff\xfe\0" * wide):
         raise ReadError(f"{path}: the file is empty")
     return File(path, _format(path, head, binary=binary), size, head)
+
+
+def wide_encoding(head: bytes) -> str:
+    """Return the encoding of text whose letters are two bytes wide; "" of all else.
+
+    Without a mark at the beginning one byte of nearly every letter is zero, always the same.
+
+    >>> wide_encoding("Zeit [s]".encode("utf-16-le") * 9), wide_encoding(b"Zeit [s]" * 9)
+    ('utf-16-le', '')
+    """
+    if head.startswith(_UTF16):
+        return "utf-16"
+    first = head[:_WIDE_HEAD]
+    if len(first) < _FEWEST_BYTES or b"\0" not in first:
+        return ""
+    for name, zeros, letters in (
+        ("utf-16-le", first[1::2], first[::2]),
+        ("utf-16-be", first[::2], first[1::2]),
+    ):
+        often = zeros.count(0) > 0.9 * len(zeros) and 0 not in letters
+        # letters and signs, and no small numbers of two bytes
+        plain = sum(byte >= 32 or byte in b"\t\r\n" for byte in letters)
+        if often and plain == len(letters):
+            return name
+    return ""
 
 
 def fits_format(format_of_file: str, format_of_dialect: str) -> bool:
@@ -129,7 +156,7 @@ def _format(path: Path, head: bytes, *, binary: bool) -> str:
             raise ReadError(
                 f"this is {name}", where=path, cure=cures.PERHAPS_PROFILE if profile else ""
             )
-    if b"\0" in head and not head.startswith(_UTF16):
+    if b"\0" in head and not wide_encoding(head):
         raise ReadError(
             "this is neither text nor a binary format that is known",
             where=path,
