@@ -15,6 +15,7 @@ from tribolab.io.dialects.arranged import (
     listed_columns,
 )
 from tribolab.io.dialects.cells import split_name, split_row
+from tribolab.io.dialects.declared_records import records_as_text
 from tribolab.io.dialects.explained import explained
 from tribolab.io.dialects.long_table import is_long
 from tribolab.io.dialects.turned import (
@@ -25,6 +26,7 @@ from tribolab.io.dialects.turned import (
 )
 
 _FRICTION = ("friction_force", "friction_coefficient")
+_RECORDS = 20_000  # rows that are looked at
 _FIRST = 400  # lines that tell
 
 
@@ -57,6 +59,17 @@ def from_json(path: Path, encoding: str) -> tuple[tuple[str, ...], Arrangement]:
     """
     text = path.read_text(encoding, errors="replace").removeprefix("\ufeff")
     return tuple(below_names(text, "json", ";").split("\n")), "json"
+
+
+def from_records(path: Path) -> tuple[str, ...]:
+    """Return the lines of text that binary numbers are of which a header says how they are written.
+
+    Parameters
+    ----------
+    path
+        The file, of which some thousand rows are looked at.
+    """
+    return tuple(records_as_text(path.read_bytes(), _RECORDS))
 
 
 def arranged_table(

@@ -9,7 +9,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tribolab.draft.file.arrangement import arranged, arranged_table, from_json
+from tribolab.draft.file.arrangement import arranged, arranged_table, from_json, from_records
 from tribolab.draft.file.blocks import find_blocks, main_blocks
 from tribolab.draft.file.header import Heading
 from tribolab.draft.file.lines import (
@@ -170,6 +170,9 @@ def find_layout(file: File) -> Layout:
         lines = tuple(without_thousands(x, thousands, ";" if apart else ",") for x in lines)
     if file.is_json:
         lines, arrangement = from_json(file.path, encoding)
+    elif file.is_declared:
+        lines, arrangement, encoding = from_records(file.path), "declared records", "utf-8"
+        notes = []
     else:
         lines, arrangement = arranged(lines)
     grammar = find_grammar(lines)

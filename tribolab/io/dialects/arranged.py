@@ -25,6 +25,7 @@ Arrangement = Literal[
     "clocks of their own",
     "touching",
     "json",
+    "declared records",
 ]
 
 _MARK = ";"  # between the cells of rows that hold names

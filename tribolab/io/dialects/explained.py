@@ -48,6 +48,7 @@ _MEASURED = (
     "A",
 )
 _WEIGHTS = frozenset(("g", "kg", "gf", "kgf", "kp", "p"))
+_SMALL = {"hz": "Hz", "khz": "kHz", "n": "N", "mn": "mN", "kn": "kN"}  # in keys
 _NO_UNIT = frozenset(("percent", "%", "-", "1"))
 
 
@@ -160,3 +161,20 @@ def is_unit(text: str) -> bool:
             continue
         return True
     return False
+
+
+def without_unit(key: str) -> tuple[str, str]:
+    """Separate a unit at the end of a key.
+
+    >>> without_unit("contact_radius_mm"), without_unit("speed_mm_s"), without_unit("stroke")
+    (('contact_radius', 'mm'), ('speed', 'mm/s'), ('stroke', ''))
+    >>> without_unit("sample_rate_hz")
+    ('sample_rate', 'Hz')
+    """
+    words = key.split("_")
+    for count, mark in ((2, "/"), (1, "")):
+        unit = mark.join(words[-count:])
+        unit = _SMALL.get(unit, unit)
+        if len(words) > count and is_unit(unit):
+            return "_".join(words[:-count]), unit
+    return key, ""

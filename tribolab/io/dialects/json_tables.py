@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from tribolab.io.dialects.explained import is_unit
+from tribolab.io.dialects.explained import is_unit, without_unit
 from tribolab.untyped import Json
 
 _JSON = re.compile(r"\ufeff?\s*(?:\{\s*\"[^\"]*\"\s*:|\[\s*[\[{])")
@@ -220,23 +220,9 @@ def _setting(name: str, value: object) -> str | None:
             return None
         return f"{_clean(name)}: {_clean(str(number))} {_clean(str(unit))}".rstrip()
     if _is_number(value):
-        plain, unit = _apart(name)
+        plain, unit = without_unit(_clean(name))
         return f"{plain}: {value} {unit}".rstrip()
     return f"{_clean(name)}: {_clean(value)}" if isinstance(value, str) and value else None
-
-
-def _apart(name: str) -> tuple[str, str]:
-    """Separate a unit at the end of a key.
-
-    >>> _apart("contact_radius_mm"), _apart("speed_mm_s"), _apart("stroke")
-    (('contact_radius', 'mm'), ('speed', 'mm/s'), ('stroke', ''))
-    """
-    words = _clean(name).split("_")
-    for count, mark in ((2, "/"), (1, "")):
-        unit = mark.join(words[-count:])
-        if len(words) > count and is_unit(unit):
-            return "_".join(words[:-count]), unit
-    return _clean(name), ""
 
 
 def _units(part: object, names: set[str], key: str, depth: int) -> Iterator[tuple[str, str]]:

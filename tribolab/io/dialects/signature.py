@@ -12,6 +12,7 @@ from typing import NamedTuple
 from tribolab.errors import ReadError
 from tribolab.io import cures
 from tribolab.io.dialects.arranged import holds_names
+from tribolab.io.dialects.declared_records import declares_records
 from tribolab.io.patterns import why_missing
 from tribolab.io.unpacked import ZIP, unpacked
 
@@ -53,6 +54,12 @@ class File(NamedTuple):
     def is_json(self) -> bool:
         """Whether text is JSON as a whole, and no record to a line."""
         return self.format == "text" and _is_json(self.head)
+
+    @property
+    def is_declared(self) -> bool:
+        """Whether it is binary behind a text that says how."""
+        wide = bool(wide_encoding(self.head))
+        return self.format == "text" and b"\0" in self.head and not wide
 
 
 def peek(path: str | Path, *, binary: bool = False) -> File:
@@ -157,6 +164,8 @@ def _format(path: Path, head: bytes, *, binary: bool) -> str:
                 f"this is {name}", where=path, cure=cures.PERHAPS_PROFILE if profile else ""
             )
     if b"\0" in head and not wide_encoding(head):
+        if declares_records(head):
+            return "text"
         raise ReadError(
             "this is neither text nor a binary format that is known",
             where=path,
