@@ -237,3 +237,59 @@ def test_wide_letters_without_a_mark_are_text(tmp_path, encoding):
     rows = ("\t".join(map(str, row)).replace(".", ",") for row in zip(*COLUMNS, strict=True))
     (tmp_path / "a.txt").write_bytes("\r\n".join([head, *rows, ""]).encode(encoding))
     check(tmp_path / "a.txt")
+
+
+RECORDS = """CAPTURE V1.4
+header_bytes=512
+{kind}
+channels=3
+layout={layout}
+sample_rate_hz=100
+{formula}
+ch1=FRICTION_FORCE unit=N scale=0.001 bias={bias}
+ch2=NORMAL_FORCE unit=N scale=0.01 bias=0
+ch3=ENCODER unit=counts (1000 per turn, wraps to 0) scale=1 bias=0
+track_radius_mm=20
+end_header
+"""
+
+
+@pytest.mark.parametrize("kind", ["data_type=int16\nbyte_order=little", "dtype=>i2"])
+@pytest.mark.parametrize("layout", ["interleaved", "sequential"])
+@pytest.mark.parametrize("inside", [True, False])
+def test_a_header_of_text_declares_the_binary_numbers_behind_it(tmp_path, kind, layout, inside):
+    turns = 0.03 * np.arange(1000)
+    raw = np.column_stack([np.full(1000, 1500), np.full(1000, 2000), (1000 * turns) % 1000 // 1])
+    raw = raw if layout == "interleaved" else raw.T
+    formula = "; physical = (raw - bias)*scale" if inside else "; physical = raw*scale + bias"
+    bias = 500 if inside else -0.5
+    head = RECORDS.format(kind=kind, layout=layout, formula=formula, bias=bias).encode()
+    numbers = np.ascontiguousarray(raw.astype(">i2" if ">" in kind else "<i2")).tobytes()
+    (tmp_path / "a.bin").write_bytes(head.ljust(512, b"\0") + numbers)
+    for run in both_ways(tmp_path / "a.bin"):
+        np.testing.assert_allclose(run.friction_force, 1.0)
+        np.testing.assert_allclose(run.normal_force, 20)
+        np.testing.assert_allclose(np.diff(run.time), 0.01, rtol=1e-6)
+        way = 0.02 * 2 * np.pi * turns
+        np.testing.assert_allclose(run.position, way, atol=0.02 * 2 * np.pi * 2e-3)
+
+
+def test_a_load_that_steps_at_one_speed_parts_the_segment(tmp_path):
+    t = 0.1 * np.arange(1800)
+    load = 10 + 10 * np.clip((t - 60) / 2, 0, 1) + 20 * np.clip((t - 120) / 2, 0, 1)
+    load += 0.05 * RNG.normal(size=t.size)
+    rows = np.column_stack([t, 0.3 * load, load, 0 * t + 5])
+    head = "time [s],friction force [N],normal force [N],speed [mm/s]"
+    np.savetxt(tmp_path / "a.csv", rows, "%.4f", ",", header=head, comments="")
+    run = tl.read(tmp_path / "a.csv")
+    mu = tl.friction_coefficient(run, tl.find_segments(run))
+    np.testing.assert_allclose(mu.normal_force, [10, 20, 40], rtol=2e-3)
+    np.testing.assert_allclose(mu.friction_coefficient, 0.3, rtol=1e-3)
+
+
+def test_a_load_that_rises_all_the_time_parts_nothing(tmp_path):
+    t = 0.1 * np.arange(900)
+    rows = np.column_stack([t, 1 + 0.03 * t, 5 + 0.1 * t, 0 * t + 5])
+    head = "time [s],friction force [N],normal force [N],speed [mm/s]"
+    np.savetxt(tmp_path / "a.csv", rows, "%.4f", ",", header=head, comments="")
+    assert tl.find_segments(tl.read(tmp_path / "a.csv")).sizes["segment"] == 1

@@ -120,7 +120,7 @@ def _in_units(raw: np.ndarray, channel: _Channel) -> list[str]:
 def _declared(head: bytes) -> _Records | None:
     first = head[:_LONGEST]
     text = first.split(b"\0")[0].decode("latin-1")
-    settings = {}
+    settings: dict[str, str] = {}
     for line in text.replace("\r", "").split("\n"):
         if (said := _SETTING.match(line)) and line.isprintable():
             settings.setdefault(said["key"].strip().lower(), said["value"])
@@ -165,8 +165,8 @@ def _channels(settings: dict[str, str], text: str) -> list[_Channel]:
     numbered = {int(m["number"]): v for k, v in settings.items() if (m := _CHANNEL.fullmatch(k))}
     listed = [numbered[k] for k in sorted(numbered)]
     if not listed:
-        names = next((v for k, v in settings.items() if _NAMES.fullmatch(k) and "," in v), "")
-        listed = [name.strip() for name in names.split(",")] if names else []
+        text_of = next((v for k, v in settings.items() if _NAMES.fullmatch(k) and "," in v), "")
+        listed = [name.strip() for name in text_of.split(",")] if text_of else []
     formula = _FORMULA.search(text)
     found = [_channel(said, formula["sign"] if formula else "") for said in listed]
     names = [channel.name for channel in found]
