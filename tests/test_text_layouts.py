@@ -8,6 +8,7 @@ import pytest
 
 import tribolab as tl
 from tribolab.draft.dialect.draft import draft_dialect, save_draft
+from tribolab.draft.dialect.questions import missing_words
 
 RNG = np.random.default_rng(21)
 TIME = np.round(0.1 * np.arange(300), 3)
@@ -293,3 +294,31 @@ def test_a_load_that_rises_all_the_time_parts_nothing(tmp_path):
     head = "time [s],friction force [N],normal force [N],speed [mm/s]"
     np.savetxt(tmp_path / "a.csv", rows, "%.4f", ",", header=head, comments="")
     assert tl.find_segments(tl.read(tmp_path / "a.csv")).sizes["segment"] == 1
+
+
+def lacks(path):
+    return missing_words(draft_dialect(path))
+
+
+def test_what_a_volt_is_worth_is_told_to_be_missing(tmp_path):
+    rows = (f"{t},{f},{n},{5 * t:.2f},\n" for t, f, n in zip(TIME, FORCE, LOAD, strict=True))
+    head = "Time [s],Friction [Volts],Load [N],x [mm],Comment\n0,0,0,0,start\n"
+    (tmp_path / "a.csv").write_text(head + "".join(rows))
+    (told,) = lacks(tmp_path / "a.csv")
+    assert told.startswith("what a volt of 'Friction [Volts]' is worth")
+
+
+def test_a_frequency_without_a_stroke_asks_for_the_stroke(tmp_path):
+    rows = (f"{t},{f},{n},2\n" for t, f, n in zip(TIME, FORCE, LOAD, strict=True))
+    head = "Time [s],Friction force [N],Load [N],Frequency [Hz]\n"
+    (tmp_path / "a.csv").write_text(head + "".join(rows))
+    (told,) = lacks(tmp_path / "a.csv")
+    assert told.startswith("the length of the stroke, for the sliding speed")
+
+
+def test_turns_without_a_radius_ask_for_the_radius_alone(tmp_path):
+    rows = (f"{t},{f},{n},30\n" for t, f, n in zip(TIME, FORCE, LOAD, strict=True))
+    head = "Time [s],Friction force [N],Load [N],Speed [rpm]\n"
+    (tmp_path / "a.csv").write_text(head + "".join(rows))
+    with pytest.raises(tl.TribolabError, match="the radius of the track is missing"):
+        tl.find_segments(tl.read(tmp_path / "a.csv"))
