@@ -61,6 +61,12 @@ def test_a_number_to_a_row_beside_its_channel_is_a_column(tmp_path, mark, comma,
         np.testing.assert_allclose(run.position[1:], 2e-3 * TIME[1:], atol=1e-7)
 
 
+def test_a_direction_that_alternates_is_no_channel(tmp_path):
+    rows = (f"{n // 2},{'FB'[n % 2]},{f}\n" for n, f in enumerate(FORCE))
+    (tmp_path / "a.csv").write_text("cycle,direction,friction coefficient\n" + "".join(rows))
+    assert draft_dialect(tmp_path / "a.csv").layout.arrangement == "below names"
+
+
 LEGENDS = {
     "list": "columns:\n  t     time, s (10 per second)\n  a     tangential force, N, raw\n"
     "  b     normal force on the pin, N\n  c     sliding speed, mm/s\n",

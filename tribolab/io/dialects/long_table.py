@@ -20,6 +20,11 @@ _VALUE = re.compile(
     r"val\w*|wert|messwert|valeur|valor|valore|waarde|v[aä]rde|wartość|hodnota|значение|值|数值|reading",
     re.IGNORECASE,
 )
+_CHANNEL = re.compile(
+    r"(?:tag|channel|signal|variable|sensor|point|parameter|quantity|kanal|signal|messgr[oö](?:ss|ß)e"
+    r"|messstelle|voie|canal|grandeur|canale|grandezza|se[nñ]al|通道|信号)(?:[ _]?(?:name|id))?",
+    re.IGNORECASE,
+)
 _FEWEST = 24  # rows that tell
 _OFTEN = 5  # times that each of two channels has to come
 _MOST = 200  # channels
@@ -109,7 +114,7 @@ def one_channel_to_a_column(lines: list[str]) -> list[str]:
 
 
 def _places(lines: Sequence[str]) -> _Places | None:
-    filled = [(n, line) for n, line in enumerate(lines) if line.strip()]
+    filled = [(n, line) for n, line in enumerate(lines[: 2 * _TELLING]) if line.strip()]
     for mark in _MARKS:
         split = [(n, split_row(line, mark)) for n, line in filled[:_TELLING] if mark in line]
         widths = Counter(len(cells) for _, cells in split)
@@ -146,7 +151,12 @@ def _kinds(head: list[str], body: list[list[str]]) -> tuple[int, int, int, int] 
         return None
     value = next((k for k in values if _VALUE.fullmatch(head[k])), values[0])
     spread = [k for k in named if k != channel and _follows(columns[channel], columns[k])]
-    return rising[0], channel, value, spread[0] if spread else -1
+    unit = spread[0] if spread else -1
+    # what alternates beside one quantity is a direction, and no channel's name
+    several = unit >= 0 and len(set(columns[unit])) > 1
+    if not (several or _VALUE.fullmatch(head[value]) or _CHANNEL.fullmatch(head[channel])):
+        return None
+    return rising[0], channel, value, unit
 
 
 def _share(cells: Sequence[str], told: object) -> bool:

@@ -17,6 +17,8 @@ _NO_VALUE = re.compile(r"(?:nan|null|n/?a|-{1,3})?", re.IGNORECASE)
 _WIDE = 30  # numbers of a signal that stands in a row
 _FEWEST = 12  # rows that tell
 _TELLING = 400  # rows that tell
+_LONGEST = 4000  # characters of a line of names of columns that touch
+_ROW = re.compile(r"[-+ .\deE]+")
 _ABOVE = 4  # lines above the first row in which names stand
 _CLOCK = re.compile(
     r"(?:t|time|elapsed time|zeit\w*|temps|tiempo|tempo|czas|[cč]as|tid|tijd|aika|zaman|id[őo]"
@@ -279,11 +281,12 @@ def parted(lines: list[str]) -> list[str]:
 def _fields(lines: Sequence[str]) -> tuple[int, list[int]] | None:
     """Return the first row of a table whose numbers touch, and where its columns end."""
     for place in range(1, min(len(lines), _TELLING)):
-        rows = [line.rstrip() for line in lines[place : place + _TELLING] if line.strip()]
-        words = list(re.finditer(r"\S+", lines[place - 1]))
-        if len(rows) < _FEWEST or len(words) < 2 or not re.match(r"[-+ .\d]+$", rows[0]):
+        above = lines[place - 1][:_LONGEST]
+        if not any(map(str.isalpha, above)) or not _ROW.fullmatch(lines[place].rstrip()):
             continue
-        if _NUMBER.fullmatch(words[0][0]):
+        rows = [line.rstrip() for line in lines[place : place + _TELLING] if line.strip()]
+        words = list(re.finditer(r"\S+", above))
+        if len(rows) < _FEWEST or len(words) < 2 or _NUMBER.fullmatch(words[0][0]):
             continue
         # blanks part them all: nothing touches
         if all(len(row.split()) == len(words) for row in rows[:-1]):
