@@ -7,6 +7,7 @@ from made_runs import strokes, with_friction
 from real_runs import actuator, rock
 from zero_cases import BOTH, LOAD, MU, SPEED, analysed, doubts, off, programme
 
+from tribolab.draft.read import read
 from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.coefficient.half_loops import half_loops
@@ -439,3 +440,19 @@ def test_what_idles_without_load_shows_the_zero_where_no_rest_does():
     assert friction.attrs["offset"] == "zero load" and value.size == 2
     assert (np.abs(value - 0.1) < 3 * error).all() and (error < 0.002).all()
     assert not friction.attrs["zero_doubts"]
+
+
+def test_a_stretch_without_load_tells_the_zero_though_its_speed_is_noise_without_sign(tmp_path):
+    rng = np.random.default_rng(3)
+    t = np.arange(0, 160, 0.1)
+    load = 20 * np.clip((t - 30) / 5, 0, 1)
+    speed = np.abs(rng.normal(0, 0.5, t.size)) + np.clip((t - 32) / 2, 0, 1) * (
+        100 + 150 * np.clip((t - 95) / 0.5, 0, 1)
+    )
+    force = 0.9 + 0.5 * load * (t > 32) + rng.normal(0, 0.05, t.size)
+    rows = np.column_stack([t, speed, load + rng.normal(0, 0.02, t.size), force])
+    head = "time [s],speed [mm/s],normal force [N],friction force [N]"
+    np.savetxt(tmp_path / "a.csv", rows, "%.4f", ",", header=head, comments="")
+    run = read(tmp_path / "a.csv")
+    mu = friction_coefficient(run, find_segments(run))
+    np.testing.assert_allclose(mu.friction_coefficient, 0.5, rtol=3e-3)

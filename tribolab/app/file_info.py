@@ -14,6 +14,7 @@ from tribolab.campaign.engine.stage import Stage
 from tribolab.draft.on_the_fly import holds_run, read_log
 from tribolab.errors import ReadError, TribolabError, shown, told
 from tribolab.io.companion import CompanionFacts, describe_companion
+from tribolab.io.dialects.cells import split_name
 from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.dialects.signature import peek
 from tribolab.io.file_facts import FileFacts, file_facts
@@ -244,6 +245,12 @@ def missing_lines(facts: FileFacts) -> list[str]:
         return []  # of a log of the motion nothing else is expected
     if "set_speed_m_s" in facts["metadata"]:
         names.add("set_speed")
+    if facts["not_used"] and not names & {"sliding_velocity", "position", "set_speed"}:
+        # late: starting stays quick
+        from tribolab.draft.columns.strokes import is_frequency
+
+        if any(is_frequency(*split_name(label)) for label in facts["not_used"]):
+            names.add("stroke_frequency")
     return [f"  missing: {lack}" for lack in missing_of(names)]
 
 

@@ -112,7 +112,7 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
 
 
 def _blank(run: Path, name: str, dialect: Dialect) -> dict[str, np.ndarray]:
-    """Return the columns of a blank run, a file beside the run's or a table in it, and what follows."""
+    """Return the columns of a blank run, beside the run or a table in it, and what follows."""
     if dialect.tables is not None and name.startswith("table "):
         # late: starting stays quick
         from tribolab.io.content.held import read_table

@@ -7,6 +7,7 @@ from collections.abc import Collection
 _FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 _LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
 _SPEED = {"sliding_velocity", "position", "set_speed"}
+_STROKE = 'stroke = "(a length)" under [speed] of a dialect'
 _RADIUS = 'radius = "(a length)" under [speed] of a dialect'
 
 
@@ -16,7 +17,8 @@ def missing_of(names: Collection[str]) -> list[str]:
     Parameters
     ----------
     names
-        Quantities of the run, and ``torque`` where one is known that no radius makes a force of.
+        Quantities of the run, ``torque`` where one is known that no radius makes a force of, and
+        ``stroke_frequency`` where it is known how often strokes come, and not how long they are.
 
     Returns
     -------
@@ -41,10 +43,12 @@ def missing_of(names: Collection[str]) -> list[str]:
         said.append(what + (f"{formula}, and {_RADIUS}" if no_speed and turns else formula))
     elif no_speed and turns:
         said.append(f"the radius of the track, for the sliding speed: {_RADIUS}")
+    elif no_speed and "stroke_frequency" in held:
+        said.append(f"the length of the stroke, for the sliding speed: {_STROKE}")
     if no_friction and "torque" not in held:
         said.append("the friction: no column is known to hold it")
     if not held & _LOAD:
         said.append('the load: normal_force = "(a force)" in the [[run]] of a campaign file')
-    if no_speed and not turns:
+    if no_speed and not turns and "stroke_frequency" not in held:
         said.append('the sliding speed: sliding_speed = "(a speed)" in the [[run]] of a campaign')
     return said

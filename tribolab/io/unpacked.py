@@ -6,6 +6,7 @@ import atexit
 import dataclasses
 import functools
 import gzip
+import re
 import shutil
 import tempfile
 import zipfile
@@ -20,6 +21,21 @@ _OFFICE = ("[Content_Types].xml", "main.xml")  # Office files and x3p are archiv
 _MOST = 64  # GB of what is unpacked
 _TIMES = 1000  # the size of the archive: beyond it, it is a bomb
 _CHUNK = 1 << 20
+_LONGEST_README = 1 << 16  # bytes
+_LONGEST_LETTER = 3  # bytes of it that may stand at the end of what was read
+# what lies beside the data in an archive: texts about them, pictures, what systems leave behind
+_README = re.compile(
+    r"(?:^|/)[^/]*(?:read[ _-]?me|lies[ _-]?mich|l[ie]s?ez[ _-]?moi|leeme|leggimi|leia[ _-]?me|info"
+    r"|about|notes?|notizen?|description|beschreibung|codebook|说明|説明)[^/]*\.(?:txt|md|rst|asc)$"
+    r"|(?:^|/)read[ _-]?me$|\.(?:md|rst)$",
+    re.IGNORECASE,
+)
+_DOCUMENT = re.compile(
+    rf"{_README.pattern}|(?:^|/)\.[^/]+$|(?:^|/)(?:thumbs\.db|desktop\.ini|licen[cs]e[^/]*|copying"
+    r"|checksums?[^/]*|manifest[^/]*|md5sums?[^/]*|sha256sums?[^/]*)$"
+    r"|\.(?:pdf|docx?|odt|rtf|html?|png|jpe?g|gif|svg|bmp|tiff?|md5|sha1|sha256|py|m|r|ipynb)$",
+    re.IGNORECASE,
+)
 _SMALL = 1 << 26  # bytes that may be unpacked whatever the ratio
 
 
@@ -106,7 +122,8 @@ def _unpacked(path: Path, size: int, modified: int, kind: str) -> Path:
             with gzip.open(path) as source:
                 _copy(source, target, size, path)
             return target
-        names = _members(path) or []
+        every = _members(path) or []
+        names = [name for name in every if not _DOCUMENT.search(name)] or every
         if len(names) != 1:
             told = ", ".join(shown(name, 40) for name in names[:5])
             raise ReadError(
@@ -116,10 +133,48 @@ def _unpacked(path: Path, size: int, modified: int, kind: str) -> Path:
             )
         target = folder / (Path(names[0]).name or "content")
         with zipfile.ZipFile(path) as archive, archive.open(names[0]) as source:
-            _copy(source, target, size, path)
+            first = source.read(_CHUNK)
+            above = _text_beside(archive, [name for name in every if name != names[0]], first)
+            _copy(_Chained(above + first, source), target, size, path)
         return target
     except (OSError, EOFError, zlib.error, zipfile.BadZipFile, RuntimeError) as error:
         raise ReadError(f"this compressed file is damaged: {error}", where=path) from error
+
+
+def _text_beside(archive: zipfile.ZipFile, names: list[str], first: bytes) -> bytes:
+    """Return the text of the readmes in an archive, to stand above a table of text as its header.
+
+    What is not plain text of the table's own encoding stays away.
+    """
+    if b"\0" in first or not _is_utf8(first):
+        return b""
+    texts = []
+    for name in names:
+        if not _README.search(name) or archive.getinfo(name).file_size > _LONGEST_README:
+            continue
+        text = archive.read(name).removeprefix(b"\xef\xbb\xbf")
+        if b"\0" not in text and _is_utf8(text) and text.strip():
+            texts.append(text.rstrip() + b"\n\n")
+    return b"".join(texts)
+
+
+def _is_utf8(text: bytes) -> bool:
+    try:
+        text[: -_LONGEST_LETTER if len(text) == _CHUNK else None].decode()
+    except UnicodeDecodeError:
+        return False
+    return True
+
+
+class _Chained:
+    """What was read of a file already, and then the rest of it."""
+
+    def __init__(self, first: bytes, rest: _Source):
+        self._first, self._rest = first, rest
+
+    def read(self, size: int = -1, /) -> bytes:
+        first, self._first = self._first, b""
+        return first or self._rest.read(size)
 
 
 def _copy(source: _Source, target: Path, size: int, path: Path) -> None:

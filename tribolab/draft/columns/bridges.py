@@ -69,10 +69,24 @@ def calibrated_forces(layout: Layout, columns: Sequence[DraftColumn]) -> list[Ca
     return made
 
 
+def in_volts(columns: Sequence[DraftColumn], quantity: str) -> DraftColumn | None:
+    """Return the one column of a force's volts, whatever one of them is worth.
+
+    Parameters
+    ----------
+    columns
+        As they are understood.
+    quantity
+        "friction_force" or "normal_force".
+    """
+    mine = [column for column in columns if not column.used and _force_of(column) == quantity]
+    return mine[0] if len(mine) == 1 else None
+
+
 def _force_of(column: DraftColumn) -> str:
     """Return the force that a column in volts names; "" if none."""
     name, unit, _ = bare_name(column)
-    if not converts(unit or "", "V"):
+    if not converts(column.file_unit or column.unit or unit or "", "V"):
         return ""
     options = matches(name, None)
     return options[0].quantity if options and options[0].quantity in _FORCES else ""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tribolab.draft.columns.axial import axial_force_of, find_inclined, radius_of_ball
-from tribolab.draft.columns.bridges import calibrated_forces
+from tribolab.draft.columns.bridges import calibrated_forces, in_volts
 from tribolab.draft.columns.counts import zero_in_counts
 from tribolab.draft.columns.from_axis import radius_from_axis
 from tribolab.draft.columns.gains import stated_gains
@@ -18,7 +18,7 @@ from tribolab.draft.columns.stated_load import find_load, lifted_on_return
 from tribolab.draft.columns.stated_words import PER_MINUTE
 from tribolab.draft.columns.stated_zero import find_zero, reading_of, zero_in_doubt
 from tribolab.draft.columns.stroke_settings import as_stated, strokes_of
-from tribolab.draft.columns.strokes import STROKE
+from tribolab.draft.columns.strokes import STROKE, is_frequency
 from tribolab.draft.columns.sums import loads_that_add
 from tribolab.draft.columns.turning import (
     angle_of,
@@ -41,8 +41,9 @@ from tribolab.draft.columns.values import DraftValue, find_values, words_said
 from tribolab.draft.columns.words import or_term, squeezed
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import STEP_WORD
-from tribolab.draft.model import WHICH_FORCE, DraftColumn, Understood
+from tribolab.draft.model import NO_NUMBERS, WHICH_FORCE, DraftColumn, Understood
 from tribolab.errors import shown
+from tribolab.io.dialects.cells import split_name
 from tribolab.io.missing import missing_of
 
 _DRIVE = re.compile(
@@ -287,7 +288,22 @@ def lacking(understood: Understood, follows: Follows) -> list[str]:
         return [worth, *missing_of(names)]
     elif unknown_of(understood.columns):
         names.add("friction_force")  # it is asked whether one of them holds it
-    return missing_of(names)
+    if any(is_frequency(*_named(c)) for c in understood.columns if not c.used):
+        names.add("stroke_frequency")
+    lacks = missing_of(names)
+    friction = {"friction_force", "friction_coefficient", "shear_stress"}
+    known = {c.quantity for c in understood.columns if c.used or c.fill_in}
+    known |= {formula.quantity for formula in follows.formulas}
+    volts = None if known & friction else in_volts(understood.columns, "friction_force")
+    if volts is not None:
+        what = f"what a volt of '{shown(volts.label, 30)}' is worth (such as 8.2 N/V), for the "
+        lacks.insert(0, f"{what}friction: 'tribolab dialect' asks for it in a terminal")
+    return lacks
+
+
+def _named(column: DraftColumn) -> tuple[str, str | None]:
+    name, unit = split_name(column.label)
+    return name, column.file_unit or unit
 
 
 def unknown_of(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
@@ -301,7 +317,8 @@ def unknown_of(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
     turning = (torque_of(columns), angle_of(columns), radius_of(columns))
     turning = (*turning, unscaled_torque_of(columns))
     places = {column.place for column in turning if column is not None}
-    unknown = (c for c in columns if c.note and not c.quantity and c.label)
+    noted = (c for c in columns if c.note and not c.note.startswith(NO_NUMBERS))
+    unknown = (c for c in noted if not c.quantity and c.label)
     return [column for column in unknown if column.place not in places]
 
 

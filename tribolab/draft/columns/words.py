@@ -39,7 +39,7 @@ _STAGE = re.compile(
     re.IGNORECASE,
 )
 _OF_STAGE = re.compile(
-    r"(?P<name>x)[\s_-]*(?P<device>stage|axis|slider|carriage|motor|achse|schlitten|tisch|platine)",
+    r"(?P<name>x|pos(?:ition)?)[\s_-]*(?P<device>stage|axis|slider|carriage|motor|achse|schlitten|tisch|platine)",
     re.IGNORECASE,
 )
 _ACROSS = re.compile(r"(?:^|[\s_.\-])z(?:$|[\s_.\-])", re.IGNORECASE)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from tribolab.draft.file.header import names_any
 from tribolab.draft.file.marks import Block
 from tribolab.io.dialects.arranged import (
@@ -12,8 +14,19 @@ from tribolab.io.dialects.arranged import (
     is_listed,
     listed_columns,
 )
+from tribolab.io.dialects.cells import split_name, split_row
+from tribolab.io.dialects.declared_records import records_as_text
+from tribolab.io.dialects.explained import explained
+from tribolab.io.dialects.long_table import is_long
+from tribolab.io.dialects.turned import (
+    fields_that_touch,
+    groups_with_clocks,
+    joined_names,
+    signals_in_rows,
+)
 
 _FRICTION = ("friction_force", "friction_coefficient")
+_RECORDS = 20_000  # rows that are looked at
 _FIRST = 400  # lines that tell
 
 
@@ -25,9 +38,38 @@ def arranged(lines: tuple[str, ...]) -> tuple[tuple[str, ...], Arrangement]:
     lines
         Those of the file.
     """
-    if not holds_names(lines[:_FIRST]):
-        return lines, "below names"
-    return _anew(lines, "names in rows", ";")
+    if holds_names(lines[:_FIRST]):
+        return _anew(lines, "names in rows", ";")
+    if is_long(lines):
+        return _anew(lines, "a channel to a row", ";")
+    if signals_in_rows(lines):
+        return _anew(lines, "a signal to a row", "whitespace")
+    if fields_that_touch(lines):
+        return _anew(lines, "touching", "whitespace")
+    return lines, "below names"
+
+
+def from_json(path: Path, encoding: str) -> tuple[tuple[str, ...], Arrangement]:
+    """Return the lines of text that say what a file of JSON does.
+
+    Parameters
+    ----------
+    path, encoding
+        The file, which is read as a whole.
+    """
+    text = path.read_text(encoding, errors="replace").removeprefix("\ufeff")
+    return tuple(below_names(text, "json", ";").split("\n")), "json"
+
+
+def from_records(path: Path) -> tuple[str, ...]:
+    """Return the lines of text that binary numbers are of which a header says how they are written.
+
+    Parameters
+    ----------
+    path
+        The file, of which some thousand rows are looked at.
+    """
+    return tuple(records_as_text(path.read_bytes(), _RECORDS))
 
 
 def arranged_table(
@@ -55,7 +97,35 @@ def arranged_table(
     # the load of a machine that pulls is friction
     if groups > 1 and told and any(names_any(cell, *_FRICTION, "normal_force") for cell in own):
         return _anew(lines, "side by side", delimiter)
+    if heading.aligned and groups_with_clocks(heading.cells):
+        return _anew(lines, "clocks of their own", delimiter)
+    if heading.aligned and delimiter != "whitespace" and _in_two_rows(lines, block, delimiter):
+        return _anew(lines, "names in two rows", delimiter)
+    if heading.units is None and heading.aligned:
+        names = explained(lines[: heading.names], heading.cells)
+        if _says_more(heading.cells, names):
+            return _anew(lines, "names explained", delimiter)
     return None
+
+
+def _in_two_rows(lines: tuple[str, ...], block: Block, delimiter: str) -> bool:
+    """Whether names that stand twice are told apart by the row above them."""
+    heading = block.heading
+    assert heading is not None  # whoever asks has looked
+    places = [heading.names]
+    if heading.units is not None and heading.units > heading.names + 1:
+        places.append(heading.names + 1)  # the row above was taken for the names
+    for place in places:
+        above, names = (split_row(lines[k], delimiter) for k in (place - 1, place))
+        if place and joined_names(above, names) != names:
+            return True
+    return False
+
+
+def _says_more(names: tuple[str, ...], told: list[str]) -> bool:
+    """Whether explanations say units, or what a column is whose name says nothing."""
+    units = [split_name(name)[1] for name in told if name not in names]
+    return any(units) and not any(split_name(name)[1] for name in names)
 
 
 def _anew(

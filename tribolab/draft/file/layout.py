@@ -9,7 +9,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tribolab.draft.file.arrangement import arranged, arranged_table
+from tribolab.draft.file.arrangement import arranged, arranged_table, from_json, from_records
 from tribolab.draft.file.blocks import find_blocks, main_blocks
 from tribolab.draft.file.header import Heading
 from tribolab.draft.file.lines import (
@@ -45,6 +45,7 @@ _LONGEST = 200  # characters of a line that are looked at
 _COUNT = re.compile(r"(?<![\d.,])(\d{2,7})(?![\d.,])[^\d]{0,20}$")  # "Number of points: 5600"
 _FEW = 20  # lines at the end that tell what parts cells
 _MOST_COLUMNS = 20_000
+_MOST_TURNED = 1 << 28  # bytes of a file of few long lines
 _MOST_ABOVE = 500  # lines of text above a table that are looked at
 
 
@@ -160,6 +161,8 @@ def find_layout(file: File) -> Layout:
     encoding, notes = find_encoding(file.head)
     guesses: list[str] = []
     raw = file.head if file.size <= HEAD else file.head[: file.head.rfind(b"\n") + 1]
+    if file.size > HEAD and raw.count(b"\n") < _FEW and file.size <= _MOST_TURNED:
+        raw = file.path.read_bytes()  # a signal to a row
     text = raw.decode(encoding, errors="replace").removeprefix("\ufeff")
     text = usual(text) if is_unusual(text) else text
     quoted = has_commas_in_quotes(text)
@@ -168,7 +171,13 @@ def find_layout(file: File) -> Layout:
     if thousands := find_thousands(lines):
         apart = any("\t" in line or ";" in line for line in lines[-_FEW:])
         lines = tuple(without_thousands(x, thousands, ";" if apart else ",") for x in lines)
-    lines, arrangement = arranged(lines)
+    if file.is_json:
+        lines, arrangement = from_json(file.path, encoding)
+    elif file.is_declared:
+        lines, arrangement, encoding = from_records(file.path), "declared records", "utf-8"
+        notes = []
+    else:
+        lines, arrangement = arranged(lines)
     grammar = find_grammar(lines)
     if grammar is None:
         raise ReadError(
@@ -226,7 +235,7 @@ def find_layout(file: File) -> Layout:
         step=step_pattern(lines, main) if repeats else None,
         end=end,
         skip_lines=skip_lines,
-        whole=file.size <= HEAD,
+        whole=file.size <= HEAD or arrangement in ("json", "a signal to a row"),
         notes=tuple(notes),
         guesses=tuple(guesses),
         thousands=thousands,

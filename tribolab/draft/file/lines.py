@@ -12,7 +12,7 @@ from tribolab.draft.terms import TERMS
 from tribolab.draft.vocabulary import EASTERN_WORDS
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.eastern import eastern_encoding
-from tribolab.io.dialects.signature import HEAD
+from tribolab.io.dialects.signature import HEAD, wide_encoding
 
 _EASTERN = ("gb18030", "cp932", "big5", "cp949", "cp1251")
 _BLANKS = 1.02  # by how much blanks have to part the lines better than a mark
@@ -105,8 +105,8 @@ class Grammar:
 
 def find_encoding(head: bytes) -> tuple[str, list[str]]:
     """Return the encoding, and what was guessed of it (which changes no number)."""
-    if head.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return "utf-16", []
+    if wide := wide_encoding(head):
+        return wide, []
     try:
         # the head may end inside a character
         head[: max(len(head) - 3, 0) if len(head) == HEAD else None].decode("utf-8")

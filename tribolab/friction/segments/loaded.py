@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from tribolab.friction.segments.load_steps import at_levels
 from tribolab.friction.segments.locate import ConstancyLimits
 from tribolab.friction.segments.stretches import Stretch
 from tribolab.medians import median
@@ -35,7 +36,7 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], limits: ConstancyLimits) -
     -------
     list of Stretch
         The stretches with those without load of kind ``"no load"``; a stretch whose load was taken
-        off or put on in its course is cut there.
+        off or put on in its course is cut there, and one whose load steps at each step.
     """
     if "normal_force" not in run:
         return stretches
@@ -55,7 +56,12 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], limits: ConstancyLimits) -
             result += _cut(time, force, zero, stretch, least, limits.min_samples)
         else:
             result.append(stretch)
-    return result
+    cut: list[Stretch] = []
+    for stretch in one_by_one(result):
+        steps = stretch.kind == "constant"
+        parts = at_levels(time, force, stretch, limits.min_samples) if steps else [stretch]
+        cut += parts
+    return cut
 
 
 def _median(time: np.ndarray, force: np.ndarray, stretches: list[Stretch], kind: str) -> np.ndarray:

@@ -26,6 +26,8 @@ _KEPT = ("constant", "at rest")
 _STILL = 1e-7  # of the highest speed: nothing slower is told from rest
 _SLOW = 1e-5  # of the highest speed: what is slower has to get somewhere to be sliding
 _SOMEWHERE = 0.01  # of the longest way of a piece
+_FAINT = 0.02  # of the highest speed: what is slower may be noise
+_TELLING = 20  # samples that tell noise without its sign
 _BRIEF = 1.5  # a plateau beside a ramp longer than this many times itself has to prove itself
 _PAUSE = 3.0  # a ramp that is longer than this many times a pause in it goes on
 _MOVING = 8.0  # standard errors from rest: breaks pick their pieces, so that chance alone makes six
@@ -71,9 +73,14 @@ def locate(
 
 
 def moving(
-    time: np.ndarray, pieces: list[VelocityPiece], limits: ConstancyLimits
+    time: np.ndarray,
+    pieces: list[VelocityPiece],
+    limits: ConstancyLimits,
+    velocity: np.ndarray | None = None,
 ) -> list[VelocityPiece]:
     """Call creep at rest: beside the highest speed it is slow, and it gets nowhere.
+
+    So is the noise of a speed that was recorded without its sign: its mean is not zero.
 
     Parameters
     ----------
@@ -81,6 +88,8 @@ def moving(
         Samples [s], and pieces of the whole record.
     limits
         A `rest_speed` of these decides alone.
+    velocity
+        The record [m/s], if the speed was recorded.
     """
     kept = [p for p in pieces if p.kind == "constant"]
     if limits.rest_speed is not None or not kept:
@@ -91,12 +100,29 @@ def moving(
     return _fused(
         [
             p._replace(kind="at rest")
-            if p.kind == "constant" and abs(p.velocity) <= _SLOW * top and d < least
+            if p.kind == "constant"
+            and (
+                (abs(p.velocity) <= _SLOW * top and d < least)
+                or (
+                    velocity is not None
+                    and abs(p.velocity) <= _FAINT * top
+                    and _is_folded_noise(velocity[p.first : p.last])
+                )
+            )
             else p
             for d, p in zip(way, pieces, strict=True)
         ],
         limits,
     )
+
+
+def _is_folded_noise(velocity: np.ndarray) -> bool:
+    """Whether a speed is noise about zero without its sign: its spread is 0.76 of its mean."""
+    if velocity.size < _TELLING or velocity.min() < 0 < velocity.max():
+        return False
+    size = np.abs(velocity)
+    mean = float(size.mean())
+    return bool(size.std() > 0.6 * mean > 0 and np.mean(size < 0.3 * mean) > 0.1)
 
 
 def held(

@@ -50,11 +50,15 @@ def velocity_source(run: xr.Dataset) -> str:
         return "recorded" if "sliding_velocity" in run else "position"
     if stated:
         return "set speed"
-    turns = 'it turns, so the radius of the track would do (radius = "25 mm" under [speed] of its '
-    turns = f"{turns}description); " if "rotation_speed" in run else ""
+    if "rotation_speed" in run:
+        raise AnalysisError(
+            f"{name_of(run)}: the radius of the track is missing: how fast it turns is recorded, "
+            'and no sliding speed; say radius = "(a length)" under [speed] of a description, for '
+            "which 'tribolab dialect' asks in a terminal"
+        )
     raise AnalysisError(
         f"{name_of(run)}: nothing tells the sliding speed; the run needs one of 'sliding_velocity',"
-        f" 'position', 'step', 'set_speed', or the attribute 'set_speed_m_s'; {turns}a campaign "
+        " 'position', 'step', 'set_speed', or the attribute 'set_speed_m_s'; a campaign "
         'file may say it: sliding_speed = "1 mm/s" in its [[run]]'
     )
 
@@ -95,7 +99,7 @@ def from_velocity(run: xr.Dataset, limits: ConstancyLimits, max_gap: float | Non
     if time.size < 2:
         return _nothing(run, time.size)
     pieces, share = locate(time, velocity, limits), 0.05
-    pieces = moving(time, pieces, limits)
+    pieces = moving(time, pieces, limits, velocity)
     pieces = held(MeanVelocities(time, velocity=velocity), pieces, limits)
     return _in_time(run, time, pieces, limits, max_gap, share)
 

@@ -14,6 +14,8 @@ UNLOADED = 0.1  # share of the load by which the zero of the normal force may mo
 _LIGHT = 0.4  # share of the load below which a rest may turn out to be one without contact
 _LIKE = 1.5  # times what a rest reads: with a load of less than that a segment slides alike
 _FEWEST = 10  # samples that an unloaded rest needs
+_BARE = 0.02  # share of the load within which it stays where nothing presses
+_BINS = 100  # in a stretch of which a part may be without load
 
 
 class Zeros(NamedTuple):
@@ -87,9 +89,9 @@ def unloaded_rests(
     -------
     tuple
         Zeros of the friction force and of the normal force, in the order of time; None where no
-        rest tells them, nor a stretch of motion without load. The first reads less than a tenth of
-        the load; a later one no more than that above the one before, so that a zero may drift
-        further.
+        rest tells them, nor a stretch without load that moves, in whatever way. The first reads
+        less than a tenth of the load; a later one no more than that above the one before, so that
+        a zero may drift further.
     """
     rests = _resting(run, segments, load)
     if rests is None:
@@ -99,6 +101,8 @@ def unloaded_rests(
     levels = _unloaded(time, normal, limits, load)
     if not levels:  # what moves without touching shows the zero, too: a torque's with its idling
         levels = _unloaded(time, normal, _limits(segments, "no load"), load)
+    if not levels:  # a speed that is noise alone, or recorded without sign, is no rest either
+        levels = _bare(time, normal, _limits(segments), load)
     signals = [normal] if friction is None else [normal, friction]
     told = estimates_of((time[level], signal[level]) for signal in signals for level in levels)
     when = [float(time[level].mean()) for level in levels]
@@ -155,9 +159,10 @@ def _resting(
     return run["time"].values, run["normal_force"].values, _limits(segments, "at rest")
 
 
-def _limits(segments: xr.Dataset, reason: str) -> list[tuple[float, float]]:
-    """Return the limits [s] of the stretches that were omitted for a reason."""
-    chosen = segments["omitted_reason"].values == reason
+def _limits(segments: xr.Dataset, reason: str = "") -> list[tuple[float, float]]:
+    """Return the limits [s] of the stretches that were omitted for a reason, or for any."""
+    reasons = segments["omitted_reason"].values
+    chosen = reasons == reason if reason else np.ones(reasons.size, bool)
     starts, stops = (segments[name].values[chosen] for name in ("omitted_start", "omitted_stop"))
     return list(zip(starts.tolist(), stops.tolist(), strict=True))
 
@@ -175,6 +180,33 @@ def _unloaded(
             continue
         before = float(np.mean(normal[level]))
         levels.append(level)
+    return levels
+
+
+def _bare(
+    time: np.ndarray, normal: np.ndarray, limits: list[tuple[float, float]], load: float
+) -> list[np.ndarray]:
+    """Return the samples of stretches, however they move, in a part of which nothing pressed.
+
+    A load that rises in the same stretch passes through every level: only what stays at one counts.
+    """
+    levels = []
+    for level in _unloaded(time, normal, limits, load):
+        first, last = int(level[0]), int(level[-1]) + 1
+        bins = min(_BINS, (last - first) // _FEWEST)
+        if bins < 1:
+            continue
+        at = first + (last - first) * np.arange(bins + 1) // bins
+        part = np.nan_to_num(normal[first:last], nan=np.inf)
+        mean = np.add.reduceat(part, at[:-1] - first) / np.diff(at)
+        near = np.abs(mean - median(normal[level])) < _BARE * load
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], near, [False]])))
+        if not edges.size:
+            continue
+        longest = int(np.argmax(edges[1::2] - edges[::2]))
+        begin, end = at[edges[2 * longest]], at[edges[2 * longest + 1]]
+        if np.abs(np.mean(normal[begin:end])) < UNLOADED * load and end - begin >= 2 * _FEWEST:
+            levels.append(np.arange(begin, end))
     return levels
 
 

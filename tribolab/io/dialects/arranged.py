@@ -8,26 +8,57 @@ from collections.abc import Sequence
 from typing import Literal
 
 from tribolab.io.dialects.cells import split_row
+from tribolab.io.dialects.explained import explained
+from tribolab.io.dialects.json_tables import tables_as_text
+from tribolab.io.dialects.long_table import one_channel_to_a_column
+from tribolab.io.dialects.turned import on_one_clock, parted, turned, with_joined_names
 
-Arrangement = Literal["below names", "columns listed", "names in rows", "side by side"]
+Arrangement = Literal[
+    "below names",
+    "columns listed",
+    "names in rows",
+    "names explained",
+    "side by side",
+    "names in two rows",
+    "a channel to a row",
+    "a signal to a row",
+    "clocks of their own",
+    "touching",
+    "json",
+    "declared records",
+]
 
 _MARK = ";"  # between the cells of rows that hold names
 _LONGEST = 1000  # characters of a line that are looked at
 _NUMBER = r"[-+]?(?:\d+(?:[.,]\d+)?|[.,]\d+)(?:[eE][-+]?\d+)?"
 _NAME = r"[^\W\d][\w%°]{0,30}(?: [\w%°]{1,20}){0,3}"
-_VALUE = rf"(?:{_NUMBER}|nan|inf|null|none|ovf|ovl|err\w*|---*)"
+_VALUE = rf"(?:0x[0-9a-f]+|{_NUMBER}|nan|inf|null|none|ovf|ovl|err\w*|---*)"
 _PAIR = re.compile(
-    rf"\"?(?P<name>{_NAME})\"? {{0,3}}[:=] {{0,3}}\"?(?P<value>{_VALUE})(?![\w.:])"
-    r" ?\[?(?P<unit>[^\W\d_][\w/°%²³·*-]{0,8})?\]?\"?(?=$|[\s,;|}\])])(?![ ]{0,3}[:=])",
+    rf"\"?(?P<name>{_NAME})\"? {{0,3}}[:=] {{0,3}}\"?(?P<value>{_VALUE})(?![\d_.:])"
+    r" ?\[?(?P<unit>[^\W\d_][\w/°%²³·*^-]{0,8}|°[CFK]|%)?\]?\"?(?=$|[\s,;|}\])])"
+    r"(?![ ]{0,3}[:=])",
     re.IGNORECASE,
 )
-_STAMP = re.compile(r"\W{0,3}(?P<time>\d{1,2}:\d\d:\d\d(?:[.,]\d+)?)(?: ?->|\]|[\s,;|])\s*")
+_STAMP = re.compile(
+    r"\W{0,3}(?P<time>(?:\d{4}-\d\d-\d\d[ T])?\d{1,2}:\d\d:\d\d(?:[.,]\d+)?)"
+    r"(?:Z|[+-]\d\d:?\d\d)?(?: ?->|\]|[\s,;|])\s*"
+)
+# what a log says of a line before its message: "[daq] DATA", "INFO main:", "<7> adc[12]:"
+_TAGS = re.compile(
+    r"(?:(?:\[[^\]]{1,30}\]|\([^)]{1,30}\)|<[^>]{1,30}>|[^\W\d][\w./-]{0,30}(?:\[\d{1,9}\])?:?"
+    r"(?=[ \t]))[ \t]+){1,5}(?=[^\W\d]\w*[:=])"
+)
+_SETTING = re.compile(
+    r"(?P<name>[^\W\d][\w.-]{0,40})=(?P<value>[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)?"
+    r"(?P<text>[^\s,;|]*)"
+)
 _PARTS = re.compile(r"[\s,;|{}\[\]]*")
 _OWN_CLOCK = re.compile(
     r"t|ts|ms|us|s|time\w*|zeit\w*|temps|tiempo|tempo|millis|micros", re.IGNORECASE
 )
 _FEWEST = 12  # rows that tell
 _MOST_ABOVE = 500  # lines above a table that are looked at
+_NEAR = 4  # lines above the first row in one of which the names stand
 _MOST_COLUMNS = 512  # that are listed, or of tables side by side
 _LISTED = re.compile(
     r"^\W{0,4}(?P<word>[^\W\d]{0,20})[\W_]{0,3}(?P<number>\d{1,2})"
@@ -54,7 +85,10 @@ def below_names(text: str, arrangement: Arrangement, delimiter: str) -> str:
         The whole file, with LF.
     arrangement
         How the numbers stand: each column is listed on a line of its own above them, each number
-        stands behind its name, or tables of the same columns stand side by side.
+        stands behind its name, tables of the same columns stand side by side, short names are
+        explained above the table or told apart by the row above, each row holds a moment, a
+        channel's name and its number, or a whole signal, columns have clocks of their own or touch
+        one another, or all is JSON.
     delimiter
         What parts the cells; of "names in rows" it is the semicolon thereafter.
 
@@ -65,11 +99,25 @@ def below_names(text: str, arrangement: Arrangement, delimiter: str) -> str:
     """
     if arrangement == "below names":
         return text
+    if arrangement == "json":
+        return "\n".join(tables_as_text(text))
     lines = text.split("\n")
     if arrangement == "columns listed":
         return "\n".join(_headed(lines, delimiter))
+    if arrangement == "names explained":
+        return "\n".join(_explained(lines, delimiter))
     if arrangement == "names in rows":
         return "\n".join(_without_names(lines))
+    if arrangement == "a channel to a row":
+        return "\n".join(one_channel_to_a_column(lines))
+    if arrangement == "a signal to a row":
+        return "\n".join(turned(lines))
+    if arrangement == "touching":
+        return "\n".join(parted(lines))
+    if arrangement == "clocks of their own":
+        return "\n".join(on_one_clock(lines, delimiter))
+    if arrangement == "names in two rows":
+        return "\n".join(with_joined_names(lines, delimiter))
     return "\n".join(_below_each_other(lines, delimiter))
 
 
@@ -210,7 +258,7 @@ def _headed(lines: list[str], delimiter: str) -> list[str]:
         if not names:
             return lines
         if delimiter == "whitespace":
-            names = [re.sub(r"\s+(?![\[(])", "_", name).replace(" ", "") for name in names]
+            names = [_one_word(name) for name in names]
         else:
             names = [name.replace(delimiter, " ") for name in names]
         mark = "\t" if delimiter == "whitespace" else delimiter
@@ -218,16 +266,46 @@ def _headed(lines: list[str], delimiter: str) -> list[str]:
     return lines
 
 
+def _explained(lines: list[str], delimiter: str) -> list[str]:
+    """Put what the text above says of them in place of the names above the first row."""
+    first = next((n for n, line in enumerate(lines) if _is_row(line, delimiter)), 0)
+    for place in range(first - 1, max(first - _NEAR, 0) - 1, -1):
+        names = split_row(lines[place], delimiter)
+        told = explained(lines[:place], names) if len(names) > 1 else names
+        if told != names:
+            mark = "\t" if delimiter == "whitespace" else delimiter
+            told = [
+                _one_word(name) if delimiter == "whitespace" else name.replace(mark, " ")
+                for name in told
+            ]
+            return [*lines[:place], mark.join(told), *lines[place + 1 :]]
+    return lines
+
+
+def _is_row(line: str, delimiter: str) -> bool:
+    cells = split_row(line, delimiter)
+    numbers = sum(bool(re.fullmatch(_NUMBER, cell)) for cell in cells)
+    return len(cells) > 1 and numbers > 0 and 2 * numbers >= len(cells)
+
+
+def _one_word(name: str) -> str:
+    return re.sub(r"\s+(?![\[(])", "_", name).replace(" ", "")
+
+
 def _pairs(line: str) -> list[tuple[str, str, str]]:
     """Return names, numbers and units of a row that holds nothing else but a time of day."""
     stamp = _STAMP.match(line[:_LONGEST])
     place = stamp.end() if stamp else _blanks(line, 0)
+    tags = _TAGS.match(line[:_LONGEST], place) if stamp else None
+    place = tags.end() if tags else place
     found = []
     while place < min(len(line), _LONGEST):
         pair = _PAIR.match(line, place)
         if pair is None:
             return []
-        found.append((pair["name"], pair["value"], pair["unit"] or ""))
+        hexadecimal = pair["value"].lower().startswith("0x")
+        value = str(int(pair["value"], 16)) if hexadecimal else pair["value"]
+        found.append((pair["name"], value, pair["unit"] or ""))
         place = _blanks(line, pair.end())
     return found
 
@@ -259,7 +337,18 @@ def _without_names(lines: list[str]) -> list[str]:
     above = [
         line[stamp.end() :] if (stamp := _STAMP.match(line)) else line for line in lines[:first]
     ]
-    return [*above, *table]
+    return [*(said for line in above for said in _settings(line)), *table]
+
+
+def _settings(line: str) -> list[str]:
+    """Put each of several settings of a line on a line of its own, its unit apart.
+
+    >>> _settings("INFO config: pin=steel track_radius=8.5mm"), _settings("rate = 5 Hz")
+    (['INFO config:', 'pin: steel', 'track_radius: 8.5 mm'], ['rate = 5 Hz'])
+    """
+    said = list(_SETTING.finditer(line[:_LONGEST]))
+    found = [f"{s['name']}: {' '.join(filter(None, (s['value'], s['text'])))}" for s in said]
+    return [_SETTING.sub("", line).rstrip(), *found] if found else [line]
 
 
 def _below_each_other(lines: list[str], delimiter: str) -> list[str]:

@@ -46,8 +46,12 @@ class Text(Strict):
     arrangement: Arrangement = Field(
         "below names",
         description="where the numbers do not stand below a line of names: 'columns listed' one to "
-        "a line above them, 'names in rows' before each number as in 't:1.5 F:2.0', or tables of "
-        "the same columns 'side by side'; [header] then finds the line of names that is made of it",
+        "a line above them, 'names in rows' before each number as in 't:1.5 F:2.0', short 'names "
+        "explained' above as in 'FT  friction force, N', 'names in two rows' where the one above "
+        "tells alike ones apart, tables of the same columns 'side by side', 'a channel to a row' "
+        "(moment, name, number), 'a signal to a row', 'clocks of their own' for some columns, "
+        "'touching' numbers in columns of fixed width, 'json', or the 'declared records' of binary "
+        "numbers behind text; [header] then finds the line of names that is made of it",
     )
     end: Pattern | None = Field(None, description="a line matching this ends the table")
     skip_lines: Pattern | None = Field(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import re
 import zipfile
@@ -11,6 +12,7 @@ from typing import NamedTuple
 from tribolab.errors import ReadError
 from tribolab.io import cures
 from tribolab.io.dialects.arranged import holds_names
+from tribolab.io.dialects.declared_records import declares_records
 from tribolab.io.patterns import why_missing
 from tribolab.io.unpacked import ZIP, holds_arrays, unpacked
 
@@ -36,6 +38,8 @@ _FOREIGN = {
 }
 _PERHAPS_PROFILE = (b"PK\x03\x04",)
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
+_WIDE_HEAD = 4096  # bytes that tell how wide letters are
+_FEWEST_BYTES = 64
 
 
 class File(NamedTuple):
@@ -45,6 +49,17 @@ class File(NamedTuple):
     format: str
     size: int
     head: bytes
+
+    @property
+    def is_json(self) -> bool:
+        """Whether text is JSON as a whole, and no record to a line."""
+        return self.format == "text" and _is_json(self.head)
+
+    @property
+    def is_declared(self) -> bool:
+        """Whether it is binary behind a text that says how."""
+        wide = bool(wide_encoding(self.head))
+        return self.format == "text" and b"\0" in self.head and not wide
 
 
 def peek(path: str | Path, *, binary: bool = False) -> File:
@@ -76,10 +91,35 @@ def peek(path: str | Path, *, binary: bool = False) -> File:
     inner = unpacked(path, head)
     if inner != path:
         return peek(inner)
-    wide = head.startswith(_UTF16)
+    wide = bool(wide_encoding(head))
     if not head.strip(b"\xef\xbb\xbf \t\r\n" + b"\xff\xfe\0" * wide):
         raise ReadError(f"{path}: the file is empty")
     return File(path, _format(path, head, binary=binary), size, head)
+
+
+def wide_encoding(head: bytes) -> str:
+    """Return the encoding of text whose letters are two bytes wide; "" of all else.
+
+    Without a mark at the beginning one byte of nearly every letter is zero, always the same.
+
+    >>> wide_encoding("Zeit [s]".encode("utf-16-le") * 9), wide_encoding(b"Zeit [s]" * 9)
+    ('utf-16-le', '')
+    """
+    if head.startswith(_UTF16):
+        return "utf-16"
+    first = head[:_WIDE_HEAD]
+    if len(first) < _FEWEST_BYTES or b"\0" not in first:
+        return ""
+    for name, zeros, letters in (
+        ("utf-16-le", first[1::2], first[::2]),
+        ("utf-16-be", first[::2], first[1::2]),
+    ):
+        often = zeros.count(0) > 0.9 * len(zeros) and 0 not in letters
+        # letters and signs, and no small numbers of two bytes
+        plain = sum(byte >= 32 or byte in b"\t\r\n" for byte in letters)
+        if often and plain == len(letters):
+            return name
+    return ""
 
 
 def fits_format(format_of_file: str, format_of_dialect: str) -> bool:
@@ -91,6 +131,7 @@ def fits_format(format_of_file: str, format_of_dialect: str) -> bool:
     return format_of_file == format_of_dialect or (format_of_file, format_of_dialect) in _SAME
 
 
+_MOST_JSON = 1 << 28  # bytes: it is read as a whole
 _LINES = 100  # that tell whether each is a record of its own
 
 
@@ -124,16 +165,37 @@ def _format(path: Path, head: bytes, *, binary: bool) -> str:
             raise ReadError(
                 f"this is {name}", where=path, cure=cures.PERHAPS_PROFILE if profile else ""
             )
-    if b"\0" in head and not head.startswith(_UTF16):
+    if b"\0" in head and not wide_encoding(head):
+        if declares_records(head):
+            return "text"
         raise ReadError(
             "this is neither text nor a binary format that is known",
             where=path,
             cure=cures.PERHAPS_PROFILE,
         )
-    if _is_json(head):
+    if _is_json(head) and not _holds_columns(path):
         cure = "write its columns as a table, e.g. in Python pandas.DataFrame(...).to_csv(...)"
         raise ReadError("this is JSON, of which no table is read", where=path, cure=cure)
     return "text"
+
+
+def _holds_columns(path: Path) -> bool:
+    try:
+        state = path.stat()
+    except OSError:
+        return False
+    return state.st_size <= _MOST_JSON and _holds_tables(path, state.st_size, state.st_mtime_ns)
+
+
+@functools.lru_cache(maxsize=16)  # a file is looked at more than once
+def _holds_tables(path: Path, size: int, changed: int) -> bool:
+    # late: starting stays quick
+    from tribolab.io.dialects.json_tables import holds_tables
+
+    try:
+        return holds_tables(path.read_text("utf-8-sig"))
+    except (OSError, UnicodeDecodeError):
+        return False
 
 
 def _is_workbook(path: Path) -> bool:

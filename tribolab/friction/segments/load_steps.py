@@ -1,0 +1,92 @@
+"""Where the load of a stretch at constant speed goes from one level to another."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tribolab.friction.segments.stretches import Stretch
+from tribolab.medians import median
+
+_BINS = 200  # in a stretch
+_FEWEST = 10  # samples of a bin
+_STEP = 0.15  # share of the larger level: smaller steps are a load that wanders
+_LEVEL = 0.05  # share of a level within which it stays there
+_SHORTEST = 5  # bins of a level
+_MOST = 12  # levels: a load with more is not a programme
+_HELD = 0.8  # share of the stretch that lies at one of its levels
+_CHANGES = "load changes"
+
+
+def at_levels(
+    time: np.ndarray, force: np.ndarray, stretch: Stretch, min_samples: int
+) -> list[Stretch]:
+    """Return a stretch, cut where its load steps; what is between two levels is no segment.
+
+    Parameters
+    ----------
+    time, force
+        Of the run: [s], normal force [N] (time).
+    stretch
+        One at constant speed, in contact.
+    min_samples
+        Of a segment.
+
+    Returns
+    -------
+    list of Stretch
+        The stretch as it was where the load holds no levels: it wanders, or rises all the time.
+    """
+    first, last = np.searchsorted(time, [stretch.start, stretch.stop])
+    bins = min(_BINS, (last - first) // _FEWEST)
+    if bins < 2 * _SHORTEST:
+        return [stretch]
+    at = first + (last - first) * np.arange(bins + 1) // bins
+    part = force[first:last]
+    if not np.isfinite(part).all():
+        part = np.where(np.isfinite(part), part, median(part[np.isfinite(part)]))
+    mean = np.add.reduceat(part, at[:-1] - first) / np.diff(at)
+    levels = _levels(mean, 0, bins)
+    kept = [_held(mean, a, b) for a, b in levels]
+    if len(levels) < 2 or len(levels) > _MOST or any(b - a < _SHORTEST for a, b in kept):
+        return [stretch]
+    if sum(b - a for a, b in kept) < _HELD * bins:
+        return [stretch]
+    result: list[Stretch] = []
+    place = 0
+    for a, b in [*kept, (bins, bins)]:
+        for begin, end, kind in ((place, a, _CHANGES), (a, b, stretch.kind)):
+            if end > begin:
+                few = kind != _CHANGES and at[end] - at[begin] < min_samples
+                start = stretch.start if begin == 0 else float(time[at[begin]])
+                stop = stretch.stop if end == bins else float(time[at[end]])
+                kind = "too short" if few else kind
+                result.append(stretch._replace(start=start, stop=stop, kind=kind))
+        place = b
+    return result
+
+
+def _levels(mean: np.ndarray, first: int, last: int) -> list[tuple[int, int]]:
+    """Part bins at the place that leaves least scatter, as long as both sides differ by a step."""
+    part = mean[first:last]
+    if part.size < 2 * _SHORTEST:
+        return [(first, last)]
+    total, squares = np.cumsum(part), np.cumsum(part**2)
+    n = np.arange(1, part.size)
+    before = squares[:-1] - total[:-1] ** 2 / n
+    after = (squares[-1] - squares[:-1]) - (total[-1] - total[:-1]) ** 2 / (part.size - n)
+    cost = (before + after)[_SHORTEST - 1 : part.size - _SHORTEST]
+    cut = int(np.argmin(cost)) + _SHORTEST
+    ends = [abs(float(median(side))) for side in (part[:cut], part[cut:])]
+    near = [float(median(side)) for side in (part[max(0, cut - 20) : cut], part[cut : cut + 20])]
+    if max(abs(near[1] - near[0]), abs(ends[1] - ends[0])) < _STEP * max(ends):
+        return [(first, last)]
+    return [*_levels(mean, first, first + cut), *_levels(mean, first + cut, last)]
+
+
+def _held(mean: np.ndarray, first: int, last: int) -> tuple[int, int]:
+    """Return the bins of a level without what goes on to the next, or comes from the one before."""
+    level = float(median(mean[first:last]))
+    near = np.flatnonzero(np.abs(mean[first:last] - level) <= _LEVEL * abs(level))
+    if near.size < 0.7 * (last - first):  # no level
+        return first, first
+    return first + int(near[0]), first + int(near[-1]) + 1

@@ -1,0 +1,223 @@
+"""Binary numbers behind a header of text that declares them, put as a table of text."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.io.dialects.cells import split_name
+from tribolab.io.dialects.explained import is_unit, without_unit
+
+_LONGEST = 1 << 16  # bytes of a header
+_MARK = ";"
+_SETTING = re.compile(r"^[\s#;*%/!]*(?P<key>[^\W\d][\w .\-/]{0,40}?)\s*[=:]\s*(?P<value>\S.*?)\s*$")
+_OFFSET = re.compile(r"(?:header|head|data)[ _-]?(?:bytes|size|length|offset|start)|offset")
+_TYPE = re.compile(r"(?:data|sample|number|value|num)?[ _-]?(?:type|format)|dtype|datatype")
+_ORDER = re.compile(r"byte[ _-]?order|endian(?:ness)?")
+_COUNT = re.compile(r"(?:n|num|number of)?[ _-]?(?:channels|columns|fields)|nchan\w*")
+_CHANNEL = re.compile(r"(?:ch|chan|channel|col|column|field|var|signal)[ _.-]?(?P<number>\d{1,3})")
+_NAMES = re.compile(r"(?:channel|column|field|signal)?[ _-]?(?:names|channels|columns|fields)")
+_LAYOUT = re.compile(r"layout|arrangement|order|storage|interleav\w*")
+_APART = re.compile(r"non.?interleav|not interleav|planar|block|sequential|by.?channel", re.I)
+_END = re.compile(
+    r"^\W*(?:end[ _-]?(?:of[ _-]?)?head(?:er)?|header[ _-]?end|eoh"
+    r"|(?:begin|start)[ _-]?(?:of[ _-]?)?data|data[ _-]?(?:begin|start)|data|binary)\W*$",
+    re.IGNORECASE | re.MULTILINE,
+)
+_TYPES = {
+    **dict.fromkeys(("int16", "i2", "short", "s16", "integer16", "i16"), "i2"),
+    **dict.fromkeys(("uint16", "u2", "ushort", "u16", "unsigned short"), "u2"),
+    **dict.fromkeys(("int32", "i4", "long", "s32", "i32", "int"), "i4"),
+    **dict.fromkeys(("uint32", "u4", "ulong", "u32"), "u4"),
+    **dict.fromkeys(("float32", "f4", "single", "float", "real32", "r4", "f32"), "f4"),
+    **dict.fromkeys(("float64", "f8", "double", "real64", "r8", "f64"), "f8"),
+}
+_PAIR = re.compile(r"(?P<key>[^\W\d]\w*)\s*=\s*(?P<value>[^\s,;(]+)")
+_UNIT, _SCALE = ("unit", "units"), ("scale", "gain", "factor", "slope", "mult", "multiplier")
+_BIAS = ("bias", "offset", "intercept")
+_FORMULA = re.compile(r"\(\s*\w+\s*(?P<sign>[-+])\s*(?:offset|bias|intercept)\s*\)\s*[*x×]", re.I)
+_TURN = re.compile(
+    r"(?P<counts>\d{2,9})\s*(?:counts|cts|ticks|pulses|increments|steps|lines)?\s*"
+    r"(?:per|/|a|pro)\s*(?:turn|rev|revolution|umdrehung|tour)",
+    re.IGNORECASE,
+)
+_WRAPS = re.compile(r"wrap|roll.?over|overflow|starts anew|back to 0", re.IGNORECASE)
+_WRAPS_AT = re.compile(
+    r"(?:wraps?|roll.?over|overflows?)\s*(?:at|after|every)\s*(?P<at>\d{2,10})", re.I
+)
+
+
+class _Channel(NamedTuple):
+    """A channel: name, unit, number = raw * scale + bias; counts of a turn, and where it wraps."""
+
+    name: str
+    unit: str
+    scale: float
+    bias: float
+    turn: float = 0.0
+    wrap: float = 0.0
+
+
+class _Records(NamedTuple):
+    """Text of the header as lines, where the numbers begin, their type, how they lie."""
+
+    said: list[str]
+    offset: int
+    kind: np.dtype[np.generic]
+    channels: list[_Channel]
+    interleaved: bool
+
+
+def declares_records(head: bytes) -> bool:
+    """Whether a file begins with text that says how the binary numbers behind it are to be read.
+
+    Parameters
+    ----------
+    head
+        Its first bytes.
+    """
+    return _declared(head) is not None
+
+
+def records_as_text(content: bytes, most: int | None = None) -> list[str]:
+    """Return what a header declares as lines of text: settings, names with units, numbers.
+
+    Parameters
+    ----------
+    content
+        The whole file.
+    most
+        Rows that are wanted; None for all.
+
+    Notes
+    -----
+    A counter of parts of a turn that starts anew is counted on, in turns: it moves less than half
+    of what it holds from row to row.
+    """
+    told = _declared(content[:_LONGEST])
+    if told is None:
+        return []
+    count = (len(content) - told.offset) // told.kind.itemsize
+    rows = count // len(told.channels)
+    raw = np.frombuffer(content, told.kind, rows * len(told.channels), told.offset)
+    table = raw.reshape(rows, -1) if told.interleaved else raw.reshape(-1, rows).T
+    columns = [_in_units(table[:most, k], c) for k, c in enumerate(told.channels)]
+    head = _MARK.join(f"{c.name} [{c.unit}]" if c.unit else c.name for c in told.channels)
+    lines = [_MARK.join(row) for row in zip(*columns, strict=True)]
+    return [*told.said, head, *lines]
+
+
+def _in_units(raw: np.ndarray, channel: _Channel) -> list[str]:
+    values = raw.astype(float)
+    if channel.turn and channel.wrap:
+        values = np.unwrap(values, period=channel.wrap)
+    values = values / channel.turn if channel.turn else values * channel.scale + channel.bias
+    return ["" if not np.isfinite(value) else f"{value:.10g}" for value in values.tolist()]
+
+
+def _declared(head: bytes) -> _Records | None:
+    first = head[:_LONGEST]
+    text = first.split(b"\0")[0].decode("latin-1")
+    settings: dict[str, str] = {}
+    for line in text.replace("\r", "").split("\n"):
+        if (said := _SETTING.match(line)) and line.isprintable():
+            settings.setdefault(said["key"].strip().lower(), said["value"])
+    kind = _kind(settings)
+    end = _END.search(text)
+    offset = _whole(_first(settings, _OFFSET)) or (_behind(text, end.end()) if end else 0)
+    if kind is None or not offset or offset > len(head):
+        return None
+    above = text[: min(offset, end.start() if end else offset)]
+    channels = _channels(settings, above)
+    count = _whole(_first(settings, _COUNT))
+    if not channels or (count and count != len(channels)):
+        return None
+    how = _first(settings, _LAYOUT)
+    return _Records(_said(above), offset, kind, channels, not _APART.search(how))
+
+
+def _behind(text: str, place: int) -> int:
+    end = text.find("\n", place)
+    return end + 1 if end >= 0 else 0
+
+
+def _first(settings: dict[str, str], pattern: re.Pattern[str]) -> str:
+    return next((v for k, v in settings.items() if pattern.fullmatch(k)), "")
+
+
+def _whole(text: str) -> int:
+    number = re.match(r"\d+", text)
+    return int(number[0]) if number else 0
+
+
+def _kind(settings: dict[str, str]) -> np.dtype[np.generic] | None:
+    said = _first(settings, _TYPE).lower().strip("\"' ")
+    order = _first(settings, _ORDER).lower()
+    big = bool(re.search(r"big|msb|motorola|be\b|>", order or said))
+    bare = re.sub(r"[<>=]|[ _-]?(?:le|be|little|big)(?:[ _-]?endian)?$", "", said).strip()
+    name = _TYPES.get(bare)
+    return np.dtype((">" if big else "<") + name) if name else None
+
+
+def _channels(settings: dict[str, str], text: str) -> list[_Channel]:
+    numbered = {int(m["number"]): v for k, v in settings.items() if (m := _CHANNEL.fullmatch(k))}
+    listed = [numbered[k] for k in sorted(numbered)]
+    if not listed:
+        text_of = next((v for k, v in settings.items() if _NAMES.fullmatch(k) and "," in v), "")
+        listed = [name.strip() for name in text_of.split(",")] if text_of else []
+    formula = _FORMULA.search(text)
+    found = [_channel(said, formula["sign"] if formula else "") for said in listed]
+    names = [channel.name for channel in found]
+    return found if all(names) and len(set(names)) == len(names) else []
+
+
+def _channel(said: str, inside: str) -> _Channel:
+    """Return what is declared of a channel.
+
+    >>> _channel("FT unit=N scale=0.1 bias=2", "")[:4], _channel("FN, N", "")[:2]
+    (('FT', 'N', 0.1, 2.0), ('FN', 'N'))
+    >>> _channel("enc unit=counts (4096 per turn, wraps to 0)", "")
+    _Channel(name='angle', unit='turn', scale=1.0, bias=0.0, turn=4096.0, wrap=4096.0)
+    """
+    pairs = {m["key"].lower(): m["value"] for m in _PAIR.finditer(said)}
+    start = _PAIR.search(said)
+    plain = (said[: start.start()] if start else said).strip(" ,;\t\"'")
+    name, unit = split_name(plain)
+    words = [word.strip() for word in re.split(r"[,;\t]", name)]
+    unit = next((pairs[k] for k in _UNIT if k in pairs), unit or "")
+    if not unit and len(words) > 1 and is_unit(words[1]):
+        unit = words[1]
+    scale = _number(next((pairs[k] for k in _SCALE if k in pairs), ""), 1.0)
+    bias = _number(next((pairs[k] for k in _BIAS if k in pairs), ""), 0.0)
+    bias = {"-": -bias * scale, "+": bias * scale}.get(inside, bias)
+    turn = _TURN.search(said)
+    if turn and _WRAPS.search(said):
+        at = _WRAPS_AT.search(said)
+        counts = float(turn["counts"])
+        wrap = float(at["at"]) if at else counts
+        return _Channel("angle", "turn", 1.0, 0.0, counts, wrap)
+    return _Channel(words[0].replace(_MARK, " "), "" if unit == "-" else unit, scale, bias)
+
+
+def _number(text: str, otherwise: float) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return otherwise
+
+
+def _said(text: str) -> list[str]:
+    """Return the lines of a header, units of keys behind their numbers; no channels."""
+    lines: list[str] = []
+    for line in text.replace("\r", "").split("\n"):
+        said = _SETTING.match(line)
+        if said and _CHANNEL.fullmatch(said["key"].lower()):
+            continue
+        if said and re.fullmatch(r"[-+]?[\d.]+(?:e[-+]?\d+)?", said["value"], re.IGNORECASE):
+            key, unit = without_unit(said["key"])
+            line = f"{key}: {said['value']} {unit}".rstrip()
+        if line.strip():
+            lines.append(line)
+    return lines

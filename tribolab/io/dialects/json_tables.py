@@ -1,0 +1,258 @@
+"""JSON that holds columns of numbers, as text: settings, and a table for each of its parts."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections import Counter
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from tribolab.io.dialects.explained import is_unit, without_unit
+from tribolab.untyped import Json
+
+_JSON = re.compile(r"\ufeff?\s*(?:\{\s*\"[^\"]*\"\s*:|\[\s*[\[{])")
+_FEWEST = 3  # numbers in a column
+_ROWS = 5  # of a table of records
+_DEEPEST = 12  # objects within one another that are looked into
+_MOST_SETTINGS = 60
+_LONGEST = 200  # characters of a setting
+_MARK = ";"
+_NAME = ("name", "label", "title", "channel", "id", "key", "quantity", "signal")
+_UNIT = ("unit", "units", "uom", "einheit")
+_VALUE = ("value", "val", "wert", "magnitude")
+_SET = re.compile(r"set[_ -]?(?:point)?s?|target|soll\w*|commanded|programmed", re.IGNORECASE)
+
+
+class _Table(NamedTuple):
+    """Columns by name, their units, and what is said beside them, as lines."""
+
+    columns: dict[str, list[float]]
+    units: dict[str, str]
+    said: list[str]
+
+
+def holds_tables(text: str) -> bool:
+    """Whether a text is JSON as a whole and holds at least two columns of numbers.
+
+    Parameters
+    ----------
+    text
+        The whole file.
+    """
+    return _JSON.match(text) is not None and bool(_tables(text)[0])
+
+
+def tables_as_text(text: str) -> list[str]:
+    r"""Return lines of text that say what JSON does: settings, then the tables of one kind.
+
+    Parameters
+    ----------
+    text
+        The whole file.
+
+    Notes
+    -----
+    Columns are lists of as many numbers in one object, lists of records, rows below their names,
+    or objects with a name and values. Of several kinds of tables that which holds most numbers is
+    taken, each as a step with what is said beside it above.
+
+    Examples
+    --------
+    >>> tables_as_text('{"r_mm": 5, "units": {"t": "s"}, "t": [0, 1, 2], "F": [3, 4, null]}')
+    ['r: 5 mm', 't [s];F', '0;3', '1;4', '2;']
+    """
+    tables, said, units = _tables(text)
+    if not tables:
+        return text.split("\n")
+    sizes: Counter[tuple[str, ...]] = Counter()
+    for table in tables:
+        names = tuple(sorted(table.columns))
+        sizes[names] += sum(map(len, table.columns.values()))
+    kind = sizes.most_common(1)[0][0]
+    chosen = [table for table in tables if tuple(sorted(table.columns)) == kind]
+    order = list(chosen[0].columns)
+    lines = said[:_MOST_SETTINGS]
+    for number, table in enumerate(chosen, 1):
+        if len(chosen) > 1:
+            lines += ["", f"Step {number}"]
+        lines += _with_units(table.said, units)
+        own = units | table.units
+        lines.append(_MARK.join(f"{n} [{own[n]}]" if own.get(n) else _clean(n) for n in order))
+        columns = [table.columns[name] for name in order]
+        lines += [_MARK.join(map(_number, row)) for row in zip(*columns, strict=True)]
+    return lines
+
+
+def _tables(text: str) -> tuple[list[_Table], list[str], dict[str, str]]:
+    try:
+        document = json.loads(text.removeprefix("\ufeff"))
+    except (ValueError, RecursionError):
+        return [], [], {}
+    tables: list[_Table] = []
+    said = _walk(document, "", tables, 0)
+    names = {name for table in tables for name in table.columns}
+    units = dict(_units(document, names, "", 0))
+    return tables, _with_units(said, units), units
+
+
+def _walk(part: Json | list[object], key: str, tables: list[_Table], depth: int) -> list[str]:
+    """Collect tables; return the settings of a part that holds none further down."""
+    if depth > _DEEPEST:
+        return []
+    columns, units = _columns(part)
+    if isinstance(part, dict):
+        before = len(tables)
+        own = _simple(part, key)
+        if columns:
+            tables.append(_Table(columns, units, own))
+            return []
+        for name, inner in part.items():
+            if isinstance(inner, dict | list) and _setting(name, inner) is None:
+                own += _walk(inner, name, tables, depth + 1)
+        if len(tables) == before + 1 and depth:  # what is said beside a table belongs to it
+            tables[-1] = tables[-1]._replace(said=[*own, *tables[-1].said])
+            return []
+        return own
+    if columns:
+        tables.append(_Table(columns, units, []))
+        return []
+    said = []
+    for inner in part:
+        if isinstance(inner, dict | list):
+            said += _walk(inner, key, tables, depth + 1)
+    return said
+
+
+def _columns(part: object) -> tuple[dict[str, list[float]], dict[str, str]]:
+    """Return the columns that a part is, and their units; none if it is no table."""
+    if isinstance(part, dict):
+        named = part.get("columns", part.get("fields", part.get("header")))
+        rows = next((part[k] for k in ("data", "rows", "values") if k in part), None)
+        if isinstance(named, list) and isinstance(rows, list):
+            names = [_named(name) for name in named]
+            if columns := _of_rows([name for name, _ in names], rows):
+                return columns, {name: unit for name, unit in names if unit}
+        lists = {k: _listed(v) for k, v in part.items()}
+        return _alike({k: v for k, v in lists.items() if v is not None}), {}
+    if not isinstance(part, list) or not part:
+        return {}, {}
+    if all(isinstance(one, dict) for one in part):
+        channels = [(_named(one), _values_of(one)) for one in part]
+        if len(part) > 1 and all(name and values for (name, _), values in channels):
+            columns = _alike({name: values or [] for (name, _), values in channels})
+            return columns, {name: unit for (name, unit), _ in channels if unit}
+        return _of_records(part), {}
+    if isinstance(part[0], list) and all(isinstance(name, str) for name in part[0]):
+        return _of_rows(list(part[0]), part[1:]), {}
+    return {}, {}
+
+
+def _named(one: object) -> tuple[str, str]:
+    """Return the name and the unit of a channel."""
+    if isinstance(one, str):
+        return one, ""
+    if not isinstance(one, dict):
+        return "", ""
+    told = {k.lower(): v for k, v in one.items() if isinstance(v, str)}
+    name = next((told[k] for k in _NAME if k in told), "")
+    return name, next((told[k] for k in _UNIT if k in told), "")
+
+
+def _values_of(one: Json) -> list[float] | None:
+    lists = [values for value in one.values() if (values := _listed(value)) is not None]
+    return lists[0] if len(lists) == 1 else None
+
+
+def _listed(values: object) -> list[float] | None:
+    """Return a list of numbers, or the numbers of an object that counts them; None of others."""
+    if isinstance(values, dict) and len(values) >= _FEWEST and all(map(str.isdigit, values)):
+        values = list(values.values())
+    if not isinstance(values, list) or len(values) < _FEWEST:
+        return None
+    if any(value is not None and not _is_number(value) for value in values):
+        return None
+    return [math.nan if value is None else float(value) for value in values]
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _alike(lists: dict[str, list[float]]) -> dict[str, list[float]]:
+    """Return those of the commonest length, if there are at least two."""
+    lengths = Counter(map(len, lists.values()))
+    length, often = lengths.most_common(1)[0] if lengths else (0, 0)
+    return {k: v for k, v in lists.items() if len(v) == length} if often > 1 else {}
+
+
+def _of_records(records: list[Json]) -> dict[str, list[float]]:
+    names = [k for k, v in records[0].items() if _is_number(v) or v is None]
+    if len(records) < _ROWS or len(names) < 2:
+        return {}
+    columns = {name: [record.get(name) for record in records] for name in names}
+    return {k: listed for k, v in columns.items() if (listed := _listed(v)) is not None}
+
+
+def _of_rows(names: list[str], rows: list[object]) -> dict[str, list[float]]:
+    if len(names) < 2 or len(rows) < _ROWS or "" in names:
+        return {}
+    if not all(isinstance(row, list) and len(row) == len(names) for row in rows):
+        return {}
+    columns = dict(zip(names, map(list, zip(*rows, strict=True)), strict=True))
+    return {k: listed for k, v in columns.items() if (listed := _listed(v)) is not None}
+
+
+def _simple(part: Json, key: str) -> list[str]:
+    """Return what an object says of itself, a line for each: "radius: 15 mm"."""
+    before = f"{_clean(key)} " if _SET.fullmatch(key) else ""
+    lines = [f"{before}{line}" for name, v in part.items() if (line := _setting(name, v))]
+    return [line[:_LONGEST] for line in lines]
+
+
+def _setting(name: str, value: object) -> str | None:
+    if isinstance(value, dict):
+        told = {k.lower(): v for k, v in value.items()}
+        number = next((told[k] for k in _VALUE if k in told), None)
+        unit = next((told[k] for k in _UNIT if k in told), "")
+        if number is None or isinstance(number, dict | list):
+            return None
+        return f"{_clean(name)}: {_clean(str(number))} {_clean(str(unit))}".rstrip()
+    if _is_number(value):
+        plain, unit = without_unit(_clean(name))
+        return f"{plain}: {value} {unit}".rstrip()
+    return f"{_clean(name)}: {_clean(value)}" if isinstance(value, str) and value else None
+
+
+def _units(part: object, names: set[str], key: str, depth: int) -> Iterator[tuple[str, str]]:
+    """Yield units that an object gives to names of columns."""
+    if depth > _DEEPEST or not isinstance(part, dict):
+        return
+    own = {k: v for k, v in part.items() if k in names and isinstance(v, str)}
+    told = len(own) > 1 or key.lower() in _UNIT
+    if told and all(is_unit(unit) for unit in own.values() if unit):
+        yield from own.items()
+    for name, inner in part.items():
+        yield from _units(inner, names, name, depth + 1)
+
+
+def _with_units(said: list[str], units: dict[str, str]) -> list[str]:
+    """Add the units of columns to settings of the same name, and leave out units themselves."""
+    lines = []
+    for line in said:
+        name, _, value = line.partition(": ")
+        unit = units.get(name.split(" ")[-1], "")
+        if unit == value:
+            continue
+        bare = re.fullmatch(r"[-+\d.eE]+", value) is not None
+        lines.append(f"{line} {unit}" if unit and bare else line)
+    return lines
+
+
+def _clean(text: str) -> str:
+    return re.sub(rf"[\r\n{_MARK}]+", " ", text).strip()
+
+
+def _number(value: float) -> str:
+    return "" if math.isnan(value) else f"{value:.15g}"
