@@ -115,7 +115,9 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
             except ReadError as as_run:
                 if bare:
                     what = f"{as_run.what}; taken for a profile or map, {error.what}"
-                    raise ReadError(what, where=as_run.where, cure=as_run.cure) from error
+                    raise ReadError(
+                        what, where=as_run.where, cure=error.cure or as_run.cure
+                    ) from error
                 raise
         raise
 

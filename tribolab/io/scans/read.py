@@ -105,8 +105,17 @@ def _read(
     if dialect is not None:
         scans, sha256 = _by_dialect(path, dialect)
     else:
-        scans, sha256 = [read_undescribed(path, x_unit, height_unit)], sha256_of_file(path)
+        scans = _apart(read_undescribed(path, x_unit, height_unit))
+        sha256 = sha256_of_file(path)
     return [_finished(path, scan, sha256) for scan in scans]
+
+
+def _apart(scan: xr.Dataset) -> list[xr.Dataset]:
+    """Return the profiles that a file holds side by side one by one."""
+    if "scan" not in scan.dims:
+        return [scan]
+    number = scan.sizes["scan"]
+    return [scan.isel(scan=k).assign_attrs(traces=str(number)) for k in range(number)]
 
 
 def _finished(path: Path, scan: xr.Dataset, sha256: str) -> xr.Dataset:

@@ -19,18 +19,20 @@ _TYPES = dict(
 )
 _CLASSES = dict(zip(range(6, 16), "f8 f4 i1 u1 i2 u2 i4 u4 i8 u8".split(), strict=True))
 _COMPLEX = 0x0800
-_STRUCTURE = 2
+_STRUCTURE, _TEXT = 2, 4
+_SIGNS = {1: "latin-1", 2: "latin-1", 4: "utf-16", 16: "utf-8", 17: "utf-16"}  # of text by type
 _DEEPEST = 8  # structures within structures
 
 
 class Variable(NamedTuple):
-    """One variable: its name, and its numbers (None: text, cells, a complex array).
+    """One variable: its name, and its numbers (None: text, cells, a complex array), or its text.
 
     A field of a structure is called as in MATLAB: ``data.force``.
     """
 
     name: str
     numbers: np.ndarray | None
+    text: str = ""
 
 
 def read_variables(path: Path) -> list[Variable]:
@@ -112,6 +114,8 @@ def _variables(data: memoryview, order: str, within: str = "", depth: int = 0) -
     kind = int(flags[0]) & 0xFF
     if kind == _STRUCTURE and (shape == 1).all() and len(parts) > 4 and depth < _DEEPEST:
         return _fields(name, parts, order, depth)
+    if kind == _TEXT and len(parts) > 3 and (shape[:1] == 1).all():
+        return [Variable(name, None, _text(parts[3], order))]
     if kind not in _CLASSES or int(flags[0]) & _COMPLEX:
         return [Variable(name, None)]
     numbers = _numbers(parts[3], order) if len(parts) > 3 else np.empty(0)
@@ -140,6 +144,13 @@ def _fields(
         if kind == _MATRIX and len(data):
             variables += _variables(data, order, label, depth + 1)
     return variables
+
+
+def _text(part: tuple[int, memoryview], order: str) -> str:
+    encoding = _SIGNS.get(part[0], "")
+    if encoding == "utf-16":
+        encoding += {"<": "-le", ">": "-be"}[order]
+    return bytes(part[1]).decode(encoding, errors="replace").strip() if encoding else ""
 
 
 def _numbers(part: tuple[int, memoryview], order: str) -> np.ndarray:
