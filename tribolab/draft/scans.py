@@ -23,6 +23,8 @@ from tribolab.io.scans.read import files_of, read_known_scans, stacked
 from tribolab.io.scans.undescribed import is_own_text
 from tribolab.stamping import stamp
 
+_TRACE = ", trace "
+
 
 @overload
 def read_scans(
@@ -137,7 +139,17 @@ def read_traces(path: Path, instrument: Instrument | None = None) -> dict[Path, 
     scans = read_scans([path], instrument, stack=False)
     if len(scans) == 1:
         return {path: scans[0]}
-    return {path.with_name(f"{path.name}, trace {k}"): scan for k, scan in enumerate(scans, 1)}
+    return {path.with_name(f"{path.name}{_TRACE}{k}"): scan for k, scan in enumerate(scans, 1)}
+
+
+def file_of(trace: Path) -> Path:
+    """Return the file that a trace of `read_traces` stands in.
+
+    >>> file_of(Path("line.txt, trace 2")).name, file_of(Path("line.txt")).name
+    ('line.txt', 'line.txt')
+    """
+    name, mark, number = trace.name.rpartition(_TRACE)
+    return trace.with_name(name) if mark and number.isdecimal() else trace
 
 
 def _read(file: Path, units: dict[str, str | None]) -> list[xr.Dataset]:
