@@ -14,7 +14,7 @@ import xarray as xr
 from tribolab.aliases import PathLike
 from tribolab.draft.dialect.draft import holds_counts, holds_heights
 from tribolab.draft.dialect.questions import GuessedError, how_to_keep, questions
-from tribolab.draft.on_the_fly import DRAFTED, draft_of
+from tribolab.draft.on_the_fly import DRAFTED, draft_of, lacks_distance
 from tribolab.errors import ReadError
 from tribolab.io import cures
 from tribolab.io.dialects.find import Dialect, Instrument
@@ -182,6 +182,7 @@ def _drafted(file: Path, error: ReadError) -> Dialect | None:
     understood = draft.understood
     if not draft.named and not (understood is not None and understood.pitched):
         return None
-    if asked := questions(draft):
-        raise GuessedError(file, asked, cures.SURFACE) from error
+    asked, lacks = questions(draft), lacks_distance(draft)
+    if asked or lacks:
+        raise GuessedError(file, asked, cures.SURFACE, lacks) from error
     return draft.dialect

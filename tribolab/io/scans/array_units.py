@@ -45,8 +45,8 @@ _OF_HEIGHTS = re.compile(r"(?i)^(?:z|heights?)_")
 def tokens(name: str) -> frozenset[str]:
     """Return the words of an array's own name, in small letters.
 
-    >>> sorted(tokens("scan/heightMap_um"))
-    ['height', 'map', 'um']
+    >>> sorted(tokens("scan/heightMap"))
+    ['height', 'heightmap', 'map']
     """
     leaf = re.split(r"[./]", name)[-1]
     return frozenset(word.lower() for word in _WORD.findall(leaf)) | {leaf.lower()}
