@@ -19,6 +19,7 @@ from tribolab.io.scans.sur import is_sur, plain_sur
 from tribolab.io.scans.surfer import is_surfer, read_surfer
 from tribolab.io.scans.x3p import is_iso_xml, main_of, read_iso_xml, read_x3p
 from tribolab.io.scans.xml_values import is_xml, read_xml_values
+from tribolab.io.scans.zygo_xyz import is_zygo_xyz, read_zygo_xyz
 from tribolab.io.unpacked import ZIP, of_the_file, unpacked
 
 _HEAD = 1 << 14  # bytes that tell a format
@@ -28,7 +29,8 @@ def is_own_text(path: Path) -> bool:
     """Whether a file is text of a format that is read here: what is wrong with it is said."""
     with path.open("rb") as file:
         head = file.read(_HEAD)
-    return is_xml(head) or is_iso_xml(head) or is_gauge(head)
+    named = is_surfer(head) or is_zygo_xyz(head)
+    return named or is_xml(head) or is_iso_xml(head) or is_gauge(head)
 
 
 def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
@@ -80,6 +82,8 @@ def _read(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset
             return _read(inside, x_unit, height_unit)
         except ReadError as error:
             raise of_the_file(error, inside, path) from error
+    if is_zygo_xyz(head):
+        return read_zygo_xyz(path, x_unit)
     if is_surfer(head):
         return read_surfer(path, x_unit, height_unit)
     if head.startswith(ZIP) and (main := main_of(path)) is not None:
