@@ -111,7 +111,8 @@ def _of_table(form: str) -> Callable[[Path], tuple[Held, list[HeldColumn]]]:
 
 def _mat(path: Path) -> tuple[Held, list[HeldColumn]]:
     columns = []
-    for name, numbers, _ in read_variables(path):
+    for variable in read_variables(path):
+        name, numbers = variable.name, variable.numbers
         if numbers is not None and numbers.size and numbers.size == max(numbers.shape):
             columns.append(HeldColumn(name, None, numbers.ravel()))
     return Held("mat"), columns
