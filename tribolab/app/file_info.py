@@ -13,6 +13,7 @@ from tribolab.app.scan_info import areal_lines, roughness_lines, stated_lines
 from tribolab.campaign.engine.stage import Stage
 from tribolab.draft.on_the_fly import draft_of, holds_run, read_log
 from tribolab.errors import ReadError, TribolabError, shown, told
+from tribolab.io import cures
 from tribolab.io.companion import CompanionFacts, describe_companion
 from tribolab.io.dialects.find import known_dialects, load_dialect
 from tribolab.io.dialects.signature import peek
@@ -117,9 +118,9 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
             except ReadError as as_run:
                 if bare:
                     what = f"{as_run.what}; taken for a profile or map, {error.what}"
-                    raise ReadError(
-                        what, where=as_run.where, cure=error.cure or as_run.cure
-                    ) from error
+                    general = error.cure in ("", cures.MEND_UNITS, cures.SIZE)
+                    cure = as_run.cure if general else error.cure
+                    raise ReadError(what, where=as_run.where, cure=cure) from error
                 raise
         raise
 
