@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
 import pandas as pd
 import pytest
 from campaigns import surfaces_alone
@@ -41,3 +42,20 @@ def test_a_campaign_of_nothing_is_told_what_it_may_hold(tmp_path):
     (tmp_path / "campaign.toml").write_text('[campaign]\nname = "empty"\n', "utf-8")
     with pytest.raises(ConfigError, match=r"add \[\[run\]\].* or \[\[surface\]\]"):
         load_campaign(tmp_path / "campaign.toml")
+
+
+def test_roughness_does_not_wait_for_a_power_law(tmp_path):
+    rng = np.random.default_rng(7)
+    smooth = np.convolve(rng.standard_normal(8200), np.hanning(201) / 50, "valid")[:8000]
+    rows = "\n".join(f"{0.0005 * n:.4f},{z:.5f}" for n, z in enumerate(smooth))
+    (tmp_path / "shaft.txt").write_text(f"X [mm],Z [um]\n{rows}\n")
+    (tmp_path / "campaign.toml").write_text(
+        '[campaign]\nname = "shaft"\nraw = "."\n[[surface]]\nname = "shaft"\nscans = "shaft.txt"\n'
+    )
+    done = CliRunner().invoke(app, ["run", str(tmp_path / "campaign.toml")])
+    assert done.exit_code == 0, done.output
+    rough = pd.read_csv(tmp_path / "results" / "tables" / "roughness.csv")
+    level = smooth - np.polyval(np.polyfit(np.arange(8000), smooth, 2), np.arange(8000))
+    assert rough.Pq_m[0] == pytest.approx(1e-6 * level.std(), rel=2e-3)
+    said = pd.read_csv(tmp_path / "results" / "tables" / "findings.csv").message
+    assert said.str.contains("not extrapolated: C").any()

@@ -132,3 +132,10 @@ def test_a_bump_in_the_spectrum_is_kept():
     c = Q**-3.6 * (1 + 3 * np.exp(-0.5 * (np.log(Q / 5e4) / 0.1) ** 2))
     wide = extrapolate(spectrum(Q, c), q_low=1e3, fit_decade=(1e5, 1e6))
     np.testing.assert_array_equal(wide.psd_2d[wide.origin == 0], c)
+
+
+def test_the_measured_waves_alone_need_no_power_law():
+    rising = spectrum(Q, Q**2.0)
+    alone = extrapolate(rising, q_high=float(Q[-1]))
+    np.testing.assert_array_equal(alone.psd_2d, rising.psd_2d)
+    assert np.isnan(alone.attrs["hurst_exponent"]) and "not known" in alone.attrs["rolloff"]

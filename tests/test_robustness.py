@@ -123,7 +123,7 @@ def test_a_file_of_empty_lines_is_empty_in_any_encoding(tmp_path, mark):
 def test_own_mat_reader_agrees_with_scipy(shared_data):
     for path in sorted((shared_data / "stickslip_paper_CeCILL-B").glob("*.mat")):
         theirs = scipy.io.loadmat(path)
-        for name, numbers in read_variables(path):
+        for name, numbers, *_ in read_variables(path):
             np.testing.assert_array_equal(numbers, theirs[name], strict=True)
 
 

@@ -5,6 +5,7 @@ import gzip
 import numpy as np
 import pytest
 
+from tribolab.app.checks import check_files
 from tribolab.app.file_info import file_lines
 from tribolab.draft.dialect.draft import draft_dialect, save_draft
 from tribolab.draft.scans import read_scans
@@ -569,3 +570,19 @@ def test_a_column_of_other_than_the_stated_number_of_heights_is_no_map(tmp_path)
     (tmp_path / "a.txt").write_text(head + "\n".join(f"{z:.3f}" for z in HEIGHTS[:390]) + "\n")
     with pytest.raises(TribolabError):
         read_scans(tmp_path / "a.txt")
+
+
+def test_traces_of_one_file_are_checked_each(tmp_path):
+    path = written(tmp_path, tables("Trace 1", "Trace 2"))
+    other = written(tmp_path, tables("Trace 1"), "other.txt")
+    names = [one.files[0].name for one in check_files([path, other])]
+    assert names == ["line.txt, trace 1", "line.txt, trace 2", "other.txt"]
+
+
+@pytest.mark.parametrize("name", ["Trace", "Messung", "Profil", "Ślad"])
+def test_counted_columns_beside_x_are_profiles(tmp_path, name):
+    rows = "\n".join(f"{0.00025 * n:.5f}\t{z}\t{2 * z:.4f}" for n, z in enumerate(Z))
+    path = tmp_path / "lines.txt"
+    path.write_text(f"x [mm]\t{name} 1 [um]\t{name} 2 [um]\n{rows}\n", "utf-8")
+    scan = read_scans(path)
+    np.testing.assert_allclose(scan.height[1], 2e-6 * Z, atol=1e-10)

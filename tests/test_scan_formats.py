@@ -8,6 +8,7 @@ import zlib
 import numpy as np
 import pytest
 
+from tribolab.app.file_info import read_scan
 from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError
 
@@ -285,3 +286,77 @@ def test_an_sdf_draft_that_is_cut_short_is_told_by_its_own_name(tmp_path):
     with pytest.raises(ReadError) as told:
         read_scans(path)
     assert str(path) in str(told.value)
+
+
+WAVE = np.round(np.sin(np.arange(60) / 5.0), 4)
+
+
+def comma(values):
+    return [f"{value:.4f}".replace(".", ",") for value in values]
+
+
+COMMA_XML = {
+    "a list": "<P><Einheit>µm</Einheit><Punktabstand Unit='µm'>0,5</Punktabstand><Werte>"
+    + " ".join(comma(WAVE))
+    + "</Werte></P>",
+    "units of both": "<M><Profil dx='0,0005' dxUnit='mm' zUnit='um'>"
+    + "".join(f"<z>{z}</z>" for z in comma(WAVE))
+    + "</Profil></M>",
+    "points": "<M><Punkte xUnit='mm' zUnit='um'>"
+    + "".join(
+        f"<P><x>{x}</x><z>{z}</z></P>"
+        for x, z in zip(comma(0.0005 * np.arange(60)), comma(WAVE), strict=True)
+    )
+    + "</Punkte></M>",
+    "points in attributes": "<M xUnit='mm' zUnit='um'>"
+    + "".join(f"<P x='{0.0005 * n:.4f}' z='{z}'/>" for n, z in enumerate(WAVE))
+    + "</M>",
+}
+
+
+@pytest.mark.parametrize("kind", COMMA_XML)
+def test_xml_has_decimal_commas_and_units_of_its_own(tmp_path, kind):
+    path = tmp_path / "line.xml"
+    path.write_text(f'<?xml version="1.0" encoding="utf-8"?>\n{COMMA_XML[kind]}\n', "utf-8")
+    scan = read_scans(path)
+    np.testing.assert_allclose(scan.height[0], 1e-6 * WAVE, atol=1e-12)
+    assert scan.attrs["pitch_m"] == pytest.approx(0.5e-6)
+
+
+def test_a_mark_for_lost_points_in_a_foreign_format_is_no_height(tmp_path):
+    z = np.random.default_rng(2).normal(size=(10, 12)).round(3)
+    cells = z.astype(object)
+    cells[2, 3] = cells[2, 4] = 1.70141e38
+    head = "# File Format = ASCII\n# Created by SPIP 6.0\n# x-pixels = 12\n# y-pixels = 10\n"
+    head += "# x-length = 1200\n# y-length = 1000\n# z-unit = nm\n# voidpixels = 2\n"
+    rows = "\n".join("\t".join(map(str, row)) for row in cells)
+    (tmp_path / "a.asc").write_text(f"{head}# Start of Data:\n{rows}\n")
+    scan = read_scans(tmp_path / "a.asc")
+    assert int(np.isnan(scan.height).sum()) == 2
+    assert float(np.nanmax(np.abs(scan.height))) < 1e-8
+    assert "1.70141e+38 2 times" in scan.attrs["taken_for_missing"]
+
+
+def test_zygo_text_is_a_map_in_pixels_of_its_camera(tmp_path):
+    z = np.random.default_rng(2).normal(size=(9, 12)).round(4)
+    points = [f"{x} {y} {z[y, x]}" for y in range(9) for x in range(12)]
+    points[14] = "2 1 No Data"
+    head = 'Zygo XYZ Data File - Format 2\n"8.1"\n0 0 0 0 0 0\n0 0 12 9\n"a"\n"b"\n"c"\n'
+    head += "0 0.5 6.3e-07 0 1 20 1.5e-06 1577872800\n#\n"
+    (tmp_path / "a.xyz").write_text(head + "\n".join(points) + "\n#\n")
+    scan = read_scans(tmp_path / "a.xyz")
+    assert np.isnan(scan.height.values[1, 2]) and scan.attrs["pitch_m"] == pytest.approx(1.5e-6)
+    np.testing.assert_allclose(scan.height.values[2:], 1e-6 * z[2:], atol=1e-12)
+    (tmp_path / "b.xyz").write_text((head + "\n".join(points)).replace("1.5e-06", "0") + "\n#\n")
+    with pytest.raises(ReadError, match="how large a pixel is"):
+        read_scans(tmp_path / "b.xyz")
+
+
+def test_points_on_circles_are_told_to_lie_on_no_grid(tmp_path):
+    turn = np.arange(120) * 2 * np.pi / 120
+    rows = [
+        f"{r * np.cos(a):.4f};{r * np.sin(a):.4f};{np.sin(3 * a):.4f}" for r in (5, 7) for a in turn
+    ]
+    (tmp_path / "cmm.csv").write_text("x [mm];y [mm];z [um]\n" + "\n".join(rows) + "\n")
+    with pytest.raises(ReadError, match="even grid along x; of points that lie freely"):
+        read_scan(tmp_path / "cmm.csv")

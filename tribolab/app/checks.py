@@ -184,10 +184,18 @@ def check_files(
     ConfigError
         If there is no such instrument.
     """
+    # late: starting stays quick
+    from tribolab.draft.scans import file_of
+
     stage = Checks(paths, instrument, repeats)
     done = perform(stage, executor, progress)
     place = {file: number for number, group in enumerate(stage.groups) for file in group}
-    return sorted((c for part in done for c in part), key=lambda c: place[c.files[0]])
+
+    def first(one: Checked) -> int:
+        file = one.files[0]
+        return place[file] if file in place else place[file_of(file)]
+
+    return sorted((c for part in done for c in part), key=first)
 
 
 def _check_run(task: CheckTask) -> list[Checked]:

@@ -11,8 +11,9 @@ from tribolab.app.quick import importing, plain_arrays_only
 from tribolab.app.ranges import range_of
 from tribolab.app.scan_info import areal_lines, roughness_lines, stated_lines
 from tribolab.campaign.engine.stage import Stage
-from tribolab.draft.on_the_fly import holds_run, read_log
+from tribolab.draft.on_the_fly import draft_of, holds_run, read_log
 from tribolab.errors import ReadError, TribolabError, shown, told
+from tribolab.io import cures
 from tribolab.io.companion import CompanionFacts, describe_companion
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.dialects.find import known_dialects, load_dialect
@@ -108,6 +109,8 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
     try:
         return read_traces(path, instrument)
     except ReadError as error:
+        if _is_told(path, error):
+            raise
         if instrument is None and kind_of(path) == "unknown" and _is_text(path):
             # a map or profile, but for its units
             bare = isinstance(error, NotSaidError) and not holds_run(path, by_name=False)
@@ -116,9 +119,28 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
             except ReadError as as_run:
                 if bare:
                     what = f"{as_run.what}; taken for a profile or map, {error.what}"
-                    raise ReadError(what, where=as_run.where, cure=as_run.cure) from error
+                    general = error.cure in ("", cures.MEND_UNITS, cures.SIZE)
+                    cure = as_run.cure if general else error.cure
+                    raise ReadError(what, where=as_run.where, cure=cure) from error
                 raise
         raise
+
+
+def _is_told(path: Path, error: ReadError) -> bool:
+    """Whether an error says of a scan, and of nothing else, what is wrong with it."""
+    # late: starting stays quick
+    from tribolab.draft.dialect.questions import GuessedError, questions
+    from tribolab.io.scans.undescribed import is_own_text
+
+    if isinstance(error, GuessedError):
+        return False  # which is told again
+    try:
+        if is_own_text(path):
+            return True
+    except OSError:
+        return False
+    draft = draft_of(path)
+    return draft is not None and draft.kind == "scan" and draft.named and not questions(draft)
 
 
 def _is_text(path: Path) -> bool:

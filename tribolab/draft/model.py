@@ -64,8 +64,8 @@ class Understood(NamedTuple):
     track, of what presses, of how fast it slides, of the rows, and of what drives it.
     Where no column is time, `rate_pattern` finds the sample rate before the table, if it is there;
     where no column is a position, `pitch_pattern` the distance of a profile's points,
-    `length_pattern` its length, or `pitch` is what is known of the distance. With `points` each row
-    is a result at one speed.
+    `length_pattern` its length, or `pitch` is what is known of the distance; `lacks` says what
+    would tell it. With `points` each row is a result at one speed.
     """
 
     kind: Kind
@@ -87,6 +87,7 @@ class Understood(NamedTuple):
     pitch_pattern: str = ""
     length_pattern: str = ""
     pitch: str = ""
+    lacks: str = ""
     points: bool = False
 
     @property

@@ -131,6 +131,8 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     if draft is None or draft.kind == "table":
         raise error
     asked = questions(draft)
+    if unsaid := lacks_distance(draft):
+        raise GuessedError(path, asked, cures.SURFACE, unsaid) from error
     if asked or lacks_friction(draft):
         raise GuessedError(path, asked, lacks=missing_words(draft)) from error
     if draft.kind == "scan" and draft.layout and draft.layout.held:
@@ -140,6 +142,12 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
         raise ReadError(what, where=path, cure=cures.PROFILE) from error
     assert draft.dialect is not None  # only tables have none
     return draft.dialect
+
+
+def lacks_distance(draft: Draft) -> list[str]:
+    """Return what is missing of the distance of a profile's points; empty if nothing is."""
+    understood = draft.understood
+    return [understood.lacks] if understood is not None and understood.lacks else []
 
 
 def _says_all(path: Path) -> Dialect | None:

@@ -14,7 +14,7 @@ import xarray as xr
 from tribolab.aliases import PathLike
 from tribolab.draft.dialect.draft import holds_counts, holds_heights
 from tribolab.draft.dialect.questions import GuessedError, how_to_keep, questions
-from tribolab.draft.on_the_fly import DRAFTED, draft_of
+from tribolab.draft.on_the_fly import DRAFTED, draft_of, lacks_distance
 from tribolab.errors import ReadError
 from tribolab.io import cures
 from tribolab.io.dialects.find import Dialect, Instrument
@@ -22,6 +22,8 @@ from tribolab.io.scans.extent import doubt_about_heights
 from tribolab.io.scans.read import files_of, read_known_scans, stacked
 from tribolab.io.scans.undescribed import is_own_text
 from tribolab.stamping import stamp
+
+_TRACE = ", trace "
 
 
 @overload
@@ -137,7 +139,17 @@ def read_traces(path: Path, instrument: Instrument | None = None) -> dict[Path, 
     scans = read_scans([path], instrument, stack=False)
     if len(scans) == 1:
         return {path: scans[0]}
-    return {path.with_name(f"{path.name}, trace {k}"): scan for k, scan in enumerate(scans, 1)}
+    return {path.with_name(f"{path.name}{_TRACE}{k}"): scan for k, scan in enumerate(scans, 1)}
+
+
+def file_of(trace: Path) -> Path:
+    """Return the file that a trace of `read_traces` stands in.
+
+    >>> file_of(Path("line.txt, trace 2")).name, file_of(Path("line.txt")).name
+    ('line.txt', 'line.txt')
+    """
+    name, mark, number = trace.name.rpartition(_TRACE)
+    return trace.with_name(name) if mark and number.isdecimal() else trace
 
 
 def _read(file: Path, units: dict[str, str | None]) -> list[xr.Dataset]:
@@ -170,6 +182,7 @@ def _drafted(file: Path, error: ReadError) -> Dialect | None:
     understood = draft.understood
     if not draft.named and not (understood is not None and understood.pitched):
         return None
-    if asked := questions(draft):
-        raise GuessedError(file, asked, cures.SURFACE) from error
+    asked, lacks = questions(draft), lacks_distance(draft)
+    if asked or lacks:
+        raise GuessedError(file, asked, cures.SURFACE, lacks) from error
     return draft.dialect

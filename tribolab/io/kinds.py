@@ -9,6 +9,8 @@ from pathlib import Path
 from tribolab.errors import ReadError
 from tribolab.io.dialects.find import is_scan, load_dialect, recognise
 from tribolab.io.dialects.signature import is_results, peek
+from tribolab.io.scans.held_arrays import holds_arrays
+from tribolab.io.seal import is_sealed
 
 _LAST_NUMBER = re.compile(r"[ _-]*\d+$")
 
@@ -37,6 +39,8 @@ def kind_of(path: str | Path, instrument: str | Path | None = None) -> str:
     path = Path(path)
     if instrument is not None:
         return "scan" if is_scan(load_dialect(instrument)) else "run"
+    if _holds_map(path):
+        return "scan"
     try:
         file = peek(path)
     except ReadError:  # no file, an empty one, or a format of profilometers
@@ -49,6 +53,21 @@ def kind_of(path: str | Path, instrument: str | Path | None = None) -> str:
         return "scan" if is_scan(recognise(path)) else "run"
     except ReadError:
         return "unknown"
+
+
+def _holds_map(path: Path) -> bool:
+    """Whether a file of arrays by name holds a map, or profiles side by side."""
+    try:
+        with path.open("rb") as file:
+            head = file.read(16)
+        if not holds_arrays(path, head) or is_sealed(path):
+            return False
+        # late: starting stays quick
+        from tribolab.io.scans.arrays import holds_map
+
+        return holds_map(path)
+    except (OSError, ValueError, ImportError, ReadError):  # whoever reads it says why
+        return False
 
 
 def repeats_by_name(paths: Iterable[Path]) -> list[list[Path]]:

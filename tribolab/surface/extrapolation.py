@@ -35,6 +35,9 @@ class PowerLaw(NamedTuple):
         return self.level + self.slope * x, np.hypot(self.level_error, self.slope_error * x)
 
 
+_UNKNOWN = PowerLaw(*[float("nan")] * 5)
+
+
 class _Part(NamedTuple):
     """A stretch of a spectrum; the band is relative to the values (2, wavenumber)."""
 
@@ -87,7 +90,9 @@ def extrapolate(
     ------
     AnalysisError
         If q_low is not below q_high, the spectrum is none, it does not fall over the fitted
-        decade or falls as no rough surface's does, or that decade holds fewer than three points.
+        decade or falls as no rough surface's does, or that decade holds fewer than three points:
+        where it is extrapolated to large wavenumbers. Within the measured ones no power law is
+        needed; what cannot be fitted is NaN.
 
     Notes
     -----
@@ -112,7 +117,12 @@ def extrapolate(
         )
     if not (c > 0).any():
         raise AnalysisError("the spectrum is zero everywhere", function="extrapolate")
-    law, decade, rolloff = _fit(q, c, _log_error(psd), fit_decade)
+    try:
+        law, decade, rolloff = _fit(q, c, _log_error(psd), fit_decade)
+    except AnalysisError:
+        if high > q[-1] or fit_decade is not None:
+            raise
+        law, decade, rolloff = _UNKNOWN, (np.nan, np.nan), np.nan
     if high > q[-1]:
         _refuse_steep(law, decade, str(psd.attrs.get("not_self_affine", "")))
     measured = _Part(q, c, _relative_band(psd, c), AS_MEASURED)
@@ -151,7 +161,9 @@ def extrapolate(
         "fit_low_1_m": decade[0],
         "fit_high_1_m": decade[1],
         "rolloff_wavenumber_1_m": rolloff,
-        "rolloff": "seen in the spectrum"
+        "rolloff": "not known: no power law fits the spectrum"
+        if np.isnan(rolloff)
+        else "seen in the spectrum"
         if seen
         else f"not reached: C(q) still rises towards {q[0]:.3g} 1/m, so the plateau below is an "
         "assumption; longer scans would show it",

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from tribolab.campaign.surfaces.plan import PlannedSurface
     from tribolab.qc.findings import FindingRow, Findings
+    from tribolab.untyped import Json
 
 _FAILED = ("fail", "error")
 # shares of the mean square slope that come from extrapolation, from which on that is said
@@ -212,8 +213,8 @@ def spectra_of_scans(
     else:
         groups["psd_1d"] = psd_1d(flat, form="none" if form == "none" else "auto", tip_radius=tip)
         measured = psd_2d(groups["psd_1d"])
-    limits = {key: options[key] for key in ("q_high", "fit_decade") if key in options}
-    psd = extrapolate(measured, q_low=options.get("q_low", q_low), **limits)
+    psd, doubts = _extrapolated(measured, options, q_low)
+    findings += doubts
     whole = spectral_roughness(psd).isel(wavenumber=-1, drop=True)
     seen = psd.wavenumber.values[psd.origin.values == 0]
     part = band(psd, float(seen[0]), float(seen[-1]))
@@ -237,6 +238,28 @@ def spectra_of_scans(
         text = f"{100 * (1 - share):.0f} % of the mean square slope is extrapolated, not measured"
         findings.append(Finding("suspect" if share < 1 - _SUSPECT else "note", text))
     return groups, findings
+
+
+def _extrapolated(
+    measured: xr.Dataset, options: Json, q_low: float | None
+) -> tuple[xr.Dataset, list[Finding]]:
+    """Extrapolate a spectrum; where no power law leads on, take what was measured alone.
+
+    The roughness of a profile does not wait for that of waves it does not show.
+    """
+    limits = {key: options[key] for key in ("q_high", "fit_decade") if key in options}
+    low = options.get("q_low", q_low)
+    try:
+        return extrapolate(measured, q_low=low, **limits), []
+    except AnalysisError as error:
+        last = float(measured.wavenumber[-1])
+        if limits or not (measured.psd_2d > 0).any() or (low is not None and low >= last):
+            raise
+        text = (
+            f"not extrapolated: {error.what}. Slope and contact are those of the measured waves "
+            f"alone, down to {number(2e6 * np.pi / last)} um (q_high, fit_decade in [roughness])"
+        )
+        return extrapolate(measured, q_low=low, q_high=last), [Finding("suspect", text)]
 
 
 def _doubtful_circle(scans: xr.Dataset, flat: xr.Dataset) -> str:

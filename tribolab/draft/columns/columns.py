@@ -37,6 +37,7 @@ from tribolab.draft.columns.plain_numbers import plain_numbers
 from tribolab.draft.columns.ratio import disagreement, force_or_ratio
 from tribolab.draft.columns.results_table import are_points
 from tribolab.draft.columns.sampling import find_pace, find_sampling
+from tribolab.draft.columns.sensor import of_sensor
 from tribolab.draft.columns.slip import of_both_surfaces
 from tribolab.draft.columns.stated_missing import take_stated_missing
 from tribolab.draft.columns.sums import adding_up, loads_that_add
@@ -79,6 +80,7 @@ def understand(layout: Layout) -> Understood:
     length = None if pitch is not None or density else find_profile_length(layout)
     apart = pitch is not None or bool(density) or length is not None
     guesses = missing_factors(layout)
+    lacks = ""
     kind: Kind
     if apart and (layout.width == 1 and _may_be_heights(columns[0]) or side_by_side(columns)):
         likely = _likely_unit(layout, numbers, pitch, density)
@@ -90,6 +92,9 @@ def understand(layout: Layout) -> Understood:
         density := pitch_of_clock(layout, _seconds(taken[0], numbers))
     ):
         kind, columns, apart = "scan", taken, True
+    elif not apart and (sensed := of_sensor(layout, columns, numbers)) is not None:
+        kind, columns, density, lacks = "scan", sensed.columns, sensed.pitch, sensed.lacks
+        apart = bool(density or lacks)
     elif _say_something(columns):
         kind, columns = _by_name(columns, numbers, placed=apart)
     else:
@@ -150,6 +155,7 @@ def understand(layout: Layout) -> Understood:
             pitch_pattern=pitch.pattern if pitch is not None else "",
             length_pattern=length.pattern if length is not None else "",
             pitch=density,
+            lacks=lacks,
         )
     if kind != "table" and not [c for c in columns if c.used and (c.quantity != "time")]:
         # time alone is a run only if something can be filled in

@@ -94,6 +94,16 @@ def with_worth(
     return _raw_force(layout, result, stated, numbers)
 
 
+def stated_worth(line: str) -> str:
+    """Return what a line says that one count is worth, as a unit; "" if it says nothing.
+
+    >>> stated_worth("Encoder: 500 counts/mm"), stated_worth("Sample 12")
+    ('0.002 mm', '')
+    """
+    worth = _worth(line)
+    return worth.as_unit if worth is not None else ""
+
+
 def zero_in_counts(
     values: Sequence[DraftValue], column: DraftColumn, numbers: np.ndarray
 ) -> DraftValue | None:

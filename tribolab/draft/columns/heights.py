@@ -5,9 +5,15 @@ from __future__ import annotations
 import re
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.columns.words import KNOWN_WORD, matches
+from tribolab.draft.columns.words import KNOWN_WORD, matches, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn, other_units
+
+# of profiles side by side that are counted and nothing else
+_TRACES = re.compile(
+    r"^(?:trace|track|scan|line|profiles?|pass|meas\w*|spur|messung|linie|tastschnitt|trac[ée]|ligne"
+    r"|passage|trazo|linea|passata|traccia|slad|przejscie|stopa|mereni|трасса|след|линия|проход)$"
+)
 
 
 def in_stated_unit(columns: list[DraftColumn], unit: str, along: str = "") -> list[DraftColumn]:
@@ -50,7 +56,8 @@ def beside_x(columns: list[DraftColumn]) -> list[DraftColumn] | None:
     ]
     if not along or along[0].quantity != "x" or unit is None:
         return None
-    if not all(options and options[0].quantity == "height" for options in heights):
+    traces = all(_TRACES.search(squeezed(name)) for name in numberless)
+    if not traces and not all(options and options[0].quantity == "height" for options in heights):
         return None
     if any(unit is None for _, unit, _ in bare):
         return None

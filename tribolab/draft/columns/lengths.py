@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.draft.columns.sentences import points_per_length
+from tribolab.draft.columns.sentences import phrases, points_per_length
 from tribolab.draft.columns.stated_words import (
     ACROSS,
     ALONG,
@@ -182,7 +182,7 @@ def _sampled_on_the_way(layout: Layout) -> str:
     return f"{1e6 * speed / rate:.12g} um" if speed > 0 and rate > 0 else ""
 
 
-def pitch_of_clock(layout: Layout, time: np.ndarray) -> str:
+def pitch_of_clock(layout: Layout, time: np.ndarray, *, of_sensor: bool = False) -> str:
     """Return the distance of points that a sensor takes by the clock on its way; "" if unknown.
 
     Parameters
@@ -191,15 +191,61 @@ def pitch_of_clock(layout: Layout, time: np.ndarray) -> str:
         From `tribolab.draft.file.layout.find_layout`, whose text states how fast the sensor goes.
     time
         When each height was taken [s].
+    of_sensor
+        As for `find_traverse_speed`.
+    """
+    speed = find_traverse_speed(layout, of_sensor=of_sensor)
+    step = seconds_apart(time)
+    return f"{1e6 * speed * step:.12g} um" if speed > 0 and step > 0 else ""
+
+
+def find_traverse_speed(layout: Layout, *, of_sensor: bool = False) -> float:
+    """Return how fast a sensor goes over the surface [m/s], if the text says it once; else 0.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    of_sensor
+        Whether the file is known to be of a sensor on its way: any one speed is that of it.
     """
     values = [value for value in find_values(layout, bare=True) if value.source == "preamble"]
-    speed = _only(values, TRAVERSE_SPEED, "m/s")
+    if (speed := _only(values, TRAVERSE_SPEED, "m/s")) > 0:
+        return speed
+    said = [
+        (phrase.key, _number(phrase.number) * conversion(phrase.unit, "m/s")[0])
+        for line in layout.text_above(bare=True)
+        for phrase in phrases(line)
+        if converts(phrase.unit, "m/s")
+    ]
+    named = {speed for key, speed in said if TRAVERSE_SPEED.search(key)}
+    if of_sensor and not named:
+        every = ((v, v.unit or v.own_unit or "") for v in values)
+        named = {speed for _, speed in said}
+        named |= {v.number * conversion(u, "m/s")[0] for v, u in every if u and converts(u, "m/s")}
+    return named.pop() if len(named) == 1 else 0.0
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text.replace(",", "."))
+    except ValueError:
+        return math.nan
+
+
+def seconds_apart(time: np.ndarray) -> float:
+    """Return what passes from one of a profile's points to the next [s]; 0 if it is not even.
+
+    Parameters
+    ----------
+    time
+        When each height was taken [s].
+    """
     steps = np.diff(time)
-    if not speed > 0 or steps.size < _FEW_POINTS or not np.isfinite(steps).all():
-        return ""
+    if steps.size < _FEW_POINTS or not np.isfinite(steps).all():
+        return 0.0
     step = float(steps.mean())
-    even = step > 0 and float(np.abs(steps - step).max()) < _UNEVEN * step
-    return f"{1e6 * speed * step:.12g} um" if even else ""
+    return step if step > 0 and float(np.abs(steps - step).max()) < _UNEVEN * step else 0.0
 
 
 def _only(values: Sequence[DraftValue], words: re.Pattern[str], si_unit: str) -> float:

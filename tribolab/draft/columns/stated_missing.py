@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from tribolab.draft.columns.sensor import lost_values
 from tribolab.draft.columns.values import find_values
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
@@ -28,6 +29,7 @@ def take_stated_missing(
         Their numbers (rows, columns) as written; changed in place.
     """
     stated = [(v.text, v.number) for v in find_values(layout, bare=True) if v.number == v.number]
+    stated += lost_values(layout.text_above(bare=True))
     heights = [c.place - 1 for c in columns if c.used and c.quantity == "height"]
     taken = {number for place in heights for _, number, _ in take_stated(numbers[:, place], stated)}
     if not taken:

@@ -14,6 +14,7 @@ import xarray as xr
 
 from tribolab.errors import ReadError, TribolabError, brief
 from tribolab.io import cures
+from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.read import measurable
 from tribolab.io.dialects.signature import peek
 from tribolab.io.scans.grid import even
@@ -89,6 +90,9 @@ def read_foreign(
     with np.errstate(over="ignore", invalid="ignore"):
         heights = heights * vertical
     heights[~np.isfinite(heights)] = np.nan
+    # formats that know no mark for lost points hold the numbers that programs choose for it
+    if marks := take_marks([heights.reshape(-1)], vertical):
+        attrs["taken_for_missing"] = "; ".join(f"height: {mark.words}" for mark in marks)
     heights = measurable(heights)
     if sizes is None or len(sizes) != len(points):
         raise ReadError(f"{path}: the file does not say how large the scan is in each direction")

@@ -12,6 +12,10 @@ _JITTER = 0.01  # largest deviation from an even grid, in pitches, that changes 
 _LARGEST = 1e4  # m
 _SMALLEST = 1e-15  # m, a nucleus
 _FILLED = 0.5  # share of a grid's places from which on the others are missing heights
+_CLOUD = (
+    "of points that lie freely, as on circles, write each line as a profile (distance, height), or "
+    "interpolate them to a grid"
+)
 _ROUNDED = 0.6  # in units of the last digit
 
 
@@ -118,12 +122,14 @@ def gridded(where: str, x: np.ndarray, y: np.ndarray, height: np.ndarray) -> xr.
         if not steps < 2 * x.size:
             raise ReadError(
                 f"{where}: the points do not lie on an even grid along {name}: they span "
-                f"{steps:.3g} steps, but there are only {x.size} points"
+                f"{steps:.3g} steps, but there are only {x.size} points; {_CLOUD}"
             )
         number = int(round(steps)) + 1
         index = np.rint((values - levels[0]) / pitch).astype(np.intp)
         if np.abs(values - levels[0] - index * pitch).max() > 0.1 * pitch:
-            raise ReadError(f"{where}: the points do not lie on an even grid along {name}")
+            raise ReadError(
+                f"{where}: the points do not lie on an even grid along {name}; {_CLOUD}"
+            )
         axes.append((pitch, number, index))
     (dx, nx, column), (dy, ny, row) = axes
     place = row * nx + column

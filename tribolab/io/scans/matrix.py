@@ -13,11 +13,14 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, shown
+from tribolab.io import cures
 from tribolab.io.content.missing_marks import Marked, take_marks
 from tribolab.io.content.read import measurable
 from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.matrix_header import MatrixHeader, header_of
+from tribolab.io.scans.named_units import unsaid
 from tribolab.io.scans.stated_missing import take_stated
+from tribolab.units import conversion
 
 _HEAD = 1 << 20  # bytes in which a matrix begins
 _CUT = 8  # bytes of a sign at their end
@@ -62,13 +65,17 @@ class _Matrix(NamedTuple):
     ragged: bool = False
 
 
-def read_matrix(path: Path) -> xr.Dataset | None:
+def read_matrix(
+    path: Path, x_unit: str | None = None, height_unit: str | None = None
+) -> xr.Dataset | None:
     """Read a map from text.
 
     Parameters
     ----------
     path
         The file.
+    x_unit, height_unit
+        Units of positions and heights, where it states none.
 
     Returns
     -------
@@ -92,7 +99,12 @@ def read_matrix(path: Path) -> xr.Dataset | None:
         if matrix is None:
             continue
         shape = len(matrix.rows), matrix.columns
-        header = header_of(matrix.above, shape, matrix.mark, commas_part=matrix.delimiter == ",")
+        commas = matrix.delimiter == ","
+        header = header_of(
+            matrix.above, shape, matrix.mark, commas_part=commas, x_unit=x_unit or ""
+        )
+        if header.height is None and height_unit is not None:
+            header = header._replace(height=conversion(height_unit, "m")[0])
         if told is None or (header.dx and header.dy and header.height):
             told = matrix, header
     if told is None:
@@ -232,20 +244,25 @@ def _even(values: np.ndarray) -> bool:
 def _refuse(path: Path, matrix: _Matrix, header: MatrixHeader) -> None:
     """Refuse a matrix that is not whole, or of which too little is said."""
     rows, columns = len(matrix.rows), matrix.columns
+    apart = "how far its points lie apart along x and y"
+    if header.without_unit:
+        apart = f"the unit of '{shown(header.without_unit, 40)}'"
     lacking = [
         what
         for what, known in (
-            ("how far its points lie apart along x and y", header.dx and header.dy),
+            (apart, header.dx and header.dy),
             ("in which unit its heights are", header.height),
         )
         if not known
     ]
     if lacking:
-        raise NotSaidError(
-            f"{path}: a matrix of {rows} x {columns} numbers that does not say "
-            f"{' or '.join(lacking)}; write it above the numbers, as 'Pixel size: 0.5 um' and "
-            "'Height unit: um'"
-        )
+        what = f"a matrix of {rows} x {columns} numbers that does not say {' or '.join(lacking)}"
+        write = "write it above the numbers, as 'Pixel size: 0.5 um' and 'Height unit: um'"
+        along = not (header.dx and header.dy)
+        if along and not header.without_unit:  # of which a name says the unit alone
+            raise NotSaidError(what, where=path, cure=write)
+        cure = unsaid(path, along=along, up=header.height is None)
+        raise NotSaidError(what, where=path, cure=cures.either(write, cure))
     if not matrix.alone:
         raise ReadError(
             f"{path}: several matrices of numbers stand in the file; leave only the heights"

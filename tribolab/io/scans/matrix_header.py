@@ -54,7 +54,7 @@ _ALONG_Z = re.compile(
 )
 _X = re.compile(
     r"(?i)(?<![^\W\d_])[dΔ]?x(?![^\W\d_])|horizontal|width|breite|largeur|ancho|larghezza|宽|幅|横"
-    r"|columns?|spalten|colonnes?|columnas|列"
+    r"|columns?|(?<![^\W\d_])n_?cols?|spalten|colonnes?|columnas|列"
 )
 _Y = re.compile(
     r"(?i)(?<![^\W\d_])[dΔ]?y(?![^\W\d_])|vertical|height|höhe|hauteur|alto|altezza|高|縦"
@@ -93,7 +93,7 @@ _OF_ROW = re.compile(
     r"(?i)(?:samp\w*|points?|pixels?|pts|values?|punkte|pixel)\s*(?:/|per|pro|je)\s*(?:line|row|zeile|linie|profile?)"
 )
 _COUNT = re.compile(
-    r"(?i)samp\w*|points?|pixels?|columns?|rows?|lines|spalten|zeilen|punkte|bildpunkte|lignes|colonnes?"
+    r"(?i)samp\w*|points?|pixels?|columns?|n_?cols?|rows?|lines|spalten|zeilen|punkte|bildpunkte|lignes|colonnes?"
     r"|filas|columnas|righe|píxeles|horizontal|vertical|(?<![^\W\d_])[xy][\s_-]*size|像素数?|点数"
     r"|画素数|列|行|横|縦"
 )
@@ -103,7 +103,8 @@ class MatrixHeader(NamedTuple):
     """What stands above a matrix: pitch along x and y [m], unit of heights [m], rows and columns.
 
     None is what it does not say, or says in two ways. `stated` are names and numbers that stand
-    alone, without a unit; `gauge_step` [m] is what whole numbers may be counted in.
+    alone, without a unit; `gauge_step` [m] is what whole numbers may be counted in;
+    `without_unit` is a pitch or extent that has none: "cellsize 0.005".
     """
 
     dx: float | None
@@ -113,6 +114,7 @@ class MatrixHeader(NamedTuple):
     columns: int | None
     stated: tuple[tuple[str, float], ...] = ()
     gauge_step: float | None = None
+    without_unit: str = ""
 
 
 class _Said(NamedTuple):
@@ -124,7 +126,12 @@ class _Said(NamedTuple):
 
 
 def header_of(
-    lines: Iterable[str], shape: tuple[int, int], mark: str, *, commas_part: bool = False
+    lines: Iterable[str],
+    shape: tuple[int, int],
+    mark: str,
+    *,
+    commas_part: bool = False,
+    x_unit: str = "",
 ) -> MatrixHeader:
     """Understand the lines above a matrix.
 
@@ -138,6 +145,8 @@ def header_of(
         Decimal mark of the matrix; the lines above may have the other one.
     commas_part
         Whether commas part cells, and are no decimal marks.
+    x_unit
+        Unit of a pitch or an extent that states none.
 
     Examples
     --------
@@ -147,6 +156,10 @@ def header_of(
     """
     texts = [line[:_LONGEST].replace('"', " ").strip() for line in lines]
     said = [part for text in texts if (part := _said(text, mark, commas_part=commas_part))]
+    bare = [part for part in said if _is_bare(part)]
+    if x_unit:
+        units = [_Said(p.key, p.numbers, (x_unit,) * len(p.numbers)) for p in bare]
+        said = [units[bare.index(p)] if p in bare else p for p in said]
     pitch = _places(said, _PITCH, (1, 1))
     extent = _places(said, _EXTENT, shape, parted=True)
     dx, dy = (first or second for first, second in zip(pitch, extent, strict=True))
@@ -174,7 +187,15 @@ def header_of(
         columns,
         alone,
         max(steps, default=None),
+        " ".join(f"{bare[0].key.strip(' #%;,:=')} {bare[0].numbers[0]:g}".split()) if bare else "",
     )
+
+
+def _is_bare(part: _Said) -> bool:
+    """Whether a line says a pitch or an extent across the surface without a unit."""
+    across = _PITCH.search(part.key) or _EXTENT.search(part.key)
+    whole = all(map(float.is_integer, part.numbers)) and _COUNT.search(part.key)
+    return bool(across and not any(part.units) and not whole and not _ALONG_Z.search(part.key))
 
 
 def _said(text: str, mark: str, *, commas_part: bool) -> _Said | None:

@@ -25,6 +25,7 @@ from tribolab.io.dialects.signature import File, is_results, peek
 from tribolab.io.patterns import is_pattern, matching
 from tribolab.io.scans.extent import measured_part, refuse_impossible
 from tribolab.io.scans.grid import even, gridded
+from tribolab.io.scans.passes import find_passes
 from tribolab.io.scans.undescribed import read_undescribed
 from tribolab.provenance import as_text, made, sha256_of_file
 from tribolab.stamping import stamp
@@ -105,8 +106,17 @@ def _read(
     if dialect is not None:
         scans, sha256 = _by_dialect(path, dialect)
     else:
-        scans, sha256 = [read_undescribed(path, x_unit, height_unit)], sha256_of_file(path)
+        scans = _apart(read_undescribed(path, x_unit, height_unit))
+        sha256 = sha256_of_file(path)
     return [_finished(path, scan, sha256) for scan in scans]
+
+
+def _apart(scan: xr.Dataset) -> list[xr.Dataset]:
+    """Return the profiles that a file holds side by side one by one."""
+    if "scan" not in scan.dims:
+        return [scan]
+    number = scan.sizes["scan"]
+    return [scan.isel(scan=k).assign_attrs(traces=str(number)) for k in range(number)]
 
 
 def _finished(path: Path, scan: xr.Dataset, sha256: str) -> xr.Dataset:
@@ -191,7 +201,24 @@ def _of_columns(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
         attrs["taken_for_missing"] = content.notes["taken_for_missing"]
     if len(pieces) > 1:
         attrs["traces"] = str(len(pieces))
-    return [_scan(path, piece.columns, attrs, dialect) for piece in pieces], content.sha256
+    scans = [scan for piece in pieces for scan in _scans_of(path, piece.columns, attrs, dialect)]
+    return scans, content.sha256
+
+
+def _scans_of(
+    path: Path, columns: Mapping[str, np.ndarray], attrs: Json, dialect: Dialect
+) -> list[xr.Dataset]:
+    """Return the scan that one table is; of a way to and fro one for each pass."""
+    passes = None
+    if "x" in columns and "y" not in columns:
+        passes = find_passes(columns["x"], columns["height"])
+    if passes is None:
+        return [_scan(path, columns, attrs, dialect)]
+    x = passes.pitch * np.arange(passes.heights.shape[1], dtype=float)
+    said = {**attrs, "x_origin_m": passes.start, "resampled": passes.told}
+    if len(passes.heights) > 1:
+        said["traces"] = str(len(passes.heights))
+    return [xr.Dataset({"height": ("x", row)}, {"x": x}, said) for row in passes.heights]
 
 
 def _scan(

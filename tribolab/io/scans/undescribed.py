@@ -7,14 +7,19 @@ from pathlib import Path
 import xarray as xr
 
 from tribolab.errors import ReadError
+from tribolab.io.scans.arrays import read_scan_arrays
 from tribolab.io.scans.column_map import read_column_map
 from tribolab.io.scans.formats import NotSaidError, read_foreign
 from tribolab.io.scans.gauges import is_gauge, read_gauge
+from tribolab.io.scans.held_arrays import holds_arrays, is_npz
 from tribolab.io.scans.matrix import read_matrix
+from tribolab.io.scans.named_units import units_in_name
 from tribolab.io.scans.sdf import as_standard, is_sdf_draft
 from tribolab.io.scans.sur import is_sur, plain_sur
+from tribolab.io.scans.surfer import is_surfer, read_surfer
 from tribolab.io.scans.x3p import is_iso_xml, main_of, read_iso_xml, read_x3p
 from tribolab.io.scans.xml_values import is_xml, read_xml_values
+from tribolab.io.scans.zygo_xyz import is_zygo_xyz, read_zygo_xyz
 from tribolab.io.unpacked import ZIP, of_the_file, unpacked
 
 _HEAD = 1 << 14  # bytes that tell a format
@@ -24,7 +29,8 @@ def is_own_text(path: Path) -> bool:
     """Whether a file is text of a format that is read here: what is wrong with it is said."""
     with path.open("rb") as file:
         head = file.read(_HEAD)
-    return is_xml(head) or is_iso_xml(head) or is_gauge(head)
+    named = is_surfer(head) or is_zygo_xyz(head)
+    return named or is_xml(head) or is_iso_xml(head) or is_gauge(head)
 
 
 def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
@@ -37,6 +43,11 @@ def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) ->
     x_unit, height_unit
         Units of positions and heights, for files that state none.
 
+    Returns
+    -------
+    xarray.Dataset
+        ``height`` [m] (x) or (y, x); of several profiles in a file (scan, x).
+
     Raises
     ------
     ReadError
@@ -46,16 +57,35 @@ def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) ->
     -----
     Ours are those that SurfaceTopography 1.27 reads in part or not at all: x3p and its bare XML,
     lists of values in XML, SMD and PRF text of soft gauges, packed Surf files, SDF of the
-    standard's draft, and matrices of heights below lines that say their size.
+    standard's draft, matrices of heights below lines that say their size, and arrays by name.
     """
+    try:
+        return _read(path, x_unit, height_unit)
+    except NotSaidError:
+        named = units_in_name(path)
+        if not ((named.x and x_unit is None) or (named.height and height_unit is None)):
+            raise
+        scan = _read(path, x_unit or named.x, height_unit or named.height)
+        told = [f"x in {named.x}"] if named.x and x_unit is None else []
+        told += [f"heights in {named.height}"] if named.height and height_unit is None else []
+        return scan.assign_attrs(units_by_file_name=", ".join(told))
+
+
+def _read(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
     with path.open("rb") as file:
         head = file.read(_HEAD)
+    if holds_arrays(path, head):
+        return _of_arrays(path, x_unit, height_unit)
     inside = as_standard(path) if is_sdf_draft(head) else unpacked(path, head)
     if inside != path:
         try:
-            return read_undescribed(inside, x_unit, height_unit)
+            return _read(inside, x_unit, height_unit)
         except ReadError as error:
             raise of_the_file(error, inside, path) from error
+    if is_zygo_xyz(head):
+        return read_zygo_xyz(path, x_unit)
+    if is_surfer(head):
+        return read_surfer(path, x_unit, height_unit)
     if head.startswith(ZIP) and (main := main_of(path)) is not None:
         return read_x3p(path, main)
     if is_iso_xml(head):
@@ -69,10 +99,21 @@ def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) ->
     return read_foreign(plain_sur(path) if is_sur(head) else path, x_unit, height_unit)
 
 
+def _of_arrays(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
+    """Read arrays by their names, else what SurfaceTopography makes of them."""
+    scan = read_scan_arrays(path, x_unit, height_unit)
+    if scan is None and is_npz(path):
+        raise ReadError(
+            "no array of this archive is named as heights are, such as 'z_um' beside 'x_mm'",
+            where=path,
+        )
+    return read_foreign(path, x_unit, height_unit) if scan is None else scan
+
+
 def _of_text(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
     """Read a matrix whose lines above say all, else what SurfaceTopography reads."""
     try:
-        scan = read_matrix(path)
+        scan = read_matrix(path, x_unit, height_unit)
     except NotSaidError as lacking:
         try:
             return read_foreign(path, x_unit, height_unit)

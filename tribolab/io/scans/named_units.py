@@ -1,0 +1,49 @@
+"""Units of length in a file's own name, for files that state none: `plate3_xy-mm_z-um.asc`."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+from tribolab.errors import Cure
+
+_UNITS = {"µm": "um", "μm": "um", "micron": "um", "microns": "um"}
+_SAID = re.compile(
+    r"(?i)(?<![^\W_])(?P<what>xyz|xy|x|y|z|heights?|h(?:ö|oe)hen?)[-_ =]?(?:in[-_ ])?"
+    r"(?P<unit>[npuµμ]m|mm|cm|microns?|(?<=in[-_ ])m)(?![^\W_])"
+)
+
+
+class NamedUnits(NamedTuple):
+    """Units of positions and heights that a file's name says; None where it does not."""
+
+    x: str | None
+    height: str | None
+
+
+def units_in_name(path: Path) -> NamedUnits:
+    """Return the units that a file's name says, where it says just one.
+
+    >>> units_in_name(Path("plate3_xy-mm_z-um.asc")), units_in_name(Path("scan_x_mm.txt"))
+    (NamedUnits(x='mm', height='um'), NamedUnits(x='mm', height=None))
+    """
+    along, up = set(), set()
+    for said in _SAID.finditer(path.stem):
+        what, unit = said["what"].lower(), said["unit"].lower()
+        unit = _UNITS.get(unit, unit)
+        if "x" in what or "y" in what:
+            along.add(unit)
+        if "z" in what or what.startswith("h"):
+            up.add(unit)
+    one = [units.pop() if len(units) == 1 else None for units in (along, up)]
+    return NamedUnits(*one)
+
+
+def unsaid(path: Path, *, along: bool, up: bool) -> Cure:
+    """Return how to say units that a file does not: of positions, of heights, or of both."""
+    x = " x_unit='mm'" if along else ""
+    z = f"{' and' if along and up else ''} height_unit='um'" if up else ""
+    name = f"{path.stem}{'_xy-mm' if along else ''}{'_z-um' if up else ''}{path.suffix}"
+    rename = f"put it into the file's name: '{name}'"
+    return Cure(notebook=f"say{x}{z}, or {rename}", terminal=rename, campaign=rename)
