@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -93,13 +94,9 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     signals = {name: columns[name] for name in rules if name in units and name in columns}
     add_derived(columns, _symbols(contents, dialect), attrs, time.size, where, dialect)
     zeros_of_derived(columns, signals, attrs)
-    made = attrs.get("derived", {})
-    rules = {rule.quantity: rule.zero for rule in dialect.derived if rule.zero}
-    rules |= {name: zero for name in FRICTION_SIGNALS if zero is not None}
-    rules = {name: text for name, text in rules.items() if name in made}
-    read = take_zeros(columns, time, rules, blank, where)
-    if rules:
-        attrs |= read | {"zeros_read": attrs.get("zeros_read", {}) | read["zeros_read"]}
+    read = take_zeros(columns, time, _zeros_of_formulas(attrs, dialect, zero), blank, where)
+    if read:
+        attrs |= read | {"zeros_read": {**_told(attrs, "zeros_read"), **read["zeros_read"]}}
     tell_assumed(attrs, assumed, dialect)
     keep_forces_that_agree(columns, attrs)
     add_speed(columns, attrs, time, where, dialect, of_steps)
@@ -109,6 +106,19 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     if "joined" in joined:
         attrs["clock_joined"] = str(joined["joined"])
     return Signals(time, columns, attrs)
+
+
+def _told(attrs: Json, name: str) -> Mapping[str, Any]:
+    """Return what an attribute says of each quantity; nothing if it is not there."""
+    told = attrs.get(name, {})
+    return told if isinstance(told, Mapping) else {}
+
+
+def _zeros_of_formulas(attrs: Json, dialect: Dialect, zero: str | None) -> dict[str, str]:
+    """Return from where the zeros are read of what follows by formula."""
+    rules = {rule.quantity: rule.zero for rule in dialect.derived if rule.zero}
+    rules |= {name: zero for name in FRICTION_SIGNALS if zero is not None}
+    return {name: text for name, text in rules.items() if name in _told(attrs, "derived")}
 
 
 def _blank(run: Path, name: str, dialect: Dialect) -> dict[str, np.ndarray]:
