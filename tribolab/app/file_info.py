@@ -273,6 +273,8 @@ def missing_lines(facts: FileFacts) -> list[str]:
 
         if any(is_frequency(*split_name(label)) for label in facts["not_used"]):
             names.add("stroke_frequency")
+    if "drive" in facts["metadata"]:  # a draft keeps what it is where what turns is a crank
+        names.add("crank")
     return [f"  missing: {lack}" for lack in missing_of(names)]
 
 
