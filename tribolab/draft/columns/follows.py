@@ -132,6 +132,7 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
         away = radius_from_axis(layout, understood.columns, understood.numbers)
         track = _Track(away.formula, (), (("stage", away.column),)) if away else track
     inclined = find_inclined(layout)
+    by_angle = inclined is not None and inclined.cosine > 0
     if inclined is not None and not track.formula:
         track = _of_value(radius_of_ball(inclined, values))
     result = Follows()
@@ -175,13 +176,13 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
         result = _and(result, DraftedFormula("normal_force", together, about), (), symbols)
         names.add("normal_force")
     reading = reading_of(understood.columns)
-    arm = find_arm(values) if reading is not None and is_at_arm(reading) else None
-    if reading is not None and arm is not None and track.formula:
-        about = f"a force on an arm: '{arm.text}'"
-        what = f"arm_force * {arm.name} / {track.formula}"
+    lever = find_arm(values) if reading is not None and is_at_arm(reading) else None
+    if reading is not None and lever is not None and track.formula:
+        about = f"a force on an arm: '{lever.text}'"
+        what = f"arm_force * {lever.name} / {track.formula}"
         symbols = (("arm_force", reading._replace(zero="")), *track.symbols)
         formula = DraftedFormula("friction_force", what, about, reading.zero)
-        result = _and(result, formula, (arm, *track.values), symbols)
+        result = _and(result, formula, (lever, *track.values), symbols)
         reading = None
     zero = None if reading is None else find_zero(layout, values, "N", understood.zero)
     if reading is not None and zero is None:  # what a converter counts was not tared
@@ -203,22 +204,21 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
         return _and(result, DraftedFormula("normal_force", f"'{understood.load}'", about))
     if "set_normal_force" in names and names & SAYS_FRICTION and not names & SAYS_LOAD:
         about = "nothing measures it: the load that was set"
-        force = "set_normal_force"
-        force = inclined.load(force) if inclined is not None and inclined.cosine else force
-        return _and(result, DraftedFormula("normal_force", force, about))
+        pressed = "set_normal_force"
+        pressed = inclined.load(pressed) if inclined is not None and by_angle else pressed
+        return _and(result, DraftedFormula("normal_force", pressed, about))
     if "position" in names and result.speed is None:
         result = result._replace(values=(*result.values, *as_stated(values)))
     load = find_load(values)
     axial = axial_force_of(understood.columns)
-    by_angle = inclined is not None and inclined.cosine > 0
     if inclined is not None and by_angle and axial is not None and _of_forces(names):
         about = f"the contacts carry more than the axial force: '{inclined.text}'"
         formula = DraftedFormula("normal_force", inclined.load("axial_force"), about)
         result = _and(result, formula, (), (("axial_force", axial),))
     elif load is not None and names & SAYS_FRICTION and not names & SAYS_LOAD:
         about = f"nothing measures it: '{load.text}' is taken for all of the run"
-        force = inclined.load(load.name) if inclined is not None and by_angle else load.name
-        result = _and(result, DraftedFormula("normal_force", force, about), [load])
+        pressed = inclined.load(load.name) if inclined is not None and by_angle else load.name
+        result = _and(result, DraftedFormula("normal_force", pressed, about), [load])
     elif load is not None and not names & {"normal_force", "normal_stress", "set_normal_force"}:
         result = result._replace(values=(*result.values, load))  # under which a coefficient stands
     return result
@@ -277,8 +277,12 @@ def unknown_of(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
     columns
         The columns as they are understood.
     """
-    turning = (torque_of(columns), angle_of(columns), radius_of(columns))
-    turning = (*turning, unscaled_torque_of(columns))
+    turning = (
+        torque_of(columns),
+        angle_of(columns),
+        radius_of(columns),
+        unscaled_torque_of(columns),
+    )
     places = {column.place for column in turning if column is not None}
     unknown = (c for c in columns if c.note and not c.quantity and c.label)
     return [column for column in unknown if column.place not in places]
