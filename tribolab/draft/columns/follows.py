@@ -141,6 +141,7 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
         away = radius_from_axis(layout, understood.columns, understood.numbers)
         track = _Track(away.formula, (), (("stage", away.column),)) if away else track
     inclined = find_inclined(layout)
+    by_angle = inclined is not None and inclined.cosine > 0
     if inclined is not None and not track.formula:
         track = _of_value(radius_of_ball(inclined, values))
     result = Follows()
@@ -231,7 +232,6 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
         result = result._replace(values=(*result.values, *as_stated(values)))
     load = find_load(values)
     axial = axial_force_of(understood.columns)
-    by_angle = inclined is not None and inclined.cosine > 0
     if inclined is not None and by_angle and axial is not None and _of_forces(names):
         about = f"the contacts carry more than the axial force: '{inclined.text}'"
         formula = DraftedFormula("normal_force", inclined.load("axial_force"), about)
