@@ -8,7 +8,7 @@ import numpy as np
 
 from tribolab.errors import LacksError, ReadError
 from tribolab.io.dialects.model import Dialect
-from tribolab.io.stroke_speed import velocity_of_strokes
+from tribolab.io.stroke_speed import FEWEST_CYCLES, velocity_of_strokes
 from tribolab.medians import median
 from tribolab.units import to_si
 from tribolab.untyped import Json
@@ -80,13 +80,14 @@ def keep_settings(
     Returns
     -------
     dict
-        What the text before the steps says differently from step to step, in SI (time), by the
-        key of ``[speed]``.
+        What the text before the steps, or a column, says differently from step to step, in SI
+        (time), by the key of ``[speed]``.
 
     Raises
     ------
     ReadError
-        If such a column does not hold the same all along, or a step does not state what others do.
+        If such a column goes neither in steps nor holds the same all along, or a step does not
+        state what others do.
     """
     before_steps = {v.name: v.si_unit for v in dialect.value if v.source in _OF_STEPS and v.unit}
     of_steps: dict[str, np.ndarray] = {}
@@ -97,15 +98,20 @@ def keep_settings(
         if name in before_steps and np.any(values != values[0]):
             of_steps[key] = _of_each_step(values, name, symbol_unit, where)
             continue
-        values = values[np.isfinite(values) & (values > 0)]
-        middle = float(median(values)) if values.size else np.nan
-        if values.size and np.any(np.abs(values / middle - 1) > _VARIES):
-            raise ReadError(
-                f"column '{name}' holds {values.min():.4g} to {values.max():.4g}; a speed that "
-                "follows from it needs one number for a run: part the run where it changes",
-                where=where,
-            )
         turns = key == "frequency_value" and symbol_unit.startswith("rad")
+        present = values[np.isfinite(values) & (values > 0)]
+        middle = float(median(present)) if present.size else np.nan
+        if present.size and np.any(np.abs(present / middle - 1) > _VARIES):
+            levels = level_of_each(values)
+            if levels is None or key == "radius_value":
+                raise ReadError(
+                    f"column '{name}' holds {present.min():.4g} to {present.max():.4g}; a speed "
+                    "that follows from it needs one number for a run, or for each step of it: "
+                    "part the run where it changes",
+                    where=where,
+                )
+            of_steps[key] = levels / (2 * np.pi) if turns else levels
+            continue
         unit = "Hz" if key == "frequency_value" else "m"
         attrs[f"{name}_{unit}"] = middle / (2 * np.pi) if turns else middle
     return of_steps
@@ -174,12 +180,21 @@ def _by_strokes_of_steps(
     dialect: Dialect,
     of_steps: Mapping[str, np.ndarray],
 ) -> None:
-    """Take the strokes of each step by themselves, with its own length and frequency."""
+    """Take the strokes of each step by themselves, with its own length and frequency.
+
+    A frequency of zero is a rest. Where the friction of none turns over it has no sign, or each row
+    is a mean: then the mean speed of its strokes is the set speed of each row.
+    """
     changes = [np.flatnonzero(np.diff(values)) + 1 for values in of_steps.values()]
     bounds = np.unique(np.concatenate([[0], *changes, [len(time)]]))
-    velocity = np.zeros(len(time))
+    if not _part(columns.get("step"), bounds):
+        columns["step"] = np.repeat(np.arange(1, len(bounds)), np.diff(bounds)).astype(np.int32)
+    velocity, mean_speed = np.zeros(len(time)), np.zeros(len(time))
     told: list[Json] = []
+    without: list[tuple[int, int, float]] = []  # where it does not turn over, and its frequency
     for first, stop in zip(bounds[:-1], bounds[1:], strict=True):
+        if any(values[first] == 0 for values in of_steps.values()):
+            continue
         part = {name: columns[name][first:stop] for name in _SIGNALS if name in columns}
         own = dict(attrs)
         for key, values in of_steps.items():
@@ -187,17 +202,72 @@ def _by_strokes_of_steps(
             own[f"{name}_{unit}"] = float(values[first])
         _by_strokes(part, own, time[first:stop], where, dialect)
         told.append(own)
+        mean_speed[first:stop] = 2 * own["stroke_m"] * own["stroke_frequency_Hz"]
         if "sliding_velocity" not in part:
-            raise ReadError(
-                f"the friction from {time[first]:.4g} to {time[stop - 1]:.4g} s does not turn over "
-                f"with the {own['stroke_frequency_Hz']:.4g} Hz that the text before it states",
-                where=where,
-            )
-        velocity[first:stop] = part["sliding_velocity"]
+            without.append((first, stop - 1, own["stroke_frequency_Hz"]))
+            velocity[first:stop] = np.nan
+        else:
+            velocity[first:stop] = part["sliding_velocity"]
+    if not told:
+        raise ReadError("its strokes have a frequency or a length of zero all along", where=where)
     attrs["stroke_m"] = max(own["stroke_m"] for own in told)
     for key in ("stroke_m", "stroke_frequency_Hz"):
         attrs[f"{key}_of_steps"] = "; ".join(f"{own[key]:.6g}" for own in told)
+    if len(without) == len(told):
+        columns["set_speed"] = mean_speed
+        return
+    for first, last, frequency in without:
+        if (time[last] - time[first]) * frequency >= FEWEST_CYCLES:  # no pass to the next step
+            raise ReadError(
+                f"the friction from {time[first]:.4g} to {time[last]:.4g} s does not turn over "
+                f"with the {frequency:.4g} Hz that are stated for it",
+                where=where,
+            )
     columns["sliding_velocity"] = velocity
+
+
+def _part(step: np.ndarray | None, bounds: np.ndarray) -> bool:
+    """Whether numbers of steps are others wherever a setting changes."""
+    inner = bounds[1:-1]
+    return step is not None and bool((step[inner] != step[inner - 1]).all())
+
+
+def level_of_each(values: np.ndarray) -> np.ndarray | None:
+    """Return the level of each of some settings that go in steps; None where they do not.
+
+    Parameters
+    ----------
+    values
+        A setting or its reading, which is zero at rest (time).
+
+    Returns
+    -------
+    numpy.ndarray or None
+        The median of the level that each belongs to, 0 where it is zero or unknown. None where
+        neighbouring levels are not apart: it is ramped, and no level is one.
+
+    Examples
+    --------
+    >>> level_of_each(np.array([0.0, 1.0, 1.02, 0.98, 2.0, 2.01])).tolist()
+    [0.0, 1.0, 1.0, 1.0, 2.005, 2.005]
+    >>> level_of_each(np.linspace(1, 2, 50)) is None
+    True
+    """
+    moving = np.isfinite(values) & (values > 0)
+    ordered = np.unique(values[moving])
+    if not ordered.size:
+        return None
+    apart = np.flatnonzero(np.diff(ordered) > _VARIES * ordered[:-1])
+    lowest = ordered[np.append(0, apart + 1)]
+    of_level = np.searchsorted(lowest, values, side="right") - 1
+    result = np.zeros(len(values))
+    for level in range(lowest.size):
+        mine = moving & (of_level == level)
+        middle = float(median(values[mine]))
+        if np.any(np.abs(values[mine] / middle - 1) > _VARIES):
+            return None
+        result[mine] = middle
+    return result
 
 
 _OF_STEPS = ("step", "programme")  # where a value that each step has is said

@@ -9,7 +9,7 @@ import numpy as np
 Drive = Literal["crank", "constant speed"]
 _TELLS = 0.3  # share of the friction's variance that has to be at the frequency
 _AT_REST = 0.3  # share of the usual swing below which a cycle does not slide
-_FEWEST = 3  # cycles
+FEWEST_CYCLES = 3
 _DENSEST = 8  # samples that a cycle has at least
 
 
@@ -64,7 +64,7 @@ def velocity_of_strokes(
     cycle = np.floor((time - time[0]) * frequency).astype(int)
     cycles = int(cycle[-1])  # whole ones
     known = np.isfinite(friction) & (cycle < cycles)
-    if cycles < _FEWEST or np.count_nonzero(known) < _DENSEST * cycles:
+    if cycles < FEWEST_CYCLES or np.count_nonzero(known) < _DENSEST * cycles:
         return None
     counts = np.bincount(cycle[known], minlength=cycles)
     means = np.bincount(cycle[known], friction[known], minlength=cycles) / np.maximum(counts, 1)
@@ -78,7 +78,7 @@ def velocity_of_strokes(
     slides = (swing > _AT_REST * np.percentile(swing, 75)) & (counts > 0)
     power = np.bincount(cycle[known], rest**2, minlength=cycles)[slides].sum()
     told = 2 * np.sum(counts[slides] * swing[slides] ** 2)
-    if np.count_nonzero(slides) < _FEWEST or not told > _TELLS * power:
+    if np.count_nonzero(slides) < FEWEST_CYCLES or not told > _TELLS * power:
         return None
     middle = time[0] + (np.flatnonzero(slides) + 0.5) / frequency
     phase = np.unwrap(np.angle(wave[slides]))

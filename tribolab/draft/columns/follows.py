@@ -14,7 +14,8 @@ from tribolab.draft.columns.slip import stated_ratio
 from tribolab.draft.columns.stated_load import find_load
 from tribolab.draft.columns.stated_words import PER_MINUTE
 from tribolab.draft.columns.stated_zero import find_zero, reading_of, zero_in_doubt
-from tribolab.draft.columns.stroke_settings import as_stated, strokes_of_columns, strokes_of_values
+from tribolab.draft.columns.stroke_settings import as_stated, strokes_of
+from tribolab.draft.columns.strokes import STROKE
 from tribolab.draft.columns.turning import angle_of, radius_of, torque_of, turns_of
 from tribolab.draft.columns.values import DraftValue, find_values, words_said
 from tribolab.draft.columns.words import or_term, squeezed
@@ -278,15 +279,16 @@ def _with_speed(
         about = f"'{ratio.text}' is the sliding speed over the mean speed of both surfaces"
         formula = DraftedFormula("sliding_velocity", f"{ratio.name} * rolling_speed", about)
         return _and(before, formula, (ratio,))._replace(speed=SpeedBy("none"))
-    by_values = strokes_of_values(values)
-    of_strokes = by_values or strokes_of_columns(understood)
-    if of_strokes is None or (by_values is None and "rotation_speed" in names):
+    of_strokes = strokes_of(values, understood)
+    if of_strokes is None or (of_strokes.symbols and "rotation_speed" in names):
         known = turning or "set_speed" in names
         return before if known else _with_set_speed(before, values, track)
     settings = of_strokes.settings
     said = [text.lower() for key, text in words if _DRIVE.search(squeezed(key))]
     modes = [text.lower() for key, text in words if _MODE.search(squeezed(key))]
-    said += [text for text in modes if _SINE.search(text)]  # a constant load is a mode, too
+    # a constant load is a mode, too, and a stroke may be said to be a sine
+    lengths = [text.lower() for key, text in words if STROKE.search(squeezed(key))]
+    said += [text for text in (*modes, *lengths) if _SINE.search(text)]
     drive, guess = understood.drive or "crank", ""
     options: tuple[str, ...] = ()
     if not understood.drive and any(_EVEN.search(text) for text in said):

@@ -6,6 +6,9 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
+from tribolab.draft.columns.roles import role_of
 from tribolab.draft.columns.stated_words import RATE
 from tribolab.draft.columns.strokes import (
     END_TO_END,
@@ -16,6 +19,7 @@ from tribolab.draft.columns.strokes import (
     is_length,
 )
 from tribolab.draft.columns.values import DraftValue
+from tribolab.draft.columns.words import split_unit
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn, Understood
 from tribolab.io.dialects.cells import split_name
@@ -24,6 +28,7 @@ _CYCLES = re.compile(
     r"^(?:(?:number|no|nr|nombre|nb|numero|anzahl|total|liczba|pocet|antal|aantal)(?:of|de|dei|di|der)?)?"
     r"(?:cycles?|zyklen|zykluszahl|ciclos|cicli|cykli|cyklu|cykler|cycli|循环次数|サイクル数)$"
 )
+_SEVERAL = 1.1  # times the lowest: a setting is no longer the same
 _EITHER_WAY = re.compile(r"(?:\+/?-|±)\s?\d")  # from the middle
 
 
@@ -36,8 +41,53 @@ class Strokes(NamedTuple):
     guess: str = ""
 
 
+def strokes_of(values: Sequence[DraftValue], understood: Understood) -> Strokes | None:
+    """Return length and frequency of strokes, of the text above the table and of columns.
+
+    What a column holds goes before what the text states: it says when it changes.
+
+    Parameters
+    ----------
+    values
+        From `tribolab.draft.columns.values.find_values`.
+    understood
+        What is known of the columns.
+    """
+    lengths, frequencies = _of_columns(understood)
+    stroke, frequency, guess = _stated(values)
+    if stroke is not None and frequency is not None and not _change(understood, frequencies):
+        settings = (("stroke_value", stroke.name), ("frequency_value", frequency.name))
+        return Strokes(settings, (stroke, frequency), guess=guess)
+    symbols: list[tuple[str, DraftColumn]] = []
+    kept: list[DraftValue] = []
+    if len(lengths) == 1 and not lengths[0].used:
+        symbols.append(("stroke", lengths[0]))
+        guess = ""
+    elif stroke is not None:
+        kept.append(stroke)
+    if len(frequencies) == 1:
+        symbols.append(("stroke_frequency", frequencies[0]))
+    elif frequency is not None:
+        kept.append(frequency)
+    if len(symbols) + len(kept) < 2:
+        return None
+    length = next((name for name, _ in symbols if name == "stroke"), "") or kept[0].name
+    often = next((name for name, _ in symbols if name != "stroke"), "") or kept[-1].name
+    settings = (("stroke_value", length), ("frequency_value", often))
+    return Strokes(settings, tuple(kept), tuple(symbols), guess)
+
+
 def strokes_of_values(values: Sequence[DraftValue]) -> Strokes | None:
     """Return the length and frequency of strokes that stand above the table."""
+    stroke, frequency, guess = _stated(values)
+    if stroke is None or frequency is None:
+        return None
+    settings = (("stroke_value", stroke.name), ("frequency_value", frequency.name))
+    return Strokes(settings, (stroke, frequency), guess=guess)
+
+
+def _stated(values: Sequence[DraftValue]) -> tuple[DraftValue | None, DraftValue | None, str]:
+    """Return the length and the frequency of strokes as the text has them, and what is guessed."""
     stroke, frequency, guess = _only(values, STROKE, "m"), _only(values, FREQUENCY, "Hz"), ""
     if stroke is not None and _EITHER_WAY.search(stroke.text):
         stroke = stroke._replace(scale=2.0)
@@ -46,10 +96,7 @@ def strokes_of_values(values: Sequence[DraftValue]) -> Strokes | None:
         stroke = half if whole else half._replace(scale=2.0)
         if not whole and "half" not in half.name and not _EITHER_WAY.search(half.text):
             guess = f"'{half.text}' is half of a stroke"
-    if stroke is None or frequency is None:
-        return None
-    settings = (("stroke_value", stroke.name), ("frequency_value", frequency.name))
-    return Strokes(settings, (stroke, frequency), guess=guess)
+    return stroke, frequency, guess
 
 
 def as_stated(values: Sequence[DraftValue]) -> tuple[DraftValue, ...]:
@@ -66,20 +113,31 @@ def as_stated(values: Sequence[DraftValue]) -> tuple[DraftValue, ...]:
     )
 
 
-def strokes_of_columns(understood: Understood) -> Strokes | None:
-    """Return the columns that hold the length and the frequency of strokes."""
+def _of_columns(understood: Understood) -> tuple[list[DraftColumn], list[DraftColumn]]:
+    """Return the columns that hold lengths of strokes, and those of how often they come."""
     lengths, frequencies = [], []
     for column in understood.columns:
         name, unit = split_name(column.label)
-        unit = column.file_unit or unit
+        if column.file_unit is None and unit is None:
+            name, unit = split_unit(column.label)
+            column = column._replace(unit=column.unit or unit)
+        unit = column.file_unit or column.unit or unit
         if unit is not None and converts(unit, "m") and is_length(name):
             lengths.append(column)
         elif is_frequency(name, unit) and not column.used:
             frequencies.append(column)
-    if len(lengths) != 1 or len(frequencies) != 1 or lengths[0].used:
-        return None
-    settings = (("stroke_value", "stroke"), ("frequency_value", "stroke_frequency"))
-    return Strokes(settings, symbols=(("stroke", lengths[0]), ("stroke_frequency", frequencies[0])))
+    # what is measured, where what was set stands beside it
+    measured = [c for c in frequencies if role_of(c.label) != "set"]
+    return lengths, measured if len(frequencies) > 1 else frequencies
+
+
+def _change(understood: Understood, columns: Sequence[DraftColumn]) -> bool:
+    """Whether the one column of a setting holds several."""
+    if len(columns) != 1:
+        return False
+    values = understood.numbers[:, columns[0].place - 1]
+    values = values[np.isfinite(values) & (values > 0)]
+    return bool(values.size) and float(values.max()) > _SEVERAL * float(values.min())
 
 
 def _only(values: Sequence[DraftValue], key: re.Pattern[str], unit: str) -> DraftValue | None:

@@ -27,7 +27,7 @@ END_TO_END = re.compile(
     re.IGNORECASE,
 )
 FREQUENCY = or_term(
-    r"^(?:(?:stroke|oscillation|reciprocating|test|drive|motion|hub|schwing|crank)?"
+    r"^(?:f|(?:stroke|oscillation|reciprocating|test|drive|motion|hub|schwing|crank)?"
     r"(?:frequency|freq|frequenz|speed|rotation)|频率|周波数"
     r"|(?:frequence|frecuencia|frequenza|frequencia|frequentie|frekvens|frekvence|frekans|taajuus"
     r"|czestotliwosc|frekvencia|частота|주파수)(?:de\w*|di\w*|do\w*|ruchu|pohybu|хода|oscil\w*)?"

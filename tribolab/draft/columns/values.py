@@ -56,6 +56,7 @@ _DRIVEN = re.compile(  # "reciprocating rig, crank drive"
     r"[- ]?(?:driv\w*|(?:an)?trieb\w*|mechanism)"
     r"|\b(?:sinusoidal|sinusf[oö]rmige?|triangular|constant[- ]speed)"
     r" (?:motion|strokes?|bewegung)"
+    r"|\bsinusf[oö]rmig\w*|\b(?:kurbel(?:schleife|schwinge)|kreuzschubkurbel|crank(?:[- ]slider)?)\b"
     r"|\b(?:vevdriv\w+|vevdrift|veivdrift|krumtapdrift|kampikäyttö|biel\w+[- ]maniv\w+|manivelle"
     r"|krank[- ]biyel|sinüs\w* hareket\w*|korbow\w+|klikov\w+|кривошип\w*|forgattyús?\w*)"
     r"|曲柄|クランク|크랭크|正弦运动|正弦運動",
