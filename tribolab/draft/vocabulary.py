@@ -36,7 +36,7 @@ RUN_WORDS = (
     ),
     Word(
         "friction_force",
-        _words("fx ff fr ft fric frict freib ffric fq ftan ftang lf flat ffriction fs fh fy"),
+        _words("fx ff fr ft fric frict freib ffric ffr fq ftan ftang lf flat ffriction ftr fтр froz fроз fатр fs fh fy"),
         _words(
             "frictionforce frictionalforce fricforce tangentialforce tangforce lateralforce "
             "horizontalforce horizontalload latforce "
@@ -48,7 +48,8 @@ RUN_WORDS = (
             "forzadiattrito forzadattrito forzatangenziale attrito "
             "forcadeatrito forcatangencial atrito silatarcia tarcie trecisila friktionskraft "
             "kitkavoima surlodasiero suertuenmekuvveti suertuenme "
-            "силатрения тангенциальнаясила 마찰력 접선력 摩擦力 切向力 剪切力 せん断力 接線力"
+            "силатрения тангенциальнаясила 마찰력 접선력 摩擦力 切向力 剪切力 せん断力 接線力 摩擦 "
+            "tangenziale tangenzial tangentielle tangentiel tangencial styczna тангенциальн касательн"
         ),
         _words(
             "standardkraft pruefkraft "
@@ -58,7 +59,7 @@ RUN_WORDS = (
     ),
     Word(
         "normal_force",
-        _words("fn fz fnorm fnormal w l nf fv normal"),
+        _words("fn fz fnorm fnormal w l nf fv normal normale normalna n"),
         _words(
             "normalforce normalload normload normforce axialforce axialload "
             "verticalforce verticalload "
@@ -89,7 +90,7 @@ RUN_WORDS = (
             "coefficientediattrito coefficientedattrito coeffdiattrito coeffdattrito attrito "
             "coeficientedeatrito coefdeatrito wspolczynniktarcia koeficienttreni souciniteltreni "
             "friktionskoefficient kitkakerroin suertuenmekatsayisi коэффициенттрения 마찰계수 "
-            "摩擦系数 摩擦係數 摩擦因数 摩擦係数"
+            "摩擦系数 摩擦係數 摩擦因数 摩擦係数 摩擦"
         ),
     ),
     Word(

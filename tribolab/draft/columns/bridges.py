@@ -6,12 +6,12 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.columns.values import DraftValue, find_values
-from tribolab.draft.columns.words import matches, split_unit
+from tribolab.draft.columns.words import matches
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
-from tribolab.io.dialects.cells import split_name
 
 _FORCES = {"friction_force": "friction", "normal_force": "load"}  # and names of their volts
 _RATIO = re.compile(
@@ -70,10 +70,8 @@ def calibrated_forces(layout: Layout, columns: Sequence[DraftColumn]) -> list[Ca
 
 def _force_of(column: DraftColumn) -> str:
     """Return the force that a column in volts names; "" if none."""
-    name, unit = split_name(column.label)
-    if unit is None and column.file_unit is None:
-        name, unit = split_unit(name)
-    if not converts(column.file_unit or unit or "", "V"):
+    name, unit, _ = bare_name(column)
+    if not converts(unit or "", "V"):
         return ""
     options = matches(name, None)
     return options[0].quantity if options and options[0].quantity in _FORCES else ""

@@ -21,13 +21,19 @@ from tribolab.quantities import quantity
 
 _LONGEST = 200  # characters of a line that are looked at
 _NUMBER = r"\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?"
-_COUNT = r"(?:counts?|cts|digits?|lsb|bits?|incr(?:ement)?s?|steps?|pulses?)"
+COUNT_WORD = (
+    r"(?:counts?|cts|digits?|lsb|bits?|incr(?:ement)?s?|micro?steps?|steps?|pulses?|ticks?"
+    r"|conteggi[o]?|pass[io]|impulsi?|cuentas?|pasos?|pulsos?|impulsos?|contagens|passos?|coups|pas"
+    r"|impulsions?|schritte?|impulse?|inkremente?|stappen|pulsen|krok\w{0,3}|impuls\w{0,3}|zlicz\w+"
+    r"|pulser|steg|имп\w{0,6}|шаг\w{0,3}|отсч[её]т\w{0,3}|сч[её]т\w{0,3}|код\w{0,3}|ед\.?\s?АЦП"
+    r"|say[ıi]m|darbe|ad[ıi]m|计数|脉冲|步|码|カウント|パルス|ステップ|카운트|펄스|스텝)"
+)
 WORTH = re.compile(
-    rf"(?<![\d.,])(?P<number>{_NUMBER})\s?(?P<unit>[^\W\d]{{1,3}})\s?(?:/|per)\s?{_COUNT}\b",
+    rf"(?<![\d.,])(?P<number>{_NUMBER})\s?(?P<unit>[^\W\d]{{1,3}})\s?(?:/|per)\s?{COUNT_WORD}\b",
     re.IGNORECASE,
 )
 _SO_MANY = re.compile(
-    rf"(?<![\d.,])(?P<number>{_NUMBER})\s?{_COUNT}\s?(?:/|per)\s?(?P<unit>[^\W\d]{{1,3}})\b",
+    rf"(?<![\d.,])(?P<number>{_NUMBER})\s?{COUNT_WORD}\s?(?:/|per)\s?(?P<unit>[^\W\d]{{1,3}})\b",
     re.IGNORECASE,
 )
 _IS = r"\s?(?:=|≙|≈|≅|:=|->|→|corresponds to|entspricht|entsprechen|equals?|is|are)\s?"

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from tribolab.draft.columns.bridges import calibrated_forces
 from tribolab.draft.columns.counts import zero_in_counts
+from tribolab.draft.columns.gains import stated_gains
 from tribolab.draft.columns.lengths import find_arm, find_radius, on_rim
 from tribolab.draft.columns.programme import programme_of
 from tribolab.draft.columns.slip import stated_ratio
@@ -145,7 +146,19 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
         what = f"friction_reading - {zero.name}"
         formula = DraftedFormula("friction_force", what, f"'{zero.text}'")
         result = _and(result, formula, [zero], (("friction_reading", reading),))
+    gains = stated_gains(layout, understood.columns)
+    for gain in gains:
+        if gain.quantity == "position" and (result.speed is not None or names & _SAYS_SPEED):
+            continue
+        formula = DraftedFormula(gain.quantity, gain.formula, gain.about)
+        result = _and(result, formula, gain.values, ((gain.symbol, gain.column),))
+        names.add(gain.quantity)
+        if gain.quantity == "position" and timed:
+            result = result._replace(speed=SpeedBy("position"))
+    made = {gain.quantity for gain in gains}
     for force in calibrated_forces(layout, understood.columns):
+        if force.quantity in made:
+            continue
         about = f"a signal in volts, and '{force.value.text}'"
         formula = DraftedFormula(force.quantity, force.formula, about)
         result = _and(result, formula, [force.value], ((force.symbol, force.column),))

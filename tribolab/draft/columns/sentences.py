@@ -88,7 +88,7 @@ def phrases(line: str) -> list[Phrase]:
         if behind := _ACROSS_BEHIND.match(line[match.end() :][:20]):
             key += "od" if behind[1] else "diameter"
         number = match["number"].rstrip(".,")
-        said.append(Phrase(key, number, unit, _pattern(line[: match.start()]), line))
+        said.append(Phrase(key, number, unit, pattern_behind(line[: match.start()]), line))
         done = match.end()
     return said
 
@@ -118,7 +118,11 @@ def points_per_length(line: str) -> tuple[float, str] | None:
     return (number, match["unit"]) if number > 0 else None
 
 
-def _pattern(before: str) -> str:
-    """Return a pattern of a line's beginning, in which other numbers may be others."""
+def pattern_behind(before: str) -> str:
+    """Return a pattern for the number behind a line's beginning, in which numbers may be others.
+
+    >>> re.search(pattern_behind("# cell 2: "), "# cell 3: 4.5 N")[1]
+    '4.5'
+    """
     parts = re.split(r"\d[\d.,]*", before.strip())
     return r"^\s*" + r"[\d.,]+".join(map(escaped, parts)) + r"\s*([-+]?\d[\d.,]*(?:[eE][-+]?\d+)?)"

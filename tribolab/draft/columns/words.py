@@ -66,6 +66,7 @@ _UNIT_WORDS = {
     **{"с": "s", "сек": "s", "мс": "ms", "мин": "min", "об/мин": "rpm"},
     **{"мм": "mm", "мкм": "um", "м": "m", "мм/с": "mm/s", "мкм/с": "um/s", "м/с": "m/s"},
     **{"н": "N", "мн": "mN", "кн": "kN", "нм": "nm", "мк": "um"},
+    **{"кгс": "kgf", "гс": "gf", "сн": "cN", "в": "V", "мв": "mV", "гц": "Hz", "см": "cm"},
     **dict.fromkeys(("mikrometri", "mikrometria", "mikrometriä", "mikron", "mikrony"), "um"),
     **dict.fromkeys(("mikrometry", "mikrometrů", "mikrometr", "mikrometrów", "mikrons"), "um"),
     **dict.fromkeys(("micrometri", "micrómetros", "micrômetros", "micra", "micron"), "um"),

@@ -167,7 +167,7 @@ def _cells(line: str, grammar: Grammar, width: int) -> tuple[tuple[str, ...], bo
     cells = tuple(grammar.cells(line))
     if grammar.delimiter != "whitespace" or len(cells) == width:
         return cells, True
-    bare = line.strip().lstrip("#%/ ").strip()
+    bare = line.strip().lstrip("#%/*;!\"' ").strip()
     for parts in (bare.split(), re.split(r"\t+|\s{2,}", bare), _BRACKETED.findall(bare)):
         if len(parts) == width:
             return tuple(part.strip().strip('"') for part in parts), False
@@ -180,7 +180,7 @@ def _fits(line: str, cells: Sequence[str], grammar: Grammar, width: int) -> bool
     words = [cell for cell in filled if not grammar.is_number(cell)]
     if not filled or len(words) < 0.7 * len(filled) or _MARK.fullmatch(line[:_LONGEST_MARK]):
         return False
-    if re.match(r"\s*(#|%|//|;)", line) and re.search(r"[:=]", line):
+    if re.match(r"\s*(#|%|//|;|\*|!)", line) and re.search(r"[:=]", line):
         return False  # a comment that says something: "# rate: 10 Hz"
     # "Interval data:" may stand before the names of all columns, "Operator:" before a name
     first = 1 if len(cells) == width and len(filled) > 3 else 0

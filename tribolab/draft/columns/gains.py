@@ -1,0 +1,204 @@
+"""What a volt or a count of a column is worth, where its own name or a line that names it says so.
+
+"LVDT (2.50 mm/V)", "Bridge (100 N = 2.013 mV/V, 5 V)"; "cell_T: 48210 counts/N" above "cell_T".
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from tribolab.draft.columns.counts import COUNT_WORD
+from tribolab.draft.columns.labels import bare_name
+from tribolab.draft.columns.sentences import pattern_behind
+from tribolab.draft.columns.values import DraftValue
+from tribolab.draft.columns.words import COUNTS, matches, squeezed, unit_in_words
+from tribolab.draft.file.header import converts
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.model import DraftColumn
+from tribolab.draft.vocabulary import WEIGHTS
+
+_LONGEST = 300  # characters of a line that are looked at
+_KNOWN = 0.3  # share of a name that a known word makes up: its factor says of what kind it is
+# symbols of signals, by what they are
+SYMBOLS = {
+    "friction_force": "friction_signal",
+    "normal_force": "load_signal",
+    "position": "way_signal",
+}
+_SI_UNITS = {"friction_force": "N", "normal_force": "N", "position": "m"}
+_NUMBER = r"(?<![\d.,A-Za-z_])(?P<number>\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)"
+_UNIT = r"[^\W\d_]{1,5}"
+_RAW = rf"(?:[mµμu]?V|{COUNT_WORD})"
+_PER = r"\s?(?:/|per|pro|par|por|al|a|na|на)\s?"
+_WORTH = re.compile(rf"{_NUMBER}\s?(?P<unit>{_UNIT}){_PER}(?P<raw>{_RAW})(?![\w/])", re.IGNORECASE)
+_SO_MANY = re.compile(
+    rf"{_NUMBER}\s?(?P<raw>{_RAW}){_PER}(?P<unit>{_UNIT})(?![\w/])", re.IGNORECASE
+)
+# a bridge: what it gives at its rated load, of each volt that feeds it
+_OUTPUT = re.compile(rf"{_NUMBER}\s?mV\s?/\s?V(?![\w/])")
+_RATED = re.compile(rf"{_NUMBER}\s?(?P<unit>[kmM]?N|k?gf?|kp|lbf?)(?![\w/])")
+_FED = re.compile(rf"{_NUMBER}\s?V(?![\w/])")
+
+
+class Gain(NamedTuple):
+    """A signal that makes a quantity: its column, the formula, and what the latter rests on."""
+
+    quantity: str
+    column: DraftColumn
+    formula: str
+    about: str
+    values: tuple[DraftValue, ...] = ()
+
+    @property
+    def symbol(self) -> str:
+        """What the column is called in the formula."""
+        return SYMBOLS[self.quantity]
+
+
+class _Said(NamedTuple):
+    """A text that speaks of a column: the line that it stands in ("" if the name), and where."""
+
+    text: str
+    line: str = ""
+    place: int = 0
+
+
+def stated_gains(layout: Layout, columns: Sequence[DraftColumn]) -> list[Gain]:
+    """Return what volts and counts make, where a name or a line that names the column tells it.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    columns
+        As they are understood. A quantity that a column holds already is not made.
+
+    Returns
+    -------
+    list of Gain
+        At most one of each quantity; none of a quantity that two columns would make.
+    """
+    held = {c.quantity for c in columns if c.quantity and (c.used or c.fill_in)}
+    found: dict[str, list[Gain]] = {}
+    for column in columns:
+        if column.used or column.form or not (raw := _raw_of(column)):
+            continue
+        gains = (_gain(column, raw, said) for said in _texts(layout, column))
+        gain = next((gain for gain in gains if gain is not None), None)
+        if gain is not None and gain.quantity not in held:
+            found.setdefault(gain.quantity, []).append(gain)
+    return [gains[0] for gains in found.values() if len(gains) == 1]
+
+
+def _raw_of(column: DraftColumn) -> str:
+    """Return "V" of a column in volts, "count" of plain numbers; "" of any other."""
+    _, unit, _ = bare_name(column)
+    if unit is None or unit == COUNTS:
+        return "count" if column.label else ""
+    return "V" if converts(unit, "V") else ""
+
+
+def _texts(layout: Layout, column: DraftColumn) -> Iterator[_Said]:
+    """Go through what the column is called, and through what lines above say of this name."""
+    yield _Said(column.label)
+    name = bare_name(column)[0].strip()
+    words = [re.escape(word) for word in re.split(r"[\s_]+", name) if word]
+    if not words:
+        return
+    named = re.compile(rf"(?:^[^\w]*|[;,|]\s*|\s{{2,}}){r'[ _]*'.join(words)}(?![^\W_])")
+    lines = [line[:_LONGEST] for line in layout.text_above()]
+    for line in lines:
+        if told := named.search(line):
+            end = re.compile(r";|\s{3,}").search(line, told.end())
+            yield _Said(line[told.end() : end.start() if end else None], line, told.end())
+    for line in lines:  # "motor: 400 steps/mm" of a column "steps"
+        for match in _SO_MANY.finditer(line):
+            if squeezed(match["raw"]) == squeezed(name):
+                yield _Said(line[match.start() :], line, match.start())
+
+
+def _gain(column: DraftColumn, raw: str, said: _Said) -> Gain | None:
+    return _by_ratio(column, raw, said) or (_by_bridge(column, said) if raw == "V" else None)
+
+
+def _by_ratio(column: DraftColumn, raw: str, said: _Said) -> Gain | None:
+    """Return what one ratio makes of a signal: "2.5 mm/V", "48210 counts/N"."""
+    each, many = _WORTH.search(said.text), _SO_MANY.search(said.text)
+    for match, multiplies in ((each, True), (many, False)):
+        if match is None:
+            continue
+        unit = unit_in_words(match["unit"])
+        unit = WEIGHTS.get(unit, unit)
+        in_volts = converts(match["raw"], "V")
+        quantity = _quantity(column, said.text[: match.start()], unit)
+        if not quantity or in_volts != (raw == "V"):
+            continue
+        per = match["raw"] if in_volts else "1"
+        whole = f"{unit}/{per}" if multiplies else f"{per}/{unit}"
+        whole = unit if multiplies and per == "1" else whole
+        number, values = _number(
+            match, said, whole, f"{SYMBOLS[quantity]}_factor", _to(quantity, whole)
+        )
+        sign = "*" if multiplies else "/"
+        return Gain(quantity, column, f"{SYMBOLS[quantity]} {sign} {number}", _about(said), values)
+    return None
+
+
+def _by_bridge(column: DraftColumn, said: _Said) -> Gain | None:
+    """Return what a bridge's rated load and output make of its signal: "100 N = 2 mV/V, 5 V"."""
+    output, rated = _OUTPUT.search(said.text), _RATED.search(said.text)
+    fed = [match for match in _FED.finditer(said.text)]
+    if output is None or rated is None or len(fed) != 1:
+        return None
+    unit = WEIGHTS.get(rated["unit"], rated["unit"])
+    quantity = _quantity(column, said.text[: min(output.start(), rated.start())], unit)
+    if not quantity:
+        return None
+    name = SYMBOLS[quantity]
+    parts = [
+        _number(rated, said, unit, f"{name}_rated_load", "N"),
+        _number(output, said, "mV/V", f"{name}_rated_output", "1"),
+        _number(fed[0], said, "V", f"{name}_excitation", "V"),
+    ]
+    load, gives, feeds = (text for text, _ in parts)
+    values = tuple(value for _, more in parts for value in more)
+    return Gain(quantity, column, f"{name} / {gives} / {feeds} * {load}", _about(said), values)
+
+
+def _number(
+    match: re.Match[str], said: _Said, unit: str, name: str, to: str
+) -> tuple[str, tuple[DraftValue, ...]]:
+    """Return a number as a formula has it, and the value that it is where a line states it."""
+    if not said.line:  # the column's name: a file of another number has another column
+        return f"'{match['number'].replace(',', '.')} {unit}'", ()
+    pattern = pattern_behind(said.line[: said.place + match.start()])
+    value = DraftValue(
+        name, pattern, unit, to, said.line.strip(), own_unit=unit, key=squeezed(name)
+    )
+    return name, (value,)
+
+
+def _to(quantity: str, unit: str) -> str:
+    """Return the SI unit of a factor."""
+    si_unit = _SI_UNITS[quantity]
+    forms = (si_unit, f"{si_unit}/V", f"V/{si_unit}", f"1/{si_unit}")
+    return next(form for form in forms if converts(unit, form))
+
+
+def _about(said: _Said) -> str:
+    return f"a signal, and '{said.line.strip()}'" if said.line else "a signal, and its own name"
+
+
+def _quantity(column: DraftColumn, words: str, unit: str) -> str:
+    """Return what a column makes in a unit, by its name or by words; "" if that is not told."""
+    kinds = [name for name, si_unit in _SI_UNITS.items() if converts(unit, si_unit)]
+    if kinds == ["position"]:
+        return "position"
+    name = bare_name(column)[0]
+    for text in (name, words, *re.findall(r"[^\W\d_]{4,}", words)):
+        options = [option for option in matches(text, None) if option.score >= _KNOWN]
+        if options and options[0].quantity in kinds:
+            return options[0].quantity
+    return ""
