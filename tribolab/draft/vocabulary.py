@@ -36,7 +36,9 @@ RUN_WORDS = (
     ),
     Word(
         "friction_force",
-        _words("fx ff fr ft fric frict freib ffric ffr fq ftan ftang lf flat ffriction ftr fтр froz fроз fатр fs fh fy"),
+        _words(
+            "fx ff fr ft fric frict freib ffric ffr fq ftan ftang lf flat ffriction ftr fтр froz fроз fатр fs fh fy"
+        ),
         _words(
             "frictionforce frictionalforce fricforce tangentialforce tangforce lateralforce "
             "horizontalforce horizontalload latforce "

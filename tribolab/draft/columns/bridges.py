@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tribolab.draft.columns.gains import with_unit
 from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.columns.values import DraftValue, find_values
 from tribolab.draft.columns.words import matches
@@ -64,7 +65,7 @@ def calibrated_forces(layout: Layout, columns: Sequence[DraftColumn]) -> list[Ca
         fitting = [factor for factor in factors if _speaks_of(factor, quantity)]
         if quantity not in held and len(mine) == len(fitting) == 1:
             name = f"{_FORCES[quantity]}_factor"
-            made.append(Calibrated(quantity, mine[0], fitting[0]._replace(name=name)))
+            made.append(Calibrated(quantity, with_unit(mine[0]), fitting[0]._replace(name=name)))
     return made
 
 

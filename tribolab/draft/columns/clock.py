@@ -66,7 +66,7 @@ def find_clock(
     parts = list(zip(edges[:-1], edges[1:], strict=True))
     ends = [(time[b - 1], time[b]) for b in edges[1:-1]]
     restart = any(not later > earlier for earlier, later in ends)
-    bad, notes = np.zeros(len(time), dtype=bool), []
+    bad, notes, wraps = np.zeros(len(time), dtype=bool), [], []
     for first, last in parts:
         faults = find_faults(time[first:last])
         # a time of day begins anew at midnight, minutes and seconds at the hour
@@ -74,7 +74,7 @@ def find_clock(
         restart |= bool(starts)
         bad[first:last] = rows_at_fault(time[first:last] + faults.offsets(), faults)
         periods = {start.period for start in starts if start.period}
-        notes += [f"its counter wraps every {period:.9g} s" for period in sorted(periods)]
+        wraps += [f"its counter wraps every {period:.9g} s" for period in sorted(periods)]
     on_repeat: OnRepeat = ""
     if bad.any():
         others = np.delete(numbers, column.place - 1, axis=1)
@@ -87,5 +87,8 @@ def find_clock(
             column = column._replace(note=f"{told} are left out: they say nothing new")
         else:
             notes.append(f"{told} get times between the others'")
+    if wraps:  # no guess: it falls by exactly what such a counter holds
+        told = "; ".join(dict.fromkeys(wraps))
+        column = column._replace(note=f"{column.note}; {told}" if column.note else told)
     column = column._replace(guessed=(*column.guessed, *dict.fromkeys(notes)))
     return on_repeat, restart, [column if c.place == column.place else c for c in columns]

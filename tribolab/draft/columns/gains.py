@@ -18,6 +18,7 @@ from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.vocabulary import WEIGHTS
+from tribolab.io.dialects.cells import split_name
 
 _LONGEST = 300  # characters of a line that are looked at
 _KNOWN = 0.3  # share of a name that a known word makes up: its factor says of what kind it is
@@ -39,6 +40,7 @@ _SO_MANY = re.compile(
 # a bridge: what it gives at its rated load, of each volt that feeds it
 _OUTPUT = re.compile(rf"{_NUMBER}\s?mV\s?/\s?V(?![\w/])")
 _RATED = re.compile(rf"{_NUMBER}\s?(?P<unit>[kmM]?N|k?gf?|kp|lbf?)(?![\w/])")
+_ENDS = re.compile(r";|\s{3,}")
 _FED = re.compile(rf"{_NUMBER}\s?V(?![\w/])")
 
 
@@ -82,40 +84,59 @@ def stated_gains(layout: Layout, columns: Sequence[DraftColumn]) -> list[Gain]:
     """
     held = {c.quantity for c in columns if c.quantity and (c.used or c.fill_in)}
     found: dict[str, list[Gain]] = {}
+    bare = [bare_name(column)[0].strip() for column in columns]
     for column in columns:
         if column.used or column.form or not (raw := _raw_of(column)):
             continue
-        gains = (_gain(column, raw, said) for said in _texts(layout, column))
+        label = split_name(column.label)[0]
+        alone = bare.count(bare[column.place - 1]) == 1 and raw == "V"
+        names = dict.fromkeys([label, bare[column.place - 1]] if alone else [label])
+        gains = (_gain(column, raw, said) for said in _texts(layout, column, list(names)))
         gain = next((gain for gain in gains if gain is not None), None)
         if gain is not None and gain.quantity not in held:
+            gain = gain._replace(column=with_unit(column) if raw == "V" else _counted(column))
             found.setdefault(gain.quantity, []).append(gain)
     return [gains[0] for gains in found.values() if len(gains) == 1]
 
 
 def _raw_of(column: DraftColumn) -> str:
-    """Return "V" of a column in volts, "count" of plain numbers; "" of any other."""
+    """Return "V" of a column in volts, "count" of plain numbers; "" of any other.
+
+    The N behind a stroke below may be the name's own: "cell_N" beside "cell_T".
+    """
     _, unit, _ = bare_name(column)
-    if unit is None or unit == COUNTS:
+    said = column.file_unit or column.unit or split_name(column.label)[1]
+    if unit is None or unit == COUNTS or (not said and not converts(unit, "V")):
         return "count" if column.label else ""
     return "V" if converts(unit, "V") else ""
 
 
-def _texts(layout: Layout, column: DraftColumn) -> Iterator[_Said]:
-    """Go through what the column is called, and through what lines above say of this name."""
+def with_unit(column: DraftColumn) -> DraftColumn:
+    """Return a column with the unit that its name ends in, where nothing else says it: "load V"."""
+    unit = column.unit or bare_name(column)[1]
+    return column if column.file_unit is not None else column._replace(unit=unit)
+
+
+def _counted(column: DraftColumn) -> DraftColumn:
+    return column._replace(unit="1")
+
+
+def _texts(layout: Layout, column: DraftColumn, names: Sequence[str]) -> Iterator[_Said]:
+    """Go through what the column is called, and through what lines above say of its names."""
     yield _Said(column.label)
-    name = bare_name(column)[0].strip()
-    words = [re.escape(word) for word in re.split(r"[\s_]+", name) if word]
-    if not words:
-        return
-    named = re.compile(rf"(?:^[^\w]*|[;,|]\s*|\s{{2,}}){r'[ _]*'.join(words)}(?![^\W_])")
     lines = [line[:_LONGEST] for line in layout.text_above()]
-    for line in lines:
-        if told := named.search(line):
-            end = re.compile(r";|\s{3,}").search(line, told.end())
-            yield _Said(line[told.end() : end.start() if end else None], line, told.end())
+    for name in names:
+        words = [re.escape(word) for word in re.split(r"[\s_]+", name) if word]
+        if not words:
+            continue
+        named = re.compile(rf"(?:^[^\w]*|[;,|]\s*|\s{{2,}}){r'[ _]*'.join(words)}(?![^\W_])")
+        for line in lines:
+            if told := named.search(line):
+                end = _ENDS.search(line, told.end())
+                yield _Said(line[told.end() : end.start() if end else None], line, told.end())
     for line in lines:  # "motor: 400 steps/mm" of a column "steps"
         for match in _SO_MANY.finditer(line):
-            if squeezed(match["raw"]) == squeezed(name):
+            if squeezed(match["raw"]) == squeezed(names[0]):
                 yield _Said(line[match.start() :], line, match.start())
 
 

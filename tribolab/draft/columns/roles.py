@@ -35,6 +35,11 @@ _ROLES: tuple[tuple[Role, frozenset[str], re.Pattern[str]], ...] = (
 )
 
 
+_EASTERN = re.compile(
+    r"设定|設定|目标|目標|指令|实际|实测|実測|実際"
+)  # written with the name in one word
+
+
 def role_of(name: str) -> Role:
     """Tell by a column's name how its numbers came about.
 
@@ -53,9 +58,9 @@ def role_of(name: str) -> Role:
 def without_role(name: str) -> str:
     """Return a name without the words that say that its numbers were set or measured.
 
-    >>> without_role("Actual velocity"), without_role("Set Speed"), without_role("Ist")
-    ('velocity', 'Speed', 'Ist')
+    >>> without_role("Actual velocity"), without_role("Set Speed"), without_role("速度指令")
+    ('velocity', 'Speed', '速度')
     """
     words = _SET | _MEASURED
-    kept = [token for token in _TOKENS.findall(name) if token.lower() not in words]
-    return " ".join(kept) or name
+    kept = [_EASTERN.sub("", t) for t in _TOKENS.findall(name) if t.lower() not in words]
+    return " ".join(token for token in kept if token) or name

@@ -37,7 +37,7 @@ LOAD = or_term(
     r"|effortnormal|carganormal|carga|fuerzanormal|cariconormale|carico|caricato|forzanormale|peso|poids"
     r"|nacisk|obciazenie|zatizeni|zatez|nagruzka|нагрузка|нормальнаясила|belasting|kuorma|terheles|yuek"
     r"|(?:nacisk|obciazenie|zatizeni|нагрузка|carico|carga|charge|load|last)(?:fn|fz|f|p|w|n)"
-    r"|试验力|法向力|法向载荷|载荷|负载|荷重|垂直荷重|試験荷重|載荷|하중)$"
+    r"|试验力|法向力|法向载荷|载荷|负载|荷重|垂直荷重|試験荷重|載荷|(?:추|수직|시험|직접)?하중|추무게|おもり(?:荷重|質量)?|錘|砝码(?:质量|重量)?)$"
     r"|^(?:carga|pesos?|mas+[ae]|poids|carico|charge|fuerza|forza|forca|effort)(?:normale?)?"
     r"(?:do|da|de|del|della|des|du|aplicada|appliquee|applicato)\w{0,12}$"
     r"|^(?:total|gesamt|mean|mittlere)?(?:lip|lippen|seal|ring)?radial(?:force|load|kraft|last)"
