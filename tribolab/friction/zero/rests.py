@@ -179,8 +179,11 @@ def _unloaded(
 
 
 def _level(normal: np.ndarray, first: int, last: int, load: float) -> np.ndarray:
-    """Return the samples of a rest that lie at one level far below the load, if there is one."""
-    light = first + np.flatnonzero(np.abs(normal[first:last]) < _LIGHT * load)
+    """Return the samples of a rest that lie at one level far below the load, if there is one.
+
+    However far below zero: at rest nothing pulls, and what reads so has an offset.
+    """
+    light = first + np.flatnonzero(normal[first:last] < _LIGHT * load)
     if light.size < _FEWEST:
         return light
     # the load's ramp begins in the same rest: readings far from the usual one are left out
