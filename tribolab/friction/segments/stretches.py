@@ -16,6 +16,7 @@ from tribolab.friction.segments.turns import strokes_within
 from tribolab.medians import median
 from tribolab.pieces import anywhere
 
+_NOWHERE = 3.0  # standard deviations of a reading of the position: so far is nowhere
 _RESOLVED = 10.0  # errors of a block's velocity from which on its blocks are long enough
 
 
@@ -109,6 +110,8 @@ def from_position(run: xr.Dataset, limits: ConstancyLimits, max_gap: float | Non
     pieces = moving(time, pieces, limits)
     pieces = held(MeanVelocities(time, position=position), pieces, limits)
     pieces = [_with_slope(time, position, p) for p in pieces]
+    if limits.rest_speed is None:
+        pieces = _getting_somewhere(time, pieces, slopes.position_noise(time, position))
     share = 0.25  # one straight line on both sides of a pause shows that the speed held
     return _in_time(run, time, pieces, limits, max_gap, share)
 
@@ -145,6 +148,19 @@ def _with_slope(time: np.ndarray, position: np.ndarray, piece: VelocityPiece) ->
         return piece
     inside = slice(piece.first, piece.last)
     return piece._replace(velocity=slopes.line(time[inside], position[inside])[1])
+
+
+def _getting_somewhere(
+    time: np.ndarray, pieces: list[VelocityPiece], noise: float
+) -> list[VelocityPiece]:
+    """Call at rest what gets no farther than the noise of a reading: a dwell between strokes."""
+    return [
+        piece._replace(kind="at rest")
+        if piece.kind == "constant"
+        and abs(piece.velocity) * (time[piece.last - 1] - time[piece.first]) < _NOWHERE * noise
+        else piece
+        for piece in pieces
+    ]
 
 
 def _kinks(
