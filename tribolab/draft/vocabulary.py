@@ -37,7 +37,8 @@ RUN_WORDS = (
     Word(
         "friction_force",
         _words(
-            "fx ff fr ft fric frict freib ffric ffr fq ftan ftang lf flat ffriction ftr fтр froz fроз fатр fs fh fy"
+            "fx ff fr ft fric frict freib ffric ffr fq ftan ftang lf flat ffriction ftr fтр froz "
+            "fs fh fy"
         ),
         _words(
             "frictionforce frictionalforce fricforce tangentialforce tangforce lateralforce "
@@ -51,7 +52,8 @@ RUN_WORDS = (
             "forcadeatrito forcatangencial atrito silatarcia tarcie trecisila friktionskraft "
             "kitkavoima surlodasiero suertuenmekuvveti suertuenme "
             "силатрения тангенциальнаясила 마찰력 접선력 摩擦力 切向力 剪切力 せん断力 接線力 摩擦 "
-            "tangenziale tangenzial tangentielle tangentiel tangencial styczna тангенциальн касательн"
+            "tangenziale tangenzial tangentielle tangentiel tangencial styczna тангенциальн "
+            "касательн"
         ),
         _words(
             "standardkraft pruefkraft "

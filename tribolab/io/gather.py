@@ -161,6 +161,7 @@ _TIME_FROM = {
     "column": "recorded",
     "period": "recorded",
     "rate": "sample rate",
+    "position": "position and a stated speed",
     "none": "row number",
 }
 

@@ -33,7 +33,7 @@ from tribolab.draft.columns.lengths import (
 from tribolab.draft.columns.plain_numbers import plain_numbers
 from tribolab.draft.columns.ratio import disagreement, force_or_ratio
 from tribolab.draft.columns.results_table import are_points
-from tribolab.draft.columns.sampling import find_sampling
+from tribolab.draft.columns.sampling import find_pace, find_sampling
 from tribolab.draft.columns.slip import of_both_surfaces
 from tribolab.draft.columns.stated_missing import take_stated_missing
 from tribolab.draft.columns.values import DraftValue
@@ -145,6 +145,9 @@ def understand(layout: Layout) -> Understood:
         return result._replace(points=True)
     timed = any(column.used and column.quantity == "time" for column in columns)
     sampling = None if timed or kind != "run" else find_sampling(layout)
+    if sampling is None and not timed and kind == "run":
+        sampling = find_pace(layout, columns, numbers)
+        result = result._replace(restart=sampling is not None and len(layout.blocks) > 1)
     if sampling is None:
         return result
     guesses += [sampling.guess] if sampling.guess else []

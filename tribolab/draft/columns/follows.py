@@ -41,7 +41,7 @@ _SPEED_OF_TURNS = or_term(
 )
 # what nothing else may be than how fast it slides or turns
 _ITS_SPEED = or_term(
-    r"^(?:test|set|nominal|sliding|gleit|linear|surface|track|rotary|rotation(?:al)?|spindle|dis[ck])?"
+    r"^(?:test|set|nominal|sliding|gleit|linear|surface|crosshead|stage|track|rotary|rotation(?:al)?|spindle|dis[ck])?"
     r"(?:speed|velocity|rpm|geschwindigkeit|drehzahl|rotation)$",
     "sliding_velocity",
     "rotation_speed",

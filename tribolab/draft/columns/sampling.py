@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import NamedTuple
+
+import numpy as np
 
 from tribolab.draft.columns.stated_words import INTERVAL, RATE
 from tribolab.draft.columns.values import find_values
 from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.header import converts, escaped
 from tribolab.draft.file.layout import Layout
+from tribolab.draft.model import DraftColumn
 
 # "# Cadence d'acquisition : 1000 pts/s", "Rate (kS/s) = 1"; "1000 samples per second" alone
 _GROUPS = r"[1-9]\d{0,2}(?:[ \u00a0\u202f']\d{3})+"  # 1 000
@@ -69,6 +73,39 @@ def find_sampling(layout: Layout) -> Sampling | None:
             return said
         guessed = guessed or said
     return _in_values(layout) or guessed
+
+
+def find_pace(
+    layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray
+) -> Sampling | None:
+    """Return the speed at which a position goes on that holds the time: a crosshead's.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    columns
+        As they are understood, without a time.
+    numbers
+        Their numbers (rows, columns) as written.
+
+    Returns
+    -------
+    Sampling or None
+        None unless the text states one speed, and the position does nothing but go on.
+    """
+    names = {column.quantity for column in columns if column.used}
+    way = next((c for c in columns if c.used and c.quantity == "position"), None)
+    speeds = [value for value in find_values(layout) if value.name == "set_speed"]
+    if way is None or "sliding_velocity" in names or len(speeds) != 1 or not speeds[0].own_unit:
+        return None
+    edges = np.cumsum([0, *(len(block.rows) for block in layout.blocks)])
+    parts = zip(edges[:-1], edges[1:], strict=True)
+    goes = [np.diff(numbers[a:b, way.place - 1]) for a, b in parts]
+    if not all(bool((steps > 0).all()) or bool((steps < 0).all()) for steps in goes):
+        return None
+    speed = speeds[0]
+    return Sampling(speed.pattern, speed.unit or speed.own_unit or "")
 
 
 def _in_values(layout: Layout) -> Sampling | None:

@@ -56,7 +56,8 @@ _DRIVEN = re.compile(  # "reciprocating rig, crank drive"
     r"[- ]?(?:driv\w*|(?:an)?trieb\w*|mechanism)"
     r"|\b(?:sinusoidal|sinusf[oö]rmige?|triangular|constant[- ]speed)"
     r" (?:motion|strokes?|bewegung)"
-    r"|\bsinusf[oö]rmig\w*|\b(?:kurbel(?:schleife|schwinge)|kreuzschubkurbel|crank(?:[- ]slider)?)\b"
+    r"|\bsinusf[oö]rmig\w*|\bkurbel(?:schleife|schwinge)\b|\bkreuzschubkurbel\b"
+    r"|\bcrank(?:[- ]slider)?\b|\b(?:excéntrica|exc[eê]ntrico|eccentrico|exzenter)\b"
     r"|\b(?:vevdriv\w+|vevdrift|veivdrift|krumtapdrift|kampikäyttö|biel\w+[- ]maniv\w+|manivelle"
     r"|krank[- ]biyel|sinüs\w* hareket\w*|korbow\w+|klikov\w+|кривошип\w*|forgattyús?\w*)"
     r"|曲柄|クランク|크랭크|正弦运动|正弦運動",
@@ -272,6 +273,8 @@ def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:
     dimension = next((d for d in DIMENSIONS if unit and converts(unit, d)), None)
     if unit is None or dimension is None:
         return DraftValue(_name(key), pattern, None, None, line, own_unit=unit, key=plain)
+    if dimension == "m/s" and _MACHINE_SPEED.search(plain):
+        return DraftValue("set_speed", pattern, unit, None, line, own_unit=unit, key=plain)
     options = matches(key, unit)
     if options and options[0].score > 0.5:
         quantity = _SET.get(options[0].quantity, options[0].quantity)
@@ -326,6 +329,20 @@ _SPEED = or_term(
     r"|^velocita|速度$|snelheid$",
     "sliding_velocity",
 )
+# how fast a machine pulls or drives, in any of its languages
+_FAST = (
+    r"(?:speed|velocity|geschwindigkeit|vitesse|velocidad|velocidade|velocita|snelheid|hastighe[dt]|nopeus"
+    r"|predkosc|rychlost|sebesseg|hizi|скорость|速度|속도)"
+)
+_MACHINE = (
+    r"(?:crosshead|cross|ram|grip|test|pull(?:ing)?|drive|machine|stage|table|carriage|sled|slider"
+    r"|traversen?|pruef|abzugs?|zug|schlitten|tisch|antriebs?|essai|traverse|chariot|platine|traction"
+    r"|ensayo|travesano|cruceta|mesa|carro|prova|traversa|slitta|tavola|ensaio|travessa|tren[oó]"
+    r"|test|trawers\w|stolik\w|pricnik\w|posuvu|traverssin|dragprov|提离|试验|横梁|十字头|拉伸|试验台|滑台"
+    r"|試験|クロスヘッド|引張|テーブル|ステージ|시험|크로스헤드|испытан\w*|траверс\w|ползун\w|каретк\w)"
+)
+_OF = r"(?:dela|del|de|di|do|da|des|du|d|der|des|van|of|ofthe|of)?"
+_MACHINE_SPEED = re.compile(rf"^{_MACHINE}{_FAST}$|^{_FAST}{_OF}(?:l)?{_MACHINE}$")
 _TURNS = or_term(
     rf"(?:speed|velocity|rotation|rpm|drehzahl|vitesse|velocidad|velocita|giri|obroty|转速|回転数)$|^{STEP_WORD}\d*n?$",
     "rotation_speed",

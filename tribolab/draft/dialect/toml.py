@@ -21,6 +21,7 @@ from tribolab.draft.dialect.tables import (
     unused_columns,
     value_tables,
 )
+from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn, Understood
 from tribolab.io.dialects.dates import has_day
@@ -233,7 +234,12 @@ def _time_table(understood: Understood) -> str:
     if understood.period:
         lines.append('source = "period"    # the column holds what has passed since the row before')
     if not timed and understood.rate_pattern:
-        lines += ['source = "rate"', f"rate_pattern = {quoted_pattern(understood.rate_pattern)}"]
+        paced = converts(understood.rate_unit, "m/s")  # as fast as a machine goes on
+        source = "position" if paced else "rate"
+        lines += [
+            f'source = "{source}"',
+            f"rate_pattern = {quoted_pattern(understood.rate_pattern)}",
+        ]
         if understood.rate_unit != "Hz":
             lines.append(f"rate_unit = {quoted(understood.rate_unit)}")
     elif not timed and understood.rate:

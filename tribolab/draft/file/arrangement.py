@@ -52,7 +52,8 @@ def arranged_table(
     own = heading.cells[: -(-len(heading.cells) // groups)]
     # sensors of one record have no clock or way of their own
     told = any(names_any(cell, "time", "position") for cell in own)
-    if groups > 1 and told and any(names_any(cell, *_FRICTION) for cell in own):
+    # the load of a machine that pulls is friction
+    if groups > 1 and told and any(names_any(cell, *_FRICTION, "normal_force") for cell in own):
         return _anew(lines, "side by side", delimiter)
     return None
 

@@ -20,7 +20,7 @@ import numpy as np
 from tribolab.errors import ReadError
 from tribolab.io.clocks.faults import Faults, find_faults, first_fault, rows_at_fault
 from tribolab.io.content.model import Content, Piece
-from tribolab.io.content.sampling import stated_interval
+from tribolab.io.content.sampling import stated_interval, stated_pace
 from tribolab.io.dialects.dates import date_of, has_day, has_zone
 from tribolab.io.dialects.model import Dialect
 from tribolab.medians import median
@@ -39,11 +39,14 @@ class Mended(NamedTuple):
 
 
 def set_time(content: Content, dialect: Dialect) -> None:
-    """Give pieces a time from intervals, from the sample rate, or from the row numbers."""
+    """Give pieces a time from intervals, a rate, a way and its speed, or from the row numbers."""
     if dialect.time.source == "column":
         return
     if dialect.time.source == "period":
         _sum_up(content, dialect)
+        return
+    if dialect.time.source == "position":
+        _by_way(content, dialect)
         return
     step = stated_interval(content, dialect)
     start = 0
@@ -98,6 +101,14 @@ def _sum_up(content: Content, dialect: Dialect) -> None:
             past = float(part[-1])
         if dialect.time.restart == "continue":
             past = 0.0
+
+
+def _by_way(content: Content, dialect: Dialect) -> None:
+    """Take the way that a machine has gone at its speed for a clock: each piece begins anew."""
+    pace = stated_pace(content, dialect)
+    for piece in content.pieces:
+        position = piece.columns["position"]
+        piece.columns["time"] = np.abs(position - position[0]) / pace
 
 
 def _even(start: int, rows: int, step: float) -> np.ndarray:

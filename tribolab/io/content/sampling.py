@@ -9,6 +9,7 @@ from tribolab.io.content.model import Content
 from tribolab.io.content.steps import last_match
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.time_rule import sampling_interval
+from tribolab.units import positive
 
 _THOUSANDS = re.compile(r"[1-9]\d{0,2}(?:[ \u00a0\u202f',]\d{3})+")  # "1 000"
 _COMMA = re.compile(r"\d+,\d+(?:[eE][-+]?\d+)?")
@@ -29,11 +30,35 @@ def stated_interval(content: Content, dialect: Dialect) -> float:
     ReadError
         If it does not stand there, or is no rate and no interval.
     """
+    stated = _stated(content, dialect)
+    return sampling_interval(stated, _where(content, dialect)) if stated else 1.0
+
+
+def stated_pace(content: Content, dialect: Dialect) -> float:
+    """Return the speed [m/s] at which a position goes on, as `stated_interval` does.
+
+    Parameters
+    ----------
+    content, dialect
+        As for `stated_interval`.
+
+    Raises
+    ------
+    ReadError
+        If it does not stand there, or is no speed.
+    """
+    return positive(_stated(content, dialect), "m/s", _where(content, dialect))
+
+
+def _where(content: Content, dialect: Dialect) -> str:
+    return "time.rate" if dialect.time.rate else str(content.path)
+
+
+def _stated(content: Content, dialect: Dialect) -> str:
+    """Return what the dialect or the file states, with its unit; "" if neither does."""
     rule = dialect.time
-    if rule.rate:
-        return sampling_interval(rule.rate, "time.rate")
-    if not rule.rate_pattern:
-        return 1.0
+    if rule.rate or not rule.rate_pattern:
+        return rule.rate or ""
     number = last_match(rule.rate_pattern, content.pieces[0].before)
     if number is None:
         raise ReadError(
@@ -44,4 +69,4 @@ def stated_interval(content: Content, dialect: Dialect) -> float:
         number = re.sub(r"\D", "", number)
     elif dialect.text.decimal == "," or _COMMA.fullmatch(number):
         number = number.replace(",", ".")
-    return sampling_interval(f"{number} {rule.rate_unit}", str(content.path))
+    return f"{number} {rule.rate_unit}"

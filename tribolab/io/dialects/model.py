@@ -98,6 +98,8 @@ class Dialect(Strict):
                 "a column for 'time' and time.source = 'column' or 'period' belong together; "
                 "without such a column say under [time] source = 'rate' and rate = '100 Hz'"
             )
+        if self.time.source == "position" and "position" not in names:
+            raise ValueError("time.source = 'position' needs a column for 'position'")
         if self.moving_mass is not None:
             positive(self.moving_mass, "kg", "moving_mass")
         if (self.format == "binary") != (self.binary is not None):

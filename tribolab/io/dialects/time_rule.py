@@ -16,10 +16,11 @@ from tribolab.units import positive
 class Time(Strict):
     """Where time comes from: a column (the default), intervals, a sample rate, or nowhere."""
 
-    source: Literal["column", "period", "rate", "none"] = Field(
+    source: Literal["column", "period", "rate", "position", "none"] = Field(
         "column",
         description="'period': the column of 'time' holds what has passed since the row before, "
-        "and is summed; 'none': rows are counted as seconds, and the run says so",
+        "and is summed; 'position': the way over the speed at which a machine goes on, which rate "
+        "(or rate_pattern) states; 'none': rows are counted as seconds, and the run says so",
     )
     format: str | None = Field(
         None,
@@ -33,13 +34,16 @@ class Time(Strict):
     )
     rate: str | None = Field(
         None,
-        description="sample rate with unit, e.g. '2 kHz', or the interval of samples: '0.5 ms'",
+        description="sample rate with unit, e.g. '2 kHz', or the interval of samples: '0.5 ms'; "
+        "for source 'position' a speed: '150 mm/min'",
     )
     rate_pattern: Pattern | None = Field(
         None, description="group 1 is the rate, or the interval of samples, in the preamble"
     )
     rate_unit: str = Field(
-        "Hz", description="its unit; one of time ('ms') where it is the interval of samples"
+        "Hz",
+        description="its unit; one of time ('ms') where it is the interval of samples, of speed "
+        "where it is one",
     )
     restart: Literal["error", "continue"] = Field(
         "error",
@@ -61,8 +65,10 @@ class Time(Strict):
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
-        if (self.source == "rate") != bool(self.rate or self.rate_pattern):
-            raise ValueError("source = 'rate' and rate (or rate_pattern) belong together")
+        if (self.source in ("rate", "position")) != bool(self.rate or self.rate_pattern):
+            raise ValueError(
+                "source = 'rate' (or 'position') and rate (or rate_pattern) belong together"
+            )
         if self.source != "column" and (self.format or self.epoch):
             raise ValueError("format and epoch are for source = 'column'")
         if self.format and self.epoch:
@@ -72,7 +78,9 @@ class Time(Strict):
                 f"format: 'iso', 'iso with zone', or codes such as %d and %H; not "
                 f"'{shown(self.format)}'"
             )
-        if self.rate:
+        if self.rate and self.source == "position":
+            positive(self.rate, "m/s", "time.rate")
+        elif self.rate:
             sampling_interval(self.rate, "time.rate")
         if self.wrap:
             positive(self.wrap, "s", "time.wrap")
