@@ -219,7 +219,14 @@ RUN_WORDS = (
     Word("voltage", ("u",), _words("voltage spannung tension tensione voltaje 电压 電圧")),
     Word(
         "step",
-        _words("step schritt segment stage etape paso passo block phase stap 步骤"),
+        _words(
+            "step schritt segment stage etape paso passo block phase stap 步骤 "
+            "specimen specimenno specimennumber pull pullno prober probekoerper probennr pruefling "
+            "probekoerpernr eprouvette eprouvetteno noeprouvette probeta probetano nprobeta "
+            "provino nprovino corpodeprova cuerpodeprueba probka nrprobki vzorek образец "
+            "номеробразца "
+            "试样 试样号 试样编号 試験片 試験片番号 시편 시편번호"
+        ),
         _words("stepno stepnumber"),
     ),
     Word(

@@ -353,7 +353,7 @@ _WANTED = {
         *(ARM, STROKE, HALF_STROKE, PITCH, PROFILE_LENGTH),
     ),
     "s": (INTERVAL,),
-    "m/s": (_SPEED,),
+    "m/s": (_SPEED, _MACHINE_SPEED),
     "rad/s": (FREQUENCY, _TURNS),
     "1/s": (RATE, FREQUENCY, _TURNS),
     "Hz": (RATE, FREQUENCY, _TURNS),

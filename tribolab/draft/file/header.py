@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import re
+import unicodedata
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -240,8 +241,8 @@ def names_any(cell: str, *quantities: str) -> bool:
     >>> names_any("FUERZA", "friction_force"), names_any("z [um]", "friction_force", "time")
     (True, False)
     """
-    name = re.split(r"[\[(]", cell)[0].lower()
-    text = "".join(filter(str.isalnum, name))
+    name = unicodedata.normalize("NFD", re.split(r"[\[(]", cell)[0].lower())
+    text = "".join(filter(str.isalnum, name))  # without accents
     bare = text.rstrip("0123456789")  # the number of a table or a sensor
     return any(
         bare in word.symbols or any(stem in text for stem in (*word.stems, *word.vague))

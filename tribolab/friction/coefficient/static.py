@@ -14,6 +14,7 @@ import xarray as xr
 from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import belong, friction_coefficient
 from tribolab.friction.coefficient.peak import FEWEST_OF_PEAK, noise_between, peak_of_start
+from tribolab.friction.segments.specimens import begins_of_specimens
 from tribolab.friction.segments.stretches import name_of
 from tribolab.medians import median_of_known
 from tribolab.several import of_runs
@@ -23,6 +24,7 @@ from tribolab.units import to_si
 _BEFORE = 0.5  # of the stroke before: how far back a rise may begin, at most
 _LATEST = 0.5  # of the segment: how far a rise may go on, at most
 _LONGER = 1.5  # times the readings before it, what is looked at where the force still rises
+_SLACK = 0.3  # of the sliding force: with so little a segment begins before anything slides
 _AT_END = 0.1  # of the readings: where their mean is the highest, the force still rises
 
 
@@ -69,8 +71,9 @@ def static_friction(
         ``_sem`` (where forces are known); ``friction_coefficient`` of the sliding that follows;
         ``static_excess`` (static over sliding, less 1); ``peak`` (1 where the force stands out of
         what follows, 0 where it only rises to it: then the static coefficient is no more than the
-        highest of the start), ``breakaway_time`` [s], ``waiting_time`` (rest under load before)
-        [s], ``direction``, ``sliding_speed`` [m/s].
+        highest of the start), ``breakaway_time`` [s], ``waiting_time`` (rest under load before; NaN
+        where a record, or a specimen's, begins with the motion) [s], ``direction``,
+        ``sliding_speed`` [m/s].
 
     Raises
     ------
@@ -116,7 +119,9 @@ def static_friction(
     belong(run, segments)
     belong(run, friction)
     reach = None if within is None else to_si(within, "m", "within")
-    rows = [_measured(run, friction, signal, start) for start in _starts(run, segments, reach)]
+    rows = [
+        _measured(run, friction, signal, start) for start in _starts(run, segments, friction, reach)
+    ]
     names = list(_Peak._fields)
     data = {name: np.array([getattr(row, name) for row in rows], float) for name in names}
     number = data.pop("number").astype(int)
@@ -148,15 +153,30 @@ class _Peak(NamedTuple):
     sliding_speed: float
 
 
-def _starts(run: xr.Dataset, segments: xr.Dataset, reach: float | None) -> list[_Start]:
-    """Segments that a rest goes before, or the beginning of the record."""
+def _starts(
+    run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset, reach: float | None
+) -> list[_Start]:
+    """Segments that a rest goes before, or the beginning of the record or of a specimen.
+
+    Of the latter such as begin without friction: a machine that takes up the slack of a string.
+    """
     time = run.variables["time"].values
     resting = segments.variables["omitted_reason"].values == "at rest"
     begin, end = (segments.variables[f"omitted_{k}"].values[resting] for k in ("start", "stop"))
     start, trimmed = segments.variables["start"].values, segments.variables["trimmed_start"].values
     stop, speed = segments.variables["stop"].values, segments.variables["sliding_speed"].values
     starts = []
+    slack = _slack(run, friction, start)
     for i in range(start.size):
+        if slack[i]:
+            latest = start[i] + _LATEST * (stop[i] - start[i])
+            if reach and speed[i] > 0:
+                latest = start[i] + reach / speed[i]
+            first, last, end_of_it = np.searchsorted(time, [start[i], trimmed[i], latest])
+            last = end_of_it if reach else last
+            if last - first >= FEWEST_OF_PEAK:
+                starts.append(_Start(i, int(first), int(last), int(end_of_it), float("nan")))
+            continue
         before = np.flatnonzero(end <= start[i] + 1e-9)
         earliest = stop[i - 1] if i else time[0]
         if not before.size or end[before[-1]] < earliest:
@@ -172,6 +192,21 @@ def _starts(run: xr.Dataset, segments: xr.Dataset, reach: float | None) -> list[
             rested = _rested(run, begin, end, int(rest))
             starts.append(_Start(i, int(first), int(last), int(end_of_it), rested))
     return starts
+
+
+def _slack(run: xr.Dataset, friction: xr.Dataset, start: np.ndarray) -> np.ndarray:
+    """Whether a segment begins with the record, or with a specimen, and without friction yet."""
+    signal = "friction_force" if "friction_force" in run else "friction_coefficient"
+    time, values = run.variables["time"].values, run.variables[signal].values
+    begins = np.append(time[:1], begins_of_specimens(run))
+    first = np.isin(start, begins)
+    zero = friction.variables[f"{signal}_offset"].values
+    sliding = np.abs(friction.variables[signal].values)
+    for i in np.flatnonzero(first):
+        at = int(np.searchsorted(time, start[i]))
+        read = values[at : at + FEWEST_OF_PEAK]
+        first[i] = abs(float(np.nanmean(read)) - zero[i]) < _SLACK * sliding[i]
+    return first
 
 
 def _rested(run: xr.Dataset, begin: np.ndarray, end: np.ndarray, rest: int) -> float:

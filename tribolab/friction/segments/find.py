@@ -9,6 +9,7 @@ from tribolab.errors import AnalysisError, UnitError, shown
 from tribolab.friction.segments.loaded import loaded
 from tribolab.friction.segments.locate import ConstancyLimits
 from tribolab.friction.segments.slopes import line
+from tribolab.friction.segments.specimens import apart
 from tribolab.friction.segments.stretches import (
     Stretch,
     finite,
@@ -149,7 +150,7 @@ def find_segments(
         if "stroke_m" in run.attrs:  # computed without noise: only what does not move rests
             stretches = [_driven(run, stretch) for stretch in stretches]
     elif source == "position":
-        stretches = from_position(run, limits, gap)
+        stretches = apart(run, from_position(run, limits, gap))
     elif source == "step":
         stretches = from_steps(run, min_samples)
     else:
