@@ -244,6 +244,8 @@ def missing_lines(facts: FileFacts) -> list[str]:
         return []  # of a log of the motion nothing else is expected
     if "set_speed_m_s" in facts["metadata"]:
         names.add("set_speed")
+    if "drive" in facts["metadata"]:  # a draft keeps what it is where what turns is a crank
+        names.add("crank")
     return [f"  missing: {lack}" for lack in missing_of(names)]
 
 

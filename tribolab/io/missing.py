@@ -7,6 +7,10 @@ from collections.abc import Collection
 _FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 _LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
 _SPEED = {"sliding_velocity", "position", "set_speed"}
+_CRANK = (
+    'the length of the stroke, for the sliding speed: stroke = "(a length)" under [speed] of a '
+    "dialect, with source = 'stroke' and how often the crank turns"
+)
 _RADIUS = 'radius = "(a length)" under [speed] of a dialect'
 
 
@@ -16,7 +20,8 @@ def missing_of(names: Collection[str]) -> list[str]:
     Parameters
     ----------
     names
-        Quantities of the run, and ``torque`` where one is known that no radius makes a force of.
+        Quantities of the run, ``torque`` where one is known that no radius makes a force of, and
+        ``crank`` where what turns drives strokes.
 
     Returns
     -------
@@ -39,6 +44,8 @@ def missing_of(names: Collection[str]) -> list[str]:
         what += " and the sliding speed: " if no_speed and turns else ": "
         formula = "formula = \"torque / '(a length)'\" under [[derived]] of a dialect"
         said.append(what + (f"{formula}, and {_RADIUS}" if no_speed and turns else formula))
+    elif no_speed and turns and "crank" in held:
+        said.append(_CRANK)
     elif no_speed and turns:
         said.append(f"the radius of the track, for the sliding speed: {_RADIUS}")
     if no_friction and "torque" not in held:

@@ -9,6 +9,7 @@ import numpy as np
 Drive = Literal["crank", "constant speed"]
 _TELLS = 0.3  # share of the friction's variance that has to be at the frequency
 _AT_REST = 0.3  # share of the usual swing below which a cycle does not slide
+_WHOLE = 0.85  # of it, from which a cycle beside a rest slides all along
 FEWEST_CYCLES = 3
 _DENSEST = 8  # samples that a cycle has at least
 
@@ -75,7 +76,11 @@ def velocity_of_strokes(
     ]
     wave = (parts[0] + 1j * parts[1]) / np.maximum(counts, 1)
     swing = np.abs(wave)
-    slides = (swing > _AT_REST * np.percentile(swing, 75)) & (counts > 0)
+    usual = np.percentile(swing, 75)
+    slides = (swing > _AT_REST * usual) & (counts > 0)
+    # a cycle in which it starts or stops goes but a part of the way
+    beside = ~(np.append(False, slides[:-1]) & np.append(slides[1:], False))
+    slides &= ~beside | (swing > _WHOLE * usual)
     power = np.bincount(cycle[known], rest**2, minlength=cycles)[slides].sum()
     told = 2 * np.sum(counts[slides] * swing[slides] ** 2)
     if np.count_nonzero(slides) < FEWEST_CYCLES or not told > _TELLS * power:

@@ -15,11 +15,12 @@ from tribolab.draft.columns.slip import stated_ratio
 from tribolab.draft.columns.stated_load import find_load
 from tribolab.draft.columns.stated_words import PER_MINUTE
 from tribolab.draft.columns.stated_zero import find_zero, reading_of, zero_in_doubt
-from tribolab.draft.columns.stroke_settings import as_stated, strokes_of
+from tribolab.draft.columns.stroke_settings import as_stated, strokes_of, strokes_of_turns
 from tribolab.draft.columns.strokes import STROKE
 from tribolab.draft.columns.turning import angle_of, radius_of, torque_of, turns_of
 from tribolab.draft.columns.values import DraftValue, find_values, words_said
 from tribolab.draft.columns.words import or_term, squeezed
+from tribolab.draft.file.header import escaped
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.model import WHICH_FORCE, DraftColumn, Understood
@@ -34,6 +35,7 @@ _SINE = re.compile(
     r"crank|manovell|manivel|biel|armonic|harmoni|krank|korb|vev|veiv|krumtap|kampi|klik|forgatty|кривошип|синус|曲柄|正弦|クランク|sine|sinus|sinoid|kurbel|eccentric|exzenter|manivelle|scotch"
 )
 _EVEN = re.compile(r"triang|constant|linear|konstant|dreieck")
+CRANK = "drive"  # the value that says of a run what turns there
 _MODE = re.compile(r"^(?:test|sliding)?mode$|^modus$|^betriebsart$|^modo$|模式$|モード$")
 _SPEED_OF_TURNS = or_term(
     r"(?:speed|velocity|rotation|rpm|drehzahl|vitesse|giri|velocidad)$",
@@ -197,6 +199,8 @@ def lacking(understood: Understood, follows: Follows) -> list[str]:
         names.add("sliding_velocity")
     if any(value.name == "set_normal_force" for value in follows.values):
         names.add("normal_force")
+    if any(value.name == CRANK for value in follows.values):
+        names.add("crank")
     if _angle(understood) is not None:
         names.add("rotation_speed")  # the radius makes a position of it
     if torque_of(understood.columns) is not None:
@@ -264,6 +268,18 @@ def _with_speed(
     track: _Track,
 ) -> Follows:
     turning = "rotation_speed" in names
+    crank = _crank(words) if turning and not track.formula else None
+    if crank is not None:  # what turns drives strokes
+        often = next(c for c in understood.columns if c.quantity == "rotation_speed")
+        strokes = strokes_of_turns(values, often)
+        if strokes is None:
+            return before._replace(values=(*before.values, crank))
+        speed = SpeedBy("stroke", (*strokes.settings, ("drive", "crank")), strokes.guess)
+        return before._replace(
+            speed=speed,
+            values=(*before.values, *strokes.values),
+            symbols=(*before.symbols, *strokes.symbols),
+        )
     if turning and understood.radius:
         return before._replace(speed=SpeedBy("rotation", (("radius", understood.radius),)))
     if turning and any(value.source == "step" for value in track.values):
@@ -316,6 +332,15 @@ def _with_speed(
         values=(*before.values, *of_strokes.values),
         symbols=(*before.symbols, *of_strokes.symbols),
     )
+
+
+def _crank(words: Sequence[tuple[str, str]]) -> DraftValue | None:
+    """Return what the text says of a crank that drives strokes, to be kept with the run."""
+    said = [text for key, text in words if _DRIVE.search(squeezed(key))]
+    told = next((text for text in said if _SINE.search(text.lower())), None)
+    if told is None:
+        return None
+    return DraftValue(CRANK, f"({escaped(told)})", None, None, told)
 
 
 def _is_rotation(value: DraftValue) -> bool:

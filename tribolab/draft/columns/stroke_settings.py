@@ -86,6 +86,23 @@ def strokes_of_values(values: Sequence[DraftValue]) -> Strokes | None:
     return Strokes(settings, (stroke, frequency), guess=guess)
 
 
+def strokes_of_turns(values: Sequence[DraftValue], often: DraftColumn) -> Strokes | None:
+    """Return strokes of a length that the text states, of which a crank makes one each turn.
+
+    Parameters
+    ----------
+    values
+        From `tribolab.draft.columns.values.find_values`.
+    often
+        The column that says how fast the crank turns.
+    """
+    stroke, _, guess = _stated(values)
+    if stroke is None:
+        return None
+    settings = (("stroke_value", stroke.name), ("frequency_value", "stroke_frequency"))
+    return Strokes(settings, (stroke,), (("stroke_frequency", often),), guess)
+
+
 def _stated(values: Sequence[DraftValue]) -> tuple[DraftValue | None, DraftValue | None, str]:
     """Return the length and the frequency of strokes as the text has them, and what is guessed."""
     stroke, frequency, guess = _only(values, STROKE, "m"), _only(values, FREQUENCY, "Hz"), ""
