@@ -59,7 +59,7 @@ def filled_in(
     if option.unit:
         written = option.unit
         guessed.append(f"'{shown(unit)}' means {option.unit}")
-    fill_in = ""
+    fill_in = unsaid = ""
     dated = squeezed(bare[0]) in DATES
     counted = (
         counted_from(values, unit, dated=dated)
@@ -87,6 +87,8 @@ def filled_in(
             written = "mm" if option.quantity in ("x", "y") else "um"
             guessed.append(f"{option.quantity} is in {written}{why}")
             options = other_units("height" if option.quantity == "height" else "m", written)
+        elif option.quantity in _ASIDE and kind == "run":
+            written, unsaid = None, f"{option.quantity}? its unit is not said"
         else:
             fill_in = f"the unit of '{shown(column.label)}' ({option.quantity}), e.g. \"{si_unit}\""
             options = other_units(si_unit)
@@ -96,7 +98,7 @@ def filled_in(
     pressed = finite.size and finite.min() < 0 and finite.max() < _NOISE * -finite.min()
     if option.quantity == "normal_force" and pressed:
         sign = -1  # no contact slides under a pull all along
-    used, note = not fill_in, ""
+    used, note = not (fill_in or unsaid), unsaid
     if option.quantity == "position" and finite.size > 2 and np.ptp(finite) == 0:
         used, note, fill_in = False, "it stands still", ""
     return column._replace(

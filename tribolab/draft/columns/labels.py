@@ -71,6 +71,11 @@ _IN = (
     r"\s{0,3}(?:(?:is\s|ist\s|est\s|es\s|è\s|é\s)?(?:in|en|em|w|v|i|в)\s|[:=]|(?=[\[(]))"
     r"\s{0,3}[\[(]?"
 )
+# "t - time [s];  Fx: friction force (N), Fz = load (N)", up to where another name is explained
+_LEGEND = (
+    r"(?:^\W*|[;,|]\s*|\s\s){name}\s{{0,3}}[-–—=:]\s{{0,3}}"
+    r"(?P<about>[^\W\d](?:(?![,;|]\s*[^\W\d]\w{{0,12}}\s{{0,3}}[-–—=:]\s)[^;|]){{1,90}})"
+)
 _SAID_UNIT = r"(?P<unit>[^\W\d_%][^\s,;:()\[\]]{0,20}|%|°C)(?=$|[\s,;.)\]])"
 
 
@@ -84,7 +89,11 @@ def _stated_units(layout: Layout, cells: Sequence[str]) -> dict[int, str]:
     for place in bare:
         name = cells[place - 1].strip()
         words = re.compile(rf"(?<![^\W_]){re.escape(name)}{_IN}{_SAID_UNIT}")
-        told = (match["unit"].rstrip(".") for line in lines for match in words.finditer(line))
+        told = [match["unit"].rstrip(".") for line in lines for match in words.finditer(line)]
+        explained = re.compile(_LEGEND.format(name=re.escape(name)))
+        for match in (match for line in lines for match in explained.finditer(line)):
+            brackets = (unit_in_words(text.strip()) for text in _UNIT_IN.findall(match["about"]))
+            told += [unit for unit in brackets if is_unit(unit)][:1]
         units = {unit for text in told if is_unit(unit := unit_in_words(text))}
         if len(units) == 1:
             found[place] = units.pop()
