@@ -34,6 +34,7 @@ from tribolab.draft.columns.plain_numbers import plain_numbers
 from tribolab.draft.columns.ratio import disagreement, force_or_ratio
 from tribolab.draft.columns.results_table import are_points
 from tribolab.draft.columns.sampling import find_pace, find_sampling
+from tribolab.draft.columns.signs import as_against_motion
 from tribolab.draft.columns.slip import of_both_surfaces
 from tribolab.draft.columns.stated_missing import take_stated_missing
 from tribolab.draft.columns.values import DraftValue
@@ -92,6 +93,7 @@ def understand(layout: Layout) -> Understood:
     columns = told_by_load(layout, force_or_ratio(columns), numbers) if kind == "run" else columns
     if kind == "run":
         columns = of_both_surfaces(layout, without_means(layout, columns))
+        columns = as_against_motion(columns, numbers)
         guesses += disagreement(columns, numbers)
     columns = _dated(with_worth(layout, columns, numbers), layout, numbers, text)
     columns = [
