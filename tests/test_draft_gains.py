@@ -1,0 +1,116 @@
+"""Signals in volts and counts whose worth their own name, or a line that names them, tells."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tribolab as tl
+from tribolab.draft.dialect.draft import draft_dialect, save_draft
+from tribolab.errors import TribolabError
+
+TIME = np.arange(600) / 10
+WAY = np.interp(TIME, [0, 10, 60], [0, 0, 100])  # mm, 2 mm/s
+FRICTION = np.where(TIME < 10, 0.0, 3.0) + 0.01 * np.sin(TIME)  # N
+LOAD = np.where(TIME < 5, 0.0, 10.0) + 0.02 * np.cos(TIME)
+
+
+def _file(folder: Path, head: list[str], names: str, *columns: np.ndarray, name: str = "a") -> Path:
+    rows = [";".join(f"{x:.5f}" for x in row) for row in zip(*columns, strict=True)]
+    file = folder / f"{name}.csv"
+    file.write_text("\n".join([*head, names, *rows]) + "\n", encoding="utf-8")
+    return file
+
+
+def _counts(values: np.ndarray, each: float, zero: int = 0) -> np.ndarray:
+    return np.round(values * each) + zero
+
+
+@pytest.mark.parametrize(
+    ("name", "volts"),
+    [
+        ("Friction bridge (100 N = 2.0 mV/V, excitation 5 V) [mV]", FRICTION / 100 * 2 * 5),
+        ("Reibkraft (10 N/V) [mV]", FRICTION / 10 * 1e3),
+        ("Friction (0.5 V/N) [V]", FRICTION * 0.5),
+    ],
+)
+def test_the_name_of_a_column_says_what_a_volt_is_worth(
+    tmp_path: Path, name: str, volts: np.ndarray
+) -> None:
+    names = ["Time", "Position", name.rpartition(" ")[0], "Normal force"]
+    units = ["s", "mm", name.rpartition("[")[2].rstrip("]"), "N"]
+    file = _file(tmp_path, [";".join(names)], ";".join(units), TIME, WAY, volts, LOAD)
+    run = tl.read(file)
+    np.testing.assert_allclose(run.friction_force, FRICTION, atol=2e-3)
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        ["cell_T (tangential): 48210 counts/N", "cell_N (normal): 455.2 counts/gf"],
+        ["# cella T (tangenziale): 48210 conteggi/N", "# cella N (normale): 455.2 conteggi/gf"],
+        ["% cell T - Tangentialkraft, 48210 Impulse/N; cell N: Normalkraft 455.2 Impulse/gf"],
+    ],
+)
+def test_a_line_that_names_a_column_says_what_a_count_is_worth(
+    tmp_path: Path, head: list[str]
+) -> None:
+    label = "cella" if "cella" in head[0] else "cell"
+    columns = TIME, _counts(WAY, 400), _counts(FRICTION, 48210), _counts(LOAD / 9.80665e-3, 455.2)
+    head = [*head, "motor: 400 steps/mm"]
+    file = _file(tmp_path, head, f"time (s);steps;{label}_T;{label}_N", *columns)
+    run = tl.read(file)
+    np.testing.assert_allclose(run.friction_force, FRICTION, atol=1e-4)
+    np.testing.assert_allclose(run.normal_force, LOAD, atol=1e-3)
+    np.testing.assert_allclose(run.position, WAY / 1e3, atol=1e-5)
+    kept = save_draft(draft_dialect(file), tmp_path / "own.toml")
+    other = [line.replace("48210", "24105") for line in head]
+    again = _file(tmp_path, other, f"time (s);steps;{label}_T;{label}_N", *columns, name="b")
+    np.testing.assert_allclose(tl.read(again, kept).friction_force, 2 * FRICTION, atol=2e-4)
+
+
+def test_a_line_of_another_column_says_nothing(tmp_path: Path) -> None:
+    columns = TIME, WAY, _counts(FRICTION, 1000), _counts(LOAD, 1000)
+    file = _file(tmp_path, ["cell_A: 1000 counts/N"], "time (s);x (mm);cell_T;cell_N", *columns)
+    with pytest.raises(TribolabError, match="friction"):
+        tl.read(file)
+
+
+def test_the_zero_of_a_load_may_lie_far_below_it(tmp_path: Path) -> None:
+    """Counts that were not tared: what reads far below zero at rest is not pressed."""
+    head = ["cell_T (tangential): 48210 counts/N", "cell_N (normal): 1000 counts/N"]
+    columns = TIME, WAY, _counts(FRICTION, 48210), _counts(LOAD, 1000, -6000)
+    run = tl.read(_file(tmp_path, head, "time (s);x (mm);cell_T;cell_N", *columns))
+    segments = tl.find_segments(run)
+    mu = tl.friction_coefficient(run, segments)
+    assert mu.friction_coefficient.values == pytest.approx([0.3], rel=0.01)
+    assert mu.normal_force.values == pytest.approx([10.0], rel=0.01)
+
+
+def test_a_legend_above_the_table_says_the_units_of_its_columns(tmp_path: Path) -> None:
+    head = [
+        "* t - time of the logger [s];  s - position of the carriage [mm]",
+        "* Fx - longitudinal force [N] (reaction, negative), Fz: vertical force (N)",
+    ]
+    rows = [
+        f"{t:.2f}   {s:.3f}  {-f:.4f}  {-n:.4f}"
+        for t, s, f, n in zip(TIME, WAY, FRICTION, LOAD, strict=True)
+    ]
+    file = tmp_path / "legend.prn"
+    file.write_text("\n".join([*head, "* t s Fx Fz", *rows]) + "\n", encoding="utf-8")
+    run = tl.read(file)
+    np.testing.assert_allclose(run.friction_force, FRICTION, atol=1e-3)  # against the motion
+    np.testing.assert_allclose(run.normal_force, LOAD, atol=1e-3)
+    np.testing.assert_allclose(run.position, WAY / 1e3, atol=1e-6)
+
+
+def test_what_turns_is_a_crank_where_the_text_says_so(tmp_path: Path) -> None:
+    time = np.arange(0, 30, 0.01)
+    force = 2 * np.sign(np.cos(2 * np.pi * time)) + 0.05 * np.sin(17 * time)
+    columns = time, np.full(time.size, 60.0), force, np.full(time.size, 10.0)
+    names = "Time (s);n motor (rpm);F roz (N);Carga (N)"
+    file = _file(tmp_path, ["Tribómetro biela-manivela", "Carrera: 30 mm"], names, *columns)
+    segments = tl.find_segments(tl.read(file))
+    assert np.median(segments.sliding_speed.values) == pytest.approx(0.09, rel=0.01)
+    file = _file(tmp_path, ["Tribómetro biela-manivela"], names, *columns, name="b")
+    assert "drive" in tl.read(file).attrs
