@@ -50,6 +50,7 @@ def test_a_number_to_a_row_beside_its_channel_is_a_column(tmp_path, mark, comma,
         for at, value in zip(TIME + late, values + 2 * late * (name == "Position"), strict=True):
             rows.append((at, label, f"{value:.4f}", unit))
     rows += [(1e-4 + 10 * n, "SYS.ALIVE", "1", "-") for n in range(3)]
+    rows += [(2e-4 + n, "SYS.T_PLATE" if units else "T_PLATE", "21.5", "degC") for n in range(30)]
     lines = ["# export of a historian", mark.join(["time_s", "tag", "value", "unit"][: 3 + units])]
     for at, *cells in sorted(rows):
         line = mark.join([f"{at:.4f}", *cells[: 2 + units]])
@@ -328,3 +329,11 @@ def test_turns_without_a_radius_ask_for_the_radius_alone(tmp_path):
     (tmp_path / "a.csv").write_text(head + "".join(rows))
     with pytest.raises(tl.TribolabError, match="the radius of the track is missing"):
         tl.find_segments(tl.read(tmp_path / "a.csv"))
+
+
+def test_a_temperature_is_no_clock(tmp_path):
+    rows = (f"{t},{f},{21 + t / 10:.3f},{n}\n" for t, f, n in zip(TIME, FORCE, LOAD, strict=True))
+    (tmp_path / "a.csv").write_text("t [s],FT [N],T [degC],FN [N]\n" + "".join(rows))
+    run = tl.read(tmp_path / "a.csv")
+    assert run.sizes["time"] == TIME.size
+    np.testing.assert_allclose(run.normal_force, LOAD)

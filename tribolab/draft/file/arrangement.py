@@ -22,6 +22,7 @@ from tribolab.io.dialects.turned import (
     fields_that_touch,
     groups_with_clocks,
     joined_names,
+    rises,
     signals_in_rows,
 )
 
@@ -97,7 +98,7 @@ def arranged_table(
     # the load of a machine that pulls is friction
     if groups > 1 and told and any(names_any(cell, *_FRICTION, "normal_force") for cell in own):
         return _anew(lines, "side by side", delimiter)
-    if heading.aligned and groups_with_clocks(heading.cells):
+    if heading.aligned and _clocks_of_their_own(lines, block, delimiter):
         return _anew(lines, "clocks of their own", delimiter)
     if heading.aligned and delimiter != "whitespace" and _in_two_rows(lines, block, delimiter):
         return _anew(lines, "names in two rows", delimiter)
@@ -106,6 +107,16 @@ def arranged_table(
         if _says_more(heading.cells, names):
             return _anew(lines, "names explained", delimiter)
     return None
+
+
+def _clocks_of_their_own(lines: tuple[str, ...], block: Block, delimiter: str) -> bool:
+    """Whether columns have times of their own before them, which proceed."""
+    heading = block.heading
+    groups = groups_with_clocks(heading.cells) if heading else []
+    rows = [split_row(lines[k], delimiter) for k in block.rows[:_FIRST]] if groups else []
+    return bool(groups) and all(
+        rises([row[group[0]] if group[0] < len(row) else "" for row in rows]) for group in groups
+    )
 
 
 def _in_two_rows(lines: tuple[str, ...], block: Block, delimiter: str) -> bool:

@@ -186,7 +186,8 @@ def find_layout(file: File) -> Layout:
         )
     blocks, skip_lines = without_marks(lines, find_blocks(lines, grammar), grammar)
     main, others = main_blocks(blocks)
-    if other := arranged_table(lines, main[0], grammar.delimiter):
+    plain = arrangement == "below names"
+    if plain and (other := arranged_table(lines, main[0], grammar.delimiter)):
         lines, arrangement = other
         blocks, skip_lines = without_marks(lines, find_blocks(lines, grammar), grammar)
         main, others = main_blocks(blocks)

@@ -21,10 +21,11 @@ _LONGEST = 4000  # characters of a line of names of columns that touch
 _ROW = re.compile(r"[-+ .\deE]+")
 _ABOVE = 4  # lines above the first row in which names stand
 _CLOCK = re.compile(
-    r"(?:t|time|elapsed time|zeit\w*|temps|tiempo|tempo|czas|[cč]as|tid|tijd|aika|zaman|id[őo]"
-    r"|время|час|时间|時間|時刻|시간)(?:[\W_\d].*)?|.*[\s_](?:t|time|zeit|temps|tiempo|tempo)",
-    re.IGNORECASE,
+    r"t[\s_#.]{0,2}\d{0,2}"  # and no T, which is a temperature
+    r"|(?i:(?:elapsed )?time|zeit\w*|temps|tiempo|tempo|czas|[cč]as|tid|tijd|aika|zaman|id[őo]"
+    r"|время|час|时间|時間|時刻|시간)(?:[\W_\d].*)?|.*[\s_](?i:time|zeit|temps|tiempo|tempo)"
 )
+_TIMES = frozenset(("s", "sec", "ms", "us", "µs", "μs", "min", "h"))
 
 
 def signals_in_rows(lines: Sequence[str]) -> bool:
@@ -113,18 +114,34 @@ def groups_with_clocks(cells: Sequence[str]) -> list[list[int]]:
     --------
     >>> groups_with_clocks(["t1 [s]", "F [N]", "t2 [s]", "x [mm]"])
     [[0, 1], [2, 3]]
-    >>> groups_with_clocks(["Time", "F", "x"])
-    []
+    >>> groups_with_clocks(["Time", "F", "x"]), groups_with_clocks(["t", "F", "T_oil", "x"])
+    ([], [])
     """
     groups: list[list[int]] = []
     for place, cell in enumerate(cells):
-        if cell and _CLOCK.fullmatch(split_name(cell)[0]):
+        if cell and _is_clock(cell):
             groups.append([place])
         elif groups and cell:
             groups[-1].append(place)
         elif cell:
             return []
     return groups if len(groups) > 1 and all(len(group) > 1 for group in groups) else []
+
+
+def _is_clock(cell: str) -> bool:
+    name, unit = split_name(cell)
+    return _CLOCK.fullmatch(name) is not None and (unit is None or unit.lower() in _TIMES)
+
+
+def rises(cells: Sequence[str]) -> bool:
+    """Whether numbers of a column go on, as those of a clock do; what is empty does not count.
+
+    >>> rises(["0", "0.1", "0.2", ""]), rises(["21.0", "20.9", "21.0"])
+    (True, False)
+    """
+    told = np.array([_value(cell, "," in cell) for cell in cells])
+    steps = np.diff(told[np.isfinite(told)])
+    return bool(steps.size and (steps >= 0).mean() > 0.95 and (steps > 0).any())
 
 
 def on_one_clock(lines: list[str], delimiter: str) -> list[str]:
