@@ -47,16 +47,16 @@ def test_the_name_of_a_column_says_what_a_volt_is_worth(
 @pytest.mark.parametrize(
     "head",
     [
-        ["cell_T (tangential): 48210 counts/N", "cell_N (normal): 455.2 counts/gf"],
-        ["# cella T (tangenziale): 48210 conteggi/N", "# cella N (normale): 455.2 conteggi/gf"],
-        ["% cell T - Tangentialkraft, 48210 Impulse/N; cell N: Normalkraft 455.2 Impulse/gf"],
+        ["cell_T (tangential): 51300 counts/N", "cell_N (normal): 431.7 counts/gf"],
+        ["# cella T (tangenziale): 51300 conteggi/N", "# cella N (normale): 431.7 conteggi/gf"],
+        ["% cell T - Tangentialkraft, 51300 Impulse/N; cell N: Normalkraft 431.7 Impulse/gf"],
     ],
 )
 def test_a_line_that_names_a_column_says_what_a_count_is_worth(
     tmp_path: Path, head: list[str]
 ) -> None:
     label = "cella" if "cella" in head[0] else "cell"
-    columns = TIME, _counts(WAY, 400), _counts(FRICTION, 48210), _counts(LOAD / 9.80665e-3, 455.2)
+    columns = TIME, _counts(WAY, 400), _counts(FRICTION, 51300), _counts(LOAD / 9.80665e-3, 431.7)
     head = [*head, "motor: 400 steps/mm"]
     file = _file(tmp_path, head, f"time (s);steps;{label}_T;{label}_N", *columns)
     run = tl.read(file)
@@ -64,7 +64,7 @@ def test_a_line_that_names_a_column_says_what_a_count_is_worth(
     np.testing.assert_allclose(run.normal_force, LOAD, atol=1e-3)
     np.testing.assert_allclose(run.position, WAY / 1e3, atol=1e-5)
     kept = save_draft(draft_dialect(file), tmp_path / "own.toml")
-    other = [line.replace("48210", "24105") for line in head]
+    other = [line.replace("51300", "25650") for line in head]
     again = _file(tmp_path, other, f"time (s);steps;{label}_T;{label}_N", *columns, name="b")
     np.testing.assert_allclose(tl.read(again, kept).friction_force, 2 * FRICTION, atol=2e-4)
 
@@ -78,8 +78,8 @@ def test_a_line_of_another_column_says_nothing(tmp_path: Path) -> None:
 
 def test_the_zero_of_a_load_may_lie_far_below_it(tmp_path: Path) -> None:
     """Counts that were not tared: what reads far below zero at rest is not pressed."""
-    head = ["cell_T (tangential): 48210 counts/N", "cell_N (normal): 1000 counts/N"]
-    columns = TIME, WAY, _counts(FRICTION, 48210), _counts(LOAD, 1000, -6000)
+    head = ["cell_T (tangential): 51300 counts/N", "cell_N (normal): 1000 counts/N"]
+    columns = TIME, WAY, _counts(FRICTION, 51300), _counts(LOAD, 1000, -6000)
     run = tl.read(_file(tmp_path, head, "time (s);x (mm);cell_T;cell_N", *columns))
     segments = tl.find_segments(run)
     mu = tl.friction_coefficient(run, segments)

@@ -336,9 +336,9 @@ def test_a_stroke_and_a_frequency_in_columns_make_the_speed_of_fast_records(driv
     assert float(np.percentile(speed, 98)) == pytest.approx(top, rel=0.01)
 
 
-def test_a_stroke_that_changes_in_a_run_is_refused(tmp_path):
+def test_a_stroke_that_is_ramped_in_a_run_is_refused(tmp_path):
     file = tmp_path / "srv.csv"
-    rows = "".join(f"{t};10;50;{1 + (t > 50)};0.1\n" for t in range(100))
+    rows = "".join(f"{t};10;50;{1 + t / 50};0.1\n" for t in range(100))
     head = "Time [s];Load [N];Frequency [Hz];Stroke [mm];COF"
     file.write_text(f"Drive: sine\n{head}\n{rows}")
     with pytest.raises(tl.TribolabError, match="part the run where it changes"):

@@ -1,6 +1,6 @@
 """What a volt or a count of a column is worth, where its own name or a line that names it says so.
 
-"LVDT (2.50 mm/V)", "Bridge (100 N = 2.013 mV/V, 5 V)"; "cell_T: 48210 counts/N" above "cell_T".
+"LVDT (2.50 mm/V)", "Bridge (100 N = 2.013 mV/V, 5 V)"; "cell_T: 51300 counts/N" above "cell_T".
 """
 
 from __future__ import annotations
@@ -145,7 +145,7 @@ def _gain(column: DraftColumn, raw: str, said: _Said) -> Gain | None:
 
 
 def _by_ratio(column: DraftColumn, raw: str, said: _Said) -> Gain | None:
-    """Return what one ratio makes of a signal: "2.5 mm/V", "48210 counts/N"."""
+    """Return what one ratio makes of a signal: "2.5 mm/V", "51300 counts/N"."""
     each, many = _WORTH.search(said.text), _SO_MANY.search(said.text)
     for match, multiplies in ((each, True), (many, False)):
         if match is None:
