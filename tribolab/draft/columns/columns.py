@@ -38,7 +38,6 @@ from tribolab.draft.columns.ratio import disagreement, force_or_ratio
 from tribolab.draft.columns.results_table import are_points
 from tribolab.draft.columns.sampling import find_pace, find_sampling
 from tribolab.draft.columns.sensor import of_sensor
-from tribolab.draft.columns.signs import as_against_motion
 from tribolab.draft.columns.slip import of_both_surfaces
 from tribolab.draft.columns.stated_missing import take_stated_missing
 from tribolab.draft.columns.sums import adding_up, loads_that_add
@@ -110,7 +109,6 @@ def understand(layout: Layout) -> Understood:
         columns = sure_at_arm(layout, columns)
         columns = adding_up(layout, beside_turns(columns, numbers), numbers)
         columns = of_both_surfaces(layout, without_means(layout, columns))
-        columns = as_against_motion(columns, numbers)
         guesses += disagreement(columns, numbers)
         guesses += guesses_of_inclined(layout, columns)
     columns = _dated(with_worth(layout, columns, numbers), layout, numbers, text)
