@@ -17,6 +17,7 @@ _NO_VALUE = re.compile(r"(?:nan|null|n/?a|-{1,3})?", re.IGNORECASE)
 _WIDE = 30  # numbers of a signal that stands in a row
 _FEWEST = 12  # rows that tell
 _TELLING = 400  # rows that tell
+_HAS_MARK = re.compile(r"\d[.,]\d")
 _LONGEST = 4000  # characters of a line of names of columns that touch
 _ROW = re.compile(r"[-+ .\deE]+")
 _ABOVE = 4  # lines above the first row in which names stand
@@ -323,7 +324,17 @@ def _cut(line: str, ends: Sequence[int]) -> list[str]:
 
 def _is_fields(line: str, ends: Sequence[int]) -> bool:
     line = line.rstrip()
-    return len(line) <= ends[-1] and all(map(_NUMBER.fullmatch, _cut(line, ends)))
+    if len(line) > ends[-1] or not all(map(_NUMBER.fullmatch, _cut(line, ends))):
+        return False
+    # where no blank parts two, each has its own decimal mark, or the second its sign
+    raw = [line[a:b] for a, b in zip([0, *ends[:-1]], ends, strict=True)]
+    return all(
+        left[-1:].isspace()
+        or right[:1].isspace()
+        or right.startswith(("-", "+"))
+        or (_HAS_MARK.search(left) and _HAS_MARK.search(right))
+        for left, right in zip(raw[:-1], raw[1:], strict=True)
+    )
 
 
 def _value(cell: str, comma: bool) -> float:
