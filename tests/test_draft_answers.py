@@ -191,6 +191,22 @@ def test_volts_and_counts_are_forces_by_what_one_is_less_what_stands_without_con
     np.testing.assert_allclose(run.set_speed, 1e-4)
 
 
+def test_loads_that_add_up_pulses_of_a_turn_and_a_weight_on_a_lever(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "ring.txt"
+    rows = "".join(f"{i / 10:.1f},{i},3,{4 + i % 2},{6 - i % 2}\n" for i in range(400))
+    file.write_text("Time [s],P1,Friction force [N],C1,C2\n" + rows)
+    done = command("dialect", file.name, "--ask", typed="\n\n4+5\nN\nN\n2\n1/100 turn\n10 mm\n")
+    assert done.exit_code == 0, done.output
+    run = tl.read(file, "ring.toml")
+    np.testing.assert_allclose(run.normal_force, 10)
+    np.testing.assert_allclose(np.diff(run.position), 2 * np.pi * 1e-4, rtol=1e-6)
+    typed = "\n\n10 x 5 kg\n2\n1/100 turn\n10 mm\n"
+    done = command("dialect", file.name, "--ask", "--force", typed=typed)
+    assert done.exit_code == 0, done.output
+    np.testing.assert_allclose(tl.read(file, "ring.toml").normal_force, 490.333, rtol=1e-5)
+
+
 def test_a_set_speed_that_turns_over_tells_the_way_on_trial(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     file = tmp_path / "wiper.txt"

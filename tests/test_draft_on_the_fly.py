@@ -253,3 +253,19 @@ def test_a_rotation_and_a_radius_in_the_header_make_the_speed(tmp_path):
     assert run.attrs["speed_from"] == "rotation" and run.attrs["track_radius_m"] == 0.02
     file.write_text(f"Inner radius: 10 mm\nOuter radius: 20 mm\n{table}")
     assert "sliding_velocity" not in tl.read(file)  # which of the two is not said
+
+
+def test_turns_whose_unit_is_not_said_are_not_asked_about_where_the_way_is_known(tmp_path):
+    rows = "\n".join(f"{n / 10:.1f};{n / 20:.2f};{n / 7:.2f};0.3;5" for n in range(200))
+    head = "Time [s];Position [mm];Rotation speed [xy];Friction force [N];Load [N]"
+    (tmp_path / "a.csv").write_text(f"{head}\n{rows}\n")
+    run = tl.read(tmp_path / "a.csv")
+    assert "rotation_speed" not in run and run.attrs["speed_from"] == "position"
+
+
+def test_a_zero_that_is_to_be_subtracted_is_taken_off(tmp_path):
+    rows = "\n".join(f"{n / 10:.1f};2.0;3.118;10" for n in range(200))
+    said = "Zero da célula de força: 0,118 N (descontar de Fat)"
+    head = "Tempo [s];Velocidade [mm/s];Fat [N];Carga [N]"
+    (tmp_path / "a.csv").write_text(f"{said}\n{head}\n{rows}\n", encoding="utf-8")
+    assert float(tl.read(tmp_path / "a.csv").friction_force.mean()) == pytest.approx(3.0)

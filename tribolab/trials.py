@@ -16,6 +16,11 @@ from typing import Literal
 
 from tribolab.errors import ReadError, brief
 
+
+class CrashedError(ReadError):
+    """A library crashed on a file, or came to no end: it is damaged, or not one of its own."""
+
+
 _SECONDS = 1.0  # of computing, for a small file; what waits for other programs does not count
 _BYTES_PER_SECOND = 30e6
 _NO_CRASH = 3  # exit code of a trial that ended in an error of its own
@@ -119,7 +124,7 @@ def _tried(path: Path, library: str, size: int, written: int) -> None:
         ended = f"ended with code {done.returncode}"
         if done.returncode < 0:
             ended = f"was ended by signal {-done.returncode}"
-    raise ReadError(
+    raise CrashedError(
         f"{path}: the file is damaged: a trial of the {library} library on it {ended}; copy the "
         "file again from where it was written"
     )

@@ -11,6 +11,7 @@ import numpy as np
 from tribolab.draft.columns.follows import lacking, what_follows
 from tribolab.draft.columns.may_say import may_say
 from tribolab.draft.columns.stated_load import stated_number
+from tribolab.draft.columns.sums import ADDS
 from tribolab.draft.columns.turning import angle_of, torque_of
 from tribolab.draft.dialect.answers import column_of, corrected, fits, written
 from tribolab.draft.dialect.draft import Draft, as_profile, holds_counts, holds_heights
@@ -27,6 +28,8 @@ from tribolab.units import positive
 _NONE = "-"
 _COMMA = re.compile(r"^(\d+),(\d{1,2}|\d{4,})(?=\D)")  # no mark of thousands
 _WEIGHT = re.compile(rf"^(\s*[\d.]+(?:[eE][+-]?\d+)?\s*)({'|'.join(WEIGHTS)})\s*$")
+_TIMES = re.compile(r"^(\d+(?:[.,]\d+)?)\s*[x×*·]\s*(?=\d)")  # a weight on a lever: 10 x 5 kg
+_SUM = re.compile(r"^\d+(?:\s*\+\s*\d+)+$")
 _NUMBER = re.compile(r"^[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?$")
 _FRICTION = ("friction_force", TORQUE, "friction_coefficient", "shear_stress")
 _LOAD = ("normal_force", "normal_stress")
@@ -75,7 +78,10 @@ def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
     question = "which column is the friction force (or its torque, or a friction coefficient)?"
     draft = _ask_for(draft, _FRICTION, f"{question} (its number; {_NONE} for none)", ask, say)
     if column_of(draft, "normal_force") or not column_of(draft, "friction_coefficient"):
-        question = "which column is the normal force? (its number; or the load itself: 20 N; "
+        question = (
+            "which column is the normal force? (its number, 4 + 5 if two add up; or the load "
+        )
+        question += "itself: 20 N, 2 kg, 10 x 2 kg on a lever; "
         draft = _ask_for(draft, _LOAD, f"{question}{_NONE} for none)", ask, say, amount="load")
     question = (
         "which column tells how it moves: a speed, turns, an angle or a position? (its number; or "
@@ -163,9 +169,14 @@ def _ask_amount(question: str, name: str, si_unit: str, guess: str, ask: Ask, sa
 
 def _amount(typed: str, name: str, si_unit: str) -> str:
     """Return a number with a unit as a dialect takes it; a weight is the force of it."""
-    text = _COMMA.sub(r"\1.\2", typed)  # as the file may write it
+    times = _TIMES.match(typed) if si_unit == "N" else None
+    text = typed[times.end() :] if times else typed
+    text = _COMMA.sub(r"\1.\2", text)  # as the file may write it
     if si_unit == "N" and (weight := _WEIGHT.match(text)):
         text = f"{weight[1].strip()} {WEIGHTS[weight[2]]}"
+    if times:
+        factor = float(times[1].replace(",", "."))
+        text = f"{factor * positive(text, si_unit, f'the {name}'):.6g} {si_unit}"
     positive(text, si_unit, f"the {name}")
     return text
 
@@ -186,6 +197,8 @@ def _ask_for(
         if typed == _NONE:
             return draft if held is None else _without(draft, names)
         try:
+            if amount == "load" and _SUM.match(typed):
+                return _with_sum(_without(draft, names), typed, ask)
             if amount and (text := _as_amount(typed, amount)):
                 return _with_amount(_without(draft, names), amount, text)
             column = _column(draft, typed)
@@ -234,6 +247,31 @@ def _as_amount(typed: str, amount: str) -> str:
             if unit == units[-1]:
                 raise
     return ""
+
+
+def _with_sum(draft: Draft, typed: str, ask: Ask) -> Draft:
+    """Return a draft in which several columns add up to the load: 4 + 5."""
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return draft
+    wanted = [_column(draft, place.strip()) for place in typed.split("+")]
+    said = {column.place: _ask_worth(column, _LOAD[:1], None, ask) for column in wanted}
+    columns = [
+        c._replace(
+            quantity=None,
+            used=False,
+            guessed=(),
+            options=(),
+            fill_in="",
+            unit=said[c.place].unit or None,
+            scale=said[c.place].scale,
+            note=ADDS,
+        )
+        if c.place in said
+        else c
+        for c in understood.columns
+    ]
+    return written(draft, layout, understood._replace(kind="run", columns=tuple(columns)))
 
 
 def _said_amount(draft: Draft, amount: str) -> str:

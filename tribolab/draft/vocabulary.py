@@ -38,7 +38,7 @@ RUN_WORDS = (
         "friction_force",
         _words(
             "fx ff fr ft fric frict freib ffric ffr fq ftan ftang lf flat ffriction ftr fтр froz "
-            "fs fh fy"
+            "fs fh fy fat"
         ),
         _words(
             "frictionforce frictionalforce fricforce tangentialforce tangforce lateralforce "
@@ -65,7 +65,9 @@ RUN_WORDS = (
         "normal_force",
         _words("fn fz fnorm fnormal w l nf fv normal normale normalna p n"),
         _words(
-            "normalforce normalload normload normforce axialforce axialload "
+            "normalforce normalload normload normforce axialforce axialload forzaassiale "
+            "caricoassiale forceaxiale effortaxial fuerzaaxial cargaaxial forcaaxial osovasila "
+            "silaosiowa осеваясила силаосевая 轴向力 軸方向力 축하중 "
             "verticalforce verticalload "
             "balload ballload "
             "pressingforce pressforce clampingforce downforce appliedforce "
@@ -93,6 +95,7 @@ RUN_WORDS = (
             "coeficientedefriccion coeficientederozamiento friccion rozamiento "
             "coefficientediattrito coefficientedattrito coeffdiattrito coeffdattrito attrito "
             "coeficientedeatrito coefdeatrito wspolczynniktarcia koeficienttreni souciniteltreni "
+            "souctreni koeftreni wspoltarcia wsptarcia коэфтрения kitkakerr "
             "friktionskoefficient kitkakerroin suertuenmekatsayisi коэффициенттрения 마찰계수 "
             "摩擦系数 摩擦係數 摩擦因数 摩擦係数 摩擦"
         ),

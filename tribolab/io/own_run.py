@@ -12,6 +12,7 @@ import xarray as xr
 from tribolab.errors import ReadError
 from tribolab.io.dialects.find import UnknownFileError
 from tribolab.quantities import QUANTITIES
+from tribolab.trials import CrashedError, try_out
 from tribolab.untyped import Json
 
 _NUMBERS = "fiub"
@@ -46,10 +47,15 @@ def read_own_run(path: Path, content: Path | None = None) -> xr.Dataset:
     # late: starting stays quick
     from tribolab.io.netcdf import read_netcdf
 
-    run = read_netcdf(content or path, group="run?")
+    cure = "columns of one length, with names and units, are read as they are: " + _DESCRIBE
+    try:
+        run = read_netcdf(content or path, group="run?")
+    except CrashedError as error:  # HDF5 that is no netCDF may be sound all the same
+        try_out(content or path, "HDF5")
+        what = "this HDF5 file is no netCDF"
+        raise UnknownFileError(what, where=path, cure=cure) from error
     if "time" not in run.coords or run.sizes.get("time", 0) == 0:
         what = "this netCDF or HDF5 file holds no run: it has no coordinate 'time'"
-        cure = "columns of one length, with names and units, are read as they are: " + _DESCRIBE
         raise UnknownFileError(what, where=path, cure=cure)
     strange = [str(name) for name in run.variables if not _along_time(run[name])]
     for name in strange:

@@ -17,7 +17,7 @@ from tribolab.draft.model import DraftColumn
 from tribolab.quantities import unit_conversion
 
 _LONGEST = 300  # characters of a line that are looked at
-_ADDS = "one of several loads that add up"
+ADDS = "one of several loads that add up"
 # endings or beginnings of names: of the first and of the other; whether they surely carry together
 _SIDES = (
     (
@@ -75,7 +75,7 @@ def adding_up(
     guess = f"the normal force is the sum of columns {one.place} and {other.place}"
     plain = {
         c.place: c._replace(
-            quantity="normal_force", used=False, guessed=(), options=(), fill_in="", note=_ADDS
+            quantity="normal_force", used=False, guessed=(), options=(), fill_in="", note=ADDS
         )
         for c in (one, other)
     }
@@ -97,7 +97,7 @@ def loads_that_add(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
     return [
         c._replace(unit=unit if say else None)
         for c in columns
-        if not c.used and c.note == _ADDS
+        if not c.used and c.note == ADDS
         for _, unit, say in [bare_name(c)]
     ]
 

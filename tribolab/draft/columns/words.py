@@ -44,6 +44,7 @@ _OF_STAGE = re.compile(
 )
 _ACROSS = re.compile(r"(?:^|[\s_.\-])z(?:$|[\s_.\-])", re.IGNORECASE)
 _INSTEAD = {"position": "height_displacement"}
+_ANGLES = ("deg", "rad", "°")
 _LONGEST = 1000  # characters of a name that are looked at: searches take their square
 _AXIS = re.compile(r"stage|axis|achse|carriage|table|tisch|slider|schlitten|motor|gantry|platine")
 _WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［］【】]+)[）］】]$")
@@ -180,6 +181,8 @@ def split_unit(label: str) -> tuple[str, str | None]:
     (('speed', 'um/s'), ('speed', 'mm/s'))
     >>> split_unit("时间（s）")
     ('时间', 's')
+    >>> split_unit("angle_deg")
+    ('angle', 'deg')
     >>> split_unit("rpm_set"), split_unit("tempC"), split_unit("Basic")
     (('rpm_set', 'rpm'), ('temp', 'C'), ('Basic', None))
     """
@@ -201,7 +204,7 @@ def split_unit(label: str) -> tuple[str, str | None]:
         for text in (unit, unit.lower() if len(unit) > 3 else unit):
             # what has no dimension is part of the name: the N/N of F_N/N
             unitless = converts(text, "1") and text != "%"
-            if name and not unitless and is_unit(text):
+            if name and ((not unitless and is_unit(text)) or text in _ANGLES):
                 return name, text
     if _RPM.search(label):
         return label, "rpm"

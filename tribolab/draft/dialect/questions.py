@@ -70,7 +70,11 @@ def questions(draft: Drafted) -> list[Question]:
     asked += _of_texts(understood)
     follows = what_follows(layout, understood)
     asked += _of_roles(understood, follows)
+    held = {column.quantity for column in understood.columns if column.used}
+    moves = bool(held & {"sliding_velocity", "position"}) and "time" in held
     for column in understood.columns:
+        if moves and column.quantity == "rotation_speed" and column.fill_in:
+            continue  # how it moves is told without it
         if column.guessed or column.fill_in:
             asked.append(_of_column(column))
     return asked

@@ -15,7 +15,10 @@ from tribolab.units import conversion
 TORQUE: Final = "torque"
 ANGLE: Final = "angle"
 _NO_QUANTITY = {TORQUE: "N m", ANGLE: "rad"}
-_SAID = re.compile(r"^\s*([+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)?\s*(.*?)\s*$", re.DOTALL)
+_SAID = re.compile(
+    r"^\s*([+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?)?(?:/(\d+(?:[.,]\d+)?)(?=\s*[^\W\d]))?\s*(.*?)\s*$",
+    re.DOTALL,
+)
 _PER = re.compile(r"^(.*\S)\s*(?:/|\bper\b)\s*(\S+)$", re.DOTALL)
 
 
@@ -33,7 +36,7 @@ def worth_of(text: str, names: Sequence[str], read_unit: str | None = None) -> W
     Parameters
     ----------
     text
-        ``"mN"``, ``"0.5 mN"`` (one count is so much) or ``"8.2 N/V"``.
+        ``"mN"``, ``"0.5 mN"`` (one count is so much), ``"1/600 turn"`` or ``"8.2 N/V"``.
     names
         Quantities that it may measure, `TORQUE`, or `ANGLE`; the first whose unit it is.
     read_unit
@@ -48,12 +51,14 @@ def worth_of(text: str, names: Sequence[str], read_unit: str | None = None) -> W
     --------
     >>> worth_of("8,2 N/V", ["friction_force"], "V")
     Worth(name='friction_force', unit='N', scale=8.2)
+    >>> worth_of("1/500 turn", ["angle"])
+    Worth(name='angle', unit='turn', scale=0.002)
     >>> worth_of("mN m", ["friction_force", "torque"])
     Worth(name='torque', unit='mN m', scale=1.0)
     """
     said = _SAID.match(text)
-    number, unit = (said[1] or "1", said[2]) if said else ("1", text)
-    scale = float(number.replace(",", "."))
+    number, part, unit = (said[1] or "1", said[2] or "1", said[3]) if said else ("1", "1", text)
+    scale = float(number.replace(",", ".")) / float(part.replace(",", "."))
     if (name := _measured(unit, names)) is not None:
         return Worth(name, unit, scale)
     parts = _PER.match(unit)
