@@ -8,11 +8,11 @@ from drafts import drafted
 from rich.console import Console
 
 import tribolab as tl
-from tribolab.draft.columns.words import squeezed
 from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.draft.dialect.questions import questions
 from tribolab.draft.dialect.show import print_draft
 from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS
+from tribolab.draft.words.words import squeezed
 from tribolab.qc.run.checks import check_run
 
 TABLES = {

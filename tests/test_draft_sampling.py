@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from tribolab.draft.columns.sampling import sample_rate_unit
 from tribolab.draft.dialect.draft import draft_dialect, save_draft
 from tribolab.draft.on_the_fly import read_run
+from tribolab.draft.stated.sampling import sample_rate_unit
 from tribolab.errors import TribolabError
 
 LINES = (

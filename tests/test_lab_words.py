@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.draft.columns.words import matches, squeezed
 from tribolab.draft.file.lines import find_encoding
 from tribolab.draft.terms import TERMS
+from tribolab.draft.words.words import matches, squeezed
 
 LANGUAGES = {
     "Czech": ("Třecí síla", "Zatížení", "Čas", "Zdvih", "Frekvence", "Otáčky", "Poloměr dráhy"),

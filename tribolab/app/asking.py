@@ -8,17 +8,17 @@ from typing import Protocol
 
 import numpy as np
 
-from tribolab.draft.columns.follows import lacking, what_follows
-from tribolab.draft.columns.may_say import may_say
-from tribolab.draft.columns.stated_load import stated_number
-from tribolab.draft.columns.sums import ADDS
 from tribolab.draft.columns.turning import angle_of, torque_of
 from tribolab.draft.dialect.answers import column_of, corrected, fits, written
 from tribolab.draft.dialect.draft import Draft, as_profile, holds_counts, holds_heights
 from tribolab.draft.dialect.worth import ANGLE, TORQUE, Worth, si_unit_of, worth_of
 from tribolab.draft.file.header import converts, is_unit
 from tribolab.draft.file.layout import Layout
+from tribolab.draft.follows.follows import lacking, what_follows
+from tribolab.draft.follows.may_say import may_say
+from tribolab.draft.follows.sums import ADDS
 from tribolab.draft.model import DraftColumn, Understood, other_units
+from tribolab.draft.stated.stated_load import stated_number
 from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.errors import TribolabError, shown
 from tribolab.io.zero_reading import parse_zero

@@ -269,7 +269,7 @@ def missing_lines(facts: FileFacts) -> list[str]:
         names.add("set_speed")
     if facts["not_used"] and not names & {"sliding_velocity", "position", "set_speed"}:
         # late: starting stays quick
-        from tribolab.draft.columns.strokes import is_frequency
+        from tribolab.draft.words.strokes import is_frequency
 
         if any(is_frequency(*split_name(label)) for label in facts["not_used"]):
             names.add("stroke_frequency")

@@ -1,7 +1,7 @@
 """What laboratories call things, as they write it: whole terms, a line for each language.
 
 Columns of a table have the first ten, the text above it states the others. Stems and patterns of
-`tribolab.draft.vocabulary` and `tribolab.draft.columns.stated_words` know further names; a term
+`tribolab.draft.vocabulary` and `tribolab.draft.words.stated_words` know further names; a term
 that stands here is no guess.
 """
 

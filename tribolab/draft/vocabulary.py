@@ -9,7 +9,7 @@ class Word(NamedTuple):
     """A quantity and how columns that hold it are called.
 
     Symbols are whole names; stems may stand anywhere in a name. Both are written as
-    `tribolab.draft.columns.words.squeezed` leaves them; of two symbols for one quantity the first
+    `tribolab.draft.words.words.squeezed` leaves them; of two symbols for one quantity the first
     is the better. A vague stem is one that other quantities are called by, too: it is always a
     guess.
     """

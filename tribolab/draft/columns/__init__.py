@@ -1,1 +1,1 @@
-"""What the columns of an unknown table hold, and what follows from them."""
+"""What each column of an unknown table holds, in which unit."""

@@ -8,11 +8,11 @@ import numpy as np
 
 from tribolab.draft.columns.fill_in import FORCES, Bare, filled_in
 from tribolab.draft.columns.meant import ACROSS, meant
-from tribolab.draft.columns.roles import Role, role_of
 from tribolab.draft.columns.turning import torque_of
-from tribolab.draft.columns.words import KNOWN_WORD, Match, is_count, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import UNKNOWN_NAME, WHICH_FORCE, DraftColumn, Kind
+from tribolab.draft.words.roles import Role, role_of
+from tribolab.draft.words.words import KNOWN_WORD, Match, is_count, squeezed
 from tribolab.errors import shown
 from tribolab.quantities import QUANTITIES, quantity, unit_conversion
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from tribolab.draft.columns.words import squeezed
+from tribolab.draft.words.words import squeezed
 from tribolab.io.clocks.faults import find_faults, rows_at_fault
 from tribolab.io.content.newest_first import is_newest_first
 from tribolab.io.dialects.cells import split_name

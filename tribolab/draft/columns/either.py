@@ -8,14 +8,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.columns.lengths import find_arm
-from tribolab.draft.columns.roles import role_of
-from tribolab.draft.columns.stated_load import find_load, stated_number
-from tribolab.draft.columns.values import DraftValue, find_values
-from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import WHICH_FORCE, DraftColumn
+from tribolab.draft.stated.lengths import find_arm
+from tribolab.draft.stated.stated_load import find_load, stated_number
+from tribolab.draft.stated.values import DraftValue, find_values
+from tribolab.draft.words.roles import role_of
+from tribolab.draft.words.words import squeezed
 from tribolab.errors import shown
 from tribolab.quantities import unit_conversion
 

@@ -7,9 +7,9 @@ import re
 import numpy as np
 
 from tribolab.draft.columns.epochs import DATES, counted_from
-from tribolab.draft.columns.roles import role_of
-from tribolab.draft.columns.words import KNOWN_WORD, Match, is_count, squeezed
 from tribolab.draft.model import DraftColumn, Kind, other_units, time_unit
+from tribolab.draft.words.roles import role_of
+from tribolab.draft.words.words import KNOWN_WORD, Match, is_count, squeezed
 from tribolab.errors import shown
 from tribolab.quantities import quantity
 

@@ -6,8 +6,12 @@ import re
 from collections.abc import Sequence
 
 from tribolab.draft.columns.fill_in import Bare
-from tribolab.draft.columns.values import words_said
-from tribolab.draft.columns.words import (
+from tribolab.draft.file.header import is_unit, measures_something
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.file.lvm import units_above
+from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.values import words_said
+from tribolab.draft.words.words import (
     COUNTS,
     is_count,
     matches,
@@ -15,10 +19,6 @@ from tribolab.draft.columns.words import (
     squeezed,
     unit_in_words,
 )
-from tribolab.draft.file.header import is_unit, measures_something
-from tribolab.draft.file.layout import Layout
-from tribolab.draft.file.lvm import units_above
-from tribolab.draft.model import DraftColumn
 from tribolab.io.dialects.cells import split_name
 
 _LONGEST = 300  # characters of a line that are looked at

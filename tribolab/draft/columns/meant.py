@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from tribolab.draft.columns.fill_in import Bare
-from tribolab.draft.columns.roles import role_of
-from tribolab.draft.columns.strokes import is_frequency, lengths_beside_frequencies
 from tribolab.draft.columns.turning import angle_of, torque_of
-from tribolab.draft.columns.words import KNOWN_WORD, Match, is_axis, squeezed
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.words.roles import role_of
+from tribolab.draft.words.strokes import is_frequency, lengths_beside_frequencies
+from tribolab.draft.words.words import KNOWN_WORD, Match, is_axis, squeezed
 
 ACROSS = {"fy"}  # names of a force across the motion
 

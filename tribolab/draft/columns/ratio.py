@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.draft.columns.words import split_unit
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.words.words import split_unit
 from tribolab.io.force_ratio import doubt_about, doubt_about_coefficient
 from tribolab.quantities import unit_conversion
 

@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from tribolab.draft.columns.stated_words import is_radius
-from tribolab.draft.columns.words import is_count, or_term, split_unit, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.words.stated_words import is_radius
+from tribolab.draft.words.words import is_count, or_term, split_unit, squeezed
 from tribolab.io.dialects.cells import split_name
 
 _TORQUE = or_term(

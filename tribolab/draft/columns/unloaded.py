@@ -7,15 +7,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.draft.columns.stated_words import NOT_TAKEN_OFF
-from tribolab.draft.columns.stated_zero import find_zero, zero_in_doubt
 from tribolab.draft.columns.turning import torque_of
-from tribolab.draft.columns.values import find_values
-from tribolab.draft.columns.words import unit_in_words
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.stated_zero import find_zero, zero_in_doubt
+from tribolab.draft.stated.values import find_values
+from tribolab.draft.words.stated_words import NOT_TAKEN_OFF
+from tribolab.draft.words.words import unit_in_words
 from tribolab.units import conversion
 
 _LONGEST = 300  # characters of a line that are looked at

@@ -9,14 +9,14 @@ import warnings
 from pathlib import Path
 
 from tribolab.aliases import PathLike
-from tribolab.draft.columns.columns import first_cells_of, understand
-from tribolab.draft.columns.words import matches, split_unit
 from tribolab.draft.dialect.drafted import SHOWN, Drafted
 from tribolab.draft.dialect.questions import COUNTED, unsaid_distance
 from tribolab.draft.dialect.show import draft_html
 from tribolab.draft.dialect.toml import dialect_toml
 from tribolab.draft.file.layout import Layout, find_layout
+from tribolab.draft.follows.understand import first_cells_of, understand
 from tribolab.draft.model import Understood
+from tribolab.draft.words.words import matches, split_unit
 from tribolab.errors import ConfigError, OutputError, ReadError, TribolabError, shown
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.dialects.find import recognise
@@ -54,7 +54,7 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
 
     Notes
     -----
-    Names are looked up in one vocabulary, `tribolab.draft.columns.words`; columns without a name
+    Names are looked up in one vocabulary, `tribolab.draft.words.words`; columns without a name
     are judged by their numbers, `tribolab.draft.columns.behaviour`.
 
     Examples

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.draft.columns.follows import what_follows
 from tribolab.draft.dialect.tables import FILL_IN
 from tribolab.draft.file.layout import Layout
+from tribolab.draft.follows.follows import what_follows
 from tribolab.draft.model import Kind, Understood
 from tribolab.errors import shown
 from tribolab.io.dialects.model import Dialect

@@ -8,15 +8,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from tribolab.draft.columns.follows import Follows, lacking, unknown_of, what_follows
-from tribolab.draft.columns.may_say import may_say
-from tribolab.draft.columns.stated_zero import STILL
 from tribolab.draft.columns.turning import torque_of
-from tribolab.draft.columns.values import without_unit
 from tribolab.draft.dialect.drafted import Drafted
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import is_numbered
+from tribolab.draft.follows.follows import Follows, lacking, unknown_of, what_follows
+from tribolab.draft.follows.may_say import may_say
 from tribolab.draft.model import NO_NUMBERS, DraftColumn, Understood
+from tribolab.draft.stated.stated_zero import STILL
+from tribolab.draft.stated.values import without_unit
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
 

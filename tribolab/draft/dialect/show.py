@@ -12,9 +12,9 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from tribolab.draft.columns.follows import Follows, what_follows
 from tribolab.draft.dialect.drafted import Drafted
 from tribolab.draft.dialect.sparks import BARS, PLAIN, sparks
+from tribolab.draft.follows.follows import Follows, what_follows
 from tribolab.draft.model import DraftColumn
 from tribolab.errors import shown as cut
 from tribolab.quantities import quantity

@@ -9,9 +9,9 @@ from typing import overload
 
 import numpy as np
 
-from tribolab.draft.columns.follows import DraftedFormula
-from tribolab.draft.columns.values import DraftValue
+from tribolab.draft.follows.follows import DraftedFormula
 from tribolab.draft.model import UNKNOWN_NAME, DraftColumn
+from tribolab.draft.stated.values import DraftValue
 from tribolab.quantities import quantity
 
 FILL_IN = "FILL IN"

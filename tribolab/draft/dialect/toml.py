@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tribolab.draft.columns.follows import SAYS_FRICTION, SAYS_LOAD, Follows, what_follows
-from tribolab.draft.columns.lengths import find_pitch, find_profile_length
-from tribolab.draft.columns.traces import find_stated
 from tribolab.draft.columns.turning import torque_of
-from tribolab.draft.columns.values import DraftValue, find_values
 from tribolab.draft.dialect.tables import (
     FILL_IN,
     any_blanks,
@@ -23,7 +19,11 @@ from tribolab.draft.dialect.tables import (
 )
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
+from tribolab.draft.follows.follows import SAYS_FRICTION, SAYS_LOAD, Follows, what_follows
 from tribolab.draft.model import DraftColumn, Understood
+from tribolab.draft.stated.lengths import find_pitch, find_profile_length
+from tribolab.draft.stated.traces import find_stated
+from tribolab.draft.stated.values import DraftValue, find_values
 from tribolab.io.dialects.dates import has_day
 
 _MOST = 12  # values that a long preamble states

@@ -11,13 +11,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.draft.columns.counts import stated_worth
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.columns.lengths import find_traverse_speed, pitch_of_clock, seconds_apart
-from tribolab.draft.columns.words import KNOWN_WORD, length_unit, matches, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.counts import stated_worth
+from tribolab.draft.stated.lengths import find_traverse_speed, pitch_of_clock, seconds_apart
+from tribolab.draft.words.words import KNOWN_WORD, length_unit, matches, squeezed
 from tribolab.errors import shown
 from tribolab.units import conversion
 

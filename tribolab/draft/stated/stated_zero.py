@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tribolab.draft.columns.stated_words import NOT_TAKEN_OFF, OFF_ALREADY, TAKEN_OFF, ZERO
-from tribolab.draft.columns.values import DraftValue
-from tribolab.draft.columns.words import matches
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.values import DraftValue
+from tribolab.draft.words.stated_words import NOT_TAKEN_OFF, OFF_ALREADY, TAKEN_OFF, ZERO
+from tribolab.draft.words.words import matches
 
 _LONGEST = 300  # characters of a line that are looked at
 STILL = "it is still in the signal"
@@ -27,7 +27,7 @@ def find_zero(
     layout
         From `tribolab.draft.file.layout.find_layout`.
     values
-        From `tribolab.draft.columns.values.find_values`.
+        From `tribolab.draft.stated.values.find_values`.
     unit
         "N" of a force, "N m" of a torque.
     said

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tribolab.draft.columns.stated_words import LOAD
-from tribolab.draft.columns.values import DraftValue
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
+from tribolab.draft.stated.values import DraftValue
 from tribolab.draft.vocabulary import WEIGHTS
+from tribolab.draft.words.stated_words import LOAD
 from tribolab.io.dialects.patterns import guarded
 
 
@@ -21,7 +21,7 @@ def find_load(values: Sequence[DraftValue]) -> DraftValue | None:
     Parameters
     ----------
     values
-        From `tribolab.draft.columns.values.find_values`.
+        From `tribolab.draft.stated.values.find_values`.
     """
     fitting = []
     of_name = [v for v in values if v.source == "file name" and v.name == "set_normal_force"]
@@ -85,7 +85,7 @@ def stated_number(value: DraftValue) -> float:
     Parameters
     ----------
     value
-        From `tribolab.draft.columns.values.find_values`.
+        From `tribolab.draft.stated.values.find_values`.
     """
     stated = guarded(value.pattern).first(value.text) or "nan"
     return value.scale * float(stated.rstrip(".,").replace(",", "."))

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tribolab.draft.columns.roles import without_role
-from tribolab.draft.columns.words import or_term, squeezed
 from tribolab.draft.file.header import converts
+from tribolab.draft.words.roles import without_role
+from tribolab.draft.words.words import or_term, squeezed
 
 STROKE = or_term(
     r"^(?:total|full|whole|set|nominal|gesamt)?(?:stroke|strokelength|slaglengte|hub|hublaenge|course"

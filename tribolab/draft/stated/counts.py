@@ -8,14 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.draft.columns.stated_load import find_load
-from tribolab.draft.columns.stated_words import ZERO
-from tribolab.draft.columns.values import DraftValue, find_values
-from tribolab.draft.columns.words import matches, split_unit, squeezed
 from tribolab.draft.file.header import converts, is_unit
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.stated_load import find_load
+from tribolab.draft.stated.values import DraftValue, find_values
 from tribolab.draft.vocabulary import WEIGHTS
+from tribolab.draft.words.stated_words import ZERO
+from tribolab.draft.words.words import matches, split_unit, squeezed
 from tribolab.errors import shown
 from tribolab.quantities import quantity
 
@@ -112,7 +112,7 @@ def zero_in_counts(
     Parameters
     ----------
     values
-        From `tribolab.draft.columns.values.find_values`.
+        From `tribolab.draft.stated.values.find_values`.
     column
         The friction force in counts, whose worth is known.
     numbers

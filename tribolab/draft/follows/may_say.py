@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from tribolab.draft.columns.follows import Follows
-from tribolab.draft.columns.stated_words import OTHER_RADIUS
-from tribolab.draft.columns.strokes import STROKE
-from tribolab.draft.columns.values import find_values
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
+from tribolab.draft.follows.follows import Follows
+from tribolab.draft.stated.values import find_values
 from tribolab.draft.vocabulary import WEIGHTS
+from tribolab.draft.words.stated_words import OTHER_RADIUS
+from tribolab.draft.words.strokes import STROKE
 from tribolab.errors import shown
 
 _LACKS = {"the radius": "m", "the load": "N", "the sliding speed": "m/s"}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from tribolab.draft.columns.words import or_term
+from tribolab.draft.words.words import or_term
 
 # a sample rate by its name; "Frequency" alone may be that of the strokes
 _TAKEN = (

@@ -8,12 +8,8 @@ import numpy as np
 
 from tribolab.draft.columns.against_motion import against_motion
 from tribolab.draft.columns.assign import SIGNALS, assigned
-from tribolab.draft.columns.axial import guesses_of_inclined
-from tribolab.draft.columns.bridges import calibrated_forces
-from tribolab.draft.columns.counts import with_worth
 from tribolab.draft.columns.either import told_by_load, without_means
 from tribolab.draft.columns.epochs import DATES, counted_from
-from tribolab.draft.columns.factors import missing_factors, missing_of_heights
 from tribolab.draft.columns.fill_in import Bare
 from tribolab.draft.columns.heights import (
     as_heights,
@@ -23,7 +19,24 @@ from tribolab.draft.columns.heights import (
     side_by_side,
 )
 from tribolab.draft.columns.labels import bare_name, labelled
-from tribolab.draft.columns.lengths import (
+from tribolab.draft.columns.plain_numbers import plain_numbers
+from tribolab.draft.columns.ratio import disagreement, force_or_ratio
+from tribolab.draft.columns.results_table import are_points
+from tribolab.draft.columns.turning import angle_of, torque_of
+from tribolab.draft.columns.unloaded import with_zero
+from tribolab.draft.columns.way import beside_turns
+from tribolab.draft.file.header import converts
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.follows.axial import guesses_of_inclined
+from tribolab.draft.follows.bridges import calibrated_forces
+from tribolab.draft.follows.sensor import of_sensor
+from tribolab.draft.follows.stated_missing import take_stated_missing
+from tribolab.draft.follows.sums import adding_up, loads_that_add
+from tribolab.draft.follows.two_bodies import pair_of, without_surfaces
+from tribolab.draft.model import NO_NUMBERS, DraftColumn, Kind, Understood
+from tribolab.draft.stated.counts import with_worth
+from tribolab.draft.stated.factors import missing_factors, missing_of_heights
+from tribolab.draft.stated.lengths import (
     find_height_unit,
     find_pitch,
     find_point_density,
@@ -33,24 +46,11 @@ from tribolab.draft.columns.lengths import (
     pitch_of_clock,
     sure_at_arm,
 )
-from tribolab.draft.columns.plain_numbers import plain_numbers
-from tribolab.draft.columns.ratio import disagreement, force_or_ratio
-from tribolab.draft.columns.results_table import are_points
-from tribolab.draft.columns.sampling import find_pace, find_sampling
-from tribolab.draft.columns.sensor import of_sensor
-from tribolab.draft.columns.slip import of_both_surfaces
-from tribolab.draft.columns.stated_missing import take_stated_missing
-from tribolab.draft.columns.sums import adding_up, loads_that_add
-from tribolab.draft.columns.told_by_settings import told_by_settings
-from tribolab.draft.columns.turning import angle_of, torque_of
-from tribolab.draft.columns.two_bodies import pair_of, without_surfaces
-from tribolab.draft.columns.unloaded import with_zero
-from tribolab.draft.columns.values import DraftValue
-from tribolab.draft.columns.way import beside_turns
-from tribolab.draft.columns.words import Match, matches, squeezed
-from tribolab.draft.file.header import converts
-from tribolab.draft.file.layout import Layout
-from tribolab.draft.model import NO_NUMBERS, DraftColumn, Kind, Understood
+from tribolab.draft.stated.sampling import find_pace, find_sampling
+from tribolab.draft.stated.slip import of_both_surfaces
+from tribolab.draft.stated.told_by_settings import told_by_settings
+from tribolab.draft.stated.values import DraftValue
+from tribolab.draft.words.words import Match, matches, squeezed
 from tribolab.errors import ReadError, brief, shown
 from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.model import LARGEST

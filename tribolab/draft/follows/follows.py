@@ -6,20 +6,6 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tribolab.draft.columns.axial import axial_force_of, find_inclined, radius_of_ball
-from tribolab.draft.columns.bridges import calibrated_forces, in_volts
-from tribolab.draft.columns.counts import zero_in_counts
-from tribolab.draft.columns.from_axis import radius_from_axis
-from tribolab.draft.columns.gains import stated_gains
-from tribolab.draft.columns.lengths import find_arm, find_radius, is_at_arm, on_rim
-from tribolab.draft.columns.programme import programme_of
-from tribolab.draft.columns.slip import stated_ratio
-from tribolab.draft.columns.stated_load import find_load, lifted_on_return
-from tribolab.draft.columns.stated_words import PER_MINUTE
-from tribolab.draft.columns.stated_zero import find_zero, reading_of, zero_in_doubt
-from tribolab.draft.columns.stroke_settings import as_stated, strokes_of, strokes_of_turns
-from tribolab.draft.columns.strokes import STROKE, is_frequency
-from tribolab.draft.columns.sums import loads_that_add
 from tribolab.draft.columns.turning import (
     angle_of,
     radius_of,
@@ -27,7 +13,15 @@ from tribolab.draft.columns.turning import (
     turns_of,
     unscaled_torque_of,
 )
-from tribolab.draft.columns.two_bodies import (
+from tribolab.draft.file.header import escaped
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.file.marks import STEP_WORD
+from tribolab.draft.follows.axial import axial_force_of, find_inclined, radius_of_ball
+from tribolab.draft.follows.bridges import calibrated_forces, in_volts
+from tribolab.draft.follows.from_axis import radius_from_axis
+from tribolab.draft.follows.gains import stated_gains
+from tribolab.draft.follows.sums import loads_that_add
+from tribolab.draft.follows.two_bodies import (
     Pair,
     Radii,
     along_friction,
@@ -37,12 +31,18 @@ from tribolab.draft.columns.two_bodies import (
     radii_of,
     shaft_of_torque,
 )
-from tribolab.draft.columns.values import DraftValue, find_values, words_said
-from tribolab.draft.columns.words import or_term, squeezed
-from tribolab.draft.file.header import escaped
-from tribolab.draft.file.layout import Layout
-from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.model import NO_NUMBERS, WHICH_FORCE, DraftColumn, Understood
+from tribolab.draft.stated.counts import zero_in_counts
+from tribolab.draft.stated.lengths import find_arm, find_radius, is_at_arm, on_rim
+from tribolab.draft.stated.programme import programme_of
+from tribolab.draft.stated.slip import stated_ratio
+from tribolab.draft.stated.stated_load import find_load, lifted_on_return
+from tribolab.draft.stated.stated_zero import find_zero, reading_of, zero_in_doubt
+from tribolab.draft.stated.stroke_settings import as_stated, strokes_of, strokes_of_turns
+from tribolab.draft.stated.values import DraftValue, find_values, words_said
+from tribolab.draft.words.stated_words import PER_MINUTE
+from tribolab.draft.words.strokes import STROKE, is_frequency
+from tribolab.draft.words.words import or_term, squeezed
 from tribolab.errors import shown
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.missing import missing_of

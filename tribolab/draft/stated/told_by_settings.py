@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.draft.columns.sampling import find_sampling
-from tribolab.draft.columns.strokes import STROKE
-from tribolab.draft.columns.values import find_values
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.sampling import find_sampling
+from tribolab.draft.stated.values import find_values
+from tribolab.draft.words.strokes import STROKE
 from tribolab.errors import UnitError
 from tribolab.io.dialects.patterns import guarded
 from tribolab.io.dialects.time_rule import sampling_interval

@@ -8,10 +8,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from tribolab.draft.columns.levers import weight_on_lever
-from tribolab.draft.columns.named_radius import radius_in_name
-from tribolab.draft.columns.sentences import Phrase, label_of, phrases
-from tribolab.draft.columns.stated_words import (
+from tribolab.draft.file.header import DIMENSIONS, converts, escaped, is_unit
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.file.marks import STEP_WORD
+from tribolab.draft.vocabulary import WEIGHTS
+from tribolab.draft.words.levers import weight_on_lever
+from tribolab.draft.words.named_radius import radius_in_name
+from tribolab.draft.words.sentences import Phrase, label_of, phrases
+from tribolab.draft.words.stated_words import (
     ACROSS,
     ARM,
     DIAMETER,
@@ -24,12 +28,8 @@ from tribolab.draft.columns.stated_words import (
     TIP,
     TURNING,
 )
-from tribolab.draft.columns.strokes import FREQUENCY, HALF_STROKE, STROKE
-from tribolab.draft.columns.words import matches, or_term, split_unit, squeezed, unit_in_words
-from tribolab.draft.file.header import DIMENSIONS, converts, escaped, is_unit
-from tribolab.draft.file.layout import Layout
-from tribolab.draft.file.marks import STEP_WORD
-from tribolab.draft.vocabulary import WEIGHTS
+from tribolab.draft.words.strokes import FREQUENCY, HALF_STROKE, STROKE
+from tribolab.draft.words.words import matches, or_term, split_unit, squeezed, unit_in_words
 
 _MOST = 12  # a long preamble is not repeated in the dialect
 _MOST_OF_SCAN = 200  # settings of a profilometer, among which the few that count may come last

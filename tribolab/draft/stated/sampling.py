@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.draft.columns.stated_words import INTERVAL, RATE
-from tribolab.draft.columns.values import find_values
-from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.header import converts, escaped
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.lvm import interval_above
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.values import find_values
+from tribolab.draft.words.stated_words import INTERVAL, RATE
+from tribolab.draft.words.words import squeezed
 
 # "# Cadence d'acquisition : 1000 pts/s", "Rate (kS/s) = 1"; "1000 samples per second" alone
 _GROUPS = r"[1-9]\d{0,2}(?:[ \u00a0\u202f']\d{3})+"  # 1 000

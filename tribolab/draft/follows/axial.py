@@ -12,12 +12,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.columns.stated_words import ACROSS
-from tribolab.draft.columns.values import DraftValue
-from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.values import DraftValue
+from tribolab.draft.words.stated_words import ACROSS
+from tribolab.draft.words.words import squeezed
 from tribolab.errors import shown
 
 _LONGEST = 300  # characters of a line that are looked at
@@ -161,7 +161,7 @@ def radius_of_ball(inclined: Inclined, values: Sequence[DraftValue]) -> DraftVal
     inclined
         From `find_inclined`.
     values
-        From `tribolab.draft.columns.values.find_values`.
+        From `tribolab.draft.stated.values.find_values`.
     """
     sizes = [v for v in values if _is_size(v) and _ONE_BALL.search(v.key)]
     if len(sizes) != 1 or not inclined.sine:

@@ -6,13 +6,13 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tribolab.draft.columns.gains import with_unit
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.columns.values import DraftValue, find_values
-from tribolab.draft.columns.words import matches
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
+from tribolab.draft.follows.gains import with_unit
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.values import DraftValue, find_values
+from tribolab.draft.words.words import matches
 
 _FORCES = {"friction_force": "friction", "normal_force": "load"}  # and names of their volts
 _RATIO = re.compile(

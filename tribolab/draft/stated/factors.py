@@ -7,13 +7,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.draft.columns.counts import WORTH
-from tribolab.draft.columns.levers import weight_on_lever
-from tribolab.draft.columns.sentences import phrases
-from tribolab.draft.columns.stated_words import LOAD
-from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.counts import WORTH
+from tribolab.draft.words.levers import weight_on_lever
+from tribolab.draft.words.sentences import phrases
+from tribolab.draft.words.stated_words import LOAD
+from tribolab.draft.words.words import squeezed
 from tribolab.errors import shown
 
 _LONGEST = 200  # characters of a line that are looked at

@@ -8,8 +8,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.draft.columns.sentences import phrases, points_per_length
-from tribolab.draft.columns.stated_words import (
+from tribolab.draft.file.header import converts
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.values import DraftValue, find_values, words_said
+from tribolab.draft.words.sentences import phrases, points_per_length
+from tribolab.draft.words.stated_words import (
     ACROSS,
     ALONG,
     ARM,
@@ -32,11 +36,7 @@ from tribolab.draft.columns.stated_words import (
     UNIT,
     VERTICAL,
 )
-from tribolab.draft.columns.values import DraftValue, find_values, words_said
-from tribolab.draft.columns.words import length_unit, matches, squeezed
-from tribolab.draft.file.header import converts
-from tribolab.draft.file.layout import Layout
-from tribolab.draft.model import DraftColumn
+from tribolab.draft.words.words import length_unit, matches, squeezed
 from tribolab.io.dialects.cells import split_name
 from tribolab.units import conversion
 

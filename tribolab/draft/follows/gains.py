@@ -9,15 +9,15 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from tribolab.draft.columns.counts import COUNT_WORD
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.columns.sentences import pattern_behind
-from tribolab.draft.columns.values import DraftValue
-from tribolab.draft.columns.words import COUNTS, matches, squeezed, unit_in_words
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.counts import COUNT_WORD
+from tribolab.draft.stated.values import DraftValue
 from tribolab.draft.vocabulary import WEIGHTS
+from tribolab.draft.words.sentences import pattern_behind
+from tribolab.draft.words.words import COUNTS, matches, squeezed, unit_in_words
 from tribolab.io.dialects.cells import split_name
 
 _LONGEST = 300  # characters of a line that are looked at

@@ -8,12 +8,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.columns.stated_load import find_load, stated_number
-from tribolab.draft.columns.values import find_values
-from tribolab.draft.columns.words import matches, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.stated_load import find_load, stated_number
+from tribolab.draft.stated.values import find_values
+from tribolab.draft.words.words import matches, squeezed
 from tribolab.quantities import unit_conversion
 
 _LONGEST = 300  # characters of a line that are looked at

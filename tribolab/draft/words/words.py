@@ -7,10 +7,10 @@ import re
 import unicodedata
 from typing import NamedTuple
 
-from tribolab.draft.columns.roles import role_of, without_role
 from tribolab.draft.file.header import converts, is_unit
 from tribolab.draft.terms import TERMS
 from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS, WEIGHTS, Word
+from tribolab.draft.words.roles import role_of, without_role
 from tribolab.quantities import quantity
 
 _SPELT = {

@@ -9,13 +9,13 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.columns.roles import role_of
-from tribolab.draft.columns.stated_words import ACROSS, RADIUS
-from tribolab.draft.columns.values import DraftValue
-from tribolab.draft.columns.words import matches, squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.values import DraftValue
+from tribolab.draft.words.roles import role_of
+from tribolab.draft.words.stated_words import ACROSS, RADIUS
+from tribolab.draft.words.words import matches, squeezed
 from tribolab.turns import reciprocal
 from tribolab.unit_names import plain_unit
 
@@ -173,7 +173,7 @@ def radii_of(pair: Pair, values: Sequence[DraftValue], said: str) -> Radii | Non
     pair
         From `pair_of`.
     values
-        From `tribolab.draft.columns.values.find_values`.
+        From `tribolab.draft.stated.values.find_values`.
     said
         The radius that a person said, if any.
     """

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.draft.columns.sensor import lost_values
-from tribolab.draft.columns.values import find_values
 from tribolab.draft.file.layout import Layout
+from tribolab.draft.follows.sensor import lost_values
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.values import find_values
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.scans.stated_missing import take_stated
 

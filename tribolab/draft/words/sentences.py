@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.header import escaped, is_unit
+from tribolab.draft.words.words import squeezed
 
 _LONGEST = 300  # characters of a line that are looked at
 _MOST = 8  # numbers of a line

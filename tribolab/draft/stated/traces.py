@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from tribolab.draft.columns.lengths import metres
-from tribolab.draft.columns.stated_words import (
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.stated.lengths import metres
+from tribolab.draft.stated.values import DraftValue, find_values
+from tribolab.draft.words.stated_words import (
     ACROSS_TIP,
     OF_TRACE,
     PART_OF_TRACE,
@@ -12,8 +14,6 @@ from tribolab.draft.columns.stated_words import (
     PROFILE_LENGTH,
     TIP,
 )
-from tribolab.draft.columns.values import DraftValue, find_values
-from tribolab.draft.file.layout import Layout
 
 _TIPS = (1e-9, 1e-3)  # m, of the smallest and largest radius of a tip
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tribolab.draft.columns.roles import role_of
-from tribolab.draft.columns.values import DraftValue, find_values
-from tribolab.draft.columns.words import squeezed
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.values import DraftValue, find_values
+from tribolab.draft.words.roles import role_of
+from tribolab.draft.words.words import squeezed
 from tribolab.io.dialects.cells import split_name
 
 _RATIO = re.compile(
@@ -28,7 +28,7 @@ def stated_ratio(values: Sequence[DraftValue]) -> DraftValue | None:
     Parameters
     ----------
     values
-        From `tribolab.draft.columns.values.find_values`.
+        From `tribolab.draft.stated.values.find_values`.
     """
     fitting = [
         value._replace(name="slide_roll_ratio_stated", unit=value.own_unit or "1", to="1")

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import re
 
-from tribolab.draft.columns.stated_words import ACROSS, LOAD, PER_MINUTE, RADIUS
-from tribolab.draft.columns.values import DraftValue
-from tribolab.draft.columns.words import matches, split_unit, squeezed, unit_in_words
 from tribolab.draft.file.header import converts, escaped
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import STEP_WORD
+from tribolab.draft.stated.values import DraftValue
+from tribolab.draft.words.stated_words import ACROSS, LOAD, PER_MINUTE, RADIUS
+from tribolab.draft.words.words import matches, split_unit, squeezed, unit_in_words
 from tribolab.io.dialects.cells import split_name, split_row
 
 _LONGEST = 300  # characters of a line that are looked at

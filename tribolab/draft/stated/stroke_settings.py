@@ -8,9 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.draft.columns.roles import role_of
-from tribolab.draft.columns.stated_words import RATE
-from tribolab.draft.columns.strokes import (
+from tribolab.draft.file.header import converts
+from tribolab.draft.model import DraftColumn, Understood
+from tribolab.draft.stated.values import DraftValue
+from tribolab.draft.words.roles import role_of
+from tribolab.draft.words.stated_words import RATE
+from tribolab.draft.words.strokes import (
     END_TO_END,
     FREQUENCY,
     HALF_STROKE,
@@ -18,10 +21,7 @@ from tribolab.draft.columns.strokes import (
     is_frequency,
     is_length,
 )
-from tribolab.draft.columns.values import DraftValue
-from tribolab.draft.columns.words import split_unit
-from tribolab.draft.file.header import converts
-from tribolab.draft.model import DraftColumn, Understood
+from tribolab.draft.words.words import split_unit
 from tribolab.io.dialects.cells import split_name
 
 _CYCLES = re.compile(
@@ -49,7 +49,7 @@ def strokes_of(values: Sequence[DraftValue], understood: Understood) -> Strokes 
     Parameters
     ----------
     values
-        From `tribolab.draft.columns.values.find_values`.
+        From `tribolab.draft.stated.values.find_values`.
     understood
         What is known of the columns.
     """
@@ -92,7 +92,7 @@ def strokes_of_turns(values: Sequence[DraftValue], often: DraftColumn) -> Stroke
     Parameters
     ----------
     values
-        From `tribolab.draft.columns.values.find_values`.
+        From `tribolab.draft.stated.values.find_values`.
     often
         The column that says how fast the crank turns.
     """

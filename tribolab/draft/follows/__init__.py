@@ -1,0 +1,1 @@
+"""What follows from columns and from what is stated, and all of it understood together."""

@@ -1,0 +1,1 @@
+"""What words in names and texts of strangers mean."""
