@@ -14,7 +14,8 @@ from tribolab.draft.dialect.draft import Draft, as_profile, holds_counts, holds_
 from tribolab.draft.dialect.worth import ANGLE, TORQUE, Worth, si_unit_of, worth_of
 from tribolab.draft.file.header import converts, is_unit
 from tribolab.draft.file.layout import Layout
-from tribolab.draft.follows.follows import lacking, what_follows
+from tribolab.draft.follows.follows import what_follows
+from tribolab.draft.follows.lacking import lacking
 from tribolab.draft.follows.may_say import may_say
 from tribolab.draft.follows.sums import ADDS
 from tribolab.draft.model import DraftColumn, Understood, other_units

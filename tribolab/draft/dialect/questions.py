@@ -12,8 +12,10 @@ from tribolab.draft.columns.turning import torque_of
 from tribolab.draft.dialect.drafted import Drafted
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import is_numbered
-from tribolab.draft.follows.follows import Follows, lacking, unknown_of, what_follows
+from tribolab.draft.follows.follows import what_follows
+from tribolab.draft.follows.lacking import lacking, unknown_of
 from tribolab.draft.follows.may_say import may_say
+from tribolab.draft.follows.model import Follows
 from tribolab.draft.model import NO_NUMBERS, DraftColumn, Understood
 from tribolab.draft.stated.stated_zero import STILL
 from tribolab.draft.stated.values import without_unit

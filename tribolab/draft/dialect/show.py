@@ -14,7 +14,8 @@ from rich.table import Table
 
 from tribolab.draft.dialect.drafted import Drafted
 from tribolab.draft.dialect.sparks import BARS, PLAIN, sparks
-from tribolab.draft.follows.follows import Follows, what_follows
+from tribolab.draft.follows.follows import what_follows
+from tribolab.draft.follows.model import Follows
 from tribolab.draft.model import DraftColumn
 from tribolab.errors import shown as cut
 from tribolab.quantities import quantity

@@ -9,7 +9,7 @@ from typing import overload
 
 import numpy as np
 
-from tribolab.draft.follows.follows import DraftedFormula
+from tribolab.draft.follows.model import DraftedFormula
 from tribolab.draft.model import UNKNOWN_NAME, DraftColumn
 from tribolab.draft.stated.values import DraftValue
 from tribolab.quantities import quantity

@@ -19,7 +19,8 @@ from tribolab.draft.dialect.tables import (
 )
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
-from tribolab.draft.follows.follows import SAYS_FRICTION, SAYS_LOAD, Follows, what_follows
+from tribolab.draft.follows.follows import what_follows
+from tribolab.draft.follows.model import SAYS_FRICTION, SAYS_LOAD, Follows
 from tribolab.draft.model import DraftColumn, Understood
 from tribolab.draft.stated.lengths import find_pitch, find_profile_length
 from tribolab.draft.stated.traces import find_stated

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
-from tribolab.draft.follows.follows import Follows
+from tribolab.draft.follows.model import Follows
 from tribolab.draft.stated.values import find_values
 from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.draft.words.stated_words import OTHER_RADIUS
