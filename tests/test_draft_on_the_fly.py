@@ -269,3 +269,34 @@ def test_a_zero_that_is_to_be_subtracted_is_taken_off(tmp_path):
     head = "Tempo [s];Velocidade [mm/s];Fat [N];Carga [N]"
     (tmp_path / "a.csv").write_text(f"{said}\n{head}\n{rows}\n", encoding="utf-8")
     assert float(tl.read(tmp_path / "a.csv").friction_force.mean()) == pytest.approx(3.0)
+
+
+def test_of_two_stated_zeros_that_of_the_friction_is_taken_off(tmp_path):
+    rows = "\n".join(f"{n / 10:.1f};2.0;3.124;10" for n in range(200))
+    said = "Zéro du capteur tangentiel (N);0,124\nZéro du capteur normal (N);0\n"
+    said += "Remarque;forces brutes : retrancher le zéro"
+    head = "Temps [s];Vitesse [mm/s];Force tangentielle [N];Charge [N]"
+    (tmp_path / "a.csv").write_text(f"{said}\n{head}\n{rows}\n", encoding="utf-8")
+    assert float(tl.read(tmp_path / "a.csv").friction_force.mean()) == pytest.approx(3.0)
+
+
+def test_the_seconds_that_a_text_calls_the_zero_are_where_it_is_read(tmp_path):
+    force = [0.5 + 0.001 * (n % 3) if n < 300 else 3.5 for n in range(2000)]
+    rows = "\n".join(
+        f"{n / 100:.2f};{max(n - 350, 0) / 50:.3f};{f:.3f}" for n, f in enumerate(force)
+    )
+    said = (
+        "Masa del patín: 1000 g\nObservaciones: los primeros 3 s máquina parada (cero de la célula)"
+    )
+    head = "Tiempo (s);Desplazamiento (mm);Fuerza de rozamiento (N)"
+    (tmp_path / "a.csv").write_text(f"{said}\n{head}\n{rows}\n", encoding="utf-8")
+    run = tl.read(tmp_path / "a.csv")
+    assert float(run.friction_force[-1]) == pytest.approx(3.0, abs=0.01)
+
+
+def test_a_radial_force_beside_a_torque_is_no_friction(tmp_path):
+    """Fr of a bearing passed for its friction, a thousand times too large."""
+    rows = "\n".join(f"{n / 10:.1f};0.3;{1.5 + n % 2 / 100:.2f};120" for n in range(200))
+    (tmp_path / "a.csv").write_text(f"t [s];C [N.m];Fr [kN];n [tr/min]\n{rows}\n")
+    with pytest.raises(GuessedError, match="'Fr \\[kN\\]'.*means normal force"):
+        tl.read(tmp_path / "a.csv")

@@ -52,6 +52,7 @@ RUN_WORDS = (
             "forcadeatrito forcatangencial atrito silatarcia tarcie trecisila friktionskraft "
             "kitkavoima surlodasiero suertuenmekuvveti suertuenme "
             "силатрения тангенциальнаясила 마찰력 접선력 摩擦力 切向力 剪切力 せん断力 接線力 摩擦 "
+            "抵抗力 摩阻力 阻力 "
             "tangenziale tangenzial tangentielle tangentiel tangencial styczna тангенциальн "
             "касательн"
         ),

@@ -12,6 +12,8 @@ from tribolab.draft.words.strokes import is_frequency, lengths_beside_frequencie
 from tribolab.draft.words.words import KNOWN_WORD, Match, is_axis, squeezed
 
 ACROSS = {"fy"}  # names of a force across the motion
+_RADIAL = {"fr", "frad"}  # friction, but beside a torque what presses on the shaft
+_PERHAPS = 0.5  # score of a name that is asked about
 
 
 def meant(
@@ -68,8 +70,13 @@ def _without_weak(
     A torque is friction, and a force across the motion or a maximum beside it is none; where the
     friction force is recorded, a mean coefficient of an instrument's own adds nothing.
     """
-    surely = {o.quantity for options in matched for o in options[:1] if o.score >= KNOWN_WORD}
     torque = torque_of(columns) is not None
+    if torque:
+        matched = [
+            [Match("normal_force", _PERHAPS, None)] if squeezed(name) in _RADIAL else options
+            for (name, _, _), options in zip(bare, matched, strict=True)
+        ]
+    surely = {o.quantity for options in matched for o in options[:1] if o.score >= KNOWN_WORD}
     forces = {"friction_force", "normal_force"} <= surely
 
     def is_weak(name: str, options: list[Match]) -> bool:

@@ -50,6 +50,10 @@ _START = re.compile(
     rf"|{STEP_WORD}\W{{0,3}}0(?!\d)",
     re.IGNORECASE,
 )
+# "first 3 s at rest, string slack (zero of the cell)"
+_ZERO_THERE = re.compile(
+    r"\b(?:zero|zéro|cero|null\w*|nul|nolla|nula)\b|零|ゼロ|ноль|нул[ья]|영점", re.I
+)
 _ROW = re.compile(r"\s*\"?(?P<number>[01])\"?\s*[,;\t]")  # of a programme: its first step
 _LASTS = re.compile(
     r"(?<![\d.,])(?P<number>\d+(?:[.,]\d+)?)\s?(?P<unit>ms|secs?|seconds?|sekund\w*|segundos|secondes|secondi|s|min(?:utes?|uten)?|秒|сек\w*|с)(?![^\W\d_]*/|[^\W\d_a-z])"
@@ -66,7 +70,10 @@ def unloaded_words(layout: Layout) -> str:
     """
     for line in layout.text_above():
         text = line.strip()[:_LONGEST]
-        if _UNLOADED.search(text) and (_START.search(text) or _ROW.match(text)):
+        begins = _START.search(text)
+        if _UNLOADED.search(text) and (begins or _ROW.match(text)):
+            return text
+        if begins and _ZERO_THERE.search(text) and _lasts(text):
             return text
     return ""
 

@@ -14,6 +14,10 @@ from tribolab.draft.words.words import matches
 
 _LONGEST = 300  # characters of a line that are looked at
 STILL = "it is still in the signal"
+_OF_LOAD = re.compile(
+    r"normal|load(?!cell)|last|belast|charge|carga|carico|vertical|verti[kc]al|axial|assial|nacisk"
+    r"|obci[aą]|нагруз|нормал|载荷|法向|荷重|垂直|하중|fz|fn"
+)
 _OTHER = {"normal_force", "set_normal_force", "temperature", "position"}
 
 
@@ -71,6 +75,8 @@ def _is_still_in(layout: Layout, zero: DraftValue | None) -> bool:
 
 def _stated(values: Sequence[DraftValue], unit: str) -> DraftValue | None:
     fitting = [value for value in values if _is_zero(value, unit)]
+    if len(fitting) > 1:  # that of the load beside it is another
+        fitting = [value for value in fitting if not _OF_LOAD.search(value.key)]
     return fitting[0] if len(fitting) == 1 and fitting[0].number else None
 
 

@@ -222,7 +222,7 @@ NOT_TAKEN_OFF = re.compile(
     r"|(?:zero|offset|tare)\s(?:is\s|was\s)?not\s|\bnot\s(?:tared|zeroed)|un(?:corrected|tared|zeroed)"
     r"|\bnot?\s(?:been\s)?(?:yet\s)?(?:deduct|taken\soff)|\bstill\s(?:in|contained|included)\b"
     r"|\b(?:to|must|should)\sbe\s(?:subtract|deduct|taken\soff|remov)|\bsubtract\b|abzuziehen|abziehen"
-    r"|\b(?:soustraire|déduire|sottrarre|detrarre|restar|descontar|subtrair|aftrekken)\b"
+    r"|\b(?:soustraire|déduire|sottrarre|detrarre|restar|descontar|subtrair|aftrekken|retrancher)\b"
     r"|ode[cč]íst|odjąć|вычесть|відняти|[需要应应]扣除|差し引く"
     r"|nicht\s\w{0,20}(?:korrigiert|bereinigt|abgezogen|kompensiert|tariert)|unkorrigiert|noch\senthalten"
     r"|non\s(?:corrig|compens|azzer|soustra|sottra|tar|dédui|detratt)"
