@@ -262,3 +262,13 @@ def test_an_answer_stays_where_another_is_not_known_and_may_have_a_comma(tmp_pat
 def test_a_decimal_comma_of_an_amount_is_named():
     with pytest.raises(UnitError, match=r"'46,0 N' has a decimal comma; write '46.0 N'"):
         to_si("46,0 N", "N", "load")
+
+
+def test_numbers_alone_of_any_name_are_asked_about_as_heights(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    rng = np.random.default_rng(6)
+    lines = "\n".join(" ".join(f"{z:.3f}" for z in part) for part in rng.standard_normal((50, 8)))
+    (tmp_path / "p.txt").write_text(f"Nombre de points: 400\n[VALEURS]\n{lines}\n")
+    done = command("dialect", "p.txt", "--ask", typed="0.5 um\num\n")
+    assert done.exit_code == 0, done.output
+    assert tl.read_scans("p.txt", instrument="p.toml").attrs["pitch_m"] == pytest.approx(5e-7)

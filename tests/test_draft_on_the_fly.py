@@ -300,3 +300,29 @@ def test_a_radial_force_beside_a_torque_is_no_friction(tmp_path):
     (tmp_path / "a.csv").write_text(f"t [s];C [N.m];Fr [kN];n [tr/min]\n{rows}\n")
     with pytest.raises(GuessedError, match="'Fr \\[kN\\]'.*means normal force"):
         tl.read(tmp_path / "a.csv")
+
+
+@pytest.mark.parametrize("said", ["2 Hz (0-30 s), 5 Hz (30-60 s)", "2 Hz / 5 Hz"])
+def test_several_frequencies_in_a_line_are_asked_about(tmp_path, said):
+    rows = "\n".join(f"{n / 200:.3f};{3 * (-1) ** (n // 50)};10" for n in range(2000))
+    head = f"Stroke: 5 mm\nFrequency: {said}\nDrive: crank\nTime [s];Friction force [N];Load [N]"
+    (tmp_path / "a.csv").write_text(f"{head}\n{rows}\n")
+    with pytest.raises(GuessedError, match="the first holds all along"):
+        tl.read(tmp_path / "a.csv")
+
+
+def test_what_turns_without_contact_while_its_zero_is_read_is_no_friction(tmp_path):
+    """The unloaded step had the speed of the first, and was averaged into it."""
+    rng = np.random.default_rng(3)
+    force = np.repeat([0.12, 1.62, 1.32], 600) + 0.02 * rng.standard_normal(1800)
+    speed = np.repeat([50, 50, 100], 600)
+    rows = "\n".join(
+        f"{n / 10:.1f};{v};{f:.4f}" for n, (v, f) in enumerate(zip(speed, force, strict=True))
+    )
+    head = "Normalkraft: 10 N\nSpurradius: 20 mm\nBemerkung: zu Beginn 55 s unbelastet"
+    file = tmp_path / "a.csv"
+    file.write_text(f"{head}\nZeit [s];Drehzahl [1/min];Reibkraft [N]\n{rows}\n")
+    run = tl.read(file)
+    assert run.attrs["load_stated_from_s"] == pytest.approx(60, abs=0.2)
+    mu = tl.friction_coefficient(run, tl.find_segments(run)).friction_coefficient.values
+    np.testing.assert_allclose(mu, [0.15, 0.12], atol=0.002)

@@ -67,7 +67,8 @@ def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
     """
     if draft.layout is None or draft.understood is None:
         return draft
-    if draft.kind == "table" and (holds_heights(draft) or holds_counts(draft)):
+    alone = len(draft.understood.columns) == 1  # one column of numbers is no run
+    if draft.kind == "table" and (alone or holds_heights(draft) or holds_counts(draft)):
         return _ask_for_pitch(draft, ask, say)
     if draft.kind == "scan":
         for name, words in _SCAN.items():
@@ -75,7 +76,8 @@ def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
             draft = _ask_for(draft, (name,), question, ask, say)
         return draft
     question = f"which column is the time? (its number; or the rate of the rows: 100 Hz; {_NONE})"
-    draft = _ask_for(draft, ("time",), question, ask, say, amount="rate")
+    if draft.understood and not draft.understood.rate_pattern:  # else the file states it
+        draft = _ask_for(draft, ("time",), question, ask, say, amount="rate")
     question = "which column is the friction force (or its torque, or a friction coefficient)?"
     draft = _ask_for(draft, _FRICTION, f"{question} (its number; {_NONE} for none)", ask, say)
     if column_of(draft, "normal_force") or not column_of(draft, "friction_coefficient"):

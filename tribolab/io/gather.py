@@ -27,7 +27,7 @@ from tribolab.io.row_counts import row_attributes
 from tribolab.io.signals import Signals
 from tribolab.io.speed import add_speed, keep_settings
 from tribolab.io.two_rates import sampled_together
-from tribolab.io.zero_reading import take_zeros, zeros_of_derived
+from tribolab.io.zero_reading import free_while_zeroed, take_zeros, zeros_of_derived
 from tribolab.pieces import chosen, concatenated
 from tribolab.provenance import CONVENTIONS, as_text, history_line
 from tribolab.quantities import QUANTITIES
@@ -100,6 +100,7 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     tell_assumed(attrs, assumed, dialect)
     keep_forces_that_agree(columns, attrs)
     add_speed(columns, attrs, time, where, dialect, of_steps)
+    attrs |= free_while_zeroed(columns, time, attrs)
     _check_normal_force(columns, contents[0], where, dialect)
     attrs |= _attributes(contents, dialect, origin)
     attrs |= row_attributes(rows, contents, mended, dialect) | together

@@ -21,6 +21,8 @@ _BETWEEN = re.compile(r"^\s*(\S.*?)\s+to\s+(\S.*?)\s*$")
 _TABLES = re.compile(r"^\s*table\s+(\S.*?)(?:\s+to\s+table\s+(\S.*?))?\s*$")
 _BLANK = re.compile(r"^\s*file\s+(\S.*?)\s*$")
 _FEWEST = 10  # samples
+_RUBS = 0.12  # of the highest friction
+_MOVES, _MOSTLY = 0.01, 0.5  # of the highest speed; share of the samples
 _BATCHES = 16  # means whose scatter says how well the zero is known
 
 
@@ -171,6 +173,54 @@ def zeros_of_derived(
                 attrs[f"{name}_{key}_{unit}"] = times * value
         read = {**attrs["zeros_read"], name: attrs["zeros_read"][used[0]]}
         attrs["zeros_read"] = {k: v for k, v in read.items() if k != used[0]}
+
+
+def free_while_zeroed(columns: dict[str, np.ndarray], time: np.ndarray, attrs: Json) -> Json:
+    """Take a load that is only stated for none where the zero of the friction is read in motion.
+
+    What moves while its friction is zero is not in contact: it is no sliding under that load.
+
+    Parameters
+    ----------
+    columns
+        Signals in SI by quantity (time); the load is replaced.
+    time
+        From the first sample [s] (time).
+    attrs
+        Attributes of the run, with ``zeros_read`` and ``derived``.
+
+    Returns
+    -------
+    dict
+        ``load_stated_from_s``, where that was done.
+    """
+    read, made = attrs.get("zeros_read", {}), attrs.get("derived", {})
+    moves = ("sliding_velocity", "rotation_speed", "set_speed")
+    motion = next((columns[name] for name in moves if name in columns), None)
+    stated = isinstance(made, Mapping) and "normal_force" in made and "normal_force" in columns
+    if not isinstance(read, Mapping) or "friction_force" not in read or not stated:
+        return {}
+    load = columns["normal_force"]
+    rule = parse_zero(str(read["friction_force"]))
+    from_start = not rule.file and not rule.tables and rule.start == -np.inf
+    rows = rule.samples or (int(np.searchsorted(time, rule.stop)) if from_start else 0)
+    if motion is None or not 0 < rows < load.size or np.ptp(load[np.isfinite(load)]) > 0:
+        return {}
+    size = np.abs(motion)
+    if not np.mean(size[:rows] > _MOVES * np.nanmax(size)) > _MOSTLY:
+        return {}
+    rows += _until_it_rubs(np.abs(columns["friction_force"]), rows)
+    free = load.copy()
+    free[:rows] = 0.0
+    columns["normal_force"] = free
+    return {"load_stated_from_s": float(time[min(rows, load.size - 1)])}
+
+
+def _until_it_rubs(friction: np.ndarray, rows: int) -> int:
+    """Return how many samples more there is no friction; a spike is none: five in a row are."""
+    rubs = friction[rows:] > _RUBS * np.nanpercentile(friction, 90)
+    held = np.convolve(rubs, np.ones(5), "valid") >= 5
+    return int(np.argmax(held)) if held.any() else 0
 
 
 def _zero_of(name: str, text: str, values: np.ndarray, where: str) -> tuple[float, float]:

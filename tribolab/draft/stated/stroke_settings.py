@@ -22,6 +22,7 @@ from tribolab.draft.words.strokes import (
     is_length,
 )
 from tribolab.draft.words.words import split_unit
+from tribolab.errors import shown
 from tribolab.io.dialects.cells import split_name
 
 _CYCLES = re.compile(
@@ -29,6 +30,7 @@ _CYCLES = re.compile(
     r"(?:cycles?|zyklen|zykluszahl|ciclos|cicli|cykli|cyklu|cykler|cycli|循环次数|サイクル数)$"
 )
 _SEVERAL = 1.1  # times the lowest: a setting is no longer the same
+_LIST = re.compile(r"\d\s?(?:[/;|]|\b(?:and|then|und|dann|et|puis|y|e|luego|poi)\b)\s?\d")
 _EITHER_WAY = re.compile(r"(?:\+/?-|±)\s?\d")  # from the middle
 
 
@@ -113,7 +115,18 @@ def _stated(values: Sequence[DraftValue]) -> tuple[DraftValue | None, DraftValue
         stroke = half if whole else half._replace(scale=2.0)
         if not whole and "half" not in half.name and not _EITHER_WAY.search(half.text):
             guess = f"'{half.text}' is half of a stroke"
+    several = [v for v in (stroke, frequency) if v is not None and _says_several(v)]
+    if several:
+        guess = f"of '{shown(several[0].text, 60)}' the first holds all along"
     return stroke, frequency, guess
+
+
+def _says_several(value: DraftValue) -> bool:
+    """Whether a line states more than one number of its unit: '2 Hz, then 5 Hz', '2 / 5 Hz'."""
+    if value.source != "preamble" or not value.own_unit:
+        return False
+    said = re.findall(rf"(\d+(?:[.,]\d+)?)\s?{re.escape(value.own_unit)}(?![^\W\d])", value.text)
+    return len(set(said)) > 1 or _LIST.search(value.text) is not None
 
 
 def as_stated(values: Sequence[DraftValue]) -> tuple[DraftValue, ...]:
