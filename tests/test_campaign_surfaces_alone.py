@@ -57,5 +57,6 @@ def test_roughness_does_not_wait_for_a_power_law(tmp_path):
     rough = pd.read_csv(tmp_path / "results" / "tables" / "roughness.csv")
     level = smooth - np.polyval(np.polyfit(np.arange(8000), smooth, 2), np.arange(8000))
     assert rough.Pq_m[0] == pytest.approx(1e-6 * level.std(), rel=2e-3)
+    assert rough.hurst_exponent.isna().all()
     said = pd.read_csv(tmp_path / "results" / "tables" / "findings.csv").message
     assert said.str.contains("not extrapolated: C").any()

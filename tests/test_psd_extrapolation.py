@@ -139,3 +139,5 @@ def test_the_measured_waves_alone_need_no_power_law():
     alone = extrapolate(rising, q_high=float(Q[-1]))
     np.testing.assert_array_equal(alone.psd_2d, rising.psd_2d)
     assert np.isnan(alone.attrs["hurst_exponent"]) and "not known" in alone.attrs["rolloff"]
+    steep = extrapolate(spectrum(Q, Q**-12.0), q_high=float(Q[-1]))
+    assert np.isnan(steep.attrs["hurst_exponent"])  # 5 is none of a rough surface

@@ -154,10 +154,12 @@ def extrapolate(
     kept = {k: v for k, v in psd.attrs.items() if k != "origin"}
     kept["history"] = "\n".join(filter(None, [kept.get("history", ""), history_line(action)]))
     seen = rolloff > 1.05 * q[0]
+    hurst = -0.5 * law.slope - 1
+    rough = hurst <= _STEEPEST  # else no law of a rough surface: nothing was led on by it
     attrs = {
         **kept,
-        "hurst_exponent": -0.5 * law.slope - 1,
-        "hurst_exponent_standard_error": 0.5 * law.slope_error,
+        "hurst_exponent": hurst if rough else float("nan"),
+        "hurst_exponent_standard_error": 0.5 * law.slope_error if rough else float("nan"),
         "fit_low_1_m": decade[0],
         "fit_high_1_m": decade[1],
         "rolloff_wavenumber_1_m": rolloff,
