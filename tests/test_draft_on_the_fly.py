@@ -326,3 +326,10 @@ def test_what_turns_without_contact_while_its_zero_is_read_is_no_friction(tmp_pa
     assert run.attrs["load_stated_from_s"] == pytest.approx(60, abs=0.2)
     mu = tl.friction_coefficient(run, tl.find_segments(run)).friction_coefficient.values
     np.testing.assert_allclose(mu, [0.15, 0.12], atol=0.002)
+
+
+@pytest.mark.parametrize("name", ["fuerza_friccion_N", "forza_attrito_N", "force_frottement_N"])
+def test_a_force_of_friction_needs_no_article(tmp_path, name):
+    rows = "\n".join(f"{n / 10:.1f};2.0;3.0;10" for n in range(200))
+    (tmp_path / "a.csv").write_text(f"Time [s];Speed [mm/s];{name};Load [N]\n{rows}\n")
+    assert float(tl.read(tmp_path / "a.csv").friction_force.mean()) == 3.0

@@ -25,6 +25,8 @@ DRAFTED = {
     f"Height unit\tum\nHeight\n{COLUMN}\n",
     "longueur": f"Unité de hauteur : µm\nLongueur de palpage = 0,05 mm\nNombre de points = 200\n"
     f"{GERMAN}\n",
+    "longueur évaluée": f"Unité de hauteur : µm\nLongueur évaluée : 0,05 mm\n"
+    f"Nombre de points : 200\n{GERMAN}\n",
     "Spanish": "\n".join(["Distancia [mm];Perfil [um]", ROWS.replace(",", ";")]) + "\n",
     "a unit alone": f"Abtastabstand: 0,25 µm\nEinheit: µm\nMesswerte:\n{GERMAN}\n",
     "in inches": f"Traverse length: 0.001968503937 inch\nPoints: 200\nZ [um]\n{COLUMN}\n",

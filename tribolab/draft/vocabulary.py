@@ -48,6 +48,7 @@ RUN_WORDS = (
             "forcex xforce sledforce pullforce pullingforce zugkraft "
             "forcedefrottement efforttangentiel forcetangentielle frottement "
             "fuerzadefriccion fuerzaderozamiento fuerzatangencial friccion rozamiento "
+            "fuerzafriccion fuerzarozamiento forcefrottement forzaattrito forcaatrito "
             "forzadiattrito forzadattrito forzatangenziale attrito "
             "forcadeatrito forcatangencial atrito silatarcia tarcie trecisila friktionskraft "
             "kitkavoima surlodasiero suertuenmekuvveti suertuenme "
