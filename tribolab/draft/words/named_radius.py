@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 _IN_NAME = re.compile(
     r"(?:^|(?<=[_\- ]))(?P<key>(?:track|trk|wear|spur|laufbahn)?[_-]?(?:radius|rad|track"
-    r"|r(?=[\d=_-])|diam?|d(?=[\d=_-])|ø)"
+    r"|r(?=[=\d_-])|diam?|d(?=[=\d_-])|ø)"
     r"[_=-]?)(?P<number>\d{1,3}(?:[.,pP_]\d{1,2}(?=mm|cm|[_\- .]|$))?)[_ ]?(?P<unit>mm"
     r"|cm)?(?=[_\- .]|$)",
     re.IGNORECASE,

@@ -42,8 +42,9 @@ def units_in_name(path: Path) -> NamedUnits:
 
 def unsaid(path: Path, *, along: bool, up: bool) -> Cure:
     """Return how to say units that a file does not: of positions, of heights, or of both."""
-    x = " x_unit='mm'" if along else ""
-    z = f"{' and' if along and up else ''} height_unit='um'" if up else ""
+    arguments = {"x_unit": "mm"} if along else {}
+    arguments |= {"height_unit": "um"} if up else {}
+    said = " and ".join(f"{name}='{unit}'" for name, unit in arguments.items())
     name = f"{path.stem}{'_xy-mm' if along else ''}{'_z-um' if up else ''}{path.suffix}"
     rename = f"put it into the file's name: '{name}'"
-    return Cure(notebook=f"say{x}{z}, or {rename}", terminal=rename, campaign=rename)
+    return Cure(notebook=f"say {said}, or {rename}", terminal=rename, campaign=rename)
