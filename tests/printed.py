@@ -67,4 +67,7 @@ def _sheet(page, objects, fonts):
         elif glyphs:
             codes = (int(glyphs[k : k + 4], 16) for k in range(0, len(glyphs), 4))
             text += [font.get(code, "") for code in codes]
-    return Sheet("".join("".join(text).split()), len(_PAINTED.findall(drawing)))
+    letters = "".join("".join(text).split())
+    for joined, parts in {"\ufb00": "ff", "\ufb01": "fi", "\ufb02": "fl", "\ufb03": "ffi"}.items():
+        letters = letters.replace(joined, parts)  # a font may have one sign for them
+    return Sheet(letters, len(_PAINTED.findall(drawing)))

@@ -214,6 +214,8 @@ def joined_names(above: Sequence[str], names: Sequence[str]) -> list[str]:
         return list(names)
     if any(_NUMBER.fullmatch(cell) for cell in above) or all(map(is_unit, filled)):
         return list(names)
+    if 2 * len(above) < len(names):  # a line of settings, which does not reach over the columns
+        return list(names)
     groups, group = [], ""
     for cell in [*above, *[""] * (len(names) - len(above))]:
         group = cell or group
