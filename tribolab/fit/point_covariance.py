@@ -60,7 +60,10 @@ class PointErrors(NamedTuple):
         (0.889, 8.0)
         """
         if not self.shared.size:
-            return values / (self.own if values.ndim == 1 else self.own[:, None])
+            own = self.own if values.ndim == 1 else self.own[:, None]
+            with np.errstate(divide="ignore", invalid="ignore"):
+                # a point that fits exactly is off by nothing, whatever its error
+                return np.where((values == 0) & (own == 0), 0.0, values / own)
         return np.asarray(
             solve_triangular(cholesky(self.covariance, lower=True), values, lower=True)
         )
