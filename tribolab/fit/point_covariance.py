@@ -10,6 +10,8 @@ from scipy.linalg import cholesky, solve_triangular
 
 from tribolab.metrology.budget_curve import shared_parts
 
+_LEAST = 1e-15  # of a coefficient: points that fit exactly have no error of their own
+
 
 class PointErrors(NamedTuple):
     """Errors of points: each one's own, and parts that move all of them together.
@@ -60,10 +62,8 @@ class PointErrors(NamedTuple):
         (0.889, 8.0)
         """
         if not self.shared.size:
-            own = self.own if values.ndim == 1 else self.own[:, None]
-            with np.errstate(divide="ignore", invalid="ignore"):
-                # a point that fits exactly is off by nothing, whatever its error
-                return np.where((values == 0) & (own == 0), 0.0, values / own)
+            own = np.maximum(self.own, _LEAST)
+            return values / (own if values.ndim == 1 else own[:, None])
         return np.asarray(
             solve_triangular(cholesky(self.covariance, lower=True), values, lower=True)
         )
