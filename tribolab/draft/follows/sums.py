@@ -16,7 +16,7 @@ from tribolab.draft.stated.values import find_values
 from tribolab.draft.words.words import matches, squeezed
 from tribolab.quantities import unit_conversion
 
-_LONGEST = 300  # characters of a line that are looked at
+_LONGEST = 300  # characters of a line or name that are looked at
 ADDS = "one of several loads that add up"
 # endings or beginnings of names: of the first and of the other; whether they surely carry together
 _SIDES = (
@@ -104,7 +104,7 @@ def loads_that_add(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
 
 def _is_load(column: DraftColumn) -> bool:
     name, unit, _ = bare_name(column)
-    if not column.label or unit is None or not converts(unit, "N"):
+    if not column.label or unit is None or len(name) > _LONGEST or not converts(unit, "N"):
         return False
     for called in (name, re.sub(r"[\W_]*[^\W_]{1,2}$", "", name)):
         options = matches(called, unit)

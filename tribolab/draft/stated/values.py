@@ -52,6 +52,7 @@ _UNIT_SAID = re.compile(  # "Units um", "単位,μm"
     r"(?:\s+|\"?\s*,\s*\"?)[\[(]?(?P<unit>[^\W\d]{1,20})[\])]?\W*$",
     re.IGNORECASE,
 )
+_LONGEST_ENTRY = 1000  # characters of a line with a key: searches take their square
 _LONGEST = 200  # characters of a line that are looked at
 _DRIVEN = re.compile(  # "reciprocating rig, crank drive"
     r"\b(?:crank|scotch[- ]yoke|eccentric|kurbel|exzenter)"
@@ -102,7 +103,8 @@ class DraftValue(NamedTuple):
 
 
 def _text_above(layout: Layout, *, bare: bool) -> tuple[str, ...]:
-    return layout.text_above(bare=bare or layout.width == 1)
+    lines = layout.text_above(bare=bare or layout.width == 1)
+    return tuple(line[:_LONGEST_ENTRY] for line in lines)
 
 
 def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
