@@ -42,6 +42,14 @@ def _scale_with_unit(path):
         data.attrs.update(z_scale_nm=1.0, dx_um=1.5, dy_um=2.0)
 
 
+def _dutch(path):
+    with h5py.File(path, "w") as file:
+        data = file.create_dataset("meting/hoogte", data=np.round((Z - 2.5) / 0.001).astype("i4"))
+        data.attrs.update(eenheid="um", scale_factor=0.001, add_offset=2.5)
+        data.attrs.update(pixelmaat=np.array([1.5, 1.5]), pixelmaat_eenheid="um")
+        file.create_dataset("meting/intensiteit", data=np.ones(Z.shape, "u1"))
+
+
 def _archive(path):
     np.savez(path, height_um=Z, x_mm=1e-3 * X, y_mm=1e-3 * Y, operator="IK")
 
@@ -65,6 +73,14 @@ def test_a_map_is_told_by_the_names_of_its_arrays(tmp_path, name):
     np.testing.assert_allclose(scan.y, 1e-6 * Y, atol=1e-12)
     assert kind_of(tmp_path / name) == "scan"
     assert any("map of 20 x 12 points" in line for line in file_lines(tmp_path / name))
+
+
+def test_a_pitch_for_both_axes_is_read_in_the_unit_beside_it(tmp_path):
+    _dutch(tmp_path / "meting.h5")
+    scan = read_scans(tmp_path / "meting.h5")
+    np.testing.assert_allclose(scan.height, 1e-6 * Z, atol=1e-12)
+    np.testing.assert_allclose(scan.x, 1e-6 * X, atol=1e-12)
+    np.testing.assert_allclose(scan.y, 1.5e-6 * np.arange(12), atol=1e-12)
 
 
 def test_what_an_attribute_says_to_be_no_height_is_none(tmp_path):

@@ -47,6 +47,12 @@ FILES = {
         2e-6,
         HOLES,
     ),
+    "French, axis by axis": (
+        "Axe X;Points;14;Pas;1,25;µm;Longueur;0,01625;mm\nAxe Y;Lignes;9;Pas;1,25;µm\n"
+        "Axe Z;Unité;µm;Résolution;0,0001;µm\n" + rows(mark=";", decimal=","),
+        1.25e-6,
+        HEIGHTS,
+    ),
     "German": (
         "Messfeld: 7,0 x 4,5 mm\nEinheit Höhe: µm\n" + rows(mark=";", decimal=","),
         0.5e-3,

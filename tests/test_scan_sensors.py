@@ -111,6 +111,16 @@ def test_passes_of_an_encoder_are_traces_in_which_rests_do_not_weigh(tmp_path):
     assert int(np.isnan(scan.height).sum()) in (0, 2)
 
 
+def test_a_sensors_map_with_x_y_and_z_is_a_map(tmp_path):
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(8), np.arange(6)))
+    places = [[f"{2.0 * n:.1f}" for n in axis] for axis in (x, y)]
+    text = "# confocal sensor\nx (um),y (um),z (um)\n"
+    path = written(tmp_path, text + rows(*places, [f"{np.sin(n):.4f}" for n in x + 3 * y]))
+    scan = read_scans(path)
+    assert dict(scan.sizes) == {"y": 6, "x": 8}
+    np.testing.assert_allclose(scan.height[2], 1e-6 * np.sin(np.arange(8) + 6), atol=1e-10)
+
+
 def test_a_way_that_jumps_back_is_no_pass():
     x = np.tile(np.arange(100.0), 2)
     assert find_passes(x, x) is None

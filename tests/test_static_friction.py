@@ -117,6 +117,15 @@ def test_a_coefficient_alone_will_do():
     assert "breakaway_force" not in table
 
 
+def test_of_a_force_without_a_load_the_coefficient_beside_it_is_taken():
+    run = starts(np.array([0.5, 0.3]), [3.0] * 2)
+    run = run.assign(friction_coefficient=run.friction_force / LOAD).drop_vars("normal_force")
+    alone, beside = measured(run.drop_vars("friction_force")), measured(run)
+    peak = "static_friction_coefficient"
+    assert alone[peak].size == 2
+    np.testing.assert_array_equal(beside[peak].values, alone[peak].values)
+
+
 def test_a_result_of_another_run_is_refused():
     run = starts([0.3] * 4, [3.0] * 4)
     segments = tl.find_segments(run)

@@ -39,7 +39,7 @@ def try_on(files: Sequence[Path], dialect: Path, kind: str) -> list[str]:
 
 def _run_said(file: Path, dialect: Path) -> str:
     # late: starting stays quick
-    from tribolab.friction.coefficient.coefficient import friction_coefficient
+    from tribolab.friction.coefficient.coefficient import friction_coefficient, friction_signal
     from tribolab.friction.reversals import reversals
     from tribolab.friction.segments.find import find_segments, why_no_segment
     from tribolab.io.runs import read_run
@@ -62,7 +62,7 @@ def _run_said(file: Path, dialect: Path) -> str:
     said += f", {Count(segments.sizes['segment']):segment|segments}"
     if "friction_coefficient" not in friction:
         return f"{said}, a friction force without a load: no friction coefficient"
-    signal = "friction_force" if "friction_force" in run else "friction_coefficient"
+    signal = friction_signal(run)
     turned = reversals(run[signal].values) if _undirected(run, segments) else 0
     if turned:
         return (

@@ -94,7 +94,9 @@ def of_sensor(layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarra
     numbers
         Their numbers (rows, columns) as written.
     """
-    if not 2 <= len(columns) <= _MOST_COLUMNS or len(numbers) < 3 or _is_run(columns):
+    if not 2 <= len(columns) <= _MOST_COLUMNS or len(numbers) < 3:
+        return None
+    if _is_run(columns) or _is_map(columns):
         return None
     lines = [line[:_LONGEST] for line in layout.text_above(bare=True)]
     clock = next((column for column in columns if _quantity(column) == "time"), None)
@@ -140,6 +142,12 @@ def of_sensor(layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarra
         elif not pitch:
             return None
     return Sensed([result.get(column.place, column) for column in columns], pitch, lacks)
+
+
+def _is_map(columns: Sequence[DraftColumn]) -> bool:
+    """Whether columns are named as those of a map: x, y and z, whatever sensor took it."""
+    options = [matches(*bare_name(column)[:2], scan=True) for column in columns]
+    return {"x", "y", "height"} <= {some[0].quantity for some in options if some}
 
 
 def _quantity(column: DraftColumn) -> str:

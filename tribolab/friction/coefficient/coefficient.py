@@ -140,12 +140,24 @@ def friction_coefficient(
     return stamp(beside_rejected(segments, lambda part: _of_segments(run, part, settings)))
 
 
+def friction_signal(run: xr.Dataset) -> str:
+    """Return the variable that friction is taken from: a force, or a recorded coefficient; or "".
+
+    Of a force under a load that nobody knows a recorded coefficient says more.
+
+    >>> friction_signal(xr.Dataset({"friction_force": 1.0, "friction_coefficient": 0.3}))
+    'friction_coefficient'
+    """
+    if "friction_coefficient" in run and not {"friction_force", "normal_force"} <= {*run}:
+        return "friction_coefficient"
+    return "friction_force" if "friction_force" in run else ""
+
+
 def _of_segments(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
-    # of a force under a load that nobody knows a recorded coefficient says more
-    alone = "normal_force" not in run and "friction_coefficient" in run
-    if "friction_force" in run and not alone:
+    signal = friction_signal(run)
+    if signal == "friction_force":
         result = _from_forces(run, segments, settings)
-    elif "friction_coefficient" in run:
+    elif signal == "friction_coefficient":
         result = _from_ratio(run, segments, settings)
     else:
         raise AnalysisError(

@@ -12,7 +12,11 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.coefficient.coefficient import belong, friction_coefficient
+from tribolab.friction.coefficient.coefficient import (
+    belong,
+    friction_coefficient,
+    friction_signal,
+)
 from tribolab.friction.coefficient.peak import FEWEST_OF_PEAK, noise_between, peak_of_start
 from tribolab.friction.segments.specimens import begins_of_specimens
 from tribolab.friction.segments.stretches import name_of
@@ -111,8 +115,8 @@ def static_friction(
     >>> starts.static_friction_coefficient.values.round(1), starts.waiting_time.values.round()
     (array([0.6]), array([4.]))
     """
-    signal = "friction_force" if "friction_force" in run else "friction_coefficient"
-    if signal not in run:
+    signal = friction_signal(run)
+    if not signal:
         raise AnalysisError("the run has no friction", where=name_of(run))
     if friction is None:
         friction = friction_coefficient(run, segments)
@@ -196,7 +200,7 @@ def _starts(
 
 def _slack(run: xr.Dataset, friction: xr.Dataset, start: np.ndarray) -> np.ndarray:
     """Whether a segment begins with the record, or with a specimen, and without friction yet."""
-    signal = "friction_force" if "friction_force" in run else "friction_coefficient"
+    signal = friction_signal(run)
     time, values = run.variables["time"].values, run.variables[signal].values
     begins = np.append(time[:1], begins_of_specimens(run))
     first = np.isin(start, begins)

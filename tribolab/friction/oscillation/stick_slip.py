@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.coefficient.coefficient import belong, trimmed_slices
+from tribolab.friction.coefficient.coefficient import belong, friction_signal, trimmed_slices
 from tribolab.friction.decisions.rejected import REJECTED
 from tribolab.friction.oscillation.examine import EventLimits, Examined, examine_record
 from tribolab.friction.oscillation.regularity import SLIP_KINDS
@@ -172,7 +172,7 @@ def stick_slip(
     belong(run, segments)
     limits = EventLimits(hysteresis, noise_levels, fewest_samples)
     speed = segments["sliding_speed"].values.astype(float)
-    force = "friction_force" in run and "normal_force" not in run
+    force = friction_signal(run) == "friction_force" and "normal_force" not in run
     motion = motion_of(run)
     examined, loads, remarks, waves = [], [], [], []
     for signal, v in zip(_signals(run, segments), speed, strict=True):
@@ -206,7 +206,8 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
     """Friction of each segment, one at a time: a long run is never held twice."""
     time, parts = run["time"].values, trimmed_slices(run, segments)
     direction = segments["direction"].values.astype(float)
-    if "friction_force" in run:
+    signal = friction_signal(run)
+    if signal == "friction_force":
         force = run["friction_force"].values
         # a sensor whose sign is turned would turn sticks into slips
         means = [
@@ -240,7 +241,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
             else:
                 nothing = np.full(raw.size, np.nan)
                 yield SegmentSignal(part, time[part], nothing, raw, load)
-    elif "friction_coefficient" in run:
+    elif signal == "friction_coefficient":
         ratio = run["friction_coefficient"].values
         # a coefficient that never changes sign carries no direction
         begins = [ratio[s][:_SOME] for s in parts]

@@ -25,7 +25,10 @@ _AXES = {
     "y": frozenset("y xy lateral horizontal position pos".split()),
     "z": frozenset("z height heights vertical topography depth value values data".split()),
 }
-_UNITS = frozenset("unit units einheit einheiten unité unidad".split())
+UNITS = frozenset(
+    "unit units einheit einheiten unité unités unidad unidades unità eenheid enhet enhed jednotka "
+    "jednostka".split()
+)
 _JOINED = re.compile(r"(?i)^(?P<axis>xy|x|y|z)_?units?$|^units?_?(?P<after>xy|x|y|z)$")
 _IN_WORDS = re.compile(
     r"(?i)(?<![^\W_])(?P<what>x\s?[,/&+]?\s?y|xy|x|y|z|heights?)\s*(?:in|are in|is in|[:=\[(/])?\s*"
@@ -68,7 +71,7 @@ def stated_unit(texts: Mapping[str, str], axis: str) -> str | None:
         unit = LENGTHS.get(text.strip().strip("[]()"))
         if joined is not None:
             words = {"unit", (joined["axis"] or joined["after"]).lower()}
-        if unit is not None and words & _UNITS:
+        if unit is not None and words & UNITS:
             others = frozenset().union(*(w for name, w in _AXES.items() if name != axis))
             if words & _AXES[axis]:
                 own.add(unit)

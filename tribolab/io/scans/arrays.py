@@ -13,17 +13,19 @@ from tribolab.errors import ReadError, shown
 from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.read import measurable
 from tribolab.io.dialects.cells import split_name
-from tribolab.io.scans.array_units import LENGTHS, scaled, stated_unit, tokens, unit_of_scale
+from tribolab.io.scans.array_units import LENGTHS, UNITS, scaled, stated_unit, tokens, unit_of_scale
 from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.grid import even
 from tribolab.io.scans.held_arrays import HeldArray, HeldArrays, read_arrays
 from tribolab.io.scans.matrix_header import header_of
 from tribolab.io.scans.named_units import unsaid
 from tribolab.units import conversion
+from tribolab.untyped import Json
 
 _FEWEST = 8  # rows, and heights of each
 _HEIGHTS = frozenset(
     "z zz zs zdata zmap height heights heightmap topo topography topographie elevation elevations "
+    "hoogte hoogtes höjd højde høyde "
     "höhe höhen hoehe hauteur altura altezza wysokość výška высота".split()
 )
 _PERHAPS = frozenset(
@@ -200,9 +202,9 @@ def _steps(
     """Positions along x and y [m], from arrays or from a pitch that is stated; None if unknown."""
     rows, columns = shape if len(shape) == 2 else (1, shape[0])
     own = [
-        HeldArray(key, np.asarray(value), {})
+        HeldArray(key, np.asarray(value).reshape(-1)[0], _unit_beside(heights.attrs, key))
         for key, value in heights.attrs.items()
-        if isinstance(value, int | float)
+        if isinstance(value, int | float) or _is_one_number(value)
     ]
     lines = [
         f"{_bare(array.name)} [{unit}]: {float(array.values):.12g}"
@@ -229,13 +231,27 @@ def _unit_of(array: HeldArray, axis: str, held: HeldArrays) -> str | None:
 
 def _own_unit(array: HeldArray) -> str | None:
     """Return the unit that an array's attributes or name say, if it is one of length."""
-    said = array.attrs.get("units", array.attrs.get("unit"))
+    said = next((value for key, value in array.attrs.items() if key.lower() in UNITS), None)
     name, bracket = split_name(array.name)
     last = re.split(r"[\W_]+", name)[-1]
     for unit in (said, bracket, last if len(re.split(r"[\W_]+", name)) > 1 else None):
         if isinstance(unit, str) and unit.strip() in LENGTHS:
             return LENGTHS[unit.strip()]
     return unit_of_scale(array.attrs)
+
+
+def _is_one_number(value: object) -> bool:
+    """Whether an attribute is one number for both axes: ``pixel_size = [0.9, 0.9]``."""
+    if not isinstance(value, np.ndarray | list | tuple):
+        return False
+    both = np.asarray(value)
+    return bool(both.size and both.dtype.kind in "iuf" and (both == both.flat[0]).all())
+
+
+def _unit_beside(attrs: Json, key: str) -> Json:
+    """Return what the unit of an attribute is, if one beside it says: ``pixel_size_unit``."""
+    said = (attrs.get(f"{key}_{unit}") for unit in UNITS)
+    return next(({"unit": text} for text in said if isinstance(text, str)), {})
 
 
 def _bare(name: str) -> str:

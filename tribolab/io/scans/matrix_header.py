@@ -12,6 +12,7 @@ _LONGEST = 300  # characters of a line that are looked at
 _UNIT = (
     r"(?:[npuµμ]m|mm|cm|m|Å|microns?|(?:nano|micro|milli)met(?:er|re)s?|微米|纳米|毫米)(?![^\W\d_])"
 )
+_UNITS = frozenset("nm pm um µm μm mm cm m Å".split())
 _EASTERN = {"微米": "um", "纳米": "nm", "毫米": "mm"}
 _IN_KEY = re.compile(rf"[\[(]\s*({_UNIT})\s*[\])]|(?<![^\W\d_])({_UNIT})[\s:=,;]*$")
 _OF_UNIT = "units?|einheit(?:en)?|unit[eéà]s?|unidad(?:es)?|单位|単位|단위"
@@ -66,7 +67,8 @@ _STEPS = (
     r"|间距|步长|ピッチ|間隔|간격"
 )
 _PITCH = re.compile(
-    r"(?i)pixel[\s_-]*(?:size|pitch|spacing|width|height|gr(?:ö|oe)(?:ß|ss)e|abstand)"
+    r"(?i)pixel[\s_-]*(?:size|pitch|spacing|width|height|gr(?:ö|oe)(?:ß|ss)e|abstand|maat"
+    r"|storlek|størrelse|afstand)"
     r"|(?:size|pitch|spacing|taille|tama[nñ]o|dimension[ei]?|größe)\s*(?:of|de[lr]?|du|di)?"
     r"\s*p[ií]xels?|lateral[\s_-]*(?:sampling|spacing|pitch)"
     r"|xy[\s_-]*(?:calibration|キャリブレーション|校准|校正)|camera[\s_-]*res"
@@ -97,6 +99,12 @@ _COUNT = re.compile(
     r"|filas|columnas|righe|píxeles|horizontal|vertical|(?<![^\W\d_])[xy][\s_-]*size|像素数?|点数"
     r"|画素数|列|行|横|縦"
 )
+
+# "X-Achse", "Axe Y": what a line of several entries is about
+_AXIS = re.compile(
+    r"(?i)^\W*(?:ax[ei]s?|achse|eje|asse|as)?[\s_-]*(?P<axis>[xyz])[\s_-]*(?:ax[ei]s|achse)?$"
+)
+_CELL_NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
 
 
 class MatrixHeader(NamedTuple):
@@ -154,7 +162,11 @@ def header_of(
     >>> round(said.dx * 1e6, 9), round(said.dy * 1e6, 9), said.height
     (2.0, 2.0, 1e-09)
     """
-    texts = [line[:_LONGEST].replace('"', " ").strip() for line in lines]
+    texts = [
+        entry
+        for line in lines
+        for entry in _entries(line[:_LONGEST].replace('"', " ").strip(), commas_part=commas_part)
+    ]
     said = [part for text in texts if (part := _said(text, mark, commas_part=commas_part))]
     bare = [part for part in said if _is_bare(part)]
     if x_unit:
@@ -189,6 +201,29 @@ def header_of(
         max(steps, default=None),
         " ".join(f"{bare[0].key.strip(' #%;,:=')} {bare[0].numbers[0]:g}".split()) if bare else "",
     )
+
+
+def _entries(text: str, *, commas_part: bool) -> list[str]:
+    """Return the entries of a line about one axis, each with its name; any other line as it is.
+
+    >>> _entries("Axe X;Points;256;Pas;3,2;um", commas_part=False)
+    ['x Points: 256', 'x Pas: 3,2 um']
+    >>> _entries("Axe Z;Unit;um;Step;0,1;nm", commas_part=False)
+    ['z Unit: um', 'z Step: 0,1 nm']
+    """
+    cells = [cell.strip() for cell in re.split(r"[;\t,]" if commas_part else r"[;\t]", text)]
+    about = _AXIS.match(cells[0])
+    if about is None or len(cells) < 4:
+        return [text]
+    entries: list[list[str]] = []
+    for cell in cells[1:]:
+        if not entries or (
+            len(entries[-1]) > 1 and not _CELL_NUMBER.fullmatch(cell) and cell not in _UNITS
+        ):
+            entries.append([cell])
+        else:
+            entries[-1].append(cell)
+    return [f"{about['axis'].lower()} {key}: {' '.join(said)}" for key, *said in entries if said]
 
 
 def _is_bare(part: _Said) -> bool:
