@@ -313,3 +313,25 @@ def test_a_turntable_has_its_radius_from_a_stage_its_angle_and_its_interval(tmp_
     assert float(run.normal_force[5]) == pytest.approx(5 * 4.4482, rel=0.01)
     fastest = float(run.position[-1] - run.position[-2]) / 0.1
     assert fastest == pytest.approx(24 / 60 * 2 * np.pi * 0.012, rel=0.01)
+
+
+def test_steps_of_a_ring_have_loads_of_their_own_and_the_first_its_zero(tmp_path):
+    lines = ["Tribómetro rotativo", "Radio medio de la pista;22,5 mm", "Frecuencia;50 Hz"]
+    lines += [
+        "Nota: el tiempo empieza en cada paso. Paso 0: sin contacto (carga 0 N), cero del par."
+    ]
+    rng, zero = np.random.default_rng(4), 0.0142
+    for step, (turns, load, mu) in enumerate([(20, 0, 0), (12, 40, 0.13), (75, 40, 0.07)]):
+        lines += ["", f"[Paso {step}]", f"Carga;{load},0 N"]
+        lines += ["Tiempo (s);Velocidad (rpm);Par de rozamiento (N·m)"]
+        torque = zero + mu * load * 0.0225 + 2e-4 * rng.standard_normal(300)
+        for n, one in enumerate(torque):
+            lines.append(f"{n / 50:.2f};{turns:.2f};{one:.5f}".replace(".", ","))
+    path = tmp_path / "ring.txt"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    run = tl.read(path)
+    assert sorted(set(run.normal_force.values)) == [0.0, 40.0]
+    assert run.attrs["friction_force_zero_N"] == pytest.approx(zero / 0.0225, rel=2e-3)
+    curve = tl.friction_coefficient(run, tl.find_segments(run))
+    np.testing.assert_allclose(curve.sliding_speed, [0.02827, 0.17671], rtol=1e-3)
+    np.testing.assert_allclose(curve.friction_coefficient, [0.13, 0.07], atol=5e-4)

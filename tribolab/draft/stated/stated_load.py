@@ -16,7 +16,7 @@ from tribolab.io.dialects.patterns import guarded
 def find_load(values: Sequence[DraftValue]) -> DraftValue | None:
     """Return the load that the text before the table states, as a force; None if none, or several.
 
-    Where the text states none, that of the file's name.
+    Where the text states none, that of the file's name. A load of zero is none.
 
     Parameters
     ----------
@@ -28,6 +28,8 @@ def find_load(values: Sequence[DraftValue]) -> DraftValue | None:
     for value in values:
         if value.source == "file name" or not LOAD.search(value.key):
             continue
+        if value.source != "step" and stated_number(value) == 0.0:
+            continue  # "step 0: no contact (load 0 N)": nothing that friction is divided by
         unit = WEIGHTS.get(value.own_unit or "", value.own_unit or "")
         if converts(unit, "N"):
             fitting.append(value._replace(name="set_normal_force", unit=unit, to=None))

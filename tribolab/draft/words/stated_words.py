@@ -153,7 +153,7 @@ OF_TRACE = re.compile(
 # a part of the trace, over which an instrument computes
 PART_OF_TRACE = re.compile(r"evalu|assess|ln$|valutazione|avaliacao|auswert|sampling|einzel")
 RADIUS = or_term(
-    "promien|polomer|радиус|yaricap|radius|rayon|radio(?!m)|raggio|raio|straal|半径",
+    "promien|polomer|радиус|yaricap|radius|rayon|radio(?!met)|raggio|raio|straal|半径",
     "track_radius",
 )
 ARM = re.compile(
@@ -252,7 +252,7 @@ TAKEN_OFF = re.compile(
 def is_radius(name: str) -> bool:
     """Whether a column's name, squeezed, is that of the radius of a track.
 
-    >>> is_radius("trackradius"), is_radius("ballradius")
-    (True, False)
+    >>> is_radius("trackradius"), is_radius("radiomediodelapista"), is_radius("ballradius")
+    (True, True, False)
     """
     return bool(RADIUS.search(name) and not OTHER_RADIUS.search(name))
