@@ -162,6 +162,18 @@ def test_a_torque_with_a_radius_is_a_force_and_a_load_may_be_a_weight(tmp_path, 
     np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * 0.01)
 
 
+def test_yes_takes_the_radius_that_a_line_perhaps_states(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "ring.txt"
+    rows = "".join(f"{i / 10:.2f}\t{4 + i % 3}\t60\t{20 + i % 2}\n" for i in range(400))
+    header = "Time [s]\tTorque [mN m]\tSpeed [rpm]\tLoad [N]\n"
+    file.write_text("Rig 3\nHalf of it: 22.5 mm\n" + header + rows)
+    done = command("dialect", file.name, "--ask", typed="\n\n\n\nyes\n")
+    assert "is it in 'Half of it: 22.5 mm'? (yes: 22.5 mm; -: not known)" in done.output
+    run = tl.read(file, "ring.toml")
+    np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * 0.0225)
+
+
 def test_an_angle_with_a_radius_is_a_way(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     file = tmp_path / "table.txt"
@@ -221,12 +233,13 @@ def test_a_set_speed_that_turns_over_tells_the_way_on_trial(tmp_path, monkeypatc
     assert "8 segments, friction coefficient 0.3" in done.output, done.output
 
 
-def test_lines_that_may_state_the_load_are_quoted(tmp_path, monkeypatch):
+@pytest.mark.parametrize("answer", ["102 gf", "yes"])
+def test_lines_that_may_state_the_load_are_quoted(answer, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     file = tmp_path / "stage.txt"
     rows = "".join(f"{n / 20:.2f},{3 + n % 3}\n" for n in range(200))
     file.write_text(f"Thing on top: 102 gf\nTime [s],Friction force [N]\n{rows}")
-    done = command("dialect", file.name, "--ask", typed="\n\n102 gf\n1 mm/s\n")
+    done = command("dialect", file.name, "--ask", typed=f"\n\n{answer}\n1 mm/s\n")
     assert "does 'Thing on top: 102 gf' say it?" in done.output, done.output
     np.testing.assert_allclose(tl.read(file, "stage.toml").normal_force, 0.102 * 9.80665)
 

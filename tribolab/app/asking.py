@@ -16,7 +16,7 @@ from tribolab.draft.file.header import converts, is_unit
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.follows import what_follows
 from tribolab.draft.follows.lacking import lacking
-from tribolab.draft.follows.may_say import may_say
+from tribolab.draft.follows.may_say import likely_amount, may_say
 from tribolab.draft.follows.sums import ADDS
 from tribolab.draft.model import DraftColumn, Understood, other_units
 from tribolab.draft.stated.stated_load import stated_number
@@ -27,6 +27,7 @@ from tribolab.quantities import QUANTITIES, quantity
 from tribolab.units import positive
 
 _NONE = "-"
+_YES = ("yes", "y")
 _COMMA = re.compile(r"^(\d+),(\d{1,2}|\d{4,})(?=\D)")  # no mark of thousands
 _WEIGHT = re.compile(rf"^(\s*[\d.]+(?:[eE][+-]?\d+)?\s*)({'|'.join(WEIGHTS)})\s*$")
 _TIMES = re.compile(r"^(\d+(?:[.,]\d+)?)\s*[x×*·]\s*(?=\d)")  # a weight on a lever: 10 x 5 kg
@@ -131,9 +132,10 @@ def _ask_for_lengths(
     if guessed or "the radius of the track" in lacks:
         guess = f"{stated_number(guessed[0]):.6g} {guessed[0].unit}" if guessed else _NONE
         said = may_say(layout, follows, "the radius")
+        likely = likely_amount(layout, follows, "the radius")
         question = "what is the radius of the track, with its unit"
         question += f"; is it in {said}?" if said else "?"
-        radius = _ask_amount(question, "radius", "m", guess, ask, say)
+        radius = _ask_amount(question, "radius", "m", guess, ask, say, likely)
         understood = understood._replace(radius=radius)
     return written(draft, layout, understood)
 
@@ -158,12 +160,17 @@ def _ask_for_pitch(draft: Draft, ask: Ask, say: Say) -> Draft:
     return as_profile(draft, pitch, count) if count else draft
 
 
-def _ask_amount(question: str, name: str, si_unit: str, guess: str, ask: Ask, say: Say) -> str:
-    """Ask for a number with a unit until it is one; "" if it is not known."""
+def _ask_amount(
+    question: str, name: str, si_unit: str, guess: str, ask: Ask, say: Say, likely: str = ""
+) -> str:
+    """Ask for a number with a unit until it is one, or "yes" to `likely`; "" if not known."""
     while True:
-        typed = ask(f"{question} ({_NONE}: not known)", guess).strip()
+        agree = f"yes: {likely}; " if likely else ""
+        typed = ask(f"{question} ({agree}{_NONE}: not known)", guess).strip()
         if typed == _NONE:
             return ""
+        if likely and typed.lower() in _YES:
+            typed = likely
         try:
             return _amount(typed, name, si_unit)
         except TribolabError as error:
@@ -193,12 +200,15 @@ def _ask_for(
     """Ask which column holds one of several quantities, or for an amount in place of a column."""
     held = _held(draft, names)
     said = _said_amount(draft, amount)
-    if held is None and not said and (lines := _may_say(draft, amount)):
-        question += f"; does {lines} say it?"
+    lines, likely = ("", "") if held or said else _may_say(draft, amount)
+    if lines:
+        question += f"; does {lines} say it?" + (f" (yes: {likely})" if likely else "")
     while True:
         typed = ask(question, str(held.place) if held else said or _NONE).strip()
         if typed == _NONE:
             return draft if held is None else _without(draft, names)
+        if likely and typed.lower() in _YES:
+            typed = likely
         try:
             if amount == "load" and _SUM.match(typed):
                 return _with_sum(_without(draft, names), typed, ask)
@@ -286,15 +296,17 @@ def _said_amount(draft: Draft, amount: str) -> str:
     )
 
 
-def _may_say(draft: Draft, amount: str) -> str:
-    """Quote the lines of the file that may state an amount; "" if none does."""
+def _may_say(draft: Draft, amount: str) -> tuple[str, str]:
+    """Quote the lines of the file that may state an amount, and the one that they state; or ""."""
     layout, understood = draft.layout, draft.understood
     lack = {"load": "the load", "speed": "the sliding speed"}.get(amount, "")
     if layout is None or understood is None or not lack:
-        return ""
+        return "", ""
     follows = what_follows(layout, understood)
     missing = any(said.startswith(lack) for said in lacking(understood, follows))
-    return may_say(layout, follows, lack) if missing else ""
+    if not missing:
+        return "", ""
+    return may_say(layout, follows, lack), likely_amount(layout, follows, lack)
 
 
 def _with_amount(draft: Draft, amount: str, text: str) -> Draft:
