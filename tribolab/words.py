@@ -95,7 +95,7 @@ def load_text(load: float | None, load_from: str) -> str:
     ('31 N', '15 N measured', 'several loads')
     """
     if load is None:
-        return "several loads" if load_from == LOAD_VARIES else force_text(load)
+        return "several loads" if load_from else force_text(load)
     return f"{force_text(load)} measured" if load_from == LOAD_MEASURED else force_text(load)
 
 

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import os
+import shutil
 import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 
+from tribolab.campaign.store.ledger import Ledger
 from tribolab.draft.dialect.tables import quoted
 from tribolab.draft.on_the_fly import holds_run
 from tribolab.errors import ConfigError, TribolabError
 from tribolab.io.kinds import kind_of
 from tribolab.io.logs import group_files
 
-NAME = "campaign.toml"
+NAME, RESULTS = "campaign.toml", "results"
 _ABOUT = (
     "# Written for these files by `tribolab run`. Say what was measured (surface, medium,\n"
     "# normal_force, instrument ...) and run it again; README and CAMPAIGN.md list every key.\n"
@@ -71,13 +73,49 @@ def campaign_file(
         if not _says(file, text):
             raise ConfigError(
                 f"{file} stands here already, and says something else",
-                cure="add the files to it ([[run]] files = ..., [[surface]] scans = ...) and run "
-                "that, or go to another folder",
+                cure="name all files at once, and delete that file if it is of an earlier "
+                "`tribolab run`; or add the files to it ([[run]] files = ..., [[surface]] scans = "
+                "...) and run that; or go to another folder",
             ) from None
         return file, False
     except OSError as error:
         raise ConfigError(f"{file}: the campaign file cannot be written: {error}") from error
     return file, True
+
+
+def withdraw(file: Path, results: Path | None = None) -> None:
+    """Take back a campaign file that was written for files of which none could be read.
+
+    Parameters
+    ----------
+    file
+        From `campaign_file`.
+    results
+        Folder that was made for its results, with nothing but what failed in it.
+    """
+    file.unlink(missing_ok=True)
+    if results is not None and results.is_dir() and not Ledger.read(results).foreign():
+        shutil.rmtree(results)
+
+
+def why_unread(paths: Sequence[Path], instrument: str | None = None) -> list[str]:
+    """Say why raw files cannot be read, in words for the command line; none where one can be.
+
+    Parameters
+    ----------
+    paths, instrument
+        As for `campaign_file`.
+    """
+    # late: starting stays quick
+    from tribolab.app.file_info import file_lines
+
+    said = []
+    for path in paths:
+        try:
+            file_lines(path, instrument)
+        except TribolabError as error:
+            said.append(error.told("terminal"))
+    return said if len(said) == len(paths) else []
 
 
 def _says(file: Path, text: str) -> bool:

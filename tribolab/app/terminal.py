@@ -15,10 +15,10 @@ from tribolab.app.ranges import range_of
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.errors import harmless
 from tribolab.records.part_records import CurveRecord, SurfaceRecord
-from tribolab.records.parts import CurveOutcome, Row, RunOutcome
-from tribolab.records.roughness_words import roughness_in_words
+from tribolab.records.parts import CurveOutcome, Row, RunOutcome, SurfaceOutcome
+from tribolab.records.roughness_words import DOUBTFUL_FORM, roughness_in_words
 from tribolab.records.run_record import RunRecord
-from tribolab.records.run_trend import TRENDS
+from tribolab.records.run_trend import OUTSIDE, TRENDS
 from tribolab.words import LOAD_MEASURED, LOAD_VARIES, Count, load_text
 
 if TYPE_CHECKING:
@@ -154,7 +154,7 @@ def _of_unknown_speed(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
 
 
 def outcome_lines(outcome: Outcome) -> list[str]:
-    """Say how many runs were done, taken over and failed, and where the report is."""
+    """Say how many runs were done, taken over and failed, and what is to be known of them."""
     done = [run for run in outcome.runs if run.done]
     reused = sum(run.reused for run in done)
     line = f"{len(done)} of {Count(len(outcome.runs)):run|runs}"
@@ -176,33 +176,41 @@ def outcome_lines(outcome: Outcome) -> list[str]:
         if len(names) > _HANDFUL:
             file = from_here(outcome.folder / "tables" / "findings.csv")
             lines.append(f"checks {what}: and {len(names) - _HANDFUL} more: see {file}")
-    lines += _trends(done, outcome)
+    lines += _told_of_runs(done, outcome)
     lines += _decisions(outcome)
     if known := [surface for surface in outcome.surfaces if surface.files]:
         computed = sum(surface.done for surface in known)
         lines.append(f"{computed} of {Count(len(known)):surface|surfaces}: {_computed(outcome)}")
         lines += _roughness(outcome)
+        few = known if len(known) <= _HANDFUL else ()
+        lines += [f"{surface.name}: {text}" for surface in few for text in _doubts(surface)]
     lines += [f"no curve of {c.name}: {c.reason}" for c in outcome.curves if not c.done]
     if _is_uncalibrated(outcome):
         lines.append(
             "calibration not stated: every uncertainty is statistical only "
             "([uncertainty] in the campaign file)"
         )
+    return lines
+
+
+def where_to_look(outcome: Outcome) -> list[str]:
+    """Say in which files the results are."""
+    lines = []
     if any(curve.done for curve in outcome.curves):
         file = from_here(outcome.folder / "tables" / "stribeck.csv")
         lines.append(f"friction at each speed: {file}; of each segment: friction.csv beside it")
     return [*lines, f"report: {from_here(outcome.folder / 'report.html')}"]
 
 
-def _trends(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
-    """Say which of a few runs ran in, or wore out: their mean is one over all of it."""
+def _told_of_runs(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
+    """Say of a few runs which part of each stroke counts, and whether they ran in, or wore out."""
     few = done if len(done) <= _HANDFUL else ()
     return [
-        f"{run.name}: {notice.message}"
+        f"{run.name}: {'left out: ' * notice.message.startswith(OUTSIDE)}{notice.message}"
         for run in few
         if (entry := outcome.store.get("run", run.name, RunRecord)) is not None
         for notice in entry.record.notices
-        if notice.message.startswith(TRENDS)
+        if notice.message.startswith((*TRENDS, OUTSIDE))
     ]
 
 
@@ -259,6 +267,19 @@ def _roughness(outcome: Outcome) -> list[str]:
         if entry and entry.record.rows and entry.record.rows.roughness:
             rows.append((surface.name, entry.record.rows.roughness))
     return roughness_in_words(rows)
+
+
+def _doubts(surface: SurfaceOutcome) -> list[str]:
+    """Return what may be otherwise with a surface's numbers, but for what checks say of its scans.
+
+    Of form that is doubtful it is told, too: the roughness beside it stands and falls with it.
+    """
+    return [
+        finding.message
+        for finding in surface.findings
+        if not finding.check
+        and (finding.severity == "suspect" or finding.message.startswith(DOUBTFUL_FORM))
+    ]
 
 
 def foreign_lines(outcome: Outcome) -> list[str]:

@@ -261,8 +261,12 @@ def _at_load(part: Parts, own: _Levels) -> Parts:
 
 def _load_from(runs: Iterable[RunOutcome]) -> str:
     """Return where the load of a curve is from: stated of one run, it is that of all."""
-    known = {LOAD_MEASURED if run.load_levels else run.load_from for run in runs}
+    known = {LOAD_MEASURED if _measured_levels(run) else run.load_from for run in runs}
     return next((s for s in (LOAD_STATED, LOAD_MEASURED, LOAD_VARIES) if s in known), "")
+
+
+def _measured_levels(run: RunOutcome) -> bool:
+    return bool(run.load_levels) and run.load_from == LOAD_VARIES
 
 
 def _conditions(run: RunOutcome) -> list[Condition]:

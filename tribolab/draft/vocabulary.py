@@ -264,7 +264,8 @@ SCAN_WORDS = (
             "height hoehe profile profil totalprofile rawprofile amplitude topography depth tiefe "
             "raw hauteur altura perfil profilo profondeur profundidad profondita ordonnee ordenada "
             "elevation relief ordinate hoogte "
-            "altezza vyska wysokosc hojd hoyde hojde hoejd hoeyde hoejde yuekseklik yukseklik "
+            "altezza altezze quota quote cota cotas ordinata "
+            "vyska wysokosc hojd hoyde hojde hoejd hoeyde hoejde yuekseklik yukseklik "
             "korkeus magassag visina высота 높이 高度 高さ"
         ),
     ),

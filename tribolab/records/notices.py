@@ -23,7 +23,7 @@ from tribolab.records.run_facts import (
     values_of,
 )
 from tribolab.records.run_record import DecisionRow
-from tribolab.records.run_trend import trends_along
+from tribolab.records.run_trend import OUTSIDE, trends_along
 from tribolab.words import duration, many, percent
 
 if TYPE_CHECKING:
@@ -86,15 +86,17 @@ def notices_of(
         say("note", "friction", f"offset of the force: {friction.attrs['offset']}")
     if (track := position_range(segments)) is not None:
         low, high = (f"{1e3 * end:.4g}" for end in track)
-        say("note", "left out", f"what lies outside positions {low} to {high} mm of each stroke")
+        say("note", "left out", f"{OUTSIDE}positions {low} to {high} mm of each stroke")
     if (share := segments.attrs.get("stroke_middle")) is not None and segments.sizes["segment"]:
+        share = float(share)
         whole, used = (
             float((segments[f"{part}stop"] - segments[f"{part}start"]).sum())
             for part in ("", "trimmed_")
         )
         strokes = many(segments.sizes["segment"], "stroke")
-        text = f"what lies outside the middle {percent(float(share))} of each of {strokes}"
-        say("note", "left out", f"{text}: {duration(whole - used)} of {duration(whole)}")
+        text = f"{OUTSIDE}the middle {percent(share)} of the way of each of {strokes}"
+        slow = " (at the ends the contact is slow)" if (whole - used) / whole > 1 - share else ""
+        say("note", "left out", f"{text}: {duration(whole - used)} of {duration(whole)}{slow}")
     for entry in left_out(segments):
         text = f"{many(entry.intervals, 'interval')}, {duration(entry.duration_s)}"
         say("note", "left out", f"{entry.reason}: {text}")

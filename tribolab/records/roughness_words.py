@@ -7,9 +7,10 @@ from collections.abc import Iterable
 
 from tribolab.records.parts import Row, number_of
 from tribolab.records.wording import with_error
-from tribolab.words import number
+from tribolab.words import Count, number
 
 _MOST = 5  # surfaces that are named
+DOUBTFUL_FORM = "a circle of"  # how the text of a form that may be waviness begins
 _FORMS = {"polynomial": "polynomial of degree 2"}
 
 
@@ -32,7 +33,7 @@ def form_in_words(row: Row, *, radius: bool = True) -> str:
 
 
 def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
-    """Return Rq of surfaces, and Sq of maps, a line for each form and cut-off.
+    """Return Rq and Ra of surfaces, Sq and Sa of maps, a line for each form and cut-off.
 
     Parameters
     ----------
@@ -41,32 +42,49 @@ def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
 
     Examples
     --------
-    >>> roughness_in_words([("fine", {"Rq_m": 1e-7}), ("rough", {"Rq_m": 2e-6, "Rq_sem_m": 1e-7})])
-    ['Rq (no cut-off): fine 0.1 µm, rough 2.00 ± 0.10 µm']
-    >>> roughness_in_words([("roll", {"Rq_m": 1e-7, "lambda_c_m": 8e-4, "form_removed": "circle"})])
-    ['Rq (circle taken off, cut-off 0.8 mm): roll 0.1 µm']
+    >>> roughness_in_words([("fine", {"Rq_m": 1e-7}), ("rough", {"Rq_m": 2e-6, "Ra_m": 1.6e-6})])
+    ['Rq (no cut-off): fine 0.1 µm, rough 2 µm (Ra 1.6 µm)']
+    >>> roll = {"Rq_m": 1e-7, "Rq_sem_m": 2e-9, "lambda_c_m": 8e-4, "form_removed": "circle"}
+    >>> roughness_in_words([("roll", roll | {"sampling_lengths": 4})])
+    ['Rq ± standard error (circle taken off, cut-off 0.8 mm, 4 sampling lengths): roll 0.100 ± \
+0.002 µm']
     >>> roughness_in_words([("map", {"Sq_m": 1e-6, "Rq_m": 9e-7, "form_removed": "polynomial"})])
     ['Sq (polynomial of degree 2 taken off): map 1 µm']
     """
     told: dict[str, list[str]] = {}
     for name, row in rows:
-        if (sq := number_of(row, "Sq_m")) is not None:  # of a map: of its area, not of its rows
+        if number_of(row, "Sq_m") is not None:  # of a map: of its area, not of its rows
             form = form_in_words(row, radius=False)
-            told.setdefault(f"Sq ({form})" if form else "Sq", []).append(
-                f"{name} {1e6 * sq:.3g} µm"
-            )
+            heading = f"Sq ({form})" if form else "Sq"
+            said = _with_mean_deviation(row, "Sq", "Sa")
+        elif number_of(row, "Rq_m") is not None:
+            said = _with_mean_deviation(row, "Rq", "Ra")
+            heading = f"Rq{' ± standard error' if '±' in said else ''} ({_evaluated(row)})"
+        else:
             continue
-        if (rq := number_of(row, "Rq_m")) is None:
-            continue
-        cut = number_of(row, "lambda_c_m")
-        by = "no cut-off" if cut is None else f"cut-off {1e3 * cut:.3g} mm"
-        if form := form_in_words(row, radius=False):
-            by = f"{form}, {by}"
-        error = max(number_of(row, f"Rq_{what}_m") or 0.0 for what in ("sem", "gap_error"))
-        said = with_error(1e6 * rq, 1e6 * error) if error else f"{1e6 * rq:.3g}"
-        told.setdefault(f"Rq ({by})", []).append(f"{name} {said} µm")
+        told.setdefault(heading, []).append(f"{name} {said}")
     return [
         f"{what}: {', '.join(names[:_MOST])}"
         + (f" and {len(names) - _MOST} more" if len(names) > _MOST else "")
         for what, names in told.items()
     ]
+
+
+def _evaluated(row: Row) -> str:
+    """Say what was taken off a profile, and over how many sampling lengths."""
+    cut, lengths = number_of(row, "lambda_c_m"), number_of(row, "sampling_lengths")
+    parts = [form_in_words(row, radius=False)]
+    parts.append("no cut-off" if cut is None else f"cut-off {1e3 * cut:.3g} mm")
+    if cut is not None and lengths is not None:
+        parts.append(f"{Count(int(lengths)):sampling length|sampling lengths}")
+    return ", ".join(filter(None, parts))
+
+
+def _with_mean_deviation(row: Row, quadratic: str, mean: str) -> str:
+    """Return the root mean square roughness with its error, and the mean deviation behind it."""
+    value, behind = (number_of(row, f"{name}_m") for name in (quadratic, mean))
+    errors = (number_of(row, f"{quadratic}_{what}_m") for what in ("sem", "gap_error"))
+    error = max(each or 0.0 for each in errors)
+    scaled = 1e6 * (value or 0.0)
+    said = with_error(scaled, 1e6 * error) if error else f"{scaled:.3g}"
+    return f"{said} µm" + (f" ({mean} {1e6 * behind:.3g} µm)" if behind is not None else "")

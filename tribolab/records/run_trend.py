@@ -10,6 +10,7 @@ import xarray as xr
 from tribolab.friction.along_run import FEWEST, line_along
 from tribolab.words import duration, many, number, percent, speed_text
 
+OUTSIDE = "what lies outside "  # how the text of strokes of which a part counts begins
 TRENDS = ("friction rises along", "friction falls along")  # how its text begins
 _SAME_SPEED = 0.05  # relative difference of the speeds of alike segments
 

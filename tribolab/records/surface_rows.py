@@ -32,6 +32,7 @@ ROUGHNESS = [
     *("hurst_exponent", "hurst_exponent_standard_error", "rolloff_wavenumber_1_m"),
     *("wavenumber_low_1_m", "measured_low_1_m", "measured_high_1_m", "wavenumber_high_1_m"),
     *("form_removed", "form_radius_m", "tip_radius_m", "lambda_c_m"),
+    *("evaluation_length_m", "sampling_lengths"),
 ]
 
 

@@ -91,6 +91,8 @@ def write_tables(
 ) -> None:
     """Write all tables of a campaign but that of its findings.
 
+    Without runs there are none of friction, without scans none of surfaces.
+
     Parameters
     ----------
     outcome
@@ -112,6 +114,8 @@ def write_tables(
         "adhesion": (ADHESION, lambda surface: surface.adhesion),
     }
     for name, (wanted, of) in of_surfaces.items():
+        if not any(surface.files for surface in outcome.surfaces):
+            break
         named = [{"surface": s.name, "quality": s.quality, **row} for s in rows for row in of(s)]
         short[name] = pd.DataFrame(named, columns=["surface", "quality", *wanted])
     if outcome.models:
@@ -170,12 +174,14 @@ def _long_tables(outcome: Outcome, curves: Sequence[CurveRecord]) -> Iterator[_L
     def points(record: CurveRecord) -> Iterable[Row]:
         return _saying(record.uncertainty_says, record.points)
 
-    yield _Long("friction.csv", of_runs(segments), ("run", *_SEGMENT))
-    yield _Long("stick_slip.csv", of_runs(slip), ("run", "segment"))
-    yield _Long("static_friction.csv", of_runs(lambda run: run.starts), ("run", "segment"))
-    yield _Long("stribeck.csv", of_curves(points), ("curve", *_POINT))
-    yield _Long("uncertainty_budget.csv", of_curves(lambda curve: curve.budget), ("curve", *_PART))
-    yield _Long("checks.csv", checks, ("run", *_CHECK))
+    if outcome.campaign.run:
+        yield _Long("friction.csv", of_runs(segments), ("run", *_SEGMENT))
+        yield _Long("stick_slip.csv", of_runs(slip), ("run", "segment"))
+        yield _Long("static_friction.csv", of_runs(lambda run: run.starts), ("run", "segment"))
+        yield _Long("stribeck.csv", of_curves(points), ("curve", *_POINT))
+        parts = of_curves(lambda curve: curve.budget)
+        yield _Long("uncertainty_budget.csv", parts, ("curve", *_PART))
+        yield _Long("checks.csv", checks, ("run", *_CHECK))
     decided = of_runs(lambda run: (decision.row() for decision in run.facts.decisions))
     yield _Long("decisions.csv", decided)
 

@@ -130,23 +130,38 @@ def run(
     """
     with reported(debug, audience="campaign"):
         # late: starting stays quick
-        from tribolab.app.first_campaign import campaign_file
+        from tribolab.app.first_campaign import RESULTS, campaign_file, why_unread, withdraw
         from tribolab.app.run import run_campaign
 
         file, written = campaign_file(campaign, Path(), instrument)
+        place = output or file.parent / RESULTS
+        new_folder = written and not place.exists()
+        try:
+            with progress_bars(quiet) as progress:
+                outcome = run_campaign(
+                    file,
+                    output=output,
+                    jobs=jobs,
+                    scheduler=scheduler,
+                    progress=progress,
+                    figures=figures,
+                    pdf=pdf,
+                    verify=verify,
+                )
+        except BaseException:
+            if written:
+                withdraw(file)
+            raise
+        if new_folder and not any(part.done for part in (*outcome.runs, *outcome.surfaces)):
+            # late: starting stays quick
+            from tribolab.app.terminal import failure_lines
+
+            withdraw(file, place)  # a next try starts anew
+            for line in why_unread(campaign, instrument) or failure_lines(outcome):
+                say(f"tribolab: {line}", to_stderr=True)
+            raise typer.Exit(UNREADABLE)
         if written:
             say(f"{file} is written: complete it with what is known of the measurement")
-        with progress_bars(quiet) as progress:
-            outcome = run_campaign(
-                file,
-                output=output,
-                jobs=jobs,
-                scheduler=scheduler,
-                progress=progress,
-                figures=figures,
-                pdf=pdf,
-                verify=verify,
-            )
         code = show_outcome(outcome, debug)
     raise typer.Exit(code)
 
@@ -215,6 +230,8 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
         terminal.console().print()
         terminal.console().print(points)
     for line in terminal.outcome_lines(outcome):
+        say(line)
+    for line in terminal.where_to_look(outcome):
         say(line)
     for line in terminal.foreign_lines(outcome):
         say(line)

@@ -164,14 +164,14 @@ def dialect(
 
         draft = draft_of_examples(files, name)
         target = output or Path(f"{draft.name}.toml")
-        print_draft(draft, console())
+        asking = ask or (ask is None and sys.stdin.isatty() and sys.stdout.isatty())
+        print_draft(draft, console(), rows=not asking)
         if draft.toml:
             check_target(target, force=force)
-        if ask or (ask is None and sys.stdin.isatty() and sys.stdout.isatty()):
+        if asking:
             before = draft
             draft = ask_about(draft, _prompt, say)
-            if draft.toml != before.toml:
-                print_signals(draft, console())
+            print_signals(draft, console(), blocks=draft.toml != before.toml)
         if holds_heights(draft) and not draft.toml:
             check_target(target, force=force)
             draft = as_profile(draft)

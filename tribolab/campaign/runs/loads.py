@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tribolab.words import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES
+from tribolab.words import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES, load_label
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,7 +23,10 @@ _VARIES = 1.1  # largest over smallest load of the segments of one level
 
 
 class RunLoad(NamedTuple):
-    """Load [N] of a run, where it is from, what was measured while it slid, and its levels."""
+    """Load [N] of a run, where it is from, what was measured while it slid, and its levels.
+
+    Of several levels that were set it is stated, too, and `normal_force` is None.
+    """
 
     normal_force: float | None
     load_from: str
@@ -54,9 +57,21 @@ def load_of(stated: float | None, signals: xr.Dataset, friction: xr.Dataset) -> 
     if not good.any():
         return RunLoad(None, "", None)
     if force[good].max() > _VARIES * force[good].min():
-        return RunLoad(None, LOAD_VARIES, None, load_levels(force[good], lasts[good]))
+        levels = load_levels(force[good], lasts[good])
+        said = LOAD_STATED if levels and _was_set(signals) else LOAD_VARIES
+        return RunLoad(None, said, None, levels)
     mean = float(np.average(force[good], weights=lasts[good]))
+    if _was_set(signals):
+        return RunLoad(load_label(mean), LOAD_STATED, None)
     return RunLoad(rounded_load(mean), LOAD_MEASURED, mean)
+
+
+def _was_set(signals: xr.Dataset) -> bool:
+    """Whether the load of a run is that of its steps' set-points: nothing measured it."""
+    names = ("normal_force", "set_normal_force")
+    if any(name not in signals or signals[name].dims != ("time",) for name in names):
+        return False
+    return np.array_equal(*(signals[name].values for name in names), equal_nan=True)
 
 
 def load_levels(force: np.ndarray, lasts: np.ndarray) -> tuple[float, ...]:

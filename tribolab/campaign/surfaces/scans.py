@@ -14,6 +14,7 @@ from tribolab.io.scans.read import stacked
 from tribolab.qc.register import STATUSES
 from tribolab.qc.scan.sets import check_scan_set
 from tribolab.records.parts import Finding, Row
+from tribolab.records.roughness_words import DOUBTFUL_FORM
 from tribolab.surface.areal_roughness import areal_roughness
 from tribolab.surface.extrapolation import extrapolate
 from tribolab.surface.form import fill_dropouts, remove_form
@@ -271,7 +272,7 @@ def _doubtful_circle(scans: xr.Dataset, flat: xr.Dataset) -> str:
         return ""
     radius = flat.attrs["form_radius_m"]
     return (
-        f"a circle of R = {number(radius)} m was taken off, which may be of the part or of its "
+        f"{DOUBTFUL_FORM} R = {number(radius)} m was taken off, which may be of the part or of its "
         f"waviness: Pq is {number(1e6 * without)} um without it and {number(1e6 * with_it)} um "
         'with the tilt alone taken off (form = "tilt" in [roughness], for a flat part)'
     )

@@ -14,6 +14,11 @@ _TRACES = re.compile(
     r"^(?:trace|track|scan|line|profiles?|pass|meas\w*|spur|messung|linie|tastschnitt|trac[ée]|ligne"
     r"|passage|trazo|linea|passata|traccia|slad|przejscie|stopa|mereni|трасса|след|линия|проход)$"
 )
+# what a single column is called that a pitch stands before: "Z-Werte in µm"
+_VALUES = re.compile(
+    r"^z?(?:values?|(?:mess)?werte?|valori|valeurs?|valores|waarden|wartosci|hodnoty|(?:vær|ver)dier|(?:maet|mat)?vae?rden|arvot"
+    r"|значения|数值|値|data|daten|dati|datos|donnees|gegevens|dane)$"
+)
 
 
 def in_stated_unit(columns: list[DraftColumn], unit: str, along: str = "") -> list[DraftColumn]:
@@ -103,11 +108,14 @@ def as_heights(column: DraftColumn, *, stated: bool, unit: str = "um") -> DraftC
     unit
         What they may be in, if nothing says it.
     """
+    name, own, say = bare_name(column)
+    if say and own is not None and column.file_unit is None:
+        column = column._replace(unit=own)  # "Hauteurs en µm"
     known = column.file_unit or column.unit
     guess = "it is the height" + ("" if known else f" in {unit}")
-    name, own, _ = bare_name(column)
     said = matches(name, own, scan=True)
-    named = bool(known and said and said[0].quantity == "height" and said[0].score >= KNOWN_WORD)
+    named = bool(said and said[0].quantity == "height" and said[0].score >= KNOWN_WORD)
+    named = bool(known and (named or _VALUES.search(squeezed(name))))
     guessed = () if named or (stated and column.unit) else (guess,)
     return column._replace(
         quantity="height",

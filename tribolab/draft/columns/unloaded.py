@@ -38,6 +38,10 @@ _UNLOADED = re.compile(
     r"|ilman (?:kuormaa|kuormitusta)|bez (?:obci[ąa][żz]enia|kontaktu|zat[íi][žz]en[íi]"
     r"|nacisku)|nieobci[ąa][żz]on"
     r"|terhel[ée]s n[ée]lk[üu]l|y[üu]ks[üu]z|без (?:нагрузки|контакта)|до нагружения|холост"
+    # "load 0 N"
+    r"|(?:load|force|last|kraft|charge|carga|fuerza|carico|forza|belasting|belastning|kuorma"
+    r"|obci[ąa][żz]enie|zat[íi][žz]en[íi]|нагрузка|载荷|荷重|하중)"
+    r"\s{0,3}[:=]?\s{0,3}(?:of |de |di |von )?[-+]?0(?:[.,]0+)?\s{0,3}(?:m?N|k?gf?|kg)(?![^\W_])"
     r"|未加载|未加載|无载|空载|无负载|无接触|抬起|無負荷|無荷重|非接触|無接触|무부하|비접촉",
     re.IGNORECASE,
 )

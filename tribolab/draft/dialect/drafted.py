@@ -13,8 +13,9 @@ from tribolab.draft.dialect.tables import FILL_IN
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.follows import what_follows
 from tribolab.draft.model import Kind, Understood
-from tribolab.errors import shown
+from tribolab.errors import TribolabError, shown
 from tribolab.io.dialects.model import Dialect
+from tribolab.io.runs import read_log
 from tribolab.quantities import unit_conversion
 
 SHOWN = 10  # rows shown as understood
@@ -106,3 +107,21 @@ class Drafted(NamedTuple):
                 values = column.sign * (column.scale * values + column.offset)
                 rows[column.quantity] = scale * values + offset
         return rows
+
+    def signals(self) -> dict[str, np.ndarray]:
+        """Return all signals in SI, by quantity; of a short run those that follow from others, too.
+
+        They are as the dialect reads them, if it does: a clock that starts anew is joined.
+        """
+        if self.understood is None:
+            return {}
+        columns = self.first_rows(len(self.understood.numbers))
+        dialect = self.dialect
+        if self.kind != "run" or dialect is None or self.layout is None or not self.layout.whole:
+            return columns
+        try:
+            log = read_log(self.path, dialect)
+        except TribolabError:  # something is to be filled in yet
+            return columns
+        read = {"time": log.time, **log.columns}
+        return {name: read[name] for name in (*columns, *read) if name in read}

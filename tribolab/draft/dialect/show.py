@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import shlex
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from tribolab.draft.dialect.drafted import Drafted
+from tribolab.draft.dialect.drafted import SHOWN, Drafted
 from tribolab.draft.dialect.sparks import BARS, PLAIN, sparks
 from tribolab.draft.follows.follows import what_follows
 from tribolab.draft.follows.model import Follows
@@ -27,7 +28,7 @@ _ABREAST = 5  # quantities side by side
 _LISTED = 60  # columns that are not used and shown all the same
 
 
-def print_draft(draft: Drafted, console: Console) -> None:
+def print_draft(draft: Drafted, console: Console, *, rows: bool = True) -> None:
     """Print what was understood of a file, its first rows, and what was guessed.
 
     Parameters
@@ -36,6 +37,8 @@ def print_draft(draft: Drafted, console: Console) -> None:
         From `tribolab.draft.dialect.draft.draft_dialect`.
     console
         Where to.
+    rows
+        Whether the first rows are shown; each signal as a line of blocks is in any case.
     """
     kinds = {"run": "a run", "scan": "a scan", "table": "a table, neither a run nor a scan"}
     console.print(f"[bold]{escape(str(draft.path))}[/]: {kinds[draft.kind]}")
@@ -45,7 +48,7 @@ def print_draft(draft: Drafted, console: Console) -> None:
         console.print(f"  the known instrument '{draft.known}' reads it already")
     if draft.understood is not None and draft.toml:
         console.print(_columns_table(draft))
-        print_signals(draft, console)
+        print_signals(draft, console, rows=rows)
     else:
         console.print(_cells_table(draft))
     if draft.toml and draft.guesses:
@@ -54,19 +57,22 @@ def print_draft(draft: Drafted, console: Console) -> None:
             console.print(f"  - {escape(guess)}", soft_wrap=True)
 
 
-def print_signals(draft: Drafted, console: Console) -> None:
+def print_signals(
+    draft: Drafted, console: Console, *, rows: bool = True, blocks: bool = True
+) -> None:
     """Print the first rows in SI as they were understood, and each signal as a line of blocks."""
-    for table in _rows_tables(draft):
+    signals = draft.signals()
+    for table in _rows_tables(signals) if rows else ():
         console.print(table)
-    if draft.understood is None or not draft.toml:
+    if not draft.toml or not blocks:
         return
     table = _table("signals", "", "from", "to")
-    blocks = BARS if console.encoding.startswith("utf") else PLAIN
+    letters = BARS if console.encoding.startswith("utf") else PLAIN
     table.columns[1].no_wrap = True
-    for name, values in draft.first_rows(len(draft.understood.numbers)).items():
+    for name, values in signals.items():
         known = values[np.isfinite(values)]
         ends = (f"{known.min():.4g}", f"{known.max():.4g}") if known.size else ("", "")
-        table.add_row(_with_unit(name), sparks(values, _WIDE, blocks), *ends)
+        table.add_row(_with_unit(name), sparks(values, _WIDE, letters), *ends)
     console.print(table)
 
 
@@ -155,14 +161,14 @@ def _columns_table(draft: Drafted) -> Table:
 def _remark(column: DraftColumn, used_as: str) -> str:
     if used_as:
         return f"used as {used_as}"
-    if column.used:
+    if column.used or column.zero:  # of a torque that makes the force, too
         return "guessed" if column.guessed else column.note
     return f"fill in {column.fill_in}" if column.fill_in else f"not used: {column.note}"
 
 
-def _rows_tables(draft: Drafted) -> list[Table]:
+def _rows_tables(signals: Mapping[str, np.ndarray]) -> list[Table]:
     """First rows in SI, a column for each quantity; a handful of them side by side."""
-    rows = draft.first_rows()
+    rows = {name: values[:SHOWN] for name, values in signals.items()}
     names = list(rows)
     tables = []
     for start in range(0, len(names), _ABREAST):

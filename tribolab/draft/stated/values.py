@@ -227,8 +227,8 @@ def words_said(layout: Layout, *, bare: bool = False) -> list[tuple[str, str]]:
 
 def _said(line: str) -> re.Match[str] | None:
     said = _SAYS.match(line) or _IN_CELLS.match(line)
-    # "Scan length 1.5 mm, 3000 points": a sentence
-    return None if said and phrases(said["key"]) else said
+    # "Scan length 1.5 mm, 3000 points": a sentence; "Load (steps 1 a 4);40 N": none
+    return None if said and phrases(_BRACKETS.sub("", said["key"])) else said
 
 
 def _units_apart(layout: Layout, *, bare: bool) -> dict[str, str]:

@@ -177,6 +177,8 @@ def split_unit(label: str) -> tuple[str, str | None]:
 
     >>> split_unit("Lateral um"), split_unit("F_x"), split_unit("Force/N")
     (('Lateral', 'um'), ('F_x', None), ('Force', 'N'))
+    >>> split_unit("Hauteurs en µm")
+    ('Hauteurs', 'µm')
     >>> split_unit("speed_um_per_s"), split_unit("speed_mm_s")
     (('speed', 'um/s'), ('speed', 'mm/s'))
     >>> split_unit("时间（s）")
@@ -197,7 +199,7 @@ def split_unit(label: str) -> tuple[str, str | None]:
         return label, "rpm"
     if squeezed(label) in _SYMBOLS or _is_ratio(label):
         return _symbol_and_unit(label) or (label, None)
-    for gap in re.finditer(r"\s+in\s+|[\s_/,]+", label.strip()):
+    for gap in re.finditer(r"\s+(?:in|en|em|i|w|v|в)\s+|[\s_/,]+", label.strip()):
         name, unit = label.strip()[: gap.start()], label.strip()[gap.end() :]
         unit = _PER.sub("/", unit)
         unit = _UNIT_WORDS.get(unit.lower(), unit)

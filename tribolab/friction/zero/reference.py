@@ -137,11 +137,11 @@ def _from_rests(strokes: StrokeMeans, known: KnownOfZero, rests: Zeros) -> ZeroR
         error = np.where(lonely, np.hypot(error, known.stated), error)
     elif lonely.any():
         text = (
-            "the zero was measured on one side of the strokes only: what it drifted from there is "
+            "the zero was measured before or after the sliding only: what it drifted from there is "
             "in the friction and not in its error"
         )
         cure = (
-            "Measure a rest without load before and after the strokes; or state `zero_uncertainty` "
+            "Measure a rest without load before and after the sliding; or state `zero_uncertainty` "
             '(e.g. "0.2 N"), by how much the zero drifts, in the [[run]].'
         )
         doubts = (doubt(text, cure, np.flatnonzero(lonely)),)
