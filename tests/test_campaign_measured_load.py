@@ -5,7 +5,11 @@ import pytest
 from dialects import dialect_of
 
 from tribolab.campaign.pipeline import process
+from tribolab.campaign.runs.loads import RunLoad, load_of
 from tribolab.campaign.settings.load import load_campaign
+from tribolab.draft.on_the_fly import read_run
+from tribolab.friction.coefficient.coefficient import friction_coefficient
+from tribolab.friction.segments.find import find_segments
 from tribolab.io.netcdf import read_netcdf
 from tribolab.words import force_text, load_text
 
@@ -118,3 +122,21 @@ def test_a_load_that_rises_all_the_time_has_no_levels_and_says_so(tmp_path):
     [curve] = outcome.curves
     assert (curve.normal_force, curve.load_from) == (None, "varies")
     assert load_text(*loads(outcome)["m1"]) == "several loads" != force_text(None)
+
+
+@pytest.mark.parametrize(
+    ("loads", "known"),
+    [
+        ([10.0] * 4, RunLoad(10.0, "stated", None)),
+        ([10.0, 10.0, 20.0, 20.0], RunLoad(None, "stated", None, (10.0, 20.0))),
+    ],
+)
+def test_a_load_of_set_points_is_not_called_measured(tmp_path, loads, known):
+    head, *rows = rows_of(loads, 3).splitlines()
+    cells = [row.split(",") for row in rows]
+    rows = [f"{t},{f},{round(float(n), -1)},{v}" for t, f, n, v in cells]
+    text = "\n".join([head.replace("N [N]", "Set normal force [N]"), *rows])
+    (tmp_path / "a.csv").write_text(text.replace("F [N]", "Friction force [N]") + "\n")
+    run = read_run(tmp_path / "a.csv")
+    assert load_of(None, run, friction_coefficient(run, find_segments(run))) == known
+    assert load_text(None, "stated") == "several loads"

@@ -199,3 +199,13 @@ def test_a_load_of_the_wrong_sign_is_seen_and_a_short_pull_is_not():
     assert schema.pulled_share(load) < 0.01
     assert schema.pulled_share(-load) > 0.99
     assert schema.pulled_share(np.zeros(10)) == 0
+
+
+@pytest.mark.parametrize("rows", [100, 900])
+def test_a_louder_step_holds_no_spikes_and_a_spike_in_it_is_found(rows):
+    rng = np.random.default_rng(rows)
+    noise = np.repeat([0.01, 0.01, 0.1, 0.01], rows)
+    values = np.repeat([1.0, 2.0, 3.0, 4.0], rows) + noise * rng.standard_normal(4 * rows)
+    assert not at(signals.spikes(values))
+    values[[rows // 2, 2 * rows + rows // 2]] += [0.3, 3.0]
+    assert at(signals.spikes(values)) == [rows // 2, 2 * rows + rows // 2]

@@ -156,3 +156,36 @@ def test_a_drafted_description_is_named_where_the_raw_file_is(tmp_path, monkeypa
     assert other.exit_code == 2 and (tmp_path / "campaign.toml").read_text("utf-8") == own
     wrong = CliRunner().invoke(cli.app, ["run", "campaign.toml", "--instrument", "odd.toml"])
     assert wrong.exit_code == 2 and "--instrument is for raw files" in wrong.output
+
+
+def test_a_file_that_cannot_be_read_leaves_nothing_that_hinders_the_next(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "odd.txt").write_text("pitch = 0.5 um\n" + "1.5\n2.5\n" * 30)
+    write_run(tmp_path / "raw" / "disc.csv", np.repeat([6.0, 5.0, 4.0], 300))
+    refused = CliRunner().invoke(cli.app, ["run", "odd.txt"])
+    assert refused.exit_code == 3 and "is written" not in refused.output
+    assert "it is the height in um" in refused.output
+    assert "tribolab dialect odd.txt" in refused.output and "[[surface]]" not in refused.output
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["odd.txt", "raw"]
+    done = CliRunner().invoke(cli.app, ["run", "raw/disc.csv", "--figures", "none"])
+    assert done.exit_code == 0 and "campaign.toml is written" in done.output
+    # results that stand there already are another's: they stay, and so does what is said of them
+    (tmp_path / "campaign.toml").unlink()
+    again = CliRunner().invoke(cli.app, ["run", "odd.txt", "--figures", "none"])
+    assert again.exit_code == 3 and (tmp_path / "results" / "report.html").is_file()
+    other = CliRunner().invoke(cli.app, ["run", "raw/disc.csv"])
+    assert other.exit_code == 2 and "name all files at once" in other.output
+
+
+def test_of_strokes_it_is_said_which_part_counts(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    time = np.arange(0, 20, 0.005)
+    force = 3 * np.tanh(40 * np.cos(2 * np.pi * time))
+    force += 0.02 * np.random.default_rng(2).standard_normal(time.size)
+    rows = "\n".join(f"{t:.3f},{f:.4f}" for t, f in zip(time, force, strict=True))
+    head = "Stroke: 10 mm\nFrequency: 1 Hz\nDrive: crank\nLoad: 10 N\n"
+    (tmp_path / "pin.csv").write_text(f"{head}Time [s],Friction force [N]\n{rows}\n")
+    done = CliRunner().invoke(cli.app, ["run", "pin.csv", "--figures", "none"])
+    assert done.exit_code == 0, done.output
+    assert "pin: left out: what lies outside the middle 50 % of the way of each of" in done.output
+    assert not (tmp_path / "results" / "tables" / "roughness.csv").exists()

@@ -588,3 +588,17 @@ def test_counted_columns_beside_x_are_profiles(tmp_path, name):
     path.write_text(f"x [mm]\t{name} 1 [um]\t{name} 2 [um]\n{rows}\n", "utf-8")
     scan = read_scans(path)
     np.testing.assert_allclose(scan.height[1], 2e-6 * Z, atol=1e-10)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("Quote in µm", "Altezze in µm", "Hauteurs en µm", "Alturas em µm", "Wysokości w µm"),
+        *("Höjder i µm", "Ordonnées en µm", "Werte in µm", "Z-Werte in µm", "Valori [µm]"),
+    ],
+)
+def test_heights_are_known_by_their_name_in_other_languages(tmp_path, name):
+    path = tmp_path / "line.txt"
+    path.write_text(f"Pitch: 0,5 µm\n{name}\n{GERMAN}\n", "utf-8")
+    scan = read_scans(path)
+    np.testing.assert_allclose(scan.height[0], 1e-6 * Z, rtol=0, atol=1e-15)

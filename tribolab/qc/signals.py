@@ -18,6 +18,10 @@ from tribolab.qc.flags import GOOD, MISSING, NOT_EVALUATED, SUSPECT, uniform
 from tribolab.room import filled
 
 
+_BLOCK = 64  # samples whose noise is one: steps of a run may be as short
+_LOUDER = 1.6  # than the noise of a block, more than chance makes it of so few samples
+
+
 def missing(values: np.ndarray) -> np.ndarray:
     """Flag what is not a number as missing, the rest as good.
 
@@ -80,10 +84,12 @@ def _height(step: np.ndarray) -> np.ndarray:
     return np.maximum(upward, -downward)
 
 
-def _noise_levels(values: np.ndarray, block: int = 512) -> tuple[np.ndarray, int]:
-    """Noise level of each block, at least that of the quieter half of the record; its length.
+def _noise_levels(values: np.ndarray, block: int = _BLOCK) -> tuple[np.ndarray, int]:
+    """Noise level of each block, at least that of a quiet quarter of the record; its length.
 
-    What is left over at the end belongs to the last block.
+    Beside a much louder neighbour a block has its level: where a louder step begins, a block that
+    is mostly of the quiet one says nothing of the rest. What is left over at the end belongs to
+    the last block.
     """
     blocks = max(1, values.size // block)
     length = values.size // blocks
@@ -95,7 +101,11 @@ def _noise_levels(values: np.ndarray, block: int = 512) -> tuple[np.ndarray, int
         ends |= {"append": values[-1:]} if stop == values.size else {}
         second = np.nan_to_num(np.abs(np.diff(part, 2, **ends)))
         levels[first:last] = medians_of_rows(second.reshape(-1, length))
-    return np.maximum(levels, np.quantile(levels, 0.25)) / (0.6745 * np.sqrt(6.0)), length
+    quiet = np.quantile(levels, 0.25)
+    beside = np.pad(levels, 1, mode="edge")
+    loudest = np.maximum(beside[:-2], beside[2:])
+    levels = np.where(loudest > _LOUDER * levels, loudest, levels)
+    return np.maximum(levels, quiet) / (0.6745 * np.sqrt(6.0)), length
 
 
 class _Equal(NamedTuple):
