@@ -161,7 +161,18 @@ _LINES = {
         Position | Displacement | Lateral displacement | Lateral disp. | Stage position
         | Carriage position | Stroke position | Sliding distance | Travel | Stage pos
         | Probe position | Sample position | Slider position | Table position | Linear stage
-        | Stage displacement | Slide position | Encoder position
+        | Stage displacement | Slide position | Encoder position | Drive position | Sled position
+        | Drive displacement | Sled displacement | Crosshead position | Crosshead displacement
+        | Poloha pohonu | Poloha vozíku | Dráha pohonu | Aandrijfpositie | Positie slede
+        | Positie aandrijving | Drivposition | Slädens position | Drivenhetens position
+        | Antriebsposition | Antriebsweg | Schlittenweg | Traversenweg | Position Antrieb
+        | Position du chariot | Position de l'entraînement | Déplacement du chariot
+        | Déplacement de la traverse | Posizione carro | Posizione slitta | Posizione azionamento
+        | Posizione della slitta | Posizione della traversa | Spostamento slitta
+        | Posición del carro | Posición del accionamiento | Desplazamiento del carro
+        | Desplazamiento de la mordaza | Posição do carro | Posição do acionamento
+        | Położenie napędu | Położenie wózka | Położenie sań | Przemieszczenie wózka
+        | Положение привода | Положение каретки | 驱动位置 | 滑台位置 | 駆動位置 | ステージ位置
         位移 | 位置 | 行程
         Poloha | Posunutí | Dráha
         Position | Forskydning | Vandring

@@ -249,7 +249,7 @@ SCAN_WORDS = (
         "x",
         ("x",),
         _words(
-            "lateral position distance messweg weg strecke laenge length abstand longueur "
+            "lateral abscis abszis ascissa position distance messweg weg strecke laenge length abstand longueur "
             "distancia distanza posicion posizione posicao longitud lunghezza recorrido "
             "laege posisjon sijainti matka poloha vzdalenost drah polozenie pozycj odleglosc "
             "dlugosc konum mesafe uzunluk tavolsag hosszusag положение расстояние длина координата "
@@ -264,7 +264,7 @@ SCAN_WORDS = (
             "height hoehe profile profil totalprofile rawprofile amplitude topography depth tiefe "
             "raw hauteur altura perfil profilo profondeur profundidad profondita ordonnee ordenada "
             "elevation relief ordinate hoogte "
-            "altezza altezze quota quote cota cotas ordinata "
+            "altezza altezze quota quote cota cotas ordinata altitud "
             "vyska wysokosc hojd hoyde hojde hoejd hoeyde hoejde yuekseklik yukseklik "
             "korkeus magassag visina высота 높이 高度 高さ"
         ),

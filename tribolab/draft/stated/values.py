@@ -42,7 +42,11 @@ _SAID = (
 )
 _SAYS = re.compile(_SAID.format(mark="", digits=","), re.IGNORECASE)
 _IN_CELLS = re.compile(_SAID.format(mark=",", digits=""), re.IGNORECASE)  # "Dead weight,500,g"
-_UNIT_OF = re.compile(r"^(?P<key>.+?)(?:units?|einheit|unite|unidad|unita|eenheid|单位|単位)$")
+_A_UNIT = r"(?:unita|unites?|unidade?s?|units?|einheit(?:en)?|eenheid|enhet|jednostka|jednotka|单位|単位)"
+_UNIT_OF = re.compile(  # "Stroke unit", "UnitaPasso"
+    rf"^(?P<key>.+?){_A_UNIT}$"
+    rf"|^{_A_UNIT}(?:of|de|du|di|del|della|der|des|von|van|for)?(?P<behind>.+)$"
+)
 _WORDS = re.compile(
     r"\W*(?P<key>[^\W\d][^:：=\t;]*?)(?:\"?\s*[:：=\t;]\s*|\s{2,80})[\"\[(]?(?P<text>[^\W\d].*)$"
 )
@@ -234,7 +238,7 @@ def _said(line: str) -> re.Match[str] | None:
 def _units_apart(layout: Layout, *, bare: bool) -> dict[str, str]:
     """Return units that stand in lines of their own, by whose they are: "Stroke unit: mm"."""
     said = [(_UNIT_OF.match(squeezed(key)), text) for key, text in words_said(layout, bare=bare)]
-    return {match["key"]: text.strip(" []()") for match, text in said if match}
+    return {match["key"] or match["behind"]: text.strip(" []()") for match, text in said if match}
 
 
 def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:

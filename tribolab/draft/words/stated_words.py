@@ -108,10 +108,11 @@ UNIT = re.compile(
     r"^(?:unit|units|einheit|einheiten|unite|unites|unidad|unidades|unita|unidade|eenheid|单位|単位)$"
 )
 HEIGHT_UNIT = re.compile(
-    r"^(?:z|height|hoehe?n?|profile?|amplitude|hauteur|altura|altezza|hoogte|ordinate|data|value)s?"
+    r"^(?:z|height|hoehe?n?|profile?|amplitude|hauteur|altura|altezza|quota|cota|hoogte|ordinate|data|value)s?"
     r"(?:axis|achse|values?|werte?|data)?(?:unit|units|einheit|unite|unidad|unita|unidade|eenheid|in)$"
     r"|^(?:unit|units|einheit|unite|unidad|unita|unidade|eenheid)(?:of|der|de|des|dela|di|delle|das?)?"
-    r"(?:the)?(?:z|heights?|hoehen?|hauteurs?|alturas?|altezze?|profile?|amplitude)$"
+    r"(?:the)?(?:z|heights?|hoehen?|hauteurs?|alturas?|altezz[ae]|quot[ae]|cotas?|hoogtes?|ordinat[ae]|ordinates"
+    r"|profile?|profilo|amplitude)$"
     r"|^高度单位$|^高さ単位$"
 )
 # across the surface, and sizes of the instrument: what is in such a unit is no height
@@ -194,6 +195,10 @@ ON_RIM = re.compile(
     r"(?:block|pin|ball|cylinder|pad|klotz|stift|kugel|bloc|patin|bloque|pattino|kloc|blok)s?[\s_/-]*"
     r"(?:on|against|vs|auf|gegen|sur|sobre|contra|su|na|op|mot|pa)[\s_/-]*(?:the[\s_-]*)?"
     r"(?:rings?|rims?|rollers?|wheels?|shafts?|ringe?|rolle|welle|rad|anneau|galet|anillo|rodillo|anello|rullo|hjul)"
+    r"|(?:block|klotz|kloc(?:ek|ka)?|bloc|bloque|blocco|bloco|blok|pattino|patin|sapata|tuk)s?[\s_/–-]{1,3}"
+    r"(?:ring|pier[śs]cie[ńn]|anneau|anillo|anello|anel|krou[žz]e?k|rolk|rolle|welle|galet|rullo|rodillo|rulle)"
+    r"|(?:pier[śs]cie[ńn]|rolk\w|krou[žz]ek|anneau|anillo|anello|anel|welle|rolle)[\s_/–-]{1,3}"
+    r"(?:klotz|kloc|bloc|bloque|blok)"
     r"|ring[\s_-]?block|ブロックオンリング|环块|環塊|블록온링|timken|lfw"
     # seals and bearings slide on the shaft
     r"|(?:lip|shaft|rotary|rotating)[\s_-]*seals?|wellendicht|\brwdr\b|simmerring"
@@ -208,7 +213,7 @@ ON_RIM = re.compile(
     re.IGNORECASE,
 )
 OUTER = re.compile(
-    r"ring|rim|roll|wheel|shaft|outer|outside|aussen|exter|anneau|anello|anillo|galet|hjul|welle"
+    r"ring|pierscien|krouz|rolk|anel|rim|roll|wheel|shaft|outer|outside|aussen|exter|anneau|anello|anillo|galet|hjul|welle"
     r"|ролик|кольц|вал|arbre|albero|eje|arbol|eixo|hridel|aksel|axel|wal|リング|环|環|外|轴|軸|축|od$"
 )
 

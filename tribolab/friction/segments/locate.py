@@ -29,6 +29,7 @@ _SOMEWHERE = 0.01  # of the longest way of a piece
 _FAINT = 0.02  # of the highest speed: what is slower may be noise
 _TELLING = 20  # samples that tell noise without its sign
 _BRIEF = 1.5  # a plateau beside a ramp longer than this many times itself has to prove itself
+_LONG_PAUSE = 20.0  # usual spacings of samples: nothing was recorded for so long
 _PAUSE = 3.0  # a ramp that is longer than this many times a pause in it goes on
 _MOVING = 8.0  # standard errors from rest: breaks pick their pieces, so that chance alone makes six
 
@@ -173,14 +174,21 @@ def _beside(
 
 
 def _until_kept(time: np.ndarray, pieces: list[VelocityPiece], index: int, way: int) -> float:
-    """Time [s] from a piece to the next plateau or rest on one side of it."""
+    """Time [s] from a piece to the next plateau or rest on one side of it, without pauses.
+
+    In a pause nothing was recorded, so that it shows no ramp.
+    """
     at = index + way
     while 0 <= at < len(pieces) and pieces[at].kind not in _KEPT:
         at += way
+    piece = pieces[index]
     if way < 0:
-        return float(time[pieces[index].first] - time[pieces[at].last - 1 if at >= 0 else 0])
-    last = pieces[at].first if at < len(pieces) else time.size - 1
-    return float(time[last] - time[pieces[index].last - 1])
+        between = time[pieces[at].last - 1 if at >= 0 else 0 : piece.first + 1]
+    else:
+        between = time[piece.last - 1 : (pieces[at].first if at < len(pieces) else time.size) + 1]
+    usual = float(time[piece.last - 1] - time[piece.first]) / max(piece.last - piece.first - 1, 1)
+    spans = np.diff(between)
+    return float(spans[spans <= _LONG_PAUSE * usual].sum())
 
 
 def _paused(pieces: list[VelocityPiece], limits: ConstancyLimits) -> list[VelocityPiece]:

@@ -241,9 +241,9 @@ def _wide(time: np.ndarray, index: int, piece: VelocityPiece) -> bool:
 def _gaps(
     time: np.ndarray, piece: VelocityPiece, max_gap: float | None, share: float
 ) -> np.ndarray:
-    """Return the samples of a plateau after which too long a pause follows."""
+    """Return the samples of a plateau or ramp after which too long a pause follows."""
     inside = time[piece.first : piece.last]
-    if piece.kind != "constant" or inside.size < 2:
+    if piece.kind not in ("constant", "ramp") or inside.size < 2:
         return np.zeros(0, dtype=int)
     step = max(1, inside.size // 4096)
     marks = np.append(inside[::step], inside[-1])

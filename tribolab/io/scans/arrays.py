@@ -204,7 +204,7 @@ def _steps(
     own = [
         HeldArray(key, np.asarray(value).reshape(-1)[0], _unit_beside(heights.attrs, key))
         for key, value in heights.attrs.items()
-        if isinstance(value, int | float) or _is_one_number(value)
+        if isinstance(value, int | float | np.number) or _is_one_number(value)
     ]
     lines = [
         f"{_bare(array.name)} [{unit}]: {float(array.values):.12g}"
@@ -249,8 +249,16 @@ def _is_one_number(value: object) -> bool:
 
 
 def _unit_beside(attrs: Json, key: str) -> Json:
-    """Return what the unit of an attribute is, if one beside it says: ``pixel_size_unit``."""
-    said = (attrs.get(f"{key}_{unit}") for unit in UNITS)
+    """Return what the unit of an attribute is, if one beside it says: ``pixel_size_unit``.
+
+    It may be that of both axes.
+
+    >>> _unit_beside({"pixel_size_unit": "um"}, "pixel_size_x")
+    {'unit': 'um'}
+    """
+    both = re.sub(r"^[xy]_|_[xy]$", "", key)
+    names = [name for base in (key, both) for u in UNITS for name in (f"{base}_{u}", f"{u}_{base}")]
+    said = (attrs.get(name) for name in names)
     return next(({"unit": text} for text in said if isinstance(text, str)), {})
 
 

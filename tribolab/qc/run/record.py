@@ -248,12 +248,12 @@ def _spikes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _joins(subject: RunSubject) -> np.ndarray:
-    """Return the samples on either side of where a new step begins."""
+    """Return the samples on either side of where a new step begins, or the record goes on."""
+    starts = np.flatnonzero(timing.time_gaps(subject.time) == SUSPECT)
     steps = subject.run.get("step")
-    if steps is None or steps.size < 2:
-        return np.zeros(0, int)
-    starts = np.flatnonzero(np.diff(steps.values)) + 1
-    return np.unique(np.clip(np.concatenate([starts - 1, starts]), 0, steps.size - 1))
+    if steps is not None:
+        starts = np.concatenate([starts, np.flatnonzero(np.diff(steps.values)) + 1])
+    return np.unique(np.clip(np.concatenate([starts - 1, starts]), 0, subject.time.size - 1))
 
 
 def _moved_by(values: np.ndarray, flags: np.ndarray) -> float:
