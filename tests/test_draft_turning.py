@@ -335,3 +335,23 @@ def test_steps_of_a_ring_have_loads_of_their_own_and_the_first_its_zero(tmp_path
     curve = tl.friction_coefficient(run, tl.find_segments(run))
     np.testing.assert_allclose(curve.sliding_speed, [0.02827, 0.17671], rtol=1e-3)
     np.testing.assert_allclose(curve.friction_coefficient, [0.13, 0.07], atol=5e-4)
+
+
+@pytest.mark.parametrize(
+    ("rig", "size"),
+    [
+        ("Stanowisko: klocek-pierścień KP-35", "Średnica pierścienia: 35,00 mm"),
+        ("Prüfstand: Klotz-Ring", "Ringdurchmesser: 35,00 mm"),
+        ("Banc bloc-anneau", "Diamètre de l'anneau : 35,00 mm"),
+        ("Stroj: kroužek-blok", "Průměr kroužku: 35,00 mm"),
+    ],
+)
+def test_a_block_slides_on_the_outside_of_its_ring_in_any_language(tmp_path, rig, size):
+    time, rpm, force, _ = columns(friction=30.0)
+    torque = 0.0175 * force
+    head = "t [s]\tn [1/min]\tM [N·m]"
+    above = [rig, size, "Fn = 300 N"]
+    run = tl.read(written(tmp_path / "a.txt", above, head, [time, rpm, torque]))
+    np.testing.assert_allclose(run.friction_force, force, rtol=1e-4, atol=1e-3)
+    top = TURNS[-1] * 2 * np.pi / 60 * 0.0175
+    assert float(run.sliding_velocity.max()) == pytest.approx(top, rel=1e-4)

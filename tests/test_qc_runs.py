@@ -379,3 +379,23 @@ def test_a_coefficient_that_no_contact_has_is_told(size):
     )
     told = message(check_run(run), "said_elsewhere")
     assert ("which no contact has" in told) == (size != 0.3)
+
+
+def test_where_a_record_goes_on_after_a_pause_no_sample_stands_out():
+    rng = np.random.default_rng(2)
+    force = 3.0 + 0.01 * rng.standard_normal(1200)
+    force[::400] = 0.0  # the contact is not yet loaded
+    time = 0.02 * np.arange(1200) + np.repeat([0.0, 11.0, 22.0], 400)
+    speed = np.repeat([0.01, 0.02, 0.05], 400)
+    signals = {"friction_force": force, "normal_force": np.full(1200, 10.0)}
+    run = xr.Dataset(
+        {
+            name: ("time", values)
+            for name, values in (signals | {"sliding_velocity": speed}).items()
+        },
+        {"time": time},
+    )
+    assert "spikes" not in objections(check_run(run, find_segments(run)))
+    stands_out = run.copy(deep=True)
+    stands_out.friction_force[600] = 9.0
+    assert objections(check_run(stands_out, find_segments(run)))["spikes"] == "suspect"

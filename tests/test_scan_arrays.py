@@ -42,6 +42,13 @@ def _scale_with_unit(path):
         data.attrs.update(z_scale_nm=1.0, dx_um=1.5, dy_um=2.0)
 
 
+def _one_unit_for_both(path):
+    with h5py.File(path, "w") as file:
+        data = file.create_dataset("surface/height", data=(1e3 * Z).astype("f4"))
+        data.attrs.update(unit="nm", pixel_size_unit="um")
+        data.attrs.update(pixel_size_x=np.float32(1.5), pixel_size_y=np.float32(2.0))
+
+
 def _dutch(path):
     with h5py.File(path, "w") as file:
         data = file.create_dataset("meting/hoogte", data=np.round((Z - 2.5) / 0.001).astype("i4"))
@@ -60,6 +67,7 @@ MAPS = {
     "pitch.mat": _pitch,
     "counts.h5": _counts,
     "scale.h5": _scale_with_unit,
+    "pixels.h5": _one_unit_for_both,
     "archive.npz": _archive,
 }
 

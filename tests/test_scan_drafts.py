@@ -602,3 +602,18 @@ def test_heights_are_known_by_their_name_in_other_languages(tmp_path, name):
     path.write_text(f"Pitch: 0,5 µm\n{name}\n{GERMAN}\n", "utf-8")
     scan = read_scans(path)
     np.testing.assert_allclose(scan.height[0], 1e-6 * Z, rtol=0, atol=1e-15)
+
+
+def test_a_unit_may_be_named_before_what_it_is_of(tmp_path):
+    heights = "\n".join(str(round(1e3 * z)) for z in Z)
+    head = "[Intestazione]\nNumeroPunti=200\nPasso=0.25\nUnitaPasso=um\nUnitaQuota=nm\n"
+    scan = read_scans(written(tmp_path, f"{head}\n[Dati]\n{heights}\n", "rullo.prf"))
+    np.testing.assert_allclose(scan.height[0], 1e-6 * Z, rtol=0, atol=1e-9)
+    assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
+
+
+@pytest.mark.parametrize("names", ["Abscisse (mm);Altitude (µm)", "Abszisse [mm];Höhe [µm]"])
+def test_abscissae_are_positions_whatever_length_is_stated(tmp_path, names):
+    rows = ROWS.replace(",", ";").replace(".", ",")
+    scan = read_scans(written(tmp_path, f"Longueur palpée (mm);0,05\n\n{names}\n{rows}\n"))
+    np.testing.assert_allclose(scan.height[0], 1e-6 * Z, rtol=0, atol=1e-12)

@@ -183,3 +183,24 @@ def test_strokes_too_short_for_blocks_are_told_at_their_turns(crank):
     assert (
         fast.sum() >= 38 and (found.direction.values[fast][1:] != found.direction[fast][:-1]).all()
     )
+
+
+def test_a_short_plateau_beside_a_long_pause_of_the_record_is_none_of_a_ramp():
+    """A sled comes back while nothing is recorded, for longer than its fast ways out take."""
+    rng = np.random.default_rng(4)
+    speeds = np.array([0.5e-3, 1e-3, 5e-3, 20e-3, 50e-3])
+    times, velocities, begin = [], [], 0.0
+    for speed in speeds:
+        time = begin + np.arange(0, 0.1 / speed, 0.02)
+        times.append(time)
+        velocities.append(speed * (1 + 0.004 * rng.standard_normal(time.size)))
+        begin = time[-1] + 11.33
+    run = xr.Dataset(
+        {"sliding_velocity": ("time", np.concatenate(velocities))},
+        {"time": np.concatenate(times)},
+    )
+    found = find_segments(run)
+    np.testing.assert_allclose(found.sliding_speed, speeds, rtol=2e-3)
+    assert not (found.stop - found.start > 0.1 / speeds).any()
+    lasted = found.omitted_stop - found.omitted_start
+    assert float(lasted.where(found.omitted_reason == "ramp", 0.0).sum()) < 1

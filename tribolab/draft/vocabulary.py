@@ -249,7 +249,8 @@ SCAN_WORDS = (
         "x",
         ("x",),
         _words(
-            "lateral abscis abszis ascissa position distance messweg weg strecke laenge length abstand longueur "
+            "lateral abscis abszis ascissa "
+            "position distance messweg weg strecke laenge length abstand longueur "
             "distancia distanza posicion posizione posicao longitud lunghezza recorrido "
             "laege posisjon sijainti matka poloha vzdalenost drah polozenie pozycj odleglosc "
             "dlugosc konum mesafe uzunluk tavolsag hosszusag положение расстояние длина координата "

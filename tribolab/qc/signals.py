@@ -17,7 +17,6 @@ from tribolab.pieces import anywhere, pieces
 from tribolab.qc.flags import GOOD, MISSING, NOT_EVALUATED, SUSPECT, uniform
 from tribolab.room import filled
 
-
 _BLOCK = 64  # samples whose noise is one: steps of a run may be as short
 _LOUDER = 1.6  # than the noise of a block, more than chance makes it of so few samples
 

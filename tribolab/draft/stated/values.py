@@ -42,7 +42,9 @@ _SAID = (
 )
 _SAYS = re.compile(_SAID.format(mark="", digits=","), re.IGNORECASE)
 _IN_CELLS = re.compile(_SAID.format(mark=",", digits=""), re.IGNORECASE)  # "Dead weight,500,g"
-_A_UNIT = r"(?:unita|unites?|unidade?s?|units?|einheit(?:en)?|eenheid|enhet|jednostka|jednotka|单位|単位)"
+_A_UNIT = (
+    r"(?:unita|unites?|unidade?s?|units?|einheit(?:en)?|eenheid|enhet|jednostka|jednotka|单位|単位)"
+)
 _UNIT_OF = re.compile(  # "Stroke unit", "UnitaPasso"
     rf"^(?P<key>.+?){_A_UNIT}$"
     rf"|^{_A_UNIT}(?:of|de|du|di|del|della|der|des|von|van|for)?(?P<behind>.+)$"
