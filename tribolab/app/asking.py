@@ -21,7 +21,7 @@ from tribolab.draft.follows.sums import ADDS
 from tribolab.draft.model import DraftColumn, Understood, other_units
 from tribolab.draft.stated.stated_load import stated_number
 from tribolab.draft.vocabulary import WEIGHTS
-from tribolab.errors import TribolabError, shown
+from tribolab.errors import ReadError, TribolabError, shown
 from tribolab.io.zero_reading import parse_zero
 from tribolab.quantities import QUANTITIES, quantity
 from tribolab.units import positive
@@ -31,6 +31,9 @@ _YES = ("yes", "y")
 _COMMA = re.compile(r"^(\d+),(\d{1,2}|\d{4,})(?=\D)")  # no mark of thousands
 _WEIGHT = re.compile(rf"^(\s*[\d.]+(?:[eE][+-]?\d+)?\s*)({'|'.join(WEIGHTS)})\s*$")
 _TIMES = re.compile(r"^(\d+(?:[.,]\d+)?)\s*[x×*·]\s*(?=\d)")  # a weight on a lever: 10 x 5 kg
+_AMOUNT = re.compile(  # "8 mm at 2 Hz"
+    r"(?<![\w.,])(?P<number>\d+(?:[.,]\d+)?)\s*(?P<unit>[^\W\d_][^\s,;]*)"
+)
 _SUM = re.compile(r"^\d+(?:\s*\+\s*\d+)+$")
 _NUMBER = re.compile(r"^[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?$")
 _FRICTION = ("friction_force", TORQUE, "friction_coefficient", "shear_stress")
@@ -90,7 +93,8 @@ def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
     question = (
         "which column tells how it moves: a speed, turns, an angle or a position? (its number; or "
     )
-    question += f"the sliding speed itself: 6 mm/min; {_NONE} for none)"
+    question += "the sliding speed itself: 6 mm/min; or strokes to and fro: 8 mm at 2 Hz; "
+    question += f"{_NONE} for none)"
     if not _told_by_settings(draft):
         draft = _ask_for(draft, _MOTION, question, ask, say, amount="speed")
     return _ask_for_motion(draft, ask, say) if draft.kind == "run" else draft
@@ -212,6 +216,8 @@ def _ask_for(
         try:
             if amount == "load" and _SUM.match(typed):
                 return _with_sum(_without(draft, names), typed, ask)
+            if amount == "speed" and (strokes := _as_strokes(typed)):
+                return _with_strokes(_without(draft, names), strokes)
             if amount and (text := _as_amount(typed, amount)):
                 return _with_amount(_without(draft, names), amount, text)
             column = _column(draft, typed)
@@ -260,6 +266,33 @@ def _as_amount(typed: str, amount: str) -> str:
             if unit == units[-1]:
                 raise
     return ""
+
+
+def _as_strokes(typed: str) -> tuple[str, str] | None:
+    """Return length and frequency of strokes as they were typed, None if neither was.
+
+    >>> _as_strokes("stroke 6 mm, 1.5 Hz"), _as_strokes("2 Hz"), _as_strokes("6 mm/min")
+    (('6 mm', '1.5 Hz'), ('', '2 Hz'), None)
+    """
+    said = {
+        si: f"{match['number'].replace(',', '.')} {unit}"
+        for match in _AMOUNT.finditer(typed)
+        for si in ("m", "Hz")
+        if is_unit(unit := match["unit"].rstrip(".,;")) and converts(unit, si)
+    }
+    return (said.get("m", ""), said.get("Hz", "")) if said else None
+
+
+def _with_strokes(draft: Draft, strokes: tuple[str, str]) -> Draft:
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return draft
+    draft = written(draft, layout, understood._replace(strokes=strokes))
+    speed = what_follows(layout, understood._replace(strokes=strokes)).speed
+    if speed is None or speed.source != "stroke":
+        lacking_one = "frequency, such as 2 Hz" if strokes[0] else "length, such as 8 mm"
+        raise ReadError(f"strokes need a {lacking_one}, too")
+    return draft
 
 
 def _with_sum(draft: Draft, typed: str, ask: Ask) -> Draft:

@@ -40,9 +40,9 @@ def try_on(files: Sequence[Path], dialect: Path, kind: str) -> list[str]:
 def _run_said(file: Path, dialect: Path) -> str:
     # late: starting stays quick
     from tribolab.friction.coefficient.coefficient import friction_coefficient, friction_signal
-    from tribolab.friction.reversals import reversals
     from tribolab.friction.segments.find import find_segments, why_no_segment
     from tribolab.io.runs import read_run
+    from tribolab.reversals import reversals
 
     run = read_run(file, dialect, pair=False)
     time = run["time"].values

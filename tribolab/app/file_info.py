@@ -24,6 +24,7 @@ from tribolab.io.kinds import kind_of
 from tribolab.io.missing import missing_of
 from tribolab.io.runs import read_log as known_log
 from tribolab.quantities import quantity
+from tribolab.reversals import reversals
 from tribolab.words import Count, explain
 
 if TYPE_CHECKING:
@@ -53,7 +54,7 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
         log = read_log(path, instrument)
         facts = file_facts(log, path, instrument)
         told = [] if drafted else companion_lines(describe_companion(path, instrument, log))
-        return run_lines(facts) + (told or missing_lines(facts)) + _doubts(log.columns)
+        return run_lines(facts) + (told or missing_lines(facts, log.columns)) + _doubts(log.columns)
     with importing():
         plain_arrays_only()
     return _results_lines(path) if kind == "results" else _scan_lines(path, instrument)
@@ -253,13 +254,15 @@ def run_lines(facts: FileFacts) -> list[str]:
     return lines
 
 
-def missing_lines(facts: FileFacts) -> list[str]:
+def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[str]:
     """Say what a run that has a force lacks for a friction coefficient over the sliding speed.
 
     Parameters
     ----------
     facts
         From `tribolab.io.file_facts.file_facts`.
+    columns
+        The signals themselves, by quantity.
     """
     names = set(facts["columns"])
     forces = {"friction_force", "friction_coefficient", "shear_stress", "normal_force"}
@@ -275,6 +278,8 @@ def missing_lines(facts: FileFacts) -> list[str]:
             names.add("stroke_frequency")
     if "drive" in facts["metadata"]:  # a draft keeps what it is where what turns is a crank
         names.add("crank")
+    if any(reversals(columns[name]) for name in ("friction_force",) if name in columns):
+        names.add("reversals")
     return [f"  missing: {lack}" for lack in missing_of(names)]
 
 

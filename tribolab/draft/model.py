@@ -61,7 +61,8 @@ class Understood(NamedTuple):
 
     With `period` the column of time held intervals; its numbers are their sums by now.
     `radius`, `load`, `speed` and `rate` (with their units) and `drive` are what a person said of a
-    track, of what presses, of how fast it slides, of the rows, and of what drives it.
+    track, of what presses, of how fast it slides, of the rows, and of what drives it; `strokes` the
+    length and the frequency of strokes, "" for what was not said.
     Where no column is time, `rate_pattern` finds the sample rate before the table, if it is there;
     where no column is a position, `pitch_pattern` the distance of a profile's points,
     `length_pattern` its length, or `pitch` is what is known of the distance; `lacks` says what
@@ -83,6 +84,7 @@ class Understood(NamedTuple):
     speed: str = ""
     rate: str = ""
     drive: str = ""
+    strokes: tuple[str, str] | None = None
     zero: str = ""
     pitch_pattern: str = ""
     length_pattern: str = ""

@@ -12,6 +12,11 @@ _CRANK = (
     'the length of the stroke, for the sliding speed: stroke = "(a length)" under [speed] of a '
     "dialect, with source = 'stroke' and how often the crank turns"
 )
+_SHUTTLES = (
+    "how long the strokes are and how often they come, for the sliding speed (the friction turns "
+    'over again and again): stroke = "(a length)" and frequency = "(e.g. 2 Hz)" under [speed] of a '
+    "dialect, with source = 'stroke'"
+)
 _RADIUS = 'radius = "(a length)" under [speed] of a dialect'
 
 
@@ -23,7 +28,8 @@ def missing_of(names: Collection[str]) -> list[str]:
     names
         Quantities of the run, ``torque`` where one is known that no radius makes a force of, and
         ``stroke_frequency`` where it is known how often strokes come, and not how long they are,
-        ``crank`` where what turns drives strokes.
+        ``crank`` where what turns drives strokes; ``reversals`` where the friction turns over as
+        that of strokes does.
 
     Returns
     -------
@@ -57,5 +63,6 @@ def missing_of(names: Collection[str]) -> list[str]:
     if not held & _LOAD:
         said.append('the load: normal_force = "(a force)" in the [[run]] of a campaign file')
     if no_speed and not turns and "stroke_frequency" not in held:
-        said.append('the sliding speed: sliding_speed = "(a speed)" in the [[run]] of a campaign')
+        one_way = 'the sliding speed: sliding_speed = "(a speed)" in the [[run]] of a campaign'
+        said.append(_SHUTTLES if "reversals" in held else one_way)
     return said

@@ -167,8 +167,11 @@ def _by_strokes(
     strokes = velocity_of_strokes(time, signals[0], stroke, frequency, speed.drive)
     if strokes is None:  # the mean of both ways is known all the same
         attrs["set_speed_m_s"] = 2 * stroke * frequency
+        attrs["strokes_not_seen_Hz"] = frequency
         return
     attrs["stroke_frequency_Hz"] = strokes.frequency
+    if strokes.unlike:
+        attrs["strokes_unlike_s"] = strokes.unlike
     columns["sliding_velocity"] = strokes.velocity
 
 
@@ -211,6 +214,8 @@ def _by_strokes_of_steps(
     if not told:
         raise ReadError("its strokes have a frequency or a length of zero all along", where=where)
     attrs["stroke_m"] = max(own["stroke_m"] for own in told)
+    if unlike := sum(own.get("strokes_unlike_s", 0.0) for own in told):
+        attrs["strokes_unlike_s"] = unlike
     for key in ("stroke_m", "stroke_frequency_Hz"):
         attrs[f"{key}_of_steps"] = "; ".join(f"{own[key]:.6g}" for own in told)
     if len(without) == len(told):

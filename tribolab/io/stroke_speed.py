@@ -10,15 +10,23 @@ Drive = Literal["crank", "constant speed"]
 _TELLS = 0.3  # share of the friction's variance that has to be at the frequency
 _AT_REST = 0.3  # share of the usual swing below which a cycle does not slide
 _WHOLE = 0.85  # of it, from which a cycle beside a rest slides all along
+_OTHER = 0.1  # of the frequency, by which a drive may be slower or faster than it was set
+_AS_LOUD = 0.5  # of the usual variance: a cycle that is no rest
+_FEW = 0.05  # of the sliding cycles
 FEWEST_CYCLES = 3
 _DENSEST = 8  # samples that a cycle has at least
 
 
 class StrokeVelocity(NamedTuple):
-    """Sliding velocity [m/s] (time), and the frequency that the friction has [Hz]."""
+    """Sliding velocity [m/s] (time), and the frequency that the friction has [Hz].
+
+    `unlike` is for how long [s] the friction turns over otherwise than it was stated; the velocity
+    is zero there.
+    """
 
     velocity: np.ndarray
     frequency: float
+    unlike: float = 0.0
 
 
 def velocity_of_strokes(
@@ -44,7 +52,8 @@ def velocity_of_strokes(
     -------
     StrokeVelocity or None
         None where the friction does not tell the phase: it has no sign, less than 30 % of its
-        variance is at the frequency, or there are fewer than 3 cycles of 8 samples.
+        variance is at the frequency, or there are fewer than 3 cycles of 8 samples; or where it
+        turns over with another frequency, more than a tenth off.
 
     Notes
     -----
@@ -86,6 +95,14 @@ def velocity_of_strokes(
     if np.count_nonzero(slides) < FEWEST_CYCLES or not told > _TELLS * power:
         return None
     middle = time[0] + (np.flatnonzero(slides) + 0.5) / frequency
+    next_one = slides[1:] & slides[:-1]
+    turn = np.angle(np.sum((wave[1:] * wave[:-1].conj())[next_one]))
+    if abs(turn) > 2 * np.pi * _OTHER:
+        return None
+    swings = np.bincount(cycle[known], rest**2, minlength=cycles) / np.maximum(counts, 1)
+    next_to = np.append(False, slides[:-1]) | np.append(slides[1:], False)
+    loud = ~slides & ~next_to & (swings > _AS_LOUD * np.median(swings[slides]))
+    unlike = np.count_nonzero(loud) / frequency
     phase = np.unwrap(np.angle(wave[slides]))
     drift = np.polyfit(middle, phase, 1)[0] / (2 * np.pi)
     beyond = phase[[0, -1]] + 2 * np.pi * drift * (time[[0, -1]] - middle[[0, -1]])
@@ -102,4 +119,5 @@ def velocity_of_strokes(
         else 2 * own * stroke * np.sign(np.cos(angle))
     )
     moving = np.append(slides, slides[-1])[np.minimum(cycle, cycles)]
-    return StrokeVelocity(np.where(moving, pace, 0.0), float(own))
+    is_unlike = np.count_nonzero(loud) > max(2, _FEW * np.count_nonzero(slides))
+    return StrokeVelocity(np.where(moving, pace, 0.0), float(own), unlike if is_unlike else 0.0)

@@ -16,6 +16,7 @@ from tribolab.draft.words.strokes import is_frequency
 from tribolab.errors import shown
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.missing import missing_of
+from tribolab.reversals import reversals
 
 
 def lacking(understood: Understood, follows: Follows) -> list[str]:
@@ -59,6 +60,9 @@ def lacking(understood: Understood, follows: Follows) -> list[str]:
         names.add("friction_force")  # it is asked whether one of them holds it
     if any(is_frequency(*_named(c)) for c in understood.columns if not c.used):
         names.add("stroke_frequency")
+    signals = (c for c in understood.columns if c.used and c.quantity in SAYS_FRICTION)
+    if any(reversals(understood.numbers[:, c.place - 1]) for c in signals):
+        names.add("reversals")
     lacks = missing_of(names)
     friction = {"friction_force", "friction_coefficient", "shear_stress"}
     known = {c.quantity for c in understood.columns if c.used or c.fill_in}

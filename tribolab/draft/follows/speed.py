@@ -14,7 +14,7 @@ from tribolab.draft.follows.two_bodies import Pair, Radii, along_friction, as_sy
 from tribolab.draft.model import DraftColumn, Understood
 from tribolab.draft.stated.slip import stated_ratio
 from tribolab.draft.stated.stated_zero import reading_of
-from tribolab.draft.stated.stroke_settings import strokes_of, strokes_of_turns
+from tribolab.draft.stated.stroke_settings import strokes_of, strokes_of_turns, strokes_said
 from tribolab.draft.stated.values import DraftValue
 from tribolab.draft.words.stated_words import PER_MINUTE
 from tribolab.draft.words.strokes import STROKE
@@ -25,7 +25,7 @@ _DRIVE = re.compile(
     r"|^moto$|^ruch|hareket|движен|привод|pohyb|pohon|napęd|naped|beweging|aandrijving|forma?(?:de|da|d)onda|formeonde|运动|運動"
 )
 _SINE = re.compile(
-    r"crank|manovell|manivel|biel|armonic|harmoni|krank|korb|vev|veiv|krumtap|kampi|klik|forgatty|кривошип|синус|曲柄|正弦|クランク|sine|sinus|sinoid|kurbel|eccentric|exzenter|manivelle|scotch"
+    r"crank|manovell|manivel|biel|armonic|harmoni|krank|korb|vev|veiv|krumtap|kampi|klik|forgatty|кривошип|синус|曲柄|正弦|クランク|sine|sinus|sinoid|senoid|seno\b|sinuzo|szinusz|sinimuot|kurbel|eccentric|exzenter|manivelle|scotch"
 )
 _EVEN = re.compile(r"triang|constant|linear|konstant|dreieck")
 _MODE = re.compile(r"^(?:test|sliding)?mode$|^modus$|^betriebsart$|^modo$|模式$|モード$")
@@ -114,6 +114,8 @@ def with_speed(
         formula = DraftedFormula("sliding_velocity", f"{ratio.name} * rolling_speed", about)
         return and_also(before, formula, (ratio,))._replace(speed=SpeedBy("none"))
     of_strokes = strokes_of(values, understood)
+    if understood.strokes is not None:
+        of_strokes = strokes_said(values, understood.strokes) or of_strokes
     if of_strokes is None or (of_strokes.symbols and "rotation_speed" in names):
         known = turning or "set_speed" in names
         return before if known else _with_set_speed(before, values, track)

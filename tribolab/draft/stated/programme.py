@@ -12,6 +12,7 @@ from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.stated.values import DraftValue
 from tribolab.draft.words.stated_words import ACROSS, LOAD, PER_MINUTE, RADIUS
+from tribolab.draft.words.strokes import is_frequency, is_length
 from tribolab.draft.words.words import matches, split_unit, squeezed, unit_in_words
 from tribolab.io.dialects.cells import split_name, split_row
 
@@ -38,7 +39,8 @@ def programme_of(layout: Layout) -> list[DraftValue]:
     Returns
     -------
     list of DraftValue
-        With ``source`` "programme": rotations (rad/s), radii (m), speeds (m/s) and forces (N).
+        With ``source`` "programme": rotations (rad/s), radii (m), speeds (m/s), forces (N), and
+        lengths (m) and frequencies (Hz) of strokes.
     """
     lines = [line[:_LONGEST] for line in layout.text_above()]
     for index, line in enumerate(lines):
@@ -82,7 +84,12 @@ def _values(line: str, names: list[str], delimiter: str) -> list[DraftValue]:
         key = squeezed(name)
         if unit is None or to is None or (to == "N" and not LOAD.search(key)):
             continue
-        if to == "m" and not (RADIUS.search(key) or ACROSS.search(key)):
+        kind = _TO.get(to, "")
+        if to == "rad/s" and not turns and is_frequency(name, unit):
+            to, kind = "Hz", "frequency"  # of strokes
+        elif to == "m" and is_length(name):
+            kind = "stroke"
+        elif to == "m" and not (RADIUS.search(key) or ACROSS.search(key)):
             continue
         options = matches(name, unit)
         known = options[0].quantity if options else ""
@@ -90,14 +97,14 @@ def _values(line: str, names: list[str], delimiter: str) -> list[DraftValue]:
             continue
         found.append(
             DraftValue(
-                _SAID.get(to) or _TO[to],
+                _SAID.get(to) or kind,
                 _pattern(place, len(names), delimiter),
                 unit,
                 None if to in _SAID else to,
                 line,
                 source="programme",
                 own_unit=unit,
-                scale=0.5 if to == "m" and ACROSS.search(key) else 1.0,
+                scale=0.5 if kind == "track_radius" and ACROSS.search(key) else 1.0,
                 key=key,
             )
         )

@@ -79,6 +79,27 @@ def strokes_of(values: Sequence[DraftValue], understood: Understood) -> Strokes 
     return Strokes(settings, tuple(kept), tuple(symbols), guess)
 
 
+def strokes_said(values: Sequence[DraftValue], said: tuple[str, str]) -> Strokes | None:
+    """Return the strokes that a person said, with what the text states of what was not said.
+
+    Parameters
+    ----------
+    values
+        From `tribolab.draft.stated.values.find_values`.
+    said
+        Length and frequency with their units; "" for what was not said.
+    """
+    stated = _stated(values)[:2]
+    settings, kept = [], []
+    for name, text, value in zip(("stroke", "frequency"), said, stated, strict=True):
+        if text:
+            settings.append((name, text))
+        elif value is not None:
+            settings.append((f"{name}_value", value.name))
+            kept.append(value)
+    return Strokes(tuple(settings), tuple(kept)) if len(settings) == len(said) else None
+
+
 def strokes_of_values(values: Sequence[DraftValue]) -> Strokes | None:
     """Return the length and frequency of strokes that stand above the table."""
     stroke, frequency, guess = _stated(values)
@@ -132,7 +153,9 @@ def _says_several(value: DraftValue) -> bool:
 def as_stated(values: Sequence[DraftValue]) -> tuple[DraftValue, ...]:
     """Return what stands above the table of strokes, to be held against a recorded position."""
     strokes = strokes_of_values(values)
-    if strokes is None or strokes.guess or any(value.source == "step" for value in strokes.values):
+    if strokes is None or strokes.guess:
+        return ()
+    if any(value.source in ("step", "programme") for value in strokes.values):
         return ()
     length, frequency = strokes.values
     counts = [v for v in values if v.own_unit is None and _CYCLES.search(v.key)]

@@ -9,12 +9,17 @@ from tribolab.draft.file.header import converts
 from tribolab.draft.words.roles import without_role
 from tribolab.draft.words.words import or_term, squeezed
 
+_END_TO_END = (
+    r"(?:peak(?:to|2)?peak|pkpk|pp|endtoend|spitze(?:zu)?spitze|crete(?:a)?crete|pic{1,2}o(?:a)?pic{1,2}o"
+    r"|szczytszczyt|vrcholvrchol|huippuhuippu|top(?:til|tot|till)?top(?:p)?|tepedentepeye|размах)"
+)
 STROKE = or_term(
-    r"^(?:total|full|whole|set|nominal|gesamt)?(?:stroke|strokelength|slaglengte|hub|hublaenge|course"
+    rf"^(?:{_END_TO_END})?(?:total|full|whole|set|nominal|gesamt)?(?:stroke|strokelength|slaglengte|hub|hublaenge|course"
     r"|carrera|corsa|curso|skok|zdvih|strok|slaglangd|loekethossz|iskunpituus|ход|行程|ストローク)"
-    r"(?:total|totale|length|laenge|intera|completa|uzunlugu)?$"
+    rf"(?:total|totale|length|laenge|intera|completa|uzunlugu)?(?:{_END_TO_END})?$"
     r"|^(?:longueur|longitud|lunghezza|comprimento|dlugosc|delka|длина)"
-    r"(?:dela|de|da|di|do|della)?(?:course|carrera|corsa|curso|skoku|zdvihu|хода)$|^总?行程长?度?$",
+    r"(?:dela|de|da|di|do|della)?(?:course|carrera|corsa|curso|skoku|zdvihu|хода)"
+    rf"(?:{_END_TO_END})?$|^总?行程长?度?$",
     "stroke",
 )
 HALF_STROKE = re.compile(
@@ -23,7 +28,7 @@ HALF_STROKE = re.compile(
 )
 END_TO_END = re.compile(
     r"peak\W?to\W?peak|\bpk\W?pk\b|\bp\W?p\b|spitze\W{1,3}(?:zu\W)?spitze|crête\W{1,2}(?:à\W)?crête"
-    r"|pi[ck]co\W{1,2}(?:a\W)?pi[ck]co|top\W{1,2}top",
+    r"|pic{1,2}o\W{1,2}(?:a\W)?pic{1,2}o|top\W{1,2}top",
     re.IGNORECASE,
 )
 FREQUENCY = or_term(

@@ -252,7 +252,7 @@ def _of_strokes(run: xr.Dataset, source: str, share: float, min_samples: int) ->
     time = run["time"].values
     start, stop = time[strokes.first[:-1]], time[strokes.first[1:]]
     good = strokes.usual & (count >= min_samples)
-    kind = np.where(good, "constant", np.where(strokes.usual, "too short", "ramp"))
+    kind = np.where(good, "constant", np.where(strokes.usual, "too short", "no whole stroke"))
     kind = np.where(strokes.paused, "gap", kind)
     speed = strokes.way * share * strokes.length / np.where(end > begin, end - begin, np.inf)
     stretches = [

@@ -18,10 +18,15 @@ from tribolab.qc.flags import FAIL, GOOD
 from tribolab.qc.register import Check, Limit, Result, Skip
 from tribolab.qc.run.per_segment import by_segment, status_of
 from tribolab.qc.run.subject import RunSubject
-from tribolab.words import Count
+from tribolab.words import Count, duration
 
 _CURE_OF_UNKNOWN_STROKES = (
     'Say stroke and frequency in the dialect ([speed] source = "stroke"), or record the position.'
+)
+
+_CURE_OF_OTHER_STROKES = (
+    "See that the frequency is right. If it changes within the run, state it for each step: as a "
+    "column, or as values with the source step or programme in the dialect."
 )
 
 
@@ -214,6 +219,13 @@ def _segments(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 def _segment_speed(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     # of friction: a rheometer's steps of shear stress have a shear rate in place of a speed
     unknown = np.isnan(subject.friction["sliding_speed"].values)
+    if unlike := subject.run.attrs.get("strokes_unlike_s"):
+        often = subject.run.attrs["stroke_frequency_Hz"]
+        text = (
+            f"friction turns over with the {often:.3g} Hz that are stated for a part of the run "
+            f"only; for {duration(unlike)} it does so otherwise, which counts as rest"
+        )
+        return [Result("fail", _signal(subject), text, cure=_CURE_OF_OTHER_STROKES)]
     if not unknown.any():
         known = Result("pass", "sliding_speed", "the speed of every segment is known")
         return _to_and_fro(subject) or [known]
@@ -236,6 +248,8 @@ def _to_and_fro(subject: RunSubject) -> list[Result]:
         f"friction changes its sign {int(turned.max())} times while the direction of sliding is "
         "not known: it looks like motion to and fro, and a mean over both ways is no friction"
     )
+    if often := subject.run.attrs.get("strokes_not_seen_Hz"):
+        text += f"; it does not turn over with the {often:.4g} Hz that are stated"
     where, cure = subject.segment_label(first), _CURE_OF_UNKNOWN_STROKES
     return [Result("fail", _signal(subject), text, where=where, count=count, cure=cure)]
 

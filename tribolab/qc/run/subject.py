@@ -12,12 +12,12 @@ from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.oscillation.lines import Line, segment_lines
 from tribolab.friction.oscillation.noise import noise_level
 from tribolab.friction.oscillation.stick_slip import stick_slip
-from tribolab.friction.reversals import reversals
 from tribolab.friction.segments.find import find_segments, why_no_segment
 from tribolab.medians import median_in_pieces, median_of_known
 from tribolab.pieces import PIECE, one_by_one, pieces, stretches
 from tribolab.qc.flags import NOT_EVALUATED
 from tribolab.qc.register import Skip
+from tribolab.reversals import reversals
 from tribolab.room import filled
 from tribolab.words import number as number_text
 from tribolab.words import speed_text
@@ -300,8 +300,8 @@ class RunSubject:
             raise Skip("no friction was recorded")
         values = self.signals[self.friction_signal]
         unknown = np.isnan(self.segments["sliding_speed"].values)
-        if self.segments.attrs.get("velocity_source") == "set speed":
-            unknown[:] = True  # it has no direction
+        if self.segments.attrs.get("velocity_source") in ("set speed", "step"):
+            unknown[:] = True  # what is set has no direction
         return np.array(
             [
                 reversals(values[part]) if lost else 0
