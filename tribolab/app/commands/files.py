@@ -101,6 +101,7 @@ def info(
                 say("\n".join(description.lines))
         if len(described) == 1 and not described[0].error:
             file = shlex.quote(str(described[0].file))
+            file += f" --instrument {shlex.quote(instrument)}" if instrument else ""
             say(f"next: tribolab check {file} (is it usable?), tribolab run {file} (its results)")
     raise typer.Exit(UNREADABLE if any(description.error for description in described) else 0)
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from tribolab.draft.columns.turning import radius_of, torque_of
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.axial import Inclined, axial_force_of, find_inclined, radius_of_ball
@@ -28,12 +30,15 @@ from tribolab.draft.model import Understood
 from tribolab.draft.stated.counts import zero_in_counts
 from tribolab.draft.stated.lengths import find_arm, find_radius, is_at_arm, on_rim
 from tribolab.draft.stated.programme import programme_of
-from tribolab.draft.stated.stated_load import find_load, lifted_on_return
+from tribolab.draft.stated.stated_load import find_load, lifted_on_return, stated_number
 from tribolab.draft.stated.stated_zero import find_zero, reading_of, zero_in_doubt
 from tribolab.draft.stated.stroke_settings import as_stated
 from tribolab.draft.stated.values import DraftValue, find_values, words_said
+from tribolab.quantities import unit_conversion
 
 _SAYS_SPEED = {"sliding_velocity", "position", "set_speed"}
+_PRESSED = 0.5  # of the largest load: what is less is no contact
+_HELD = 1.1  # times what was set, or as much less: a measured load that is held at it
 
 
 def what_follows(layout: Layout, understood: Understood) -> Follows:
@@ -233,9 +238,26 @@ def _of_stated_load(result: Follows, told: _Told) -> Follows:
         way = "out" if out else ""
         formula = DraftedFormula("normal_force", on_contacts(load.name), about, way=way)
         return and_also(result, formula, [load])
-    if not names & {"normal_force", "normal_stress", "set_normal_force"}:
-        return result._replace(values=(*result.values, load))  # under which a coefficient stands
+    if not names & {"normal_force", "normal_stress", "set_normal_force"} or _is_held(load, told):
+        # under which a coefficient stands, or what the measured one was set to
+        return result._replace(values=(*result.values, load))
     return result
+
+
+def _is_held(load: DraftValue, told: _Told) -> bool:
+    """Whether the one column of the load stays at what the text states: it is its set-point."""
+    understood = told.understood
+    columns = [c for c in understood.columns if c.used and c.quantity == "normal_force"]
+    if len(columns) != 1 or load.source != "preamble" or "set_normal_force" in told.names:
+        return False
+    scale, _ = unit_conversion(columns[0].read_unit or "N", "normal_force")
+    values = np.abs(columns[0].scale * scale * understood.numbers[:, columns[0].place - 1])
+    pressed = values[values > _PRESSED * np.nanmax(values, initial=0.0)]
+    set_to = stated_number(load) * unit_conversion(load.unit or "N", "normal_force")[0]
+    if not pressed.size or not set_to > 0:
+        return False
+    low, high = np.nanquantile(pressed, (0.05, 0.95)) / set_to
+    return bool(low > 1 / _HELD and high < _HELD)
 
 
 def _track(values: Sequence[DraftValue], understood: Understood, *, rim: bool) -> Track:

@@ -303,6 +303,8 @@ def _of_phrase(phrase: Phrase) -> DraftValue | None:
     label = label_of(phrase.line)
     if LOAD in wanted and LOAD.search(label) and _one_force(phrase):
         phrase = phrase._replace(key=label)  # "Load: dead weights of 5 kg"
+    if TIP in wanted and TIP.search(label + phrase.key):
+        phrase = phrase._replace(key=label + phrase.key)  # "Stylus: radius 2 um"
     if not any(words.search(phrase.key) for words in wanted):
         return None
     lever = weight_on_lever(phrase.line) if weight else 0.0

@@ -59,6 +59,20 @@ def programme_values(
     return result
 
 
+def programmed_steps(before: str, dialect: Dialect) -> int:
+    """Count the rows of the programme in the text before the first table; 0 without one.
+
+    Parameters
+    ----------
+    before
+        The text.
+    dialect
+        As for `programme_values`.
+    """
+    patterns = [v.pattern for v in dialect.value if v.source == "programme" and v.pattern]
+    return max((sum(1 for _ in guarded(p).all(before)) for p in patterns), default=0)
+
+
 def _number_of(text: str | None, value: Value, content: Content, dialect: Dialect) -> float:
     try:
         return float(text or "")

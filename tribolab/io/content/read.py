@@ -11,6 +11,7 @@ import numpy as np
 from tribolab.errors import ReadError, shown
 from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.model import LARGEST, Content, Piece
+from tribolab.io.content.programme import programmed_steps
 from tribolab.io.content.steps import last_match, started
 from tribolab.io.dialects.as_written import as_written
 from tribolab.io.dialects.columns import AGAIN, first_filled, resolve, scales_of, symbols
@@ -117,6 +118,7 @@ def _read_text(file: File, dialect: Dialect, size: int) -> Content:
         )
     sha256 = hasher.hexdigest() if hasher else sha256_of_file(file.path)
     outside = rows_outside(raw, dialect.text.delimiter)
+    outside = max(0, outside - programmed_steps(pieces[0].before, dialect))
     left_out = {"cut short at the end": cut, "outside of the table that is read": outside}
     left_out = {reason: count for reason, count in left_out.items() if count}
     return Content(file.path, sha256, pieces, labels, tuple(unused), left_out, {}, own, scales)

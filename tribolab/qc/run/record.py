@@ -115,7 +115,7 @@ def _restarts(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     changes = _step_changes(subject)
     if not changes.size:
         return told or [Result("pass", "step", "one step", 1.0)]
-    text = f"the file holds {changes.size + 1} steps, each with its own header or clock"
+    text = f"the file holds {changes.size + 1} steps"
     where = ", ".join(f"t = {subject.time[c]:.6g} s" for c in changes[:5])
     where += " ..." if changes.size > 5 else ""
     text += f"; the first goes over to the others at {where}"
