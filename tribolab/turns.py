@@ -18,7 +18,7 @@ Counted = Literal["cycles", "radians", "nothing", "ask"]
 
 _SECONDS = {"s": 1.0, "sec": 1.0, "secs": 1.0, "second": 1.0, "seconds": 1.0, "sek": 1.0}
 _SECONDS |= {"ms": 1e-3, "msec": 1e-3, "us": 1e-6, "usec": 1e-6, "ns": 1e-9, "ks": 1e3}
-_SECONDS |= dict.fromkeys(("min", "mins", "minute", "minutes"), 60.0)
+_SECONDS |= dict.fromkeys(("min", "mins", "minute", "minutes", "dk", "dak", "dakika"), 60.0)
 _SECONDS |= dict.fromkeys(("h", "hr", "hrs", "hour", "hours"), 3600.0)
 _SECONDS |= dict.fromkeys(("d", "day", "days"), 86400.0)
 _METRES = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "cm": 1e-2, "dm": 0.1, "km": 1e3}
@@ -30,7 +30,7 @@ _PER = _SECONDS | _METRES
 _CYCLES = set(
     "r rev revs revolution revolutions rot rots rotation rotations turn turns cycle cycles cyc "
     "u umdr umdrehung umdrehungen tr tour tours giro giri ob obr omw varv period periods "
-    "oscillation oscillations osc lp".split()
+    "oscillation oscillations osc lp d dev devir".split()
 )
 _RADIANS = dict.fromkeys(("rad", "rads", "radian", "radians"), 1.0) | {"mrad": 1e-3, "urad": 1e-6}
 _RADIANS |= dict.fromkeys(("deg", "degs", "degree", "degrees", "°"), math.pi / 180)

@@ -62,6 +62,8 @@ _WHOLE = {
     **dict.fromkeys(("kg/cm2", "kg/cm²", "kg/cm^2"), "force_kilogram/cm**2"),
     **dict.fromkeys(("kg/mm2", "kg/mm²", "kg/mm^2"), "force_kilogram/mm**2"),
 }
+_PREFIXES = {"nano": "n", "micro": "u", "milli": "m", "kilo": "k"}
+_APART = re.compile(rf"(?i:(?P<prefix>{'|'.join(_PREFIXES)}))[\s-]+(?=(?:N|Pa|V|A|g|m|s)(?![a-z]))")
 _WRITTEN = re.compile(
     r"(?i)(?P<prefix>nano|micro|milli|centi|kilo|mega|giga)?(?P<unit>met(?:er|re)|newton|pascal|"
     r"volt|hertz|second|minute|hour|inch|angstr(?:o|ö|oe|ø)m|ångstr(?:ö|o)m|radian|degree)(?:e?s)?"
@@ -89,12 +91,14 @@ def plain_unit(unit: str) -> str:
     --------
     >>> plain_unit("kOhm"), plain_unit("deg C"), plain_unit("мм/с"), plain_unit("lb-in")
     ('kohm', 'degC', 'mm/s', 'force_pound*in')
-    >>> plain_unit("mm/s"), plain_unit("Fx")
-    ('mm/s', 'Fx')
+    >>> plain_unit("mm/s"), plain_unit("Fx"), plain_unit("micro N.m")
+    ('mm/s', 'Fx', 'uN.m')
     """
     text = unit.strip().replace("\u00b5", "u").replace("\u03bc", "u")
     if text in _WHOLE:
         return _WHOLE[text]
+    if (apart := _APART.match(text)) is not None:
+        text = _PREFIXES[apart["prefix"].lower()] + text[apart.end() :]
     for form in _TORQUES:
         if (torque := form.fullmatch(text)) and torque["arm"] + torque["weight"] != "mg":
             return f"{_WEIGHTS[torque['weight']]}*{torque['arm']}"

@@ -233,9 +233,11 @@ def base_unit(unit: str) -> str:
 
     Examples
     --------
-    >>> base_unit("N mm")
-    'kg*m**2/s**2'
+    >>> base_unit("N mm"), base_unit("Н·м")
+    ('kg*m**2/s**2', 'kg*m**2/s**2')
     """
+    if (spelt := plain_unit(unit)) != unit.strip() and len(unit) < _LONGEST:
+        return base_unit(spelt)
     # late: pint takes long to load
     import pint
 

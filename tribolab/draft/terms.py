@@ -11,7 +11,10 @@ from __future__ import annotations
 _LINES = {
     "friction_force": """
         Friction force | Tangential force | Lateral force | Frictional force | Traction force
-        | Shear force | Drag force | Horizontal force | F friction
+        | Shear force | Drag force | Horizontal force | F friction | Pull force | Pulling force
+        Fuerza de tracción | Força de tração | Force de traction | Forza di trazione | Zugkraft
+        Traktionskraft | Trakční síla | Siła trakcji | Сила тяги | Тяговое усилие | Trekkraft
+        Trækkraft | Dragkraft | Trekkracht | Vetovoima | Vonóerő | Çekme kuvveti | 牵引力 | 견인력
         摩擦力 | 切向力 | 摩擦阻力
         Třecí síla | Tečná síla
         Friktionskraft | Tangentialkraft
@@ -290,6 +293,16 @@ _LINES = {
         Normallast | Last | Normalkraft | Belastning
         Yük | Normal yük | Uygulanan yük
         Навантаження | Нормальне навантаження
+        Slædens masse | Slædens vægt | Slædevægt | Sledens masse | Sledens vekt | Sledevekt
+        Slädens massa | Slädens vikt | Slädvikt | Kelkan massa | Kelkan paino | Massa slede
+        슬레드 하중 | 슬레드 무게 | 슬레드 질량 | 滑块质量 | 滑橇质量 | スレッド荷重 | そり質量
+        Радиальное усилие | Радиальное усилие манжеты | Радиальное усилие манжеты на вал
+        Радиальная нагрузка | Сила прижима | Усилие прижима | Осевая нагрузка | Осевая сила
+        Нагрузка на образец | Масса груза | Масса салазок | Усилие нагружения
+        Szánkó tömege | Csúszka tömege | Normálerő | Kızak ağırlığı | Kızak kütlesi | Ölü ağırlık
+        Hmotnost saní | Hmotnost závaží | Přítlačná síla | Přítlak | Masa sań | Masa obciążnika
+        Masa del trineo | Peso del trineo | Massa do trenó | Masse du traîneau | Masse du patin
+        Massa della slitta | Peso della slitta
     """,
     "stroke": """
         Stroke | Stroke length | Stroke distance | Track length | Stroke (peak to peak)

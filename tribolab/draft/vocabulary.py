@@ -267,7 +267,7 @@ SCAN_WORDS = (
             "elevation relief ordinate hoogte "
             "altezza altezze quota quote cota cotas ordinata altitud "
             "vyska wysokosc hojd hoyde hojde hoejd hoeyde hoejde yuekseklik yukseklik "
-            "korkeus magassag visina высота 높이 高度 高さ"
+            "ордината ординаты korkeus magassag visina высота 높이 高度 高さ"
         ),
     ),
 )

@@ -28,7 +28,7 @@ from tribolab.draft.follows.sums import loads_that_add
 from tribolab.draft.follows.two_bodies import Pair, Radii, radii_of, shaft_of_torque
 from tribolab.draft.model import Understood
 from tribolab.draft.stated.counts import zero_in_counts
-from tribolab.draft.stated.lengths import find_arm, find_radius, is_at_arm, on_rim
+from tribolab.draft.stated.lengths import find_arm, find_radius, is_at_arm, on_rim, ring_of
 from tribolab.draft.stated.programme import programme_of
 from tribolab.draft.stated.stated_load import find_load, lifted_on_return, stated_number
 from tribolab.draft.stated.stated_zero import find_zero, reading_of, zero_in_doubt
@@ -267,7 +267,10 @@ def _track(values: Sequence[DraftValue], understood: Understood, *, rim: bool) -
     column = radius_of(understood.columns)
     if column is not None:
         return Track("radius", symbols=(("radius", column),))
-    return of_value(find_radius(values, rim=rim))
+    radius = find_radius(values, rim=rim)
+    if (radius is None or radius.guess) and not rim and (ring := ring_of(values)) is not None:
+        return Track("((inner_radius + outer_radius) / 2)", ring)
+    return of_value(radius)
 
 
 def _of_shaft(layout: Layout, pair: Pair, radii: Radii) -> Track:

@@ -87,8 +87,11 @@ def with_speed(
         )
     if turning and understood.radius:
         return before._replace(speed=SpeedBy("rotation", (("radius", understood.radius),)))
-    if turning and any(value.source in ("step", "programme") for value in track.values):
-        about = "turns and the radius of each step"
+    of_steps = any(value.source in ("step", "programme") for value in track.values)
+    if turning and (of_steps or len(track.values) > 1):
+        about = (
+            "turns and the radius of each step" if of_steps else "turns and a ring's mean radius"
+        )
         formula = DraftedFormula("sliding_velocity", f"rotation_speed * {track.formula}", about)
         return and_also(before, formula, track.values)._replace(speed=SpeedBy("none"))
     if turning and track.values:
@@ -125,6 +128,7 @@ def with_speed(
     # a constant load is a mode, too, and a stroke may be said to be a sine
     lengths = [text.lower() for key, text in words if STROKE.search(squeezed(key))]
     said += [text for text in (*modes, *lengths) if _SINE.search(text)]
+    said += [value.text.lower() for value in of_strokes.values if value.source == "file name"]
     drive, guess = understood.drive or "crank", ""
     options: tuple[str, ...] = ()
     if not understood.drive and any(_EVEN.search(text) for text in said):

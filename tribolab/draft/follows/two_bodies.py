@@ -31,7 +31,7 @@ _BODIES = tuple(
             "lower|bottom|unter|unten|inf[eé]rieur|inferior|нижн|doln|alt|下",
         ),
         (
-            "dis[ck]|scheibe|disque|disco|disk|диск|tarcz|盘|ディスク",
+            "dis[ck]|scheibe|kotouc|schijf|skiva|skive|levy|korong|disque|disco|disk|диск|tarcz|盘|ディスク",
             "ball|kugel|bille|bola|sfera|шар|kul|球|ボール|roller|rolle|galet|rullo|ролик|pin|barrel",
         ),
         ("ring|anneau|anello|anillo|кольц|环", "roller|rolle|galet|rullo|rodillo|ролик"),
@@ -53,7 +53,8 @@ _TWIN = re.compile(
     r"|zwei[\s-]?scheiben|zwei[\s-]?rollen|bi[\s-]?disque|deux (?:galets|disques)"
     r"|bi[\s-]?disco|dos discos|due (?:rulli|dischi)"
     r"|двухроликов|ролик[\s-]+ролик|双盘|双辊|滚动接触|二円筒|2円筒|ローラ|amsler"
-    r"|rolling contact|w[äa]lz",
+    r"|dvou(?:kotou[čc]|disk)\w*|dwurolk\w*|dwutarcz\w*|twee[\s-]?schijv\w*|tv[åa][\s-]?skiv\w*"
+    r"|k[ée]tkorong\w*|çift disk|iki disk|rolling contact|w[äa]lz",
     re.IGNORECASE,
 )
 _TORQUE = re.compile(r"torque|moment|couple|coppia|koppel|扭矩|转矩|力矩|トルク|момент|moment[io]?")

@@ -48,6 +48,18 @@ _ENDS = (
 )
 _COUNT = re.compile(rf"^n$|{POINTS.pattern}")
 _LONGEST = 200  # characters of a line that are looked at
+# a ring's sides, in any language
+_SIDES = (
+    re.compile(
+        r"inner|inside|innen|int[ei]r|interno|interieur|binnen|indre|inre|indvend|sisae|sisa|wewn|vnitr|belso|^ic|ic(?:cap|yaricap)"
+        r"|внутр|内|내"
+    ),
+    re.compile(
+        r"outer|outside|aussen|ext[ei]r|est?erno|exterieur|buiten|ydre|ytre|yttre|udvend|ulko|zewn|vnejs|kulso|kuelso"
+        r"|^dis(?:cap|yaricap)|discap|наруж|внеш|外|외"
+    ),
+)
+_WIDE = 1.5  # times the inner radius: two thirds of a per cent of the mean radius
 _FEW_POINTS = 20  # of a profile
 _UNEVEN = 0.1  # of the interval of heights that are taken by the clock
 # units of heights under whatever name they stand
@@ -306,6 +318,39 @@ def find_radius(values: Sequence[DraftValue], *, rim: bool = False) -> DraftValu
         if TURNING.search(v.key) or SHAFT.search(v.key) or v.key == "d"
     ]
     return perhaps[0] if len(perhaps) == 1 else None
+
+
+def ring_of(values: Sequence[DraftValue]) -> tuple[DraftValue, DraftValue] | None:
+    """Return the inner and the outer radius of a ring that slides on its face, or their diameters.
+
+    Parameters
+    ----------
+    values
+        From `find_values`.
+
+    Returns
+    -------
+    tuple or None
+        With a `guess` where the ring is so wide that the mean of both is not the radius at which
+        friction acts: the outer more than half as large again as the inner.
+    """
+    lengths = [v._replace(to="m") for v in values if _is_length(v)]
+    for words, scale in ((RADIUS, 1.0), (ACROSS, 0.5)):
+        sides = [
+            [v for v in lengths if words.search(v.key) and side.search(v.key)] for side in _SIDES
+        ]
+        if [len(side) for side in sides] != [1, 1]:
+            continue
+        inner, outer = sides[0][0], sides[1][0]
+        if not 0 < metres(inner) < metres(outer):
+            continue
+        wide = metres(outer) > _WIDE * metres(inner)
+        guess = "friction acts at the mean of the inner and the outer radius" if wide else ""
+        return (
+            inner._replace(name="inner_radius", scale=scale),
+            outer._replace(name="outer_radius", scale=scale, guess=guess),
+        )
+    return None
 
 
 def find_arm(values: Sequence[DraftValue]) -> DraftValue | None:

@@ -18,7 +18,12 @@ _RATIO = re.compile(
     r"|tauxdeglissement|rapportglissementroulement|滑滚比|滑滾比|すべり率)\w{0,3}$"
 )
 _MEAN = re.compile(
-    r"mean|average|entrain|roll|mittl|moyen|medi[ao]|sredni|prumern|卷吸|平均|引き込み"
+    r"mean|average|entrain|roll|mittl|moyen|medi[ao]|sredni|prumern|keskim|gjennomsn|gennemsn|medel|gemiddeld|atlag|ortalama"
+    r"|средн|卷吸|平均|引き込み|평균"
+)
+
+_OF_SLIDING = re.compile(
+    r"slid|gleit|gliss|desliz|strisc|scorr|slizg|kluz|skluz|glid|glij|liuku|csusz|kayma|скольж|滑动|滑り|すべり|미끄"
 )
 
 
@@ -39,7 +44,7 @@ def stated_ratio(values: Sequence[DraftValue]) -> DraftValue | None:
 
 
 def of_both_surfaces(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftColumn]:
-    """Take a speed beside a stated slide-to-roll ratio for the mean one of both surfaces.
+    """Take a speed beside a slide-to-roll ratio for the mean one of both surfaces.
 
     Parameters
     ----------
@@ -54,10 +59,11 @@ def of_both_surfaces(layout: Layout, columns: Sequence[DraftColumn]) -> list[Dra
         A speed that no word calls the mean one is a guess.
     """
     speeds = [c for c in columns if c.used and c.quantity == "sliding_velocity"]
-    if len(speeds) != 1 or stated_ratio(find_values(layout)) is None:
+    in_column = any(c.used and c.quantity == "slide_roll_ratio" for c in columns)
+    if len(speeds) != 1 or not (in_column or stated_ratio(find_values(layout)) is not None):
         return list(columns)
     name = split_name(speeds[0].label)[0]
-    if role_of(name) == "set" or "slid" in squeezed(name):
+    if role_of(name) == "set" or _OF_SLIDING.search(squeezed(name)):
         return list(columns)
     sure = _MEAN.search(squeezed(name)) is not None
     mean = speeds[0]._replace(

@@ -77,6 +77,12 @@ _EITHER_WAY = re.compile(r"^\s*(?:\+/?-|±)")
 _SPEED_IN_NAME = re.compile(
     r"(?:^|[_\- ])(?P<number>\d+(?:\.\d+)?)(?P<unit>[mu]m)(?P<per>p?s|_s|-s| s)(?=[_\- .]|$)"
 )
+_STROKE_IN_NAME = re.compile(
+    r"(?:^|(?<=[_\- ]))(?P<key>(?:stroke|hub|course|carrera|corsa|curso|slag|skok|zdvih|loket)"
+    r"(?:length)?[_=-]?)(?P<number>\d+(?:[.,]\d+)?)[_ ]?(?P<unit>mm|cm)(?![^\W_])",
+    re.IGNORECASE,
+)
+_HERTZ_IN_NAME = re.compile(r"(?:^|[_\- f])(?P<number>\d+(?:[.,]\d+)?)[_ ]?Hz(?![^\W_])")
 _IN_NAME = re.compile(r"(?:^|_)(?P<number>\d+(?:\.\d+)?)(?P<unit>N|mN)(?=_|$)")
 _SET = {"normal_force": "set_normal_force", "sliding_velocity": "set_speed"}
 
@@ -139,6 +145,7 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
         )
     if speed := _speed_in_name(layout.file.path):
         values[speed.name] = speed
+    values |= {value.name: value for value in _strokes_in_name(name)}
     in_name = _IN_NAME.search(layout.file.path.stem)
     if in_name:
         pattern = rf"_(\d+(?:\.\d+)?){in_name['unit']}(?:_|\.)"
@@ -198,6 +205,20 @@ def _speed_in_name(path: Path) -> DraftValue | None:
     unit = f"{match['unit']}/s"
     key = "slidingspeed"
     return DraftValue("set_speed", pattern, unit, None, path.name, "file name", unit, key=key)
+
+
+def _strokes_in_name(name: str) -> list[DraftValue]:
+    """Return the stroke that a file's name states, and how often it comes: stroke8mm_2Hz.csv."""
+    stroke, often = _STROKE_IN_NAME.search(name), _HERTZ_IN_NAME.search(name)
+    if stroke is None:  # frequencies alone may be how often samples are taken
+        return []
+    key, unit = re.escape(stroke["key"]), stroke["unit"]
+    pattern = rf"{key}(\d+(?:[.,]\d+)?)[_ ]?{unit}"
+    found = [DraftValue("stroke", pattern, unit, "m", name, "file name", unit, key="stroke")]
+    if often is not None:
+        pattern, said = r"(?:^|[_\- f])(\d+(?:[.,]\d+)?)[_ ]?Hz", "frequency"
+        found.append(DraftValue(said, pattern, "Hz", "Hz", name, "file name", "Hz", key=said))
+    return found
 
 
 def _keep(values: dict[str, DraftValue], value: DraftValue) -> None:

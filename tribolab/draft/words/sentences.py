@@ -22,7 +22,7 @@ _ACROSS_BEHIND = re.compile(
     r"\s?(?:(o\.?d\b)|in dia|dia(?:m\w*)?\b|ø|⌀|durchm|di[aá]met)", re.IGNORECASE
 )
 _SIZE = re.compile(
-    r"oe|⌀|dia|diam|diamet\w{1,3}|durchmesser|srednica|prumer|aussendurchmesser|外径|直径"
+    r"oe|⌀|dia|cap|capi|halkaisija|atmero|diam|diamet\w{1,3}|durchmesser|srednica|prumer|aussendurchmesser|外径|直径"
 )
 _LABEL = re.compile(r"\W*(?P<label>[^\W\d][^:;=\t：；]{0,40}?)[\s\"]*[:;=\t：；]")
 _CAPITALS = 3  # letters of a unit that may be written large

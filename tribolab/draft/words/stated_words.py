@@ -159,11 +159,12 @@ RADIUS = or_term(
 )
 ARM = re.compile(
     r"lever(?!ratio)|hebelarm|arm(?:length|laenge|lengde|laengd)|torquearm|momentarm|kraftarm|^arm$|levier|brasde"
+    r"|^(?:yuekhuecresi)?kol(?:uzunlugu)?|momentkolu"
     r"|palanca|brazo|braccio|vipuvarsi|ramie|rameno|плечо|力臂|杠杆臂|アーム|腕の長さ"
 )
 # a force that acts on an arm, by its name
 AT_ARM = re.compile(
-    r"^(?:moment|torque|lever|hebel|tork)?arm(?:force|kraft|load)?$|arm(?:force|kraft|kracht|load)$|hebelkraft|leverforce|(?:force|load)(?:on|at|of)?(?:the)?(?:arm|lever)$"
+    r"^kolkuvveti$|^kolyuku$|^(?:moment|torque|lever|hebel|tork)?arm(?:force|kraft|load)?$|arm(?:force|kraft|kracht|load)$|hebelkraft|leverforce|(?:force|load)(?:on|at|of)?(?:the)?(?:arm|lever)$"
     r"|kraft(?:am|an)?(?:hebel|arm)(?:arm)?$|(?:force|effort)(?:au|sur|du)?(?:le)?(?:bras|levier)|fuerza(?:en|del|de)?(?:el|la)?(?:brazo|palanca)"
     r"|forza(?:al|sul|del)?(?:la)?(?:braccio|leva)|сила(?:на)?(?:плече|рычаге)|силанарычаге|臂力|力臂力|アーム力|アーム荷重"
 )
@@ -180,11 +181,13 @@ DIAMETER = or_term(
     "track_diameter",
 )
 ACROSS = or_term(
-    r"dia|durchmesser|diametr|диаметр|srednica|prumer|直径|外径|轴径|軸径|내경|외경|축경|^(?:ø|oe|⌀)$|^d$|od$",
+    r"dia|durchmesser|diametr|диаметр|srednica|prumer|halkaisija|atmero|^cap[i]?$|capi$|直径|外径|内径|轴径|軸径|내경|외경|축경|^(?:ø|oe|⌀)$|^d$|od$",
     "track_diameter",
 )
 ON_TRACK = or_term(_TRACK, "track_radius")
-PER_MINUTE = re.compile(r"rpm|1/min|min-1|(?:rev|r|U|tr|ot|obr|giri)\.?/\s?min", re.IGNORECASE)
+PER_MINUTE = re.compile(
+    r"rpm|1/min|min-1|(?:rev|r|U|tr|ot|obr|giri|d|dev|devir)\.?/\s?(?:min|dk|dak)", re.IGNORECASE
+)
 # what turns may be wider than the track on it
 TURNING = re.compile(
     r"dis[ck]|scheibe|ring|plate|platte|disque|disco|anneau|anello|anillo|pierscien|specimen|sample|盘|環|环|円板|リング|ディスク|디스크"
@@ -196,7 +199,7 @@ ON_RIM = re.compile(
     r"(?:on|against|vs|auf|gegen|sur|sobre|contra|su|na|op|mot|pa)[\s_/-]*(?:the[\s_-]*)?"
     r"(?:rings?|rims?|rollers?|wheels?|shafts?|ringe?|rolle|welle|rad|anneau|galet|anillo|rodillo|anello|rullo|hjul)"
     r"|(?:block|klotz|kloc(?:ek|ka)?|bloc|bloque|blocco|bloco|blok|pattino|patin|sapata|tuk)s?[\s_/–-]{1,3}"
-    r"(?:ring|pier[śs]cie[ńn]|anneau|anillo|anello|anel|krou[žz]e?k|rolk|rolle|welle|galet|rullo|rodillo|rulle)"
+    r"(?:ring|halka|gy[űu]r[űu]|rengas|pier[śs]cie[ńn]|anneau|anillo|anello|anel|krou[žz]e?k|rolk|rolle|welle|galet|rullo|rodillo|rulle)"
     r"|(?:pier[śs]cie[ńn]|rolk\w|krou[žz]ek|anneau|anillo|anello|anel|welle|rolle)[\s_/–-]{1,3}"
     r"(?:klotz|kloc|bloc|bloque|blok)"
     r"|ring[\s_-]?block|ブロックオンリング|环块|環塊|블록온링|timken|lfw"
@@ -213,7 +216,7 @@ ON_RIM = re.compile(
     re.IGNORECASE,
 )
 OUTER = re.compile(
-    r"ring|pierscien|krouz|rolk|anel|rim|roll|wheel|shaft|outer|outside|aussen|exter|anneau|anello|anillo|galet|hjul|welle"
+    r"ring|halka|gyuru|rengas|pierscien|krouz|rolk|anel|rim|roll|wheel|shaft|outer|outside|aussen|exter|anneau|anello|anillo|galet|hjul|welle"
     r"|ролик|кольц|вал|arbre|albero|eje|arbol|eixo|hridel|aksel|axel|wal|リング|环|環|外|轴|軸|축|od$"
 )
 

@@ -30,6 +30,7 @@ _ACCENTS = re.compile("[\u0300-\u036f]")  # not the marks that make one kana of 
 _VAGUE = 0.6  # of the score of a word that names this quantity alone
 _OF_DEVICE = 0.98
 _TERM = 0.98  # a whole term of a language
+_LATE = 0.2  # what a symbol loses at most that stands behind others
 KNOWN_WORD = 0.7  # a name of which so much is a known word is no guess
 # "Stage.X", "DAQ.Fz": letters on both sides of the last point
 _DEVICE = re.compile(r"(?P<device>.*[^\W\d]\w*)\.(?P<name>[^\W\d].*)$")
@@ -84,7 +85,9 @@ COUNTS = "counts"
 _CLOCKS = {"millis": "ms", "msec": "ms", "msecs": "ms", "ms": "ms", "micros": "us", "usec": "us"}
 _CLOCKS |= {"usecs": "us", "mus": "us", "sec": "s", "secs": "s"}
 # units in which nothing else is measured, whatever the name
-_TURNS = re.compile(r"rpm|(?:rev|r|U|tr|ot|obr|giri|omw)\.?/\s?(?:min|s)", re.IGNORECASE)
+_TURNS = re.compile(
+    r"rpm|(?:rev|r|U|tr|ot|obr|giri|omw|d|dev|devir)\.?/\s?(?:min|s|dk|dak)", re.IGNORECASE
+)
 _RPM = re.compile(r"(?<![^\W_])rpm(?![^\W_])", re.IGNORECASE)  # a name that is its unit: "rpm_set"
 _GLUED = re.compile(r"(?P<name>[^\W\d_]*[a-z]{2})(?P<unit>[A-Z]{1,2})")  # "tempC", "forceN"
 _NUMBERED = re.compile(r"#?\s*(?:N[°ºr]|No|№)\.?", re.IGNORECASE)  # rows, and not how fast it turns
@@ -346,7 +349,7 @@ def _terms(concept: str) -> frozenset[str]:
 
 def _score(text: str, word: Word) -> float:
     if text in word.symbols:
-        return 1.0 - 0.01 * word.symbols.index(text)
+        return 1.0 - min(0.01 * word.symbols.index(text), _LATE)
     if text in _terms(word.quantity):
         return _TERM
     return max(_share(text, word.stems), _VAGUE * _share(text, word.vague))

@@ -15,7 +15,11 @@ _UNIT = (
 _UNITS = frozenset("nm pm um µm μm mm cm m Å".split())
 _EASTERN = {"微米": "um", "纳米": "nm", "毫米": "mm"}
 _IN_KEY = re.compile(rf"[\[(]\s*({_UNIT})\s*[\])]|(?<![^\W\d_])({_UNIT})[\s:=,;]*$")
-_OF_UNIT = "units?|einheit(?:en)?|unit[eéà]s?|unidad(?:es)?|单位|単位|단위"
+_OF_UNIT = (
+    r"units?|einheit(?:en)?|unit[eéà]s?|unidad(?:es)?|单位|単位|단위"
+    r"|egys[ée]g\w*|jednostk\w|jednotk\w|enhet\w*|eenheid|yksikk\w|birim\w*|единиц\w*"
+)
+_IN = r"(?:in|en|are|em|i|v|w|в)"
 _HEIGHTS = (
     r"heights?|höhen?|hoehen?|hauteurs?|alturas?|altezz[ae]|topograph\w*|elevations?|高[さ度]"
     r"|korkeu\w+|v[ýy][šs]k\w+|wysoko\w+|h(?:ö|o|oe)jd\w*|h[øo][yj]de\w*|hoogtes?|magass[áa]g\w*"
@@ -24,7 +28,7 @@ _HEIGHTS = (
 )
 _SAYS_UNIT = re.compile(rf"(?:{_OF_UNIT})\W.*?(?<![^\W\d_])(?P<unit>{_UNIT})\W*$", re.IGNORECASE)
 _SAYS_HEIGHTS = re.compile(
-    rf"(?:{_HEIGHTS})(?:[_ ]\w{{1,12}})?\W*(?:[\[(]|\b(?:in|en|are)\b)\s*(?P<unit>{_UNIT})\W*$",
+    rf"(?:{_HEIGHTS})(?:[_ ]\w{{1,12}})?\W*(?:[\[(]|\b{_IN}\b)\s*(?P<unit>{_UNIT})\W*$",
     re.IGNORECASE,
 )
 # "korkeus: nm", an entry that is a unit and nothing else; not one of what lies across the surface
@@ -55,11 +59,11 @@ _ALONG_Z = re.compile(
 )
 _X = re.compile(
     r"(?i)(?<![^\W\d_])[dΔ]?x(?![^\W\d_])|horizontal|width|breite|largeur|ancho|larghezza|宽|幅|横"
-    r"|columns?|(?<![^\W\d_])n_?cols?|spalten|colonnes?|columnas|列"
+    r"|columns?|(?<![^\W\d_])n_?cols?|spalten|colonnes?|columnas|oszlop\w*|kolumn\w*|sloupc\w*|列"
 )
 _Y = re.compile(
     r"(?i)(?<![^\W\d_])[dΔ]?y(?![^\W\d_])|vertical|height|höhe|hauteur|alto|altezza|高|縦"
-    r"|rows?|lines|zeilen|lignes|filas|righe|行"
+    r"|rows?|lines|zeilen|lignes|filas|righe|sorok|rader|r[æa]kker|wiersz\w*|[řr][áa]d\w*|行"
 )
 _STEPS = (
     r"pitch|spacing|step|increment|schritt\w*|(?:punkt|raster)?abstand|pas|paso|passo|stap|afstand"
@@ -78,6 +82,8 @@ _PITCH = re.compile(
     r"|punktabstand|(?:distance|pas|paso|passo)\s+(?:entre|de|di|tra)\s+p\w+"
     r"|(?<![^\W\d_])[dΔ][xy](?![^\W\d_])|^\W*(?:pitch|spacing|cell\s?size|grid\s?size)\W*$"
     rf"|(?:{_STEPS}).*(?<![^\W\d_])(?:xy|x|y)(?![^\W\d_])|(?<![^\W\d_])(?:xy|x|y)\W+(?:{_STEPS})"
+    r"|k[ée]ppont\w*m[ée]ret|bildpunktgr\w+|pixels?torlek|pikselin?\s?koko|piksel\s?(?:boyutu|rozmiar)"
+    r"|(?:rozmiar|velikost|dimensiune\w*|boyut\w*|размер)\s*(?:piksel\w*|pixel\w*|пиксел\w*)"
     r"|픽셀\s?(?:크기|간격)|像素(?:尺寸|大小|间距)|点间距|ピクセル(?:サイズ|ピッチ)|画素(?:サイズ|ピッチ)|点間隔"
 )
 _EXTENT = re.compile(
@@ -87,6 +93,11 @@ _EXTENT = re.compile(
     r"|(?:size|range|length|extent)[\s_-]*\(?[xy](?![^\W\d_])"
     r"|^\W*(?:width|height|breite|höhe|largeur|hauteur|ancho|alto|larghezza|altezza)\W*$"
     r"|bildfeld|messfeld|sehfeld|bildgr(?:ö|oe)(?:ß|ss)e|scanbereich|champ|zone (?:de )?mesur"
+    r"|m[åa]lefelt|m[åa]leomr[åa]de|synsfelt|m[äa]tf[äa]lt|m[äa]tomr[åa]de|mittausalue|kuva-?ala"
+    r"|meetveld|beeldveld|pole (?:pomiar|widzen|m[ěe][řr]en)\w*|obszar pomiar\w*|zorn[ée] pole"
+    r"|m[ée]r[ée]si (?:ter[üu]let|mez[őo])|l[áa]t[óo]mez[őo]|[öo]l[çc][üu]m alan\w*"
+    r"|поле (?:зрения|измерен\w*)"
+    r"|область (?:сканиров\w*|измерен\w*)|측정\s?(?:영역|범위)|시야"
     r"|campo|[aá]rea (?:de |di )?(?:medi|escan|misura|scansione)"
     r"|视野|視野|视场|扫描(?:范围|尺寸)|测量(?:范围|区域)|測定(?:範囲|領域)|画像サイズ"
 )
