@@ -49,6 +49,9 @@ class Question(NamedTuple):
         return f"{self.about}: {self.guess}{others}"
 
 
+_COMMENTS = ("#", "%", "//")
+
+
 def questions(draft: Drafted) -> list[Question]:
     """Return what had to be guessed of a file, or is missing; none if its header says it all.
 
@@ -83,16 +86,15 @@ def questions(draft: Drafted) -> list[Question]:
 
 
 def _are_titles(layout: Layout) -> bool:
-    """Whether all lines of text between the rows are titles of steps that are counted on."""
+    """Whether all lines of text between the rows are comments, or titles of steps counted on."""
     skipped = re.compile(layout.skip_lines or "$^")
-    return is_numbered(
-        [
-            line
-            for block in layout.blocks
-            for line in layout.lines[block.start : block.stop]
-            if line.strip() and skipped.match(line)
-        ]
-    )
+    between = [
+        line
+        for block in layout.blocks
+        for line in layout.lines[block.start : block.stop]
+        if line.strip() and skipped.match(line)
+    ]
+    return is_numbered(between) or all(line.lstrip().startswith(_COMMENTS) for line in between)
 
 
 def _of_texts(understood: Understood) -> list[Question]:
