@@ -285,3 +285,21 @@ def test_numbers_alone_of_any_name_are_asked_about_as_heights(tmp_path, monkeypa
     done = command("dialect", "p.txt", "--ask", typed="0.5 um\num\n")
     assert done.exit_code == 0, done.output
     assert tl.read_scans("p.txt", instrument="p.toml").attrs["pitch_m"] == pytest.approx(5e-7)
+
+
+def test_strokes_may_be_typed_and_one_of_both_is_not_enough(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    time = np.arange(0, 20, 0.005)
+    force = 3 * np.tanh(30 * np.cos(4 * np.pi * time))
+    columns = {"Time [s]": time, "Friction force [N]": force, "Load [N]": np.full(time.size, 15.0)}
+    file = write(tmp_path / "pin.csv", columns)
+    done = command("dialect", file.name, "--ask", typed="\n\n\n2 Hz\nstroke 8 mm, 2 Hz\n\n")
+    assert (done.exit_code, done.stderr) == (0, "")
+    assert "strokes need a length, such as 8 mm, too" in done.stdout
+    assert done.stdout.count("sliding_velocity m/s") == 2  # once a row, once as a line of blocks
+    assert "friction coefficient 0.2 to 0.2" in done.stdout.split("tried:")[1]
+    said = tomllib.loads((tmp_path / "pin.toml").read_text())["speed"]
+    crank = {"source": "stroke", "stroke": "8 mm", "frequency": "2 Hz", "drive": "crank"}
+    assert said == crank
+    run = tl.read(file, "pin.toml")
+    assert float(run.sliding_velocity.max()) == pytest.approx(np.pi * 2 * 8e-3, rel=1e-3)

@@ -355,3 +355,66 @@ def test_a_block_slides_on_the_outside_of_its_ring_in_any_language(tmp_path, rig
     np.testing.assert_allclose(run.friction_force, force, rtol=1e-4, atol=1e-3)
     top = TURNS[-1] * 2 * np.pi / 60 * 0.0175
     assert float(run.sliding_velocity.max()) == pytest.approx(top, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("inner", "outer"),
+    [
+        ("Ring inner radius 14 mm", "Ring outer radius 16 mm"),
+        ("Innendurchmesser (mm): 28", "Außendurchmesser (mm): 32"),
+        ("リング内径 28 mm", "リング外径 32 mm"),
+        ("Diamètre intérieur : 28 mm", "Diamètre extérieur : 32 mm"),
+    ],
+)
+def test_a_ring_on_its_face_slides_at_the_mean_of_both_radii(tmp_path, inner, outer):
+    time, rpm, force, load = columns(friction=3.0, load=10.0)
+    head = "t [s]\tn [1/min]\tTorque [N·m]\tLoad [N]"
+    rows = [time, rpm, 0.015 * force, load]
+    run = tl.read(written(tmp_path / "a.txt", [inner, outer], head, rows))
+    np.testing.assert_allclose(run.friction_force, force, rtol=1e-4, atol=1e-3)
+    np.testing.assert_allclose(
+        run.sliding_velocity, rpm * 2 * np.pi / 60 * 0.015, rtol=1e-4, atol=1e-9
+    )
+
+
+def test_a_wide_ring_is_asked_about_and_a_stated_mean_radius_goes_before(tmp_path):
+    time, rpm, force, load = columns(friction=3.0)
+    head = "t [s]\tn [1/min]\tTorque [N·m]\tLoad [N]"
+    rows = [time, rpm, 0.015 * force, load]
+    wide = ["Inner radius: 8 mm", "Outer radius: 22 mm"]
+    with pytest.raises(GuessedError, match="friction acts at the mean of the inner and the outer"):
+        tl.read(written(tmp_path / "a.txt", wide, head, rows))
+    said = ["Inner radius: 14 mm", "Outer radius: 16 mm", "Mean radius of the track: 15.1 mm"]
+    run = tl.read(written(tmp_path / "b.txt", said, head, rows))
+    assert run.attrs["speed_from"] == "rotation"
+    assert float(run.friction_force[-1]) == pytest.approx(0.015 / 0.0151 * force[-1], rel=1e-3)
+
+
+def test_a_torque_in_letters_of_another_script_is_a_torque(tmp_path):
+    time, rpm, force, _ = columns(friction=3.0)
+    above = ["Диаметр вала, мм: 50,0", "Радиальное усилие манжеты на вал, Н: 34,0"]
+    above.insert(0, "Стенд для испытания манжетных уплотнений")
+    head = ["Время\tЧастота вращения\tМомент трения", "с\tоб/мин\tН·м"]
+    rows = [time, rpm, 0.025 * force]
+    run = tl.read(written(tmp_path / "a.txt", above, head, rows))
+    np.testing.assert_allclose(run.friction_force, force, rtol=1e-4, atol=1e-3)
+    assert float(run.normal_force[0]) == 34.0
+
+
+def test_a_mean_speed_beside_a_ratio_in_a_column_is_no_sliding_speed(tmp_path):
+    time, _, force, load = columns(friction=3.0)
+    speed, ratio = np.repeat([200.0, 500.0, 1000.0, 2000.0], HOLD), np.full(time.size, 50.0)
+    head = "Tiempo (s);Velocidad media (mm/s);SRR (%);Carga (N);Fuerza de tracción (N)"
+    rows = [time, speed, ratio, load, force]
+    run = tl.read(written(tmp_path / "a.csv", ["Ensayo"], head, rows, delimiter=";"))
+    np.testing.assert_allclose(run.sliding_velocity, 0.5e-3 * speed, rtol=1e-6)
+    np.testing.assert_allclose(run.friction_force, force, rtol=1e-4, atol=1e-3)
+
+
+def test_the_set_point_of_a_load_that_is_held_is_kept_and_of_another_is_not(tmp_path):
+    time, rpm, force, load = columns(friction=3.0)
+    head = "t [s]\tn [1/min]\tFriction force [N]\tNormal force [N]"
+    for stated, kept in ((10.0, True), (15.0, False)):
+        above = ["Track radius: 20 mm", f"Normal force (set): {stated} N"]
+        run = tl.read(written(tmp_path / f"{stated}.txt", above, head, [time, rpm, force, load]))
+        assert ("set_normal_force_N" in run.attrs) == kept

@@ -156,7 +156,9 @@ def test_the_rocks_change_of_rate_is_seen_and_lies_outside_the_segments(shared_d
 @pytest.mark.parametrize("number", [1, 2, 3])
 def test_the_second_header_of_cetr_is_a_step_and_not_a_gap(shared_data, number):
     _, found = verdict(shared_data, "cetr_umt2_MIT", f"HT-2n-6-4 2_00{number}.csv")
-    assert "the file holds 2 steps; the first goes over to the others at" in message(found, "restarts")
+    assert "the file holds 2 steps; the first goes over to the others at" in message(
+        found, "restarts"
+    )
     known = objections(found)
     assert known.pop("segment_speed") == "suspect"  # start and stop lie inside its steps
     assert set(known) <= {"spikes"}

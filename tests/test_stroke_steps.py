@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 import tribolab as tl
+from tribolab.app.file_info import file_lines
 from tribolab.io.speed import level_of_each
+from tribolab.io.stroke_speed import velocity_of_strokes
+from tribolab.qc.run.checks import check_run
 
 RATE = 250.0
 
@@ -66,3 +69,78 @@ def test_a_frequency_that_is_ramped_has_no_levels() -> None:
     assert level_of_each(np.linspace(1.0, 20.0, 1000)) is None
     assert level_of_each(np.zeros(5)) is None
     assert level_of_each(np.array([0.0, np.nan, 5.0, 5.1])).tolist() == [0.0, 0.0, 5.05, 5.05]
+
+
+def _strokes(frequencies, lasts=6.0, rate=500, seed=2):
+    """Return times, numbers of steps and friction of a crank that goes from turn to turn."""
+    rng = np.random.default_rng(seed)
+    own = np.arange(int(lasts * rate)) / rate
+    force = np.concatenate([3 * np.tanh(30 * np.sin(2 * np.pi * f * own)) for f in frequencies])
+    time = np.arange(force.size) / rate
+    step = np.repeat(np.arange(1, len(frequencies) + 1), own.size)
+    return time, step, force + 0.05 * rng.standard_normal(force.size)
+
+
+def test_a_programme_in_the_header_says_how_often_each_step_comes(tmp_path):
+    frequencies = (1.0, 2.0, 5.0)
+    time, step, force = _strokes(frequencies)
+    rows = "\n".join(f"{t:.3f};{k};{f:.4f}" for t, k, f in zip(time, step, force, strict=True))
+    programme = "\n".join(f"{k};{f:.1f};6" for k, f in enumerate(frequencies, 1))
+    head = (
+        "Carga normal (N);25.0\nCarrera, pico a pico (mm);6.00\nMovimiento;Senoidal\n\n"
+        f"Etapa;Frecuencia (Hz);Duración (s)\n{programme}\n\n"
+    )
+    (tmp_path / "a.csv").write_text(f"{head}Tiempo (s);Etapa;Fuerza de fricción (N)\n{rows}\n")
+    run = tl.read(tmp_path / "a.csv")
+    assert "rows_left_out" not in run.attrs
+    np.testing.assert_allclose(
+        [float(f) for f in run.attrs["stroke_frequency_Hz_of_steps"].split(";")],
+        frequencies,
+        rtol=1e-3,
+    )
+    found = tl.friction_coefficient(run, tl.find_segments(run))
+    middle = found.sliding_speed.groupby(np.round(found.sliding_speed, 3)).mean()
+    np.testing.assert_allclose(middle, [18e-3, 36e-3, 90e-3], rtol=5e-3)
+    np.testing.assert_allclose(found.friction_coefficient, 0.12, atol=0.002)
+    assert "ramp" not in found.attrs.get("left_out", "")
+
+
+@pytest.mark.parametrize("stated", [1.0, 3.0, 5.0])
+def test_a_frequency_that_friction_does_not_have_is_no_speed(tmp_path, stated):
+    time, _, force = _strokes((2.0,), lasts=20.0)
+    rows = "\n".join(f"{t:.3f},{f:.4f}" for t, f in zip(time, force, strict=True))
+    head = f"Stroke: 6 mm\nFrequency: {stated} Hz\nDrive: crank\nLoad: 25 N\n"
+    (tmp_path / "a.csv").write_text(f"{head}Time [s],Friction force [N]\n{rows}\n")
+    run = tl.read(tmp_path / "a.csv")
+    assert "sliding_velocity" not in run
+    said = check_run(run, tl.find_segments(run)).table.query("status == 'fail'")
+    assert f"it does not turn over with the {stated:g} Hz that are stated" in " ".join(said.message)
+
+
+def test_a_part_of_another_frequency_does_not_pass_for_rest(tmp_path):
+    time, _, force = _strokes((1.0, 2.0, 4.0), lasts=10.0)
+    rows = "\n".join(f"{t:.3f},{f:.4f}" for t, f in zip(time, force, strict=True))
+    head = "Stroke: 6 mm\nFrequency: 1 Hz\nDrive: crank\nLoad: 25 N\n"
+    (tmp_path / "a.csv").write_text(f"{head}Time [s],Friction force [N]\n{rows}\n")
+    run = tl.read(tmp_path / "a.csv")
+    assert run.attrs["strokes_unlike_s"] == pytest.approx(19, abs=1.5)
+    said = check_run(run, tl.find_segments(run)).table.query("check == 'segment_speed'")
+    assert said.status.item() == "fail" and "for a part of the run only" in said.message.item()
+    # the same with rests in it is fine
+    resting = np.where((time > 10) & (time < 20), 0.0, force)
+    still = np.where(time >= 20, 0.0, resting)
+    assert not velocity_of_strokes(time, still, 6e-3, 1.0, "crank").unlike
+
+
+def test_strokes_that_a_files_name_states(tmp_path):
+    time, _, force = _strokes((2.0,), lasts=20.0)
+    rows = "\n".join(f"{t:.3f},{f:.4f},25" for t, f in zip(time, force, strict=True))
+    text = f"Time [s],Friction force [N],Load [N]\n{rows}\n"
+    (tmp_path / "pin_stroke6mm_2Hz_sine.csv").write_text(text)
+    run = tl.read(tmp_path / "pin_stroke6mm_2Hz_sine.csv")
+    assert float(run.sliding_velocity.max()) == pytest.approx(np.pi * 2 * 6e-3, rel=1e-3)
+    (tmp_path / "pin_100Hz.csv").write_text(text)  # how often samples were taken, perhaps
+    with pytest.raises(tl.TribolabError, match="nothing tells the sliding speed"):
+        tl.find_segments(tl.read(tmp_path / "pin_100Hz.csv"))
+    said = " ".join(file_lines(tmp_path / "pin_100Hz.csv"))
+    assert "how long the strokes are and how often they come" in said

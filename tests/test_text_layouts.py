@@ -8,7 +8,7 @@ import pytest
 
 import tribolab as tl
 from tribolab.draft.dialect.draft import draft_dialect, save_draft
-from tribolab.draft.dialect.questions import missing_words
+from tribolab.draft.dialect.questions import GuessedError, missing_words
 
 RNG = np.random.default_rng(21)
 TIME = np.round(0.1 * np.arange(300), 3)
@@ -337,3 +337,17 @@ def test_a_temperature_is_no_clock(tmp_path):
     run = tl.read(tmp_path / "a.csv")
     assert run.sizes["time"] == TIME.size
     np.testing.assert_allclose(run.normal_force, LOAD)
+
+
+def test_comments_between_rows_part_no_table(tmp_path):
+    rows = [f"{n / 50:.2f};{0.1 * n:.2f};6.0;1.5" for n in range(400)]
+    parts = ["\n".join(rows[k : k + 100]) for k in range(0, 400, 100)]
+    marked = "\n".join(f"# {k}. step: 5 mm/s\n{part}" for k, part in enumerate(parts, 1))
+    text = f"# Wiper\n# Time [s];Position [mm];Load [N];Friction force [N]\n{marked}\n"
+    (tmp_path / "a.csv").write_text(text)
+    run = tl.read(tmp_path / "a.csv")
+    assert run.sizes["time"] == 400
+    other = text.replace("# 2. step: 5 mm/s", "Results of the second part")
+    (tmp_path / "b.csv").write_text(other)
+    with pytest.raises(GuessedError, match="the table goes on below"):
+        tl.read(tmp_path / "b.csv")

@@ -48,6 +48,7 @@ from tribolab.friction.run_out import (
 )
 
 MOST_STRETCHES = 96  # stretches of a record; more resolve no slower memory
+_WANDERS = 2.0  # times the error by the scatter, from which it is said that it is larger
 _HUMP = 4.0  # an oscillation so much above the spectrum at zero is no slow wander
 _BESIDE = 0.3  # widening where the noise beside a line is all that moves the mean
 # how much the error is widened (and narrowed again where few samples were found because the memory
@@ -300,6 +301,26 @@ def student_remark(effective: float) -> str:
     if not effective < STUDENT:
         return ""
     return f"{effective:.2g} effective samples: the standard error is widened by Student's t"
+
+
+def wander_remark(estimate: Estimate) -> str:
+    """Say that an error is larger than the scatter makes it, by what a slow wander may hide.
+
+    Examples
+    --------
+    >>> calm = Estimate(0.3, 0.01, 0.001, 1000, 100.0, 0.5, 0.0, 0.0, 1.0)
+    >>> wander_remark(calm), wander_remark(calm._replace(sem=0.0041))
+    ('', 'the standard error is 4.1 times what the scatter makes: it holds a wander too slow to be \
+seen in so short a record')
+    """
+    scatter = estimate.std / np.sqrt(max(estimate.effective_samples, 1.0))
+    scatter *= student_widening(estimate.effective_samples)
+    if not scatter > 0 or not estimate.sem > _WANDERS * scatter:
+        return ""
+    return (
+        f"the standard error is {estimate.sem / scatter:.2g} times what the scatter makes: "
+        "it holds a wander too slow to be seen in so short a record"
+    )
 
 
 def sample_weights(time: np.ndarray) -> np.ndarray | None:

@@ -29,6 +29,7 @@ def may_say(layout: Layout, follows: Follows, lack: str) -> str:
         One of what `lacking` returns.
     """
     lines = [value.text for value in _perhaps(layout, follows, lack)]
+    lines = [" ".join(line.split()) for line in lines]
     return " or ".join(f"'{shown(line, 50)}'" for line in dict.fromkeys(lines[:_QUOTED]))
 
 

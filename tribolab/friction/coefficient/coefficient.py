@@ -14,7 +14,7 @@ from tribolab.friction.coefficient.reversal import reversal_of
 from tribolab.friction.coefficient.steadiness import judged
 from tribolab.friction.decisions.rejected import beside_rejected
 from tribolab.friction.run_out import turn_remark, turned
-from tribolab.friction.statistics import Estimate, estimates_of, student_remark
+from tribolab.friction.statistics import Estimate, estimates_of, student_remark, wander_remark
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import ZeroReference
 from tribolab.friction.zero.rests import light_rest, unloaded_rests
@@ -301,7 +301,11 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
 
 def _remark(estimate: Estimate) -> str:
     """Say why an error is wide, if it is."""
-    told = (student_remark(estimate.effective_samples), turn_remark(estimate.turns))
+    told = (
+        student_remark(estimate.effective_samples),
+        turn_remark(estimate.turns),
+        wander_remark(estimate),
+    )
     return "; ".join(filter(None, told))
 
 

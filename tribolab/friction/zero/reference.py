@@ -13,10 +13,11 @@ from tribolab.friction.zero.rectified import Fold
 from tribolab.friction.zero.rests import Zeros
 from tribolab.friction.zero.unequal import across_speeds
 from tribolab.friction.zero.words import of_speeds, words_of
-from tribolab.medians import median_of_known
+from tribolab.medians import median, median_of_known
 
 _ASYMMETRY = 0.05  # share of friction by which a zero may miss the middle of the loop
 _MISSED = 3.0  # standard errors of the same
+_EXAMPLE = 0.02  # of the friction: an error of its zero
 
 _OFFSET_OF_ITSELF = 'say offset = "auto" in [friction]'
 
@@ -282,7 +283,7 @@ def _from_outside(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroR
             "strokes is in the friction and not in its error"
         )
         cure = (
-            f'State `zero_uncertainty` (e.g. "{"0.2 N" if strokes.unit else "1 %"}"), by how much '
+            f'State `zero_uncertainty` (e.g. "{_example(strokes)}"), by how much '
             "the zero drifts, in the [[run]] or of the column in the dialect; or measure strokes "
             "both ways, or rests without load before and after."
         )
@@ -305,9 +306,18 @@ def _from_outside(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroR
         "the zero of the friction signal is not known: no strokes both ways at one speed, no rest "
         "without load; its offset is in the friction and not in its error"
     )
-    example = "0.2 N" if strokes.unit else "1 %"
+    example = _example(strokes)
     cure = (
         f'State `zero_uncertainty` (e.g. "{example}") in the [[run]], or of the column in the '
         "dialect; or measure strokes both ways, or a rest without load."
     )
     return replace(result, doubts=(doubt(text, cure, np.arange(strokes.size)),))
+
+
+def _example(strokes: StrokeMeans) -> str:
+    """Return an error of the zero that is one of these strokes: a fiftieth of their friction."""
+    size = np.abs(strokes.mean[np.isfinite(strokes.mean)])
+    share = _EXAMPLE * float(median(size)) if size.size else 0.0
+    if not strokes.unit or not share > 0:
+        return "1 %"
+    return f"{share:.1g}{strokes.unit}"
