@@ -252,7 +252,8 @@ def test_a_rotation_and_a_radius_in_the_header_make_the_speed(tmp_path):
     np.testing.assert_allclose(run.sliding_velocity, speed, rtol=1e-6)
     assert run.attrs["speed_from"] == "rotation" and run.attrs["track_radius_m"] == 0.02
     file.write_text(f"Inner radius: 10 mm\nOuter radius: 20 mm\n{table}")
-    assert "sliding_velocity" not in tl.read(file)  # which of the two is not said
+    with pytest.raises(GuessedError, match="the mean of the inner and the outer radius"):
+        tl.read(file)  # a wide ring, or a disc with a hole
 
 
 def test_turns_whose_unit_is_not_said_are_not_asked_about_where_the_way_is_known(tmp_path):

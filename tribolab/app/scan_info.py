@@ -59,6 +59,9 @@ def areal_lines(scan: xr.Dataset) -> list[str]:
 def roughness_lines(scan: xr.Dataset) -> list[str]:
     """Say how rough it is: with the cut-off that instruments apply, and with none."""
     # late: starting stays quick
+    import numpy as np
+
+    from tribolab.records.roughness_words import hardly_bends
     from tribolab.records.wording import with_error
     from tribolab.surface.form import remove_form
     from tribolab.surface.roughness import (
@@ -90,7 +93,10 @@ def roughness_lines(scan: xr.Dataset) -> list[str]:
     radius = flat.attrs.get("form_radius_m", math.inf)
     is_map = scan.sizes.get("y", 1) > 1
     form = "polynomial of degree 2" if is_map else "form"
-    form = f"circle of R = {radius:.3g} m" if math.isfinite(radius) else form
+    if math.isfinite(radius):
+        length = float(np.ptp(scan["x"].values))
+        bent = not hardly_bends(radius, length, 1e-6 * all_waves)
+        form = f"circle of R = {radius:.3g} m" if bent else "tilt"
     rows = ", along its rows" if is_map else ""
     beside = ""
     if abs(level / all_waves - 1) > _OTHER_FORM:

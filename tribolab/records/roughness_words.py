@@ -9,6 +9,7 @@ from tribolab.records.parts import Row, number_of
 from tribolab.records.wording import with_error
 from tribolab.words import Count, number
 
+_BEND = 0.1  # of Pq, by which a circle is none to speak of
 _MOST = 5  # surfaces that are named
 DOUBTFUL_FORM = "a circle of"  # how the text of a form that may be waviness begins
 _FORMS = {"polynomial": "polynomial of degree 2"}
@@ -21,6 +22,12 @@ def form_in_words(row: Row, *, radius: bool = True) -> str:
     --------
     >>> form_in_words({"form_removed": "circle", "form_radius_m": 0.0702})
     'circle of R = 0.0702 m taken off'
+
+    Of a profile that it hardly bends it is the tilt that is taken off:
+
+    >>> flat = {"form_radius_m": 400.0, "evaluation_length_m": 4e-3, "Pq_m": 1e-6}
+    >>> form_in_words({"form_removed": "circle"} | flat)
+    'tilt taken off'
     >>> form_in_words({"form_removed": "none"}), form_in_words({"form_removed": "tilt"})
     ('no form taken off', 'tilt taken off')
     """
@@ -28,8 +35,22 @@ def form_in_words(row: Row, *, radius: bool = True) -> str:
     if form in ("", "none"):
         return "no form taken off" if form else ""
     size = number_of(row, "form_radius_m")
+    length, all_waves = (number_of(row, key) for key in ("evaluation_length_m", "Pq_m"))
+    if form == "circle" and size and hardly_bends(size, length, all_waves):
+        return "tilt taken off"
     of = f" of R = {number(size)} m" if radius and size is not None and math.isfinite(size) else ""
     return f"{_FORMS.get(form, form)}{of} taken off"
+
+
+def hardly_bends(radius: float, length: float | None, roughness: float | None) -> bool:
+    """Whether a circle [m] over a length [m] bends by far less than the heights' Pq [m].
+
+    >>> hardly_bends(400.0, 4e-3, 1e-6), hardly_bends(0.07, 4e-3, 1e-6)
+    (True, False)
+    """
+    if length is None or roughness is None:
+        return False
+    return length**2 / (8 * abs(radius)) < _BEND * roughness
 
 
 def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:

@@ -120,6 +120,7 @@ def findings_of(run: xr.Dataset) -> list[FindingRow]:
 
 
 _SHIFT = ("clock_shift_s", "clock_shift_uncertainty_s")
+_SAME_SPEED = 1.05  # times the slower of two: strokes of one speed
 
 
 def friction_facts(friction: xr.Dataset) -> RunFacts:
@@ -139,6 +140,7 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
     sem = values_of(friction, f"{of}_sem", value.size)
     alone = independent(friction)
     middle = friction.attrs.get("stroke_middle")
+    told = value[finite] if middle is None else _means_at(speed[finite], value[finite])
     return RunFacts(
         quantity=name,
         offset=str(friction.attrs.get("offset", "")),
@@ -146,13 +148,24 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
         velocity_source=_speed_told(friction.attrs),
         sliding_speed_min_m_s=plain_value(np.nanmin(speed, initial=np.inf)),
         sliding_speed_max_m_s=plain_value(np.nanmax(speed, initial=-np.inf)),
-        value_min=plain_value(value[finite].min()) if finite.any() else None,
-        value_max=plain_value(value[finite].max()) if finite.any() else None,
+        value_min=plain_value(told.min()) if told.size else None,
+        value_max=plain_value(told.max()) if told.size else None,
         relative_scatter=float(median(scatter)) if scatter.size else None,
         relative_drift=plain_value(drift_of(friction, value)),
         unsteady_segments=int((values_of(friction, "steady", value.size) == 0).sum()),
         highlights=tuple(_highlights(speed, value, std, sem, alone)),
     )
+
+
+def _means_at(speed: np.ndarray, value: np.ndarray) -> np.ndarray:
+    """Return the mean of the values at each speed: one of hundreds of strokes tells little.
+
+    >>> _means_at(np.array([1.0, 1.01, 2.0]), np.array([0.2, 0.4, 0.1])).round(3).tolist()
+    [0.3, 0.1]
+    """
+    order = np.argsort(speed)
+    edges = np.flatnonzero(speed[order][1:] > _SAME_SPEED * speed[order][:-1]) + 1
+    return np.array([part.mean() for part in np.split(value[order], edges) if part.size])
 
 
 def _speed_told(attrs: Mapping[str, Any]) -> str:

@@ -258,8 +258,9 @@ def _tip(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         status = "fail" if value > limits["fail"] else "suspect"
     text = (
         f"the tip of {radius * 1e6:.3g} um does not follow waves shorter than {reach[worst]:.3g} "
-        f"um; {value:.0%} of the mean square slope lies there, {subject.profile_names[worst]}"
+        f"um; {value:.0%} of the mean square slope lies there"
     )
+    text += f", {subject.profile_names[worst]}" if len(subject.spectra) > 1 else ""
     return [Result(status, "height", text, value)]
 
 

@@ -113,11 +113,13 @@ def _of_surfaces(surfaces: Sequence[SurfaceOutcome], rejected: Sequence[str]) ->
     """Return what came of a campaign that measured surfaces only."""
     scanned = [surface for surface in surfaces if surface.files]
     done = sum(surface.done for surface in scanned)
-    text = f"{done} of {many(len(scanned), 'surface')}"
+    suspect = sum(surface.quality == "suspect" for surface in scanned if surface.done)
+    text = f"{done} of {many(len(scanned), 'surface')}" + f" ({suspect} suspect)" * bool(suspect)
     if rejected:
         text += f"; scans of {', '.join(rejected)} rejected"
     status = "complete" if done == len(scanned) and not rejected else "incomplete"
-    return replace(verdict((), rejected), status=status if done else "nothing", text=text)
+    status = status if done else "nothing"
+    return replace(verdict((), rejected), status=status, text=text, suspect=suspect)
 
 
 def verdict(

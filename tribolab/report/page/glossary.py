@@ -74,6 +74,9 @@ OF_SURFACES = frozenset(
     ("A/A₀", "Pull-off force", "h rms", "Rq", "Pq", "Sq", "Slope rms", "Hurst exponent", "Roll-off")
 )
 
+# Of these what only its contact makes.
+OF_CONTACT = frozenset(("A/A₀", "Pull-off force"))
+
 # Words in the sentences of the first screen that are explained where they stand.
 TERMS: dict[str, str] = {
     "lift off": GLOSSARY["Lift-off"],
