@@ -114,3 +114,35 @@ def test_what_turns_is_a_crank_where_the_text_says_so(tmp_path: Path) -> None:
     assert np.median(segments.sliding_speed.values) == pytest.approx(0.09, rel=0.01)
     file = _file(tmp_path, ["Tribómetro biela-manivela"], names, *columns, name="b")
     assert "drive" in tl.read(file).attrs
+
+
+@pytest.mark.parametrize(
+    ("above", "column", "signal"),
+    [
+        ("Friction: 12.5 N/V, zero 0.21 V", "Friction [V]", FRICTION / 12.5 + 0.21),
+        ("Friction: 0.002 N/count, offset 118", "Friction [counts]", FRICTION / 0.002 + 118),
+        ("Kanal 1: 0.002 N/enhet, nollvärde 118 enheter", "Kanal 1", FRICTION / 0.002 + 118),
+        ("Kanal 1: 0.002 N/enhet, nollvärde 0.236 N", "Kanal 1", FRICTION / 0.002 + 118),
+        (
+            "Friction: 100 N = 2.013 mV/V, 5 V, zero 0.4 mV",
+            "Friction [mV]",
+            FRICTION / 100 * 2.013 * 5 + 0.4,
+        ),
+        (
+            "Friction: 100 N = 2.013 mV/V, 5 V, zero 0.04 mV/V",
+            "Friction [mV]",
+            (FRICTION / 100 * 2.013 + 0.04) * 5,
+        ),
+    ],
+)
+def test_a_zero_beside_a_factor_is_taken_off(
+    tmp_path: Path, above: str, column: str, signal: np.ndarray
+) -> None:
+    above = above.replace("Kanal 1:", "Kanal 1  friktionskraft")
+    signal = signal if column.endswith("V]") else np.round(signal)
+    names = f"Time [s];Position [mm];{column};Normal force [N]"
+    file = _file(tmp_path, [above], names, TIME, WAY, signal, LOAD)
+    np.testing.assert_allclose(tl.read(file).friction_force, FRICTION, atol=2e-3)
+    done = _file(tmp_path, [f"{above} (subtracted)"], names, TIME, WAY, signal, LOAD, name="b")
+    off = tl.read(done).friction_force - FRICTION
+    assert float(off.min()) > 0.2 and float(off.max() - off.min()) < 0.01

@@ -351,3 +351,23 @@ def test_comments_between_rows_part_no_table(tmp_path):
     (tmp_path / "b.csv").write_text(other)
     with pytest.raises(GuessedError, match="the table goes on below"):
         tl.read(tmp_path / "b.csv")
+
+
+def test_settings_may_stand_below_a_table_that_begins_the_file(tmp_path):
+    rows = "\n".join(f"{t},120,{0.02 * f:.5f}" for t, f in zip(TIME, FORCE, strict=True))
+    foot = "\nTest parameters\nTrack radius: 20 mm\nNormal load: 10 N\nOperator: A. Person\n"
+    for name, text in (("short", rows), ("long", "\n".join([rows] * 400))):
+        if name == "long":  # only its end is looked at
+            numbers = (f"{k / 10:.1f},120,0.024" for k in range(120_000))
+            text = "\n".join(numbers)
+        file = tmp_path / f"{name}.csv"
+        file.write_text(f"Time [s],Speed [rpm],Torque [N m]\n{text}\n{foot}")
+        run, kept = both_ways(file)
+        assert run.attrs["track_radius_m"] == 0.02 and run.attrs["set_normal_force_N"] == 10
+        np.testing.assert_array_equal(run.friction_force, kept.friction_force)
+    # what stands above goes before, and results below are no settings
+    file.write_text(
+        f"Load: 5 N\nTrack radius: 30 mm\nTime [s],Speed [rpm],Torque [N m]\n{rows}\n{foot}"
+    )
+    run = tl.read(file)
+    assert run.attrs["track_radius_m"] == 0.03 and run.attrs["set_normal_force_N"] == 5

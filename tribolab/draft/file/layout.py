@@ -97,6 +97,7 @@ class Layout(NamedTuple):
     quoted: bool = False
     wrapped: bool = False
     arrangement: Arrangement = "below names"
+    foot: tuple[str, ...] = ()
 
     @property
     def delimiter_name(self) -> str:
@@ -106,6 +107,8 @@ class Layout(NamedTuple):
     def text_above(self, *, bare: bool = False) -> tuple[str, ...]:
         """Return the lines above the table, its first ones at most: none are above bare numbers.
 
+        Where a file begins with its table they are those below it.
+
         Parameters
         ----------
         bare
@@ -113,7 +116,9 @@ class Layout(NamedTuple):
         """
         stop = self.blocks[0].start if bare and self.blocks else 0
         stop = self.heading.names if self.heading is not None else stop
-        return self.lines[: min(stop, _MOST_ABOVE)]
+        above = self.lines[: min(stop, _MOST_ABOVE)]
+        nothing = self.heading is not None and not any(line.strip() for line in above)
+        return self.foot[:_MOST_ABOVE] if nothing else above
 
     @property
     def units_line(self) -> int:
@@ -243,7 +248,18 @@ def find_layout(file: File) -> Layout:
         quoted=quoted,
         wrapped=wrapped,
         arrangement=arrangement,
+        foot=_foot(lines, main, tail, grammar) if end is not None and len(main) == 1 else (),
     )
+
+
+def _foot(
+    lines: Sequence[str], main: Sequence[Block], tail: Sequence[str], grammar: Grammar
+) -> tuple[str, ...]:
+    """Return the lines below the table."""
+    if not tail:
+        return tuple(lines[main[-1].stop :])
+    last = max((n for n, row in enumerate(tail, 1) if grammar.width(row)), default=len(tail))
+    return tuple(tail[last:])
 
 
 def _go_on(lines: Sequence[str], main: Sequence[Block], grammar: Grammar) -> bool:

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.counts import COUNT_WORD
+from tribolab.draft.stated.counts import COUNT_WORD, zero_beside
 from tribolab.draft.stated.values import DraftValue
 from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.draft.words.sentences import pattern_behind
@@ -42,6 +42,9 @@ _OUTPUT = re.compile(rf"{_NUMBER}\s?mV\s?/\s?V(?![\w/])")
 _RATED = re.compile(rf"{_NUMBER}\s?(?P<unit>[kmM]?N|k?gf?|kp|lbf?)(?![\w/])")
 _ENDS = re.compile(r";|\s{3,}")
 _FED = re.compile(rf"{_NUMBER}\s?V(?![\w/])")
+
+
+_ZeroOf = Literal["signal", "ratio", "made"]
 
 
 class Gain(NamedTuple):
@@ -163,8 +166,43 @@ def _by_ratio(column: DraftColumn, raw: str, said: _Said) -> Gain | None:
             match, said, whole, f"{SYMBOLS[quantity]}_factor", _to(quantity, whole)
         )
         sign = "*" if multiplies else "/"
-        return Gain(quantity, column, f"{SYMBOLS[quantity]} {sign} {number}", _about(said), values)
+        name = SYMBOLS[quantity]
+        zero = _zero_of(said, match, raw, quantity)
+        if zero is None:
+            return Gain(quantity, column, f"{name} {sign} {number}", _about(said), values)
+        text, more, of = zero
+        if of == "ratio":
+            return None
+        formula = f"({name} - {text}) {sign} {number}"
+        formula = formula if of == "signal" else f"{name} {sign} {number} - {text}"
+        return Gain(quantity, column, formula, _about(said), (*values, *more))
     return None
+
+
+def _zero_of(
+    said: _Said, factor: re.Match[str], raw: str, quantity: str
+) -> tuple[str, tuple[DraftValue, ...], _ZeroOf] | None:
+    """Return the zero that stands beside a factor: "0.0015 N/count, zero 118 counts".
+
+    Returns
+    -------
+    tuple or None
+        As a formula has it, the value that it rests on, and what it is one of: of the signal, of
+        its ratio to what feeds a bridge, or of what the signal makes.
+    """
+    match = zero_beside(said.text, factor.end())
+    if match is None or not float(match["number"].replace(",", ".")):
+        return None
+    unit = unit_in_words(match["unit"] or "")
+    name = f"{SYMBOLS[quantity]}_zero"
+    if converts(unit, _SI_UNITS[quantity]) and unit:
+        return *_number(match, said, unit, name, _SI_UNITS[quantity]), "made"
+    if "/" in unit and converts(unit, "1"):
+        return *_number(match, said, unit, name, "1"), "ratio"
+    if raw == "V":
+        unit = unit if converts(unit, "V") else "V"
+        return *_number(match, said, unit, name, "V"), "signal"
+    return *_number(match, said, "1", name, "1"), "signal"
 
 
 def _by_bridge(column: DraftColumn, said: _Said) -> Gain | None:
@@ -185,7 +223,17 @@ def _by_bridge(column: DraftColumn, said: _Said) -> Gain | None:
     ]
     load, gives, feeds = (text for text, _ in parts)
     values = tuple(value for _, more in parts for value in more)
-    return Gain(quantity, column, f"{name} / {gives} / {feeds} * {load}", _about(said), values)
+    last = max((rated, output, fed[0]), key=lambda match: match.start())
+    formula = f"{name} / {gives} / {feeds} * {load}"
+    if (zero := _zero_of(said, last, "V", quantity)) is not None:
+        text, more, of = zero
+        values = (*values, *more)
+        formula = {
+            "signal": f"({name} - {text}) / {gives} / {feeds} * {load}",
+            "ratio": f"({name} / {feeds} - {text}) / {gives} * {load}",
+            "made": f"{formula} - {text}",
+        }[of]
+    return Gain(quantity, column, formula, _about(said), values)
 
 
 def _number(
@@ -194,7 +242,7 @@ def _number(
     """Return a number as a formula has it, and the value that it is where a line states it."""
     if not said.line:  # the column's name: a file of another number has another column
         return f"'{match['number'].replace(',', '.')} {unit}'", ()
-    pattern = pattern_behind(said.line[: said.place + match.start()])
+    pattern = pattern_behind(said.line[: said.place + match.start("number")])
     value = DraftValue(
         name, pattern, unit, to, said.line.strip(), own_unit=unit, key=squeezed(name)
     )

@@ -14,15 +14,16 @@ from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.stated_load import find_load
 from tribolab.draft.stated.values import DraftValue, find_values
 from tribolab.draft.vocabulary import WEIGHTS
-from tribolab.draft.words.stated_words import ZERO
+from tribolab.draft.words.stated_words import OFF_ALREADY, TAKEN_OFF, ZERO
 from tribolab.draft.words.words import matches, split_unit, squeezed
 from tribolab.errors import shown
 from tribolab.quantities import quantity
+from tribolab.units import conversion
 
 _LONGEST = 200  # characters of a line that are looked at
 _NUMBER = r"\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?"
 COUNT_WORD = (
-    r"(?:counts?|cts|digits?|lsb|bits?|incr(?:ement)?s?|micro?steps?|steps?|pulses?|ticks?"
+    r"(?:counts?|cts|units?|enheten|enheter|enhet|enheder|yksik\w+|einheit(?:en)?|digits?|lsb|bits?|incr(?:ement)?s?|micro?steps?|steps?|pulses?|ticks?"
     r"|conteggi[o]?|pass[io]|impulsi?|cuentas?|pasos?|pulsos?|impulsos?|contagens|passos?|coups|pas"
     r"|impulsions?|schritte?|impulse?|inkremente?|stappen|pulsen|krok\w{0,3}|impuls\w{0,3}|zlicz\w+"
     r"|pulser|steg|имп\w{0,6}|шаг\w{0,3}|отсч[её]т\w{0,3}|сч[её]т\w{0,3}|код\w{0,3}|ед\.?\s?АЦП"
@@ -54,12 +55,22 @@ _RAW = re.compile(  # names of a converter's numbers
 _FRICTION = {"friction_force", "friction_coefficient", "shear_stress", "torque"}
 
 
+# "0.002 N/count, zero 118 counts": what a signal shows without force, beside its factor
+ZERO_BESIDE = re.compile(
+    r"(?:zero|offset|tare|null\w*|noll\w*|nul(?:punt|punkt|stil\w*|v[æe]rdi)\w*|zéro|cero|tara|零[点位]?"
+    r"|ゼロ|нол\w*|нул\w*|영점|sıfır\w*|nul(?:a|ov\w*))[^\w+\-]{0,4}(?:(?:at|bei|=|:)\s?)?"
+    r"(?P<number>[-+]?\d+(?:[.,]\d+)?)\s?(?P<unit>[^\W\d_]{1,12}(?:/[^\W\d_]{1,4})?)?",
+    re.IGNORECASE,
+)
+
+
 class _Worth(NamedTuple):
     """What one count is, and the line that states it."""
 
     number: float
     unit: str
     line: str
+    zero: float = 0.0
 
     @property
     def as_unit(self) -> str:
@@ -92,6 +103,19 @@ def with_worth(
         return list(columns)
     result = [_with_worth(column, columns, stated, numbers) for column in columns]
     return _raw_force(layout, result, stated, numbers)
+
+
+def zero_beside(text: str, start: int) -> re.Match[str] | None:
+    """Return where a text states a zero that is still in the signal, behind some place.
+
+    >>> zero_beside("0.002 N/count, zero 118 counts", 14)["number"]
+    '118'
+    >>> zero_beside("0.002 N/count, zero 118 counts (subtracted)", 14)
+    """
+    match = next((m for m in ZERO_BESIDE.finditer(text) if m.start() >= start), None)
+    if match is None or TAKEN_OFF.search(text) or OFF_ALREADY.search(text[match.end() :]):
+        return None
+    return match
 
 
 def stated_worth(line: str) -> str:
@@ -156,6 +180,7 @@ def _with_worth(
     guess = f"one count is {mine[0].as_unit}: '{shown(mine[0].line, 40)}'"
     return column._replace(
         unit=mine[0].as_unit,
+        offset=-mine[0].zero,
         used=True,
         fill_in="",
         counted=True,
@@ -182,6 +207,7 @@ def _raw_force(
     taken = raw[0]._replace(
         quantity="friction_force",
         unit=of_force[0].as_unit,
+        offset=-of_force[0].zero,
         counted=True,
         used=True,
         note="",
@@ -225,14 +251,28 @@ def _worth(line: str) -> _Worth | None:
     if stated is not None:
         number = _number(stated["number"])
         size = number if each or not number else 1 / number
-        return _Worth(size, stated["unit"], line.strip()) if number else None
+        zero = _zero_beside(line, stated.end(), size, stated["unit"])
+        return _Worth(size, stated["unit"], line.strip(), zero) if number else None
     both = _ONE_IS.search(line) or _COUNTS_ARE.search(line)
     if both is None or _measures(both["word"]):
         return None
     number, counts = _number(both["number"]), _number(both["counts"])
     if not (number and counts) or not (is_unit(both["unit"]) or both["unit"] in WEIGHTS):
         return None
-    return _Worth(number / counts, both["unit"], line.strip())
+    worth = number / counts
+    zero = _zero_beside(line, both.end(), worth, both["unit"])
+    return _Worth(worth, both["unit"], line.strip(), zero)
+
+
+def _zero_beside(line: str, start: int, worth: float, unit: str) -> float:
+    """Return the counts without force that a line states behind what one is worth; else 0."""
+    match = zero_beside(line, start)
+    if match is None:
+        return 0.0
+    zero, own = _number(match["number"]), WEIGHTS.get(match["unit"] or "", match["unit"] or "")
+    if own and _measures(own) and converts(own, base := WEIGHTS.get(unit, unit)):
+        return zero * conversion(own, base)[0] / worth
+    return zero
 
 
 def _measures(unit: str) -> bool:

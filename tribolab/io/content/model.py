@@ -33,3 +33,4 @@ class Content(NamedTuple):
     notes: Mapping[str, str] = {}
     symbols: Mapping[str, str] = {}  # SI units of columns that only formulas use
     scales: Mapping[str, tuple[float, float]] = {}  # what made SI of a column: scale and offset
+    foot: str = ""  # the text below the table, of a file that begins with it

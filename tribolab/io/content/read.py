@@ -23,6 +23,7 @@ from tribolab.provenance import sha256_of_file
 _T = TypeVar("_T")
 _UNCLEAR = 0.5  # of a load's largest number, that of the other sign
 _PLACES = ("x", "y")  # of a scan: `scan_grid` says which cannot be
+_OF_NAMES = 3  # lines of names and units with which a table begins, at most
 
 
 def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
@@ -83,7 +84,7 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
 
 def _read_text(file: File, dialect: Dialect, size: int) -> Content:
     # late: starting stays quick
-    from tribolab.io.dialects.rows_outside import rows_outside
+    from tribolab.io.dialects.rows_outside import foot_of, rows_outside
     from tribolab.io.dialects.text import Hasher, read_table
     from tribolab.io.dialects.text_tables import find_tables
 
@@ -121,7 +122,11 @@ def _read_text(file: File, dialect: Dialect, size: int) -> Content:
     outside = max(0, outside - programmed_steps(pieces[0].before, dialect))
     left_out = {"cut short at the end": cut, "outside of the table that is read": outside}
     left_out = {reason: count for reason, count in left_out.items() if count}
-    return Content(file.path, sha256, pieces, labels, tuple(unused), left_out, {}, own, scales)
+    begins = len(pieces) == 1 and pieces[0].before.strip().count("\n") < _OF_NAMES
+    foot = foot_of(raw, dialect) if begins else ""
+    return Content(
+        file.path, sha256, pieces, labels, tuple(unused), left_out, {}, own, scales, foot
+    )
 
 
 def measurable(values: np.ndarray) -> np.ndarray:

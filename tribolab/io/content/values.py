@@ -1,4 +1,4 @@
-"""Single values outside the table: in the preamble, in a step's text, in the file's name."""
+"""Single values outside the table: in the text about it, in a step's, in the file's name."""
 
 from __future__ import annotations
 
@@ -36,6 +36,8 @@ def single_values(content: Content, dialect: Dialect) -> dict[str, str | float]:
             continue
         text = content.path.name if value.source == "file name" else content.pieces[0].before
         text_found = _first_match(value.pattern, text)
+        if not text_found and value.source == "preamble":
+            text_found = _first_match(value.pattern, content.foot)
         if text_found:
             _agrees(text_found, value, content, dialect)
             attrs[value.attribute] = converted(text_found, value, content, dialect)

@@ -1,12 +1,14 @@
-"""Rows of numbers that stand in a text file outside of the tables that are read."""
+"""What stands in a text file outside of the tables that are read: rows of numbers, a foot."""
 
 from __future__ import annotations
 
 import re
 
 from tribolab.errors import ReadError
+from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.text_tables import RawText
 
+_LONGEST_FOOT = 1 << 16  # bytes
 # a line that begins with a number and holds neither words nor times of day nor dates
 _NUMBERS = re.compile(rb'^[ \t"]*[-+.]?\d[^\r\nA-DF-Za-df-z:/#%]*\r?$', re.MULTILINE)
 
@@ -38,6 +40,29 @@ def rows_outside(raw: RawText, delimiter: str) -> int:
     width = max(table.width for table in tables)
     mark = b"\t" if delimiter == "whitespace" else delimiter.encode()
     return sum(_count(_bytes(raw, *gap), mark, width) for gap in gaps)
+
+
+def foot_of(raw: RawText, dialect: Dialect) -> str:
+    """Return the text below the last table of a file, of a long one its end.
+
+    Parameters
+    ----------
+    raw
+        As for `rows_outside`.
+    dialect
+        The encoding of the file.
+
+    Raises
+    ------
+    ReadError
+        If the file cannot be read any more.
+    """
+    size = raw.file.size if raw.memory is None else len(raw.memory)
+    stop = raw.tables[-1].stop
+    if not stop < size:
+        return ""
+    text = _bytes(raw, max(stop, size - _LONGEST_FOOT), size)
+    return text.decode(dialect.text.encoding, errors="replace").replace("\r", "\n")
 
 
 def _bytes(raw: RawText, start: int, stop: int) -> bytes:

@@ -72,7 +72,7 @@ def find_tables(path: str | Path | File, dialect: Dialect, *, head_only: bool = 
     memory = mended(file, dialect, head_only)
     if memory is not None:
         return RawText(file, memory, tuple(_scan(file, memory, len(memory), dialect)))
-    if head_only or not dialect.header.repeats:
+    if head_only or not (dialect.header.repeats or dialect.text.end):
         return RawText(file, None, tuple(_scan(file, file.head, file.size, dialect)))
     try:
         with file.path.open("rb") as handle, mmap.mmap(handle.fileno(), 0, prot=1) as content:
