@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import tribolab as tl
+from tribolab.app.file_info import file_lines
 from tribolab.draft.dialect.draft import draft_dialect, save_draft
 from tribolab.errors import TribolabError
 
@@ -146,3 +147,31 @@ def test_a_zero_beside_a_factor_is_taken_off(
     done = _file(tmp_path, [f"{above} (subtracted)"], names, TIME, WAY, signal, LOAD, name="b")
     off = tl.read(done).friction_force - FRICTION
     assert float(off.min()) > 0.2 and float(off.max() - off.min()) < 0.01
+
+
+def test_channels_with_numbers_for_names_are_what_the_text_says_of_them(tmp_path: Path) -> None:
+    turns = np.where(TIME < 10, 0.0, 120.0)  # 1/min
+    head = [
+        "Track radius (mm)\t32,5",
+        "Sampling rate (Hz)\t10",
+        "Channel 1\tfriction force\tcalibration 0,00152 N/count\tzero 118 counts",
+        "Channel 2\tnormal force\tcalibration 0,00305 N/count\tzero -42 counts",
+        "Channel 3\trotation speed\tcalibration 0,05 rpm/count\tzero 0 counts",
+    ]
+    columns = (
+        np.arange(1, TIME.size + 1),
+        _counts(FRICTION, 1 / 0.00152, 118),
+        _counts(LOAD, 1 / 0.00305, -42),
+        _counts(turns, 20),
+    )
+    rows = ["\t".join(f"{x:.0f}" for x in row) for row in zip(*columns, strict=True)]
+    file = tmp_path / "board.dat"
+    file.write_text("\n".join([*head, "", "No\tChannel 1\tChannel 2\tChannel 3", *rows]) + "\n")
+    run = tl.read(file)
+    np.testing.assert_allclose(run.time, TIME, atol=1e-9)
+    np.testing.assert_allclose(run.friction_force, FRICTION, atol=1e-3)
+    np.testing.assert_allclose(run.normal_force, LOAD, atol=2e-3)
+    np.testing.assert_allclose(
+        run.sliding_velocity, turns * 2 * np.pi / 60 * 0.0325, rtol=1e-9, atol=1e-12
+    )
+    assert any("drafted from the file" in line for line in file_lines(file))

@@ -61,7 +61,12 @@ class Drafted(NamedTuple):
     def named(self) -> bool:
         """Whether names in a header, and not the numbers alone, say what the columns hold."""
         columns = self.understood.columns if self.understood else ()
-        return any(column.label and column.quantity for column in columns)
+        if any(column.label and column.quantity for column in columns):
+            return True
+        if self.layout is None or self.understood is None or self.kind != "run":
+            return False
+        # what a text states of signals that have numbers for names
+        return any(c.label for _, c in what_follows(self.layout, self.understood).symbols)
 
     @property
     def guesses(self) -> tuple[str, ...]:

@@ -63,6 +63,8 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     if "step" in names:
         values += programme_of(layout)
     told = _Told(layout, understood, names, values, find_inclined(layout))
+    if any(gain.quantity == "rotation_speed" for gain in stated_gains(layout, understood.columns)):
+        names.add("rotation_speed")
     track = _track_of(told)
     pair = surfaces_of(layout, understood, names)
     radii = radii_of(pair, values, understood.radius) if pair is not None else None

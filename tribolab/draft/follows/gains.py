@@ -27,8 +27,14 @@ SYMBOLS = {
     "friction_force": "friction_signal",
     "normal_force": "load_signal",
     "position": "way_signal",
+    "rotation_speed": "turn_signal",
 }
-_SI_UNITS = {"friction_force": "N", "normal_force": "N", "position": "m"}
+_SI_UNITS = {
+    "friction_force": "N",
+    "normal_force": "N",
+    "position": "m",
+    "rotation_speed": "rad/s",
+}
 _NUMBER = r"(?<![\d.,A-Za-z_])(?P<number>\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)"
 _UNIT = r"[^\W\d_]{1,5}"
 _RAW = rf"(?:[mµμu]?V|{COUNT_WORD})"
@@ -263,8 +269,8 @@ def _about(said: _Said) -> str:
 def _quantity(column: DraftColumn, words: str, unit: str) -> str:
     """Return what a column makes in a unit, by its name or by words; "" if that is not told."""
     kinds = [name for name, si_unit in _SI_UNITS.items() if converts(unit, si_unit)]
-    if kinds == ["position"]:
-        return "position"
+    if kinds in (["position"], ["rotation_speed"]):
+        return kinds[0]
     name = bare_name(column)[0]
     for text in (name, words, *re.findall(r"[^\W\d_]{4,}", words)):
         options = [option for option in matches(text, None) if option.score >= _KNOWN]

@@ -29,6 +29,7 @@ from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.axial import guesses_of_inclined
 from tribolab.draft.follows.bridges import calibrated_forces
+from tribolab.draft.follows.gains import stated_gains
 from tribolab.draft.follows.sensor import of_sensor
 from tribolab.draft.follows.stated_missing import take_stated_missing
 from tribolab.draft.follows.sums import adding_up, loads_that_add
@@ -129,6 +130,7 @@ def understand(layout: Layout) -> Understood:
     if kind == "run":  # what a force is reckoned with is not left out
         spoken_for = [shown(force.value.text, 40) for force in calibrated_forces(layout, columns)]
         guesses = [said for said in guesses if not any(text in said for text in spoken_for)]
+    columns = _without_counter(layout, columns, numbers) if kind == "run" else columns
     period = summed(columns, numbers)
     if kind == "run":
         columns = against_motion(told_by_settings(layout, columns, numbers), numbers)
@@ -161,6 +163,7 @@ def understand(layout: Layout) -> Understood:
         # time alone is a run only if something can be filled in
         timed = any(c.quantity == "time" and c.used for c in columns)
         made = torque_of(columns) is not None or angle_of(columns) is not None
+        made = made or bool(stated_gains(layout, columns))
         kind = "run" if timed or made or loads_that_add(columns) else "table"
     result = Understood(
         kind, tuple(columns), numbers, tuple(words), on_repeat, restart, tuple(guesses), period
@@ -178,6 +181,21 @@ def understand(layout: Layout) -> Understood:
     return result._replace(
         rate_pattern=sampling.pattern, rate_unit=sampling.unit, guesses=tuple(guesses)
     )
+
+
+def _without_counter(
+    layout: Layout, columns: list[DraftColumn], numbers: np.ndarray
+) -> list[DraftColumn]:
+    """Take no count of the rows for a clock where the text states how often they come."""
+    clock = next((c for c in columns if c.used and c.quantity == "time"), None)
+    if clock is None or not clock.guessed or clock.file_unit is not None:
+        return columns
+    sampling = find_sampling(layout)
+    if sampling is None or sampling.guess or (np.diff(numbers[:, clock.place - 1]) != 1).any():
+        return columns
+    note = "it counts the rows, whose rate the text states"
+    other = clock._replace(quantity=None, unit=None, used=False, guessed=(), options=(), note=note)
+    return [other if column is clock else column for column in columns]
 
 
 def _dated(
