@@ -79,7 +79,8 @@ def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
             question = f"which column is {words}? (its number; {_NONE} for none)"
             draft = _ask_for(draft, (name,), question, ask, say)
         return draft
-    question = f"which column is the time? (its number; or the rate of the rows: 100 Hz; {_NONE})"
+    question = "which column is the time? (its number; or the rate of the rows, such as 100 Hz; "
+    question += f"{_NONE})"
     if draft.understood and not draft.understood.rate_pattern:  # else the file states it
         draft = _ask_for(draft, ("time",), question, ask, say, amount="rate")
     question = "which column is the friction force (or its torque, or a friction coefficient)?"

@@ -118,7 +118,7 @@ _LINES = {
         Otáčky | Rychlost otáčení
         Omdrejningstal | Omdrejninger pr. minut
         Toerental | Omwentelingen per minuut | Rotatiesnelheid
-        Pyörimisnopeus | Kierrosnopeus | Kierrosluku
+        Pyörimisnopeus | Kierrosnopeus | Kierrosluku | Pyör.nopeus | Pyör. nop.
         Vitesse de rotation | Tours par minute | Régime
         Drehzahl | Umdrehungen pro Minute
         Fordulatszám
@@ -276,7 +276,7 @@ _LINES = {
         Zatížení | Normálová síla | Zátěž
         Belastning | Normalkraft | Last
         Belasting | Normaalkracht | Normale belasting | Last
-        Kuorma | Normaalivoima | Normaalikuorma | Kuormitus
+        Kuorma | Normaalivoima | Normaalikuorma | Kuormitus | Asetusvoima | Asetuskuorma
         Charge normale | Charge | Force normale | Charge appliquée | Effort normal
         Normalkraft | Prüflast | Belastung | Last | Prüfkraft
         Terhelés | Normál terhelés | Normál erő
@@ -361,7 +361,12 @@ _LINES = {
         Poloměr dráhy | Poloměr stopy
         Sporradius | Baneradius
         Loopspoorstraal | Spoorstraal | Baanstraal | Straal van het spoor
-        Radan säde | Kulumisuran säde | Uran säde
+        Radan säde | Kulumisuran säde | Uran säde | Kitkasäde | Kitkaradan säde | Liukusäde
+        Friktionsradius | Friksjonsradius | Friktionsradie | Glideradius | Gleitradius
+        Wrijvingsstraal | Rayon de glissement | Raggio di attrito | Raggio medio | Rayon moyen
+        Radio de fricción
+        Raio de atrito | Poloměr tření | Promień ślizgu | Súrlódási sugár | Sürtünme yarıçapı
+        Средний радиус
         Rayon de piste | Rayon de la piste | Rayon de frottement | Rayon de trace
         Reibradius | Spurradius | Laufradius | Bahnradius | Laufbahnradius
         Pálya sugara | Kopásnyom sugara | Pályasugár

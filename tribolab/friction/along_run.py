@@ -1,4 +1,4 @@
-"""The straight line through the strokes of a run, where friction surely changes along it."""
+"""Whether friction surely changes along the strokes of a run: all along it, or as it runs in."""
 
 from __future__ import annotations
 
@@ -10,6 +10,10 @@ _BLOCKS = 10  # of neighbouring strokes, whose means are as good as independent
 FEWEST = 2 * _BLOCKS  # strokes
 _SURE = 6.0  # standard errors of the slope, of 8 degrees of freedom: chance 3e-4
 _MATTERS = 0.02  # change along the run over the mean
+
+
+_SURE_OF_START = 8.0  # standard errors of the first block's distance, of 4 degrees of freedom
+_START_MATTERS = 0.05  # of the friction that the run settles at
 
 
 class Line(NamedTuple):
@@ -63,3 +67,43 @@ def line_along(time: np.ndarray, values: np.ndarray) -> Line | None:
     if abs(slope) <= _SURE * error or abs(change) <= _MATTERS * abs(level):
         return None
     return Line(float(middle.mean()), level, slope, error)
+
+
+class RunIn(NamedTuple):
+    """Friction of the first tenth of a run's strokes, and of the half at which it settles."""
+
+    first: float
+    settled: float
+    error: float
+
+
+def run_in(values: np.ndarray) -> RunIn | None:
+    """Return how far friction begins from where it settles; None where that is not sure, or little.
+
+    Parameters
+    ----------
+    values
+        Friction of each stroke, in order (stroke).
+
+    Notes
+    -----
+    The mean of the first of ten blocks of neighbouring strokes beside those of the last five, whose
+    scatter says how sure it is.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(0)
+    >>> n, noise = np.arange(200.0), 0.002 * rng.standard_normal(200)
+    >>> found = run_in(0.3 + 0.1 * np.exp(-n / 10) + noise)
+    >>> round(found.first, 2), round(found.settled, 2), run_in(0.3 + noise)
+    (0.35, 0.3, None)
+    """
+    if values.size < FEWEST:
+        return None
+    blocks = np.array([part.mean() for part in np.array_split(values, _BLOCKS)])
+    late = blocks[_BLOCKS // 2 :]
+    settled, error = float(late.mean()), float(late.std(ddof=1) * np.sqrt(1 + 1 / late.size))
+    off = abs(float(blocks[0]) - settled)
+    if off <= _SURE_OF_START * error or off <= _START_MATTERS * abs(settled):
+        return None
+    return RunIn(float(blocks[0]), settled, error)

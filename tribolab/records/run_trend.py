@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.along_run import FEWEST, line_along
+from tribolab.friction.along_run import FEWEST, line_along, run_in
 from tribolab.words import duration, many, number, percent, speed_text
 
 OUTSIDE = "what lies outside "  # how the text of strokes of which a part counts begins
@@ -25,9 +25,11 @@ class RunTrend(NamedTuple):
     first, last
         Mean friction of the first and of the last tenth of the segments.
     error
-        Standard error of the change, on the line through the segments.
+        Standard error of the change: on the line through the segments, or by the last half.
     segments, lasted
         How many there are, and the time from the first to the last [s].
+    settles
+        Whether it is that of the run-in, and `last` the mean of the last half.
     """
 
     speed: float
@@ -36,12 +38,20 @@ class RunTrend(NamedTuple):
     error: float
     segments: int
     lasted: float
+    settles: bool = False
 
     @property
     def text(self) -> str:
         """The trend in words."""
         verb = "rises" if abs(self.last) > abs(self.first) else "falls"
         share = percent(abs(self.last - self.first) / abs(self.first))
+        if self.settles:
+            return (
+                f"friction {verb} along the run as it begins, from {number(self.first)} in its "
+                f"first tenth to {number(self.last)} in its last half, by {share}, over "
+                f"{many(self.segments, 'segment')} at {speed_text(self.speed)}: the mean holds "
+                "the run-in"
+            )
         return (
             f"friction {verb} along the run from {number(self.first)} in its first tenth to "
             f"{number(self.last)} in its last, by {share}, over {many(self.segments, 'segment')} "
@@ -78,9 +88,14 @@ def _trend(
     speed: np.ndarray, middle: np.ndarray, values: np.ndarray, part: np.ndarray
 ) -> RunTrend | None:
     line = line_along(middle[part], values[part])
-    if line is None:
-        return None
     lasted = float(middle[part[-1]] - middle[part[0]])
+    if line is None:
+        early = run_in(values[part])
+        if early is None:
+            return None
+        usual = float(np.median(speed[part]))
+        size = part.size
+        return RunTrend(usual, early.first, early.settled, early.error, size, lasted, settles=True)
     tenth = max(part.size // 10, 1)  # what ends of a line would exceed where the change levels off
     first, last = (float(values[end].mean()) for end in (part[:tenth], part[-tenth:]))
     return RunTrend(

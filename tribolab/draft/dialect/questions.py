@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from tribolab.draft.columns.turning import torque_of
 from tribolab.draft.dialect.drafted import Drafted
+from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
-from tribolab.draft.file.marks import is_numbered
+from tribolab.draft.file.marks import further_words, is_numbered
 from tribolab.draft.follows.follows import what_follows
 from tribolab.draft.follows.lacking import lacking, unknown_of
 from tribolab.draft.follows.may_say import may_say
@@ -19,6 +20,8 @@ from tribolab.draft.follows.model import Follows
 from tribolab.draft.model import NO_NUMBERS, DraftColumn, Understood
 from tribolab.draft.stated.stated_zero import STILL
 from tribolab.draft.stated.values import without_unit
+from tribolab.draft.vocabulary import WEIGHTS
+from tribolab.draft.words.sentences import phrases
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
 
@@ -50,6 +53,8 @@ class Question(NamedTuple):
 
 
 _COMMENTS = ("#", "%", "//")
+_FORCES = ("normal_force", "set_normal_force")
+_MOTIONS = ("sliding_velocity", "rotation_speed", "position", "set_speed", "rolling_speed")
 
 
 def questions(draft: Drafted) -> list[Question]:
@@ -64,7 +69,7 @@ def questions(draft: Drafted) -> list[Question]:
     if layout is None or understood is None:
         return []
     asked = [Question("table", guess) for guess in (*layout.guesses, *understood.guesses)]
-    if layout.skip_lines and not _are_titles(layout):
+    if layout.skip_lines and not _are_titles(layout, understood):
         asked.append(Question("lines of text", "the table goes on below", ("it ends there",)))
     if (
         understood.kind == "run"
@@ -85,8 +90,12 @@ def questions(draft: Drafted) -> list[Question]:
     return asked
 
 
-def _are_titles(layout: Layout) -> bool:
-    """Whether all lines of text between the rows are comments, or titles of steps counted on."""
+def _are_titles(layout: Layout, understood: Understood) -> bool:
+    """Whether all lines of text between the rows are comments, or titles of steps counted on.
+
+    What titles say besides has to be what a column holds, too: a load or a radius of each step
+    alone would be lost.
+    """
     skipped = re.compile(layout.skip_lines or "$^")
     between = [
         line
@@ -94,7 +103,22 @@ def _are_titles(layout: Layout) -> bool:
         for line in layout.lines[block.start : block.stop]
         if line.strip() and skipped.match(line)
     ]
-    return is_numbered(between) or all(line.lstrip().startswith(_COMMENTS) for line in between)
+    if is_numbered(between) or all(line.lstrip().startswith(_COMMENTS) for line in between):
+        return True
+    said = further_words(between)
+    if said is None:
+        return False
+    names = {c.quantity for c in understood.columns if c.used}
+    units = {phrase.unit for words in said for phrase in phrases(words)}
+    return all(_is_held(unit, names) for unit in units)
+
+
+def _is_held(unit: str, names: Collection[str | None]) -> bool:
+    """Whether what is stated in a unit is held by a column, too, or is no setting of a contact."""
+    for si_unit, held in (("N", _FORCES), ("m/s", _MOTIONS), ("rad/s", _MOTIONS), ("m", ())):
+        if converts(unit, si_unit):
+            return any(name in names for name in held)
+    return unit not in WEIGHTS
 
 
 def _of_texts(understood: Understood) -> list[Question]:

@@ -12,12 +12,16 @@ from tribolab.draft.file.lines import Grammar
 # what steps of a programme are called
 STEP_WORD = (
     r"(?:step|stage|segment|block|interval|phase|schritt|stufe|abschnitt|intervall|[eé]tape|palier"
-    r"|phase|etapa|paso|fase|passo|krok|etap|stap|steg|trinn?|vaihe|l[eé]p[eé]s|ad[ıi]m|kademe|stupe[nň]|treapta|bieg|ступень|етап|крок|прогон|шаг|этап|режим|단계|步骤|步驟|阶段|段|ステップ)"
+    r"|phase|etapa|paso|fase|passo|krok|etap|stap|steg|trinn?|vaihe|askel|porras|l[eé]p[eé]s|l[eé]pcs[őo]|szakasz|gradino|patamar|degrau|ad[ıi]m|kademe|stupe[nň]|treapta|bieg|ступень|етап|крок|прогон|шаг|этап|режим|단계|步骤|步驟|阶段|段|ステップ)"
 )
 _ENDED = r"(?:end(?:e|ed|s)?|begin\w*|start\w*|finished|done|fin|fine|结束|開始|开始|終了|完成)"
 _TITLE = re.compile(
     rf"\W*(?:(?:{_ENDED}\W{{1,3}}(?:of\W|der\W|de\W)?)?{STEP_WORD}\W{{0,4}}(?P<number>\d+)"
     rf"|第\s?(?P<nth>\d+)\s?(?:步|段|级|阶段|ステップ|工程))\W*{_ENDED}?\W*",
+    re.IGNORECASE,
+)
+_LONG_TITLE = re.compile(
+    rf"\W*{STEP_WORD}\W{{0,4}}(?P<number>\d{{1,4}})(?:\s?(?:/|of|von|de|di|sur)\s?\d+)?(?P<rest>\D.*|$)",
     re.IGNORECASE,
 )
 _FEW = 5  # rows below a mark that are more than a line of results
@@ -90,6 +94,21 @@ def is_numbered(lines: Sequence[str]) -> bool:
     numbers = [int(title["number"] or title["nth"]) for title in titles if title]
     rising = all(b == a + 1 for a, b in zip(numbers, numbers[1:], strict=False))
     return bool(numbers) and len(numbers) == len(lines) and rising
+
+
+def further_words(lines: Sequence[str]) -> list[str] | None:
+    """Return what titles of steps that are counted on say besides; None of other lines.
+
+    >>> further_words(["--- Step 1/2  Speed 8 rpm ---", "--- Step 2/2  Speed 16 rpm ---"])
+    ['  Speed 8 rpm ---', '  Speed 16 rpm ---']
+    >>> further_words(["Results of the second part"])
+    """
+    titles = [_LONG_TITLE.match(line) for line in lines]
+    numbers = [int(title["number"]) for title in titles if title]
+    rising = all(b == a + 1 for a, b in zip(numbers, numbers[1:], strict=False))
+    if not numbers or len(numbers) < len(lines) or not rising:
+        return None
+    return [title["rest"] for title in titles if title]
 
 
 def _goes_on(lines: Sequence[str], parts: list[Block], grammar: Grammar) -> bool:

@@ -22,7 +22,7 @@ from tribolab.draft.words.words import or_term, squeezed
 
 _DRIVE = re.compile(
     r"drive|motion|waveform|profile|kinematic|antrieb|bewegung|entrainement|mouvement|movim(?:ento|iento)"
-    r"|^moto$|^ruch|hareket|движен|привод|pohyb|pohon|napęd|naped|beweging|aandrijving|forma?(?:de|da|d)onda|formeonde|运动|運動"
+    r"|^moto$|bev[aæ]e?gelse|roerelse|rorelse|^liike|mozgas|^ruch|hareket|движен|привод|pohyb|pohon|napęd|naped|beweging|aandrijving|forma?(?:de|da|d)onda|formeonde|运动|運動"
 )
 _SINE = re.compile(
     r"crank|manovell|manivel|biel|armonic|harmoni|krank|korb|vev|veiv|krumtap|kampi|klik|forgatty|кривошип|синус|曲柄|正弦|クランク|sine|sinus|sinoid|senoid|seno\b|sinuzo|szinusz|sinimuot|kurbel|eccentric|exzenter|manivelle|scotch"

@@ -137,7 +137,7 @@ _RADIUS_WORDS = (
     r"|радиус|半径)"
 )
 _TIP_WORDS = (
-    r"(?:tip|stylus|styli|needle|spitz|taster|tastnadel|nadel|punta|puntal|palpa|palpe|tastator|pointe|puntina|agulha|ponta|naald"
+    r"(?:tip|uc(?=yaricap)|stylus|styli|needle|spitz|taster|tastnadel|nadel|punta|puntal|palpa|palpe|tastator|pointe|puntina|agulha|ponta|naald"
     r"|hrot|ostrz|kaerje|karje|nal|игл|щуп|针|針|触针|探针)"
 )
 TIP = re.compile(
