@@ -162,7 +162,8 @@ def shown(value: object, most: int = 80) -> str:
     ('?[31mred?', 'xxxxx ...')
     """
     text = value if isinstance(value, str) else repr(value)
-    text = "".join(c if c.isprintable() else "?" for c in text[: most + 1])
+    text = text[: most + 1].replace("\t", " ")
+    text = "".join(c if c.isprintable() else "?" for c in text)
     return text if len(text) <= most else f"{text[:most]} ..."
 
 

@@ -30,7 +30,7 @@ _PER = _SECONDS | _METRES
 _CYCLES = set(
     "r rev revs revolution revolutions rot rots rotation rotations turn turns cycle cycles cyc "
     "u umdr umdrehung umdrehungen tr tour tours giro giri ob obr omw varv period periods "
-    "oscillation oscillations osc lp d dev devir".split()
+    "oscillation oscillations osc lp d dev devir o omdr".split()
 )
 _RADIANS = dict.fromkeys(("rad", "rads", "radian", "radians"), 1.0) | {"mrad": 1e-3, "urad": 1e-6}
 _RADIANS |= dict.fromkeys(("deg", "degs", "degree", "degrees", "°"), math.pi / 180)

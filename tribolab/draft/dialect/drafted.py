@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.draft.columns.explained import left_aside
 from tribolab.draft.dialect.tables import FILL_IN
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.follows import what_follows
@@ -82,6 +83,8 @@ class Drafted(NamedTuple):
         ]
         follows = what_follows(self.layout, self.understood)
         speed = [follows.speed.guess] if follows.speed is not None and follows.speed.guess else []
+        used = {column.place for _, column in follows.symbols}
+        speed += left_aside(self.layout, self.understood.columns, used)
         return (
             *self.layout.notes,
             *self.layout.guesses,

@@ -10,6 +10,7 @@ from tribolab.draft.columns.against_motion import against_motion
 from tribolab.draft.columns.assign import SIGNALS, assigned
 from tribolab.draft.columns.either import told_by_load, without_means
 from tribolab.draft.columns.epochs import DATES, counted_from
+from tribolab.draft.columns.explained import as_explained
 from tribolab.draft.columns.fill_in import Bare
 from tribolab.draft.columns.heights import (
     as_heights,
@@ -104,6 +105,7 @@ def understand(layout: Layout) -> Understood:
 
         kind, columns, behaving = by_behaviour(columns, numbers)
         guesses += behaving
+    columns = as_explained(layout, columns) if kind == "run" else columns
     columns = told_by_load(layout, force_or_ratio(columns), numbers) if kind == "run" else columns
     if kind == "run":
         columns = without_surfaces(columns, pair_of(layout, columns, numbers))

@@ -21,14 +21,19 @@ _MOST_CONTACTS = 12
 _FACTOR = re.compile(
     r"lever|hebel|arm\w*ratio|ratio\w*arm|levier|palanca|leva(?!l)|mechanicaladvantage"
     r"|scal(?:e|ing)(?:factor)?(?!d)|gain|multiplier|amplification|calibrationfactor|calfactor"
-    r"|verstaerkung|skalierung|kalibrierfaktor|倍率|增益"
+    r"|verstaerk|skalierung|kalibrierfaktor|倍率|增益|増幅|アンプ|放大|amplif|forstaerk|foerstaerk|forsterk"
+    r"|vahvist|wzmocn|zesil|erosit|kazanc|усилен"
 )
-_RATIO = re.compile(r"ratio|transmission|uebersetzung|untersetzung|rapport|relacion|rapporto|比")
+_RATIO = re.compile(
+    r"ratio|transmission|uebersetzung|untersetzung|rapport|relacion|rapporto|比|gear|getriebe|reduc"
+    r"|reduktor|riduz|riduttore|prevod|przeloz|przeklad|vaihde|valitys|utvaexl|utveksling|gearing|attetel"
+    r"|aktarma|disli|передат|редукт|减速|変速|减速|増速"
+)
 _NUMBER = r"\d+(?:[.,]\d+)?"
 _ONE_TO = re.compile(rf"(?<![\d:.,])(?P<one>{_NUMBER})\s?:\s?(?P<other>{_NUMBER})(?![\d:])")
 _PLAIN = re.compile(
     rf"\W*(?P<key>[^\W\d][^:=\t;,\d]{{0,60}}?)\s*[:=\t;, ]\s*[x×]?\s?(?P<number>{_NUMBER}"
-    r"(?:[eE][-+]?\d+)?)\s?[x×]?\W*$",
+    r"(?:[eE][-+]?\d+)?)\s?[x×]?\W*(?:[(（].{0,80})?$",
     re.IGNORECASE,
 )
 _BODIES = (

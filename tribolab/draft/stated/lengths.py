@@ -74,10 +74,15 @@ def find_pitch(layout: Layout) -> DraftValue | None:
     layout
         From `tribolab.draft.file.layout.find_layout`.
     """
-    for value in find_values(layout, bare=True):
-        if value.source == "preamble" and PITCH.search(value.key) and _is_length(value):
-            return value._replace(name="pitch", to="m")
-    return None
+    found = [
+        value
+        for value in find_values(layout, bare=True)
+        if value.source == "preamble" and PITCH.search(value.key) and _is_length(value)
+    ]
+    axes = {value.key[-1] for value in found}
+    if not found or (layout.width == 1 and {"x", "y"} <= axes):  # heights of a map in one column
+        return None
+    return found[0]._replace(name="pitch", to="m")
 
 
 def find_profile_length(layout: Layout) -> DraftValue | None:

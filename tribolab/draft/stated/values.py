@@ -35,7 +35,7 @@ _MOST = 12  # a long preamble is not repeated in the dialect
 _MOST_OF_SCAN = 200  # settings of a profilometer, among which the few that count may come last
 # "# rate: 10 Hz", "Set Force = -200", "Disc track radius used (mm)<tab>21.232"
 _SAID = (
-    r"(?P<before>\W*(?P<key>[^\W\d][^:：=\t;{mark}]*?)(?:\"?\s*[:：=\t;{mark}]\s*\"?|\s{{2,80}}))"
+    r"(?P<before>\W*(?P<key>[^\W\d][^:：=\t;{mark}]*?)(?:\"?\s*[:：=]?\s*[:：=\t;{mark}]\s*\"?|\s{{2,80}}))"
     r"(?:(?:\+/?-|±)\s?)?(?P<number>[-+]?\d[\d.{digits}]*(?:e[-+]?\d+)?)[\s;{mark}\"]*"
     r"(?P<unit>[^\s\d;,\"][^\s;,\"]*)?"
     r"(?:[\s;,\t\"]*(?:\(.*\))?|(?:[,;]| [-–—]) ?[^\W\d][^\d:：=]*)$"

@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 _IN_NAME = re.compile(
     r"(?:^|(?<=[_\- ]))(?P<key>(?:track|trk|wear|spur|laufbahn)?[_-]?(?:radius|rad|track"
-    r"|r(?=[=\d_-])|diam?|d(?=[=\d_-])|ø)"
+    r"|r(?=[=\d_-])|diam?|d(?=[=\d_-])|ø|半径|直径)"
     r"[_=-]?)(?P<number>\d{1,3}(?:[.,pP_]\d{1,2}(?=mm|cm|[_\- .]|$))?)[_ ]?(?P<unit>mm"
     r"|cm)?(?=[_\- .]|$)",
     re.IGNORECASE,
 )
-_ACROSS = re.compile(r"d|ø", re.IGNORECASE)
+_ACROSS = re.compile(r"d|ø|直径", re.IGNORECASE)
 _LEAST = 5.0  # mm; what is smaller may be a ball's
 _MM = {"mm": 1.0, "cm": 10.0}
 

@@ -9,11 +9,16 @@ Role = Literal["", "set", "measured", "derived", "extreme"]
 _TOKENS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[^\W\d_A-Z]+")
 _SET = frozenset(
     "set setpoint setp sp soll sollwert target nominal nom command commanded cmd demand demanded "
-    "desired programmed prescribed requested consigne nominale objetivo nennwert".split()
+    "desired programmed prescribed requested consigne nominale objetivo nennwert "
+    "satt innstilt inställd inställt indstillet ingesteld zadane zadané nastavené nastaveno "
+    "asetettu asetus beállított ayar ayarlanan ajustado ajustada impostato impostata réglé "
+    "réglée".split()
 )
 _MEASURED = frozenset(
     "actual act measured meas ist istwert real current gemessen gemessene mesuré mesurée réel "
-    "réelle medida medido misurata misurato feedback enc encoder".split()
+    "réelle medida medido misurata misurato feedback enc encoder "
+    "målt målte uppmätt uppmätta gemeten zmierzone zmierzona naměřené naměřeno mitattu mért "
+    "ölçülen medida".split()
 )
 _DERIVED = frozenset(
     "filtered filt smoothed average averaged avg mean rms "

@@ -154,7 +154,7 @@ OF_TRACE = re.compile(
 # a part of the trace, over which an instrument computes
 PART_OF_TRACE = re.compile(r"evalu|assess|ln$|valutazione|avaliacao|auswert|sampling|einzel")
 RADIUS = or_term(
-    "promien|polomer|радиус|yaricap|radius|rayon|radio(?!met)|raggio|raio|straal|半径",
+    "promien|polomer|радиус|yaricap|saede$|sugar[a]?$|radie$|radius|rayon|radio(?!met)|raggio|raio|straal|半径",
     "track_radius",
 )
 ARM = re.compile(

@@ -93,6 +93,7 @@ _GLUED = re.compile(r"(?P<name>[^\W\d_]*[a-z]{2})(?P<unit>[A-Z]{1,2})")  # "temp
 _NUMBERED = re.compile(r"#?\s*(?:N[°ºr]|No|№)\.?", re.IGNORECASE)  # rows, and not how fast it turns
 _COUNTS = frozenset(
     "count counts cts digit digits lsb bit bits raw adc increments "
+    "pulses pulse pulser puls impulse impulser impulsi impulsos impulsions pulsos imp. pulssit "
     "div div. divs divs. divisions skt skt. skalenteile teilstriche tlstr div/skala "
     "graduations divisiones divisioni "
     "dzialki dz. dílky dílek дел дел. деление делений 格 目盛".split()

@@ -5,11 +5,13 @@ So export force microscopes their images as text.
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
+from tribolab.errors import ReadError, shown
 from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.read import measurable
 from tribolab.io.scans.matrix import texts_of, value_of
@@ -19,6 +21,30 @@ _HEAD = 1 << 16  # bytes in which a column begins
 _HEAD_LINES = 500  # above it
 _FEWEST = 8  # rows, and heights of each
 _ROWS = 20  # numbers that tell a column
+_LINE = (
+    r"(?:columns?|kolom(?:men)?|spalten?|colonn\w+|column\w+|colun\w+|sloup\w+|kolumn\w*|sarak\w+"
+    r"|oszlop\w*|столб\w+|列)"
+)
+_ROW = (
+    r"(?:rows?|rij(?:en)?|zeilen?|lignes?|filas?|righ[ei]|linhas?|rader?|rækk\w+|wiersz\w*|řád\w*"
+    r"|rivi\w*|sor\w*|строк\w*|行)"
+)
+_BY = r"\W{1,3}(?:by|after|voor|na|für|nach|par|por|per|za|po|till|för|kerrallaan|за|逐)?\W{0,3}"
+_FAST = (
+    r"\W.{0,30}(?:fast|snel|schnell|vite|rápid|rapid|veloc|szybc|rychl|hurt|nope|gyors|быстр|快|速)"
+)
+_BY_COLUMNS = re.compile(
+    rf"{_LINE}{_BY}{_LINE}|column[\s-]?major|fortran|spaltenweise|逐列|(?<![^\W\d_])y{_FAST}", re.I
+)
+_BY_ROWS = re.compile(
+    rf"{_ROW}{_BY}{_ROW}|row[\s-]?major|zeilenweise|逐行|(?<![^\W\d_])x{_FAST}", re.I
+)
+_ORDER = re.compile(  # an order that is stated in other words
+    r"(?<![^\W_])(?:order|volgorde|reihenfolge|ordre|orden|ordine|ordem|ordning|rækkefølge|rekkefølge"
+    r"|kolejność|pořadí|järjestys|sorrend|sıra\w*|порядок|顺序|順序?)(?![^\W_])"
+    rf".*(?:{_LINE}|{_ROW}|(?<![^\W\d_])[xy](?![^\W\d_]))|meander|serpentin|boustro",
+    re.IGNORECASE,
+)
 
 
 def read_column_map(path: Path) -> xr.Dataset | None:
@@ -51,8 +77,24 @@ def read_column_map(path: Path) -> xr.Dataset | None:
         heights = _numbers(lines[place:], mark)
         if heights.size != header.rows * header.columns:
             continue
+        if _goes_by_columns(path, lines[:place]):
+            return _map(heights.reshape(header.columns, header.rows).T, header)
         return _map(heights.reshape(header.rows, header.columns), header)
     return None
+
+
+def _goes_by_columns(path: Path, above: list[str]) -> bool:
+    """Whether the heights stand column after column; a stated order that is not known is none."""
+    if any(_BY_COLUMNS.search(line) for line in above):
+        return True
+    said = [line for line in above if _ORDER.search(line)]
+    if said and not any(_BY_ROWS.search(line) for line in above):
+        raise ReadError(
+            f"the order of the heights is not understood: '{shown(said[0].strip(), 80)}'",
+            where=path,
+            cure="save it as a matrix, or say 'row by row' or 'column by column'",
+        )
+    return False
 
 
 def _map(heights: np.ndarray, header: MatrixHeader) -> xr.Dataset:

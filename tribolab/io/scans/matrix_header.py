@@ -28,7 +28,7 @@ _HEIGHTS = (
 )
 _SAYS_UNIT = re.compile(rf"(?:{_OF_UNIT})\W.*?(?<![^\W\d_])(?P<unit>{_UNIT})\W*$", re.IGNORECASE)
 _SAYS_HEIGHTS = re.compile(
-    rf"(?:{_HEIGHTS})(?:[_ ]\w{{1,12}})?\W*(?:[\[(]|\b{_IN}\b)\s*(?P<unit>{_UNIT})\W*$",
+    rf"(?:{_HEIGHTS})(?:[_ ]\w{{1,12}})?\W*(?:[\[(]|\b{_IN}\b)\s*(?P<unit>{_UNIT})\W*(?:[,;(].*)?$",
     re.IGNORECASE,
 )
 # "korkeus: nm", an entry that is a unit and nothing else; not one of what lies across the surface
@@ -106,7 +106,7 @@ _OF_ROW = re.compile(
     r"(?i)(?:samp\w*|points?|pixels?|pts|values?|punkte|pixel)\s*(?:/|per|pro|je)\s*(?:line|row|zeile|linie|profile?)"
 )
 _COUNT = re.compile(
-    r"(?i)samp\w*|points?|pixels?|columns?|n_?cols?|rows?|lines|spalten|zeilen|punkte|bildpunkte|lignes|colonnes?"
+    r"(?i)samp\w*|points?|pixels?|punt(?:en|os|i)|pontos|punkt\w*|pist\w+|bod[ůy]?|точ\w+|columns?|n_?cols?|rows?|lines|spalten|zeilen|punkte|bildpunkte|lignes|colonnes?"
     r"|filas|columnas|righe|píxeles|horizontal|vertical|(?<![^\W\d_])[xy][\s_-]*size|像素数?|点数"
     r"|画素数|列|行|横|縦"
 )
