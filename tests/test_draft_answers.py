@@ -162,16 +162,19 @@ def test_a_torque_with_a_radius_is_a_force_and_a_load_may_be_a_weight(tmp_path, 
     np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * 0.01)
 
 
-def test_yes_takes_the_radius_that_a_line_perhaps_states(tmp_path, monkeypatch):
+@pytest.mark.parametrize("answer", ["yes", ""])
+def test_yes_takes_the_radius_that_a_line_perhaps_states(answer, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     file = tmp_path / "ring.txt"
     rows = "".join(f"{i / 10:.2f}\t{4 + i % 3}\t60\t{20 + i % 2}\n" for i in range(400))
     header = "Time [s]\tTorque [mN m]\tSpeed [rpm]\tLoad [N]\n"
     file.write_text("Rig 3\nHalf of it: 22.5 mm\n" + header + rows)
-    done = command("dialect", file.name, "--ask", typed="\n\n\n\nyes\n")
-    assert "is it in 'Half of it: 22.5 mm'? (yes: 22.5 mm; -: not known)" in done.output
+    done = command("dialect", file.name, "--ask", typed=f"\n\n\n\n{answer}\n")
+    assert "is it in 'Half of it: 22.5 mm'? (yes: 22.5 mm; -: not known) [yes]" in done.output
     run = tl.read(file, "ring.toml")
     np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * 0.0225)
+    file.write_text(file.read_text().replace("22.5 mm", "30 mm"))  # another ring has its own
+    np.testing.assert_allclose(tl.read(file, "ring.toml").sliding_velocity, 2 * np.pi * 0.030)
 
 
 def test_an_angle_with_a_radius_is_a_way(tmp_path, monkeypatch):
@@ -242,6 +245,20 @@ def test_lines_that_may_state_the_load_are_quoted(answer, tmp_path, monkeypatch)
     done = command("dialect", file.name, "--ask", typed=f"\n\n{answer}\n1 mm/s\n")
     assert "does 'Thing on top: 102 gf' say it?" in done.output, done.output
     np.testing.assert_allclose(tl.read(file, "stage.toml").normal_force, 0.102 * 9.80665)
+    file.write_text(file.read_text().replace("102 gf", "204 gf"))
+    np.testing.assert_allclose(tl.read(file, "stage.toml").normal_force, 0.204 * 9.80665)
+
+
+def test_yes_to_the_line_of_a_speed_holds_for_other_files(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file = tmp_path / "pull.txt"
+    rows = "".join(f"{n / 20:.2f},{3 + n % 3}\n" for n in range(200))
+    file.write_text(f"Load: 10 N\nGoes: 6 mm/min\nTime [s],Friction force [N]\n{rows}")
+    done = command("dialect", file.name, "--ask", typed="\n\n\nyes\n")
+    assert "does 'Goes: 6 mm/min' say it?" in done.output, done.output
+    assert float(tl.read(file, "pull.toml").set_speed[0]) == pytest.approx(1e-4)
+    file.write_text(file.read_text().replace("6 mm/min", "60 mm/min"))
+    assert float(tl.read(file, "pull.toml").set_speed[0]) == pytest.approx(1e-3)
 
 
 def test_a_force_without_a_load_is_tried(tmp_path, monkeypatch):

@@ -56,7 +56,7 @@ _WHOLE = {
     **{f"{p}Pas": f"{p}Pa*s" for p in ("", "m", "u")},
     **{f"N{length}-2": f"N/{length}**2" for length in ("m", "cm", "mm")},
     **dict.fromkeys(("mil", "mils"), "thou"),
-    **dict.fromkeys(("u-inch", "uinch", "micro inch", "micro-inch", "uin."), "microinch"),
+    **dict.fromkeys(("u-inch", "uinch", "uin", "micro inch", "micro-inch", "uin."), "microinch"),
     **{"sec.": "s", "min.": "min", "mm.": "mm", "N.": "N", '"': "inch", "fpm": "ft/min"},
     **{"ips": "in/s", "lb-f": "force_pound", "kg-f": "force_kilogram", "gram-force": "force_gram"},
     **dict.fromkeys(("kg/cm2", "kg/cm²", "kg/cm^2"), "force_kilogram/cm**2"),

@@ -16,10 +16,11 @@ from tribolab.draft.file.header import converts, is_unit
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.follows import what_follows
 from tribolab.draft.follows.lacking import lacking
-from tribolab.draft.follows.may_say import likely_amount, may_say
+from tribolab.draft.follows.may_say import amount_of, likely_value, may_say
 from tribolab.draft.follows.sums import ADDS
-from tribolab.draft.model import DraftColumn, Understood, other_units
+from tribolab.draft.model import Agreed, DraftColumn, Understood, other_units
 from tribolab.draft.stated.stated_load import stated_number
+from tribolab.draft.stated.values import DraftValue
 from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.errors import ReadError, TribolabError, shown
 from tribolab.io.zero_reading import parse_zero
@@ -137,11 +138,17 @@ def _ask_for_lengths(
     if guessed or "the radius of the track" in lacks:
         guess = f"{stated_number(guessed[0]):.6g} {guessed[0].unit}" if guessed else _NONE
         said = may_say(layout, follows, "the radius")
-        likely = likely_amount(layout, follows, "the radius")
+        value = likely_value(layout, follows, "the radius")
         question = "what is the radius of the track, with its unit"
         question += f"; is it in {said}?" if said else "?"
+        likely = amount_of(value)
+        guess = _YES[0] if likely and guess == _NONE else guess
         radius = _ask_amount(question, "radius", "m", guess, ask, say, likely)
-        understood = understood._replace(radius=radius)
+        if radius and value is not None and radius == likely:  # as the file has it
+            agreed = (*understood.agreed, ("radius", value.text))
+            understood = understood._replace(agreed=agreed)
+        else:
+            understood = understood._replace(radius=radius)
     return written(draft, layout, understood)
 
 
@@ -205,15 +212,17 @@ def _ask_for(
     """Ask which column holds one of several quantities, or for an amount in place of a column."""
     held = _held(draft, names)
     said = _said_amount(draft, amount)
-    lines, likely = ("", "") if held or said else _may_say(draft, amount)
+    lines, value = ("", None) if held or said else _may_say(draft, amount)
+    likely = amount_of(value)
     if lines:
         question += f"; does {lines} say it?" + (f" (yes: {likely})" if likely else "")
     while True:
-        typed = ask(question, str(held.place) if held else said or _NONE).strip()
+        usual = _YES[0] if likely else _NONE
+        typed = ask(question, str(held.place) if held else said or usual).strip()
         if typed == _NONE:
             return draft if held is None else _without(draft, names)
-        if likely and typed.lower() in _YES:
-            typed = likely
+        if value is not None and typed.lower() in (*_YES, likely):
+            return _with_line(_without(draft, names), amount, value)
         try:
             if amount == "load" and _SUM.match(typed):
                 return _with_sum(_without(draft, names), typed, ask)
@@ -330,17 +339,27 @@ def _said_amount(draft: Draft, amount: str) -> str:
     )
 
 
-def _may_say(draft: Draft, amount: str) -> tuple[str, str]:
-    """Quote the lines of the file that may state an amount, and the one that they state; or ""."""
+def _with_line(draft: Draft, amount: str, value: DraftValue) -> Draft:
+    """Return a draft in which a line of the file states the load or the speed, as a person said."""
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return draft
+    what: Agreed = "load" if amount == "load" else "speed"
+    understood = understood._replace(agreed=(*understood.agreed, (what, value.text)))
+    return written(draft, layout, understood)
+
+
+def _may_say(draft: Draft, amount: str) -> tuple[str, DraftValue | None]:
+    """Quote the lines of the file that may state an amount, and return what they state."""
     layout, understood = draft.layout, draft.understood
     lack = {"load": "the load", "speed": "the sliding speed"}.get(amount, "")
     if layout is None or understood is None or not lack:
-        return "", ""
+        return "", None
     follows = what_follows(layout, understood)
     missing = any(said.startswith(lack) for said in lacking(understood, follows))
     if not missing:
-        return "", ""
-    return may_say(layout, follows, lack), likely_amount(layout, follows, lack)
+        return "", None
+    return may_say(layout, follows, lack), likely_value(layout, follows, lack)
 
 
 def _with_amount(draft: Draft, amount: str, text: str) -> Draft:

@@ -56,13 +56,17 @@ class DraftColumn(NamedTuple):
         return "s" if self.form else self.unit or self.file_unit
 
 
+Agreed = Literal["radius", "load", "speed"]
+
+
 class Understood(NamedTuple):
     """Columns of a table, what kind of file it is, and their numbers (rows, columns) as written.
 
     With `period` the column of time held intervals; its numbers are their sums by now.
     `radius`, `load`, `speed` and `rate` (with their units) and `drive` are what a person said of a
     track, of what presses, of how fast it slides, of the rows, and of what drives it; `strokes` the
-    length and the frequency of strokes, "" for what was not said.
+    length and the frequency of strokes, "" for what was not said. `agreed` are lines of the text
+    that a person took for the radius, the load or the speed, by what they are.
     Where no column is time, `rate_pattern` finds the sample rate before the table, if it is there;
     where no column is a position, `pitch_pattern` the distance of a profile's points,
     `length_pattern` its length, or `pitch` is what is known of the distance; `lacks` says what
@@ -85,6 +89,7 @@ class Understood(NamedTuple):
     rate: str = ""
     drive: str = ""
     strokes: tuple[str, str] | None = None
+    agreed: tuple[tuple[Agreed, str], ...] = ()
     zero: str = ""
     pitch_pattern: str = ""
     length_pattern: str = ""

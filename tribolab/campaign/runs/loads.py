@@ -71,7 +71,8 @@ def _was_set(signals: xr.Dataset) -> bool:
     names = ("normal_force", "set_normal_force")
     if any(name not in signals or signals[name].dims != ("time",) for name in names):
         return False
-    return np.array_equal(*(signals[name].values for name in names), equal_nan=True)
+    measured, wanted = (signals[name].values for name in names)
+    return np.array_equal(measured, wanted, equal_nan=True)
 
 
 def load_levels(force: np.ndarray, lasts: np.ndarray) -> tuple[float, ...]:

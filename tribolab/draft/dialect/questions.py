@@ -86,6 +86,10 @@ def questions(draft: Drafted) -> list[Question]:
         asked += [Question("forces", said, ("to be taken off, or added",)) for said in aside]
     asked += _of_roles(understood, follows)
     held = {column.quantity for column in understood.columns if column.used}
+    asks = any(column.guessed or column.fill_in for column in understood.columns)
+    if understood.kind == "scan" and "height" not in held and not asks:
+        names = [f"column {c.place} '{shown(c.label, 20)}'" for c in understood.columns]
+        asked.append(Question("heights", "no column is known to hold them", (*names,)))
     moves = bool(held & {"sliding_velocity", "position"}) and "time" in held
     for column in understood.columns:
         if moves and column.quantity == "rotation_speed" and column.fill_in:

@@ -13,6 +13,7 @@ from tribolab.draft.follows.axial import Inclined, axial_force_of, find_inclined
 from tribolab.draft.follows.bridges import calibrated_forces
 from tribolab.draft.follows.from_axis import radius_from_axis
 from tribolab.draft.follows.gains import stated_gains
+from tribolab.draft.follows.may_say import agreed_value
 from tribolab.draft.follows.model import (
     SAYS_FRICTION,
     SAYS_LOAD,
@@ -34,6 +35,7 @@ from tribolab.draft.stated.stated_load import find_load, lifted_on_return, state
 from tribolab.draft.stated.stated_zero import find_zero, reading_of, zero_in_doubt
 from tribolab.draft.stated.stroke_settings import as_stated
 from tribolab.draft.stated.values import DraftValue, find_values, words_said
+from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.quantities import unit_conversion
 
 _SAYS_SPEED = {"sliding_velocity", "position", "set_speed"}
@@ -107,6 +109,9 @@ def _track_of(told: _Told) -> Track:
 def _speed(told: _Told, track: Track, pair: Pair | None, radii: Radii | None) -> Follows:
     """Say how fast it slides: as a person said, by two surfaces, or by what is there."""
     names, understood = told.names, told.understood
+    if (agreed := agreed_value(told.values, understood.agreed, "speed")) is not None:
+        said = agreed._replace(name="set_speed", unit=agreed.own_unit, to=None, guess="")
+        return Follows(values=(said,), speed=SpeedBy("set speed"))
     if understood.speed:
         about = "it was said that it slides so fast all along"
         formula = DraftedFormula("set_speed", f"'{understood.speed}'", about)
@@ -224,6 +229,9 @@ def _of_stated_load(result: Follows, told: _Told) -> Follows:
     if "position" in names and result.speed is None:
         result = result._replace(values=(*result.values, *as_stated(told.values)))
     load = find_load(told.values)
+    if (agreed := agreed_value(told.values, understood.agreed, "load")) is not None:
+        unit = WEIGHTS.get(agreed.own_unit or "", agreed.own_unit)
+        load = agreed._replace(name="set_normal_force", unit=unit, to=None, guess="")
     axial = axial_force_of(understood.columns)
     # where the instrument gives a coefficient of its own, it knows of the angle
     of_forces = "friction_force" in names and "friction_coefficient" not in names
@@ -266,6 +274,8 @@ def _track(values: Sequence[DraftValue], understood: Understood, *, rim: bool) -
     """Return the radius of the track: what a person said, a column, or what the text states."""
     if understood.radius:
         return Track(f"'{understood.radius}'")
+    if (agreed := agreed_value(values, understood.agreed, "radius")) is not None:
+        return of_value(agreed._replace(name="track_radius", to="m", guess=""))
     column = radius_of(understood.columns)
     if column is not None:
         return Track("radius", symbols=(("radius", column),))

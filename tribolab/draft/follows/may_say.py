@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.model import Follows
+from tribolab.draft.model import Agreed
 from tribolab.draft.stated.stated_load import stated_number
 from tribolab.draft.stated.values import DraftValue, find_values
 from tribolab.draft.vocabulary import WEIGHTS
@@ -33,20 +36,39 @@ def may_say(layout: Layout, follows: Follows, lack: str) -> str:
     return " or ".join(f"'{shown(line, 50)}'" for line in dict.fromkeys(lines[:_QUOTED]))
 
 
-def likely_amount(layout: Layout, follows: Follows, lack: str) -> str:
-    """Return the one amount that these lines state, as "22.5 mm"; "" if they state none or two.
+def likely_value(layout: Layout, follows: Follows, lack: str) -> DraftValue | None:
+    """Return what these lines state; None if they state nothing, or two amounts.
 
     Parameters
     ----------
     layout, follows, lack
         As `may_say` takes them.
     """
-    stated = {
-        f"{number:.6g} {value.own_unit}"
-        for value in _perhaps(layout, follows, lack)
-        if (number := stated_number(value)) > 0
-    }
-    return stated.pop() if len(stated) == 1 else ""
+    values = [value for value in _perhaps(layout, follows, lack) if stated_number(value) > 0]
+    return values[0] if len({amount_of(value) for value in values}) == 1 else None
+
+
+def amount_of(value: DraftValue | None) -> str:
+    """Return what a value states, as "22.5 mm"; "" of none."""
+    return "" if value is None else f"{stated_number(value):.6g} {value.own_unit}"
+
+
+def agreed_value(
+    values: Sequence[DraftValue], agreed: Sequence[tuple[Agreed, str]], what: Agreed
+) -> DraftValue | None:
+    """Return the value whose line a person took for the radius, the load or the speed.
+
+    Parameters
+    ----------
+    values
+        From `tribolab.draft.stated.values.find_values`.
+    agreed
+        What was agreed to: of `tribolab.draft.model.Understood`.
+    what
+        Which of the three.
+    """
+    lines = [line for name, line in agreed if name == what]
+    return next((v for v in values if lines and v.text == lines[-1] and v.own_unit), None)
 
 
 def _perhaps(layout: Layout, follows: Follows, lack: str) -> list[DraftValue]:

@@ -158,12 +158,18 @@ def unit_in_words(text: str) -> str:
     return _UNIT_WORDS.get(text.lower(), text)
 
 
+_ABOUT_UNIT = re.compile(r"(?<=\w)\s{0,3}\([^()]{1,30}\)\s*$")  # "uin (microinch)"
+
+
 def length_unit(text: str) -> str:
     """Return the unit of length that a text is and nothing else, in letters of ours; or "".
 
     >>> length_unit("[nm]"), length_unit("Mikrometer"), length_unit("nm per step")
     ('nm', 'um', '')
+    >>> length_unit("uin (microinch)")
+    'uin'
     """
+    text = _ABOUT_UNIT.sub("", text)
     bare = text.strip(" \t[](){}.,;\"'")
     unit = _UNIT_WORDS.get(bare.lower(), bare)
     for spelt in (unit, unit.lower()) if unit != "Mm" else ("mm",):
