@@ -10,6 +10,7 @@ from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.errors import ConfigError
 from tribolab.io.netcdf import read_netcdf
+from tribolab.records.run_facts import ends_of_strokes
 
 DIALECT = dialect_of("crank", time="t", position="x", friction_force="F", normal_force="N")
 MU, LOAD, OFFSET = 0.25, 10.0, 0.8
@@ -54,6 +55,10 @@ def test_middles_of_strokes_are_what_a_crank_measures(folder):
     off = (friction["friction_coefficient"] - MU) / friction["friction_coefficient_sem"]
     assert np.mean(np.abs(off.values) < 3) > 0.9
     assert friction.attrs["stroke_middle"] == 0.4
+    [ends] = ends_of_strokes(friction)
+    lasted = [friction[f"{part}stop"] - friction[f"{part}start"] for part in ("", "trimmed_")]
+    assert ends.intervals == 2 * friction.sizes["segment"] and "middle 40 %" in ends.reason
+    assert ends.duration_s == pytest.approx(float((lasted[0] - lasted[1]).sum()))
     with pytest.raises(ConfigError, match="stroke_middle"):
         campaign_of(folder, segments='[segments]\nstroke_middle = "140 %"')
 

@@ -33,7 +33,7 @@ from tribolab.report.page.page import write_page
 from tribolab.rig.files import scan_file
 from tribolab.studies import xu2026
 from tribolab.surface.self_affine import SelfAffine, rms_slope
-from tribolab.surface.synthesis import synthesise_map
+from tribolab.surface.synthesis import synthesise_map, synthesise_profiles
 
 SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"
 CONTACT_TABLE = {
@@ -321,6 +321,19 @@ def test_without_contact_there_is_a_spectrum_only(tmp_path, profiles):
     assert any("youngs_modulus" in message for message in said(surface, "note"))
     assert any("begins where the scans do" in message for message in said(surface, "note"))
     assert rows.contact == rows.adhesion == () and rows.roughness["rms_slope"] > 0.5
+
+
+def test_what_is_extrapolated_is_in_doubt_where_a_contact_relies_on_it(tmp_path):
+    rough = SelfAffine(0.5, rolloff=2e4, plateau=2e-24, low=3e3, high=2e6)
+    scan = synthesise_profiles(rough, points=2000, pitch=2e-6, rng=4)
+    file = tmp_path / "rough.csv"
+    file.write_text(scan_file(scan.x.values, scan.height.values[0]).decode())
+    alone = recorded(tmp_path, [file], contact=NOTHING_KNOWN, lowest_force=None).outcome
+    asked = recorded(tmp_path, [file]).outcome
+    extrapolated = "% of the mean square slope is extrapolated, not measured"
+    assert [extrapolated in text for text in said(alone, "note")].count(True) == 1
+    assert not any(extrapolated in text for text in said(alone, "suspect"))
+    assert any(extrapolated in text for text in said(asked, "suspect"))
 
 
 def test_without_loads_contact_is_known_over_pressure_only(tmp_path, profiles):

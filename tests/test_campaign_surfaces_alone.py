@@ -60,3 +60,32 @@ def test_roughness_does_not_wait_for_a_power_law(tmp_path):
     assert rough.hurst_exponent.isna().all()
     said = pd.read_csv(tmp_path / "results" / "tables" / "findings.csv").message
     assert said.str.contains("not extrapolated: C").any()
+
+
+def test_roughness_does_not_wait_for_a_spectrum_where_no_contact_is_asked_about(tmp_path):
+    rng = np.random.default_rng(1)
+    heights = 0.5 * rng.standard_normal(1000)
+    rows = "\n".join(f"{0.004 * n:.3f}\t{z:.4f}" for n, z in enumerate(heights))
+    (tmp_path / "ground.txt").write_text(f"X [mm]\tZ [um]\n{rows}\n")
+    alone = (
+        '[campaign]\nname = "ground"\nraw = "."\n[[surface]]\nname = "g"\nscans = "ground.txt"\n'
+    )
+    (tmp_path / "campaign.toml").write_text(alone)
+    done = CliRunner().invoke(app, ["run", str(tmp_path / "campaign.toml")])
+    assert done.exit_code == 0 and "1 of 1 surface: roughness" in done.output, done.output
+    tables = tmp_path / "results" / "tables"
+    rough = pd.read_csv(tables / "roughness.csv")
+    assert rough.Pq_m[0] == pytest.approx(0.5e-6, rel=0.05) and rough.scans[0] == 1
+    assert rough.rms_slope.isna().all()
+    said = pd.read_csv(tables / "findings.csv")
+    told = said.message.str.contains("no spectrum of the surface, roughness parameters alone: 0 ")
+    assert said.severity[told].tolist() == ["suspect"]
+    assert not (tables / "contact.csv").exists() and not (tables / "adhesion.csv").exists()
+    page = page_of(tmp_path / "results")
+    assert "roughness parameters alone" in page and "tilt and a faint bend" in page
+    # a contact of it cannot be computed: that fails, and is not passed over
+    body = 'radius = "10 mm"\nlength = "20 mm"\nyoungs_modulus = "2 MPa"\npoisson_ratio = 0.5\n'
+    asked = f"{alone}[contact]\n{body}"
+    (tmp_path / "campaign.toml").write_text(asked + 'normal_forces = ["30 N"]\n')
+    failed = CliRunner().invoke(app, ["run", str(tmp_path / "campaign.toml")])
+    assert failed.exit_code != 0 and "wavenumbers can be trusted" in failed.output, failed.output

@@ -320,3 +320,22 @@ def test_strokes_may_be_typed_and_one_of_both_is_not_enough(tmp_path, monkeypatc
     assert said == crank
     run = tl.read(file, "pin.toml")
     assert float(run.sliding_velocity.max()) == pytest.approx(np.pi * 2 * 8e-3, rel=1e-3)
+
+
+def test_turns_may_be_typed_with_the_radius_of_their_track(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    time = np.arange(0, 20, 0.05)
+    lines = "".join(f"{t:.2f}\t{3 + 0.01 * np.sin(t):.4f}\n" for t in time)
+    Path("disc.txt").write_text(f"Load: 15 N\nTime [s]\tFriction force [N]\n{lines}", "utf-8")
+    typed = "\n\n\n8 rpm\n8\n15,5\n8 rpm at 20 mm radius\n\n"
+    done = command("dialect", "disc.txt", "--ask", typed=typed)
+    assert (done.exit_code, done.stderr) == (0, "")
+    assert "for none) [15 N]:" in done.stdout  # what the file states is the default
+    assert "turns need the radius of their track: 8 rpm at 20 mm radius" in done.stdout
+    assert "there is no column '8'" in done.stdout
+    assert "15,5 has no unit: type it with one, such as 6 mm/min" in done.stdout
+    run = tl.read("disc.txt", "disc.toml")
+    speed = 2 * np.pi * 0.02 * 8 / 60
+    assert float(run.set_speed.mean()) == pytest.approx(speed, rel=1e-5)
+    assert 'name = "normal_force"' not in Path("disc.toml").read_text("utf-8")
+    assert float(run.normal_force.mean()) == pytest.approx(15)

@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
+from tribolab.app.typed import NUMBER, amount_typed, as_amount, as_strokes, turning, turns_alone
 from tribolab.draft.columns.turning import angle_of, torque_of
 from tribolab.draft.dialect.answers import column_of, corrected, fits, written
 from tribolab.draft.dialect.draft import Draft, as_profile, holds_counts, holds_heights
@@ -21,22 +22,13 @@ from tribolab.draft.follows.sums import ADDS
 from tribolab.draft.model import Agreed, DraftColumn, Understood, other_units
 from tribolab.draft.stated.stated_load import stated_number
 from tribolab.draft.stated.values import DraftValue
-from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.errors import ReadError, TribolabError, shown
 from tribolab.io.zero_reading import parse_zero
 from tribolab.quantities import QUANTITIES, quantity
-from tribolab.units import positive
 
 _NONE = "-"
 _YES = ("yes", "y")
-_COMMA = re.compile(r"^(\d+),(\d{1,2}|\d{4,})(?=\D)")  # no mark of thousands
-_WEIGHT = re.compile(rf"^(\s*[\d.]+(?:[eE][+-]?\d+)?\s*)({'|'.join(WEIGHTS)})\s*$")
-_TIMES = re.compile(r"^(\d+(?:[.,]\d+)?)\s*[x×*·]\s*(?=\d)")  # a weight on a lever: 10 x 5 kg
-_AMOUNT = re.compile(  # "8 mm at 2 Hz"
-    r"(?<![\w.,])(?P<number>\d+(?:[.,]\d+)?)\s*(?P<unit>[^\W\d_][^\s,;]*)"
-)
 _SUM = re.compile(r"^\d+(?:\s*\+\s*\d+)+$")
-_NUMBER = re.compile(r"^[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?$")
 _FRICTION = ("friction_force", TORQUE, "friction_coefficient", "shear_stress")
 _LOAD = ("normal_force", "normal_stress")
 _MOTION = ("sliding_velocity", "rotation_speed", "position", ANGLE)
@@ -95,8 +87,8 @@ def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
     question = (
         "which column tells how it moves: a speed, turns, an angle or a position? (its number; or "
     )
-    question += "the sliding speed itself: 6 mm/min; or strokes to and fro: 8 mm at 2 Hz; "
-    question += f"{_NONE} for none)"
+    question += "the sliding speed itself: 6 mm/min, 8 rpm at 20 mm radius; or strokes to and fro: "
+    question += f"8 mm at 2 Hz; {_NONE} for none)"
     if not _told_by_settings(draft):
         draft = _ask_for(draft, _MOTION, question, ask, say, amount="speed")
     return _ask_for_motion(draft, ask, say) if draft.kind == "run" else draft
@@ -184,26 +176,9 @@ def _ask_amount(
         if likely and typed.lower() in _YES:
             typed = likely
         try:
-            return _amount(typed, name, si_unit)
+            return amount_typed(typed, name, si_unit)
         except TribolabError as error:
             say(str(error.what))
-
-
-def _amount(typed: str, name: str, si_unit: str) -> str:
-    """Return a number with a unit as a dialect takes it; a weight is the force of it."""
-    times = _TIMES.match(typed) if si_unit == "N" else None
-    text = typed[times.end() :] if times else typed
-    text = _COMMA.sub(r"\1.\2", text)  # as the file may write it
-    if si_unit == "N" and (weight := _WEIGHT.match(text)):
-        text = f"{weight[1].strip()} {WEIGHTS[weight[2]]}"
-    if times:
-        factor = float(times[1].replace(",", "."))
-        text = f"{factor * positive(text, si_unit, f'the {name}'):.6g} {si_unit}"
-    positive(text, si_unit, f"the {name}")
-    return text
-
-
-_AMOUNTS = {"load": ("N",), "speed": ("m/s",), "rate": ("Hz", "s")}
 
 
 def _ask_for(
@@ -211,14 +186,16 @@ def _ask_for(
 ) -> Draft:
     """Ask which column holds one of several quantities, or for an amount in place of a column."""
     held = _held(draft, names)
-    said = _said_amount(draft, amount)
+    said, stated = _said_amount(draft, amount), _stated_amount(draft, amount)
     lines, value = ("", None) if held or said else _may_say(draft, amount)
     likely = amount_of(value)
     if lines:
         question += f"; does {lines} say it?" + (f" (yes: {likely})" if likely else "")
     while True:
         usual = _YES[0] if likely else _NONE
-        typed = ask(question, str(held.place) if held else said or usual).strip()
+        typed = ask(question, str(held.place) if held else said or stated or usual).strip()
+        if stated and typed == stated:
+            return draft
         if typed == _NONE:
             return draft if held is None else _without(draft, names)
         if value is not None and typed.lower() in (*_YES, likely):
@@ -226,9 +203,10 @@ def _ask_for(
         try:
             if amount == "load" and _SUM.match(typed):
                 return _with_sum(_without(draft, names), typed, ask)
-            if amount == "speed" and (strokes := _as_strokes(typed)):
+            strokes = as_strokes(typed) if amount == "speed" and not turning(typed) else None
+            if strokes:
                 return _with_strokes(_without(draft, names), strokes)
-            if amount and (text := _as_amount(typed, amount)):
+            if amount and (text := as_amount(typed, amount)):
                 return _with_amount(_without(draft, names), amount, text)
             column = _column(draft, typed)
             if held and column.place == held.place and not held.guessed and not held.fill_in:
@@ -264,35 +242,6 @@ def _without(draft: Draft, names: Sequence[str], but: str = "") -> Draft:
     return draft
 
 
-def _as_amount(typed: str, amount: str) -> str:
-    """Return what was typed as a number with a unit; "" if it names a column."""
-    if _NUMBER.match(typed) or not typed[0].isdigit():
-        return ""
-    units = _AMOUNTS[amount]
-    for unit in units:
-        try:
-            return _amount(typed, amount, unit)
-        except TribolabError:
-            if unit == units[-1]:
-                raise
-    return ""
-
-
-def _as_strokes(typed: str) -> tuple[str, str] | None:
-    """Return length and frequency of strokes as they were typed, None if neither was.
-
-    >>> _as_strokes("stroke 6 mm, 1.5 Hz"), _as_strokes("2 Hz"), _as_strokes("6 mm/min")
-    (('6 mm', '1.5 Hz'), ('', '2 Hz'), None)
-    """
-    said = {
-        si: f"{match['number'].replace(',', '.')} {unit}"
-        for match in _AMOUNT.finditer(typed)
-        for si in ("m", "Hz")
-        if is_unit(unit := match["unit"].rstrip(".,;")) and converts(unit, si)
-    }
-    return (said.get("m", ""), said.get("Hz", "")) if said else None
-
-
 def _with_strokes(draft: Draft, strokes: tuple[str, str]) -> Draft:
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
@@ -300,6 +249,8 @@ def _with_strokes(draft: Draft, strokes: tuple[str, str]) -> Draft:
     draft = written(draft, layout, understood._replace(strokes=strokes))
     speed = what_follows(layout, understood._replace(strokes=strokes)).speed
     if speed is None or speed.source != "stroke":
+        if not strokes[0] and turns_alone(strokes[1]):
+            raise ReadError(f"turns need the radius of their track: {strokes[1]} at 20 mm radius")
         lacking_one = "frequency, such as 2 Hz" if strokes[0] else "length, such as 8 mm"
         raise ReadError(f"strokes need a {lacking_one}, too")
     return draft
@@ -337,6 +288,17 @@ def _said_amount(draft: Draft, amount: str) -> str:
     return {"load": understood.load, "speed": understood.speed, "rate": understood.rate}.get(
         amount, ""
     )
+
+
+def _stated_amount(draft: Draft, amount: str) -> str:
+    """Return the load that the file states without any guess; "" if that is not one number."""
+    layout, understood = draft.layout, draft.understood
+    if amount != "load" or layout is None or understood is None or understood.load:
+        return ""
+    follows = what_follows(layout, understood)
+    formulas = {each.formula for each in follows.formulas if each.quantity == "normal_force"}
+    told = [value for value in follows.values if {value.name} == formulas]
+    return amount_of(told[0]) if told and not told[0].guess else ""
 
 
 def _with_line(draft: Draft, amount: str, value: DraftValue) -> Draft:
@@ -452,7 +414,7 @@ def _ask_zero(draft: Draft, column: DraftColumn, worth: Worth, ask: Ask, say: Sa
         if typed == _NONE:
             return draft
         offset, zero = 0.0, ""
-        if _NUMBER.match(typed):
+        if NUMBER.match(typed):
             offset = -worth.scale * float(typed.replace(",", "."))
             break
         try:

@@ -96,7 +96,11 @@ def roughness_lines(scan: xr.Dataset) -> list[str]:
     if math.isfinite(radius):
         length = float(np.ptp(scan["x"].values))
         bent = not hardly_bends(radius, length, 1e-6 * all_waves)
-        form = f"circle of R = {radius:.3g} m" if bent else "tilt"
+        form = (
+            f"circle of R = {radius:.3g} m"
+            if bent
+            else f"tilt and a faint bend (R = {radius:.3g} m)"
+        )
     rows = ", along its rows" if is_map else ""
     beside = ""
     if abs(level / all_waves - 1) > _OTHER_FORM:

@@ -256,7 +256,9 @@ def _computed(outcome: Outcome) -> str:
     """Say what is known of the surfaces."""
     words = {"psd": "spectrum", "contact": "contact", "adhesion": "adhesion"}
     parts = {part for surface in outcome.surfaces for part in surface.parts}
-    return ", ".join(word for part, word in words.items() if part in parts) or "nothing"
+    return ", ".join(word for part, word in words.items() if part in parts) or (
+        "roughness" if parts else "nothing"
+    )
 
 
 def _roughness(outcome: Outcome) -> list[str]:

@@ -23,11 +23,11 @@ def form_in_words(row: Row, *, radius: bool = True) -> str:
     >>> form_in_words({"form_removed": "circle", "form_radius_m": 0.0702})
     'circle of R = 0.0702 m taken off'
 
-    Of a profile that it hardly bends it is the tilt that is taken off:
+    A circle that hardly bends the profile is little but its tilt:
 
     >>> flat = {"form_radius_m": 400.0, "evaluation_length_m": 4e-3, "Pq_m": 1e-6}
     >>> form_in_words({"form_removed": "circle"} | flat)
-    'tilt taken off'
+    'tilt and a faint bend (R = 400 m) taken off'
     >>> form_in_words({"form_removed": "none"}), form_in_words({"form_removed": "tilt"})
     ('no form taken off', 'tilt taken off')
     """
@@ -37,7 +37,7 @@ def form_in_words(row: Row, *, radius: bool = True) -> str:
     size = number_of(row, "form_radius_m")
     length, all_waves = (number_of(row, key) for key in ("evaluation_length_m", "Pq_m"))
     if form == "circle" and size and hardly_bends(size, length, all_waves):
-        return "tilt taken off"
+        return f"tilt and a faint bend{f' (R = {number(size)} m)' if radius else ''} taken off"
     of = f" of R = {number(size)} m" if radius and size is not None and math.isfinite(size) else ""
     return f"{_FORMS.get(form, form)}{of} taken off"
 

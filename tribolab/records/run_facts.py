@@ -20,7 +20,7 @@ from tribolab.records.judgement import not_decided
 from tribolab.records.run_record import CheckRow, Highlight, LeftOut, RunFacts, Waveform
 from tribolab.records.traces import flagged_spans
 from tribolab.records.wording import SPREAD_OF, plain_value
-from tribolab.words import many
+from tribolab.words import many, percent
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -58,7 +58,7 @@ def facts_of(
         decisions=decided,
         position_range_m=position_range(segments),
         stick_slip=stick_slip_of(slip),
-        omitted=tuple(left_out(segments)),
+        omitted=(*left_out(segments), *ends_of_strokes(segments)),
         segments=plain_rows(friction_columns(friction)),
         uncertainty_says=str(friction.attrs.get("uncertainty_says", "")),
         flagged=tuple(flagged_spans(run)),
@@ -306,6 +306,19 @@ def _highlights(
             )
         )
     return highlights
+
+
+def ends_of_strokes(segments: xr.Dataset) -> list[LeftOut]:
+    """Return what a chosen middle part leaves of the strokes, in a row of its own."""
+    share = segments.attrs.get("stroke_middle")
+    if share is None or not segments.sizes["segment"]:
+        return []
+    whole, used = (
+        float((segments[f"{part}stop"] - segments[f"{part}start"]).sum())
+        for part in ("", "trimmed_")
+    )
+    reason = f"ends of strokes, outside the middle {percent(float(share))} of the way"
+    return [LeftOut(reason, 2 * segments.sizes["segment"], whole - used)]
 
 
 def left_out(segments: xr.Dataset) -> list[LeftOut]:

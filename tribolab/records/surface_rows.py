@@ -64,14 +64,14 @@ def surface_rows(name: str, groups: Mapping[str, xr.Dataset], quality: str) -> S
     name
         Of the surface.
     groups
-        ``roughness`` and ``psd``; where there: ``contact``, ``loads``, ``line``, ``rubber``,
+        ``roughness``; where there: ``psd``, ``contact``, ``loads``, ``line``, ``rubber``,
         ``adhesion_loads``.
     quality
         Gravest status of the checks on its scans.
     """
     return SurfaceRows(
         name,
-        plain_value(_roughness(groups["roughness"], groups["psd"])),
+        plain_value(_roughness(groups["roughness"], groups.get("psd"))),
         tuple(plain_value(_contact(groups))),
         tuple(plain_value(_adhesion(groups))),
         str(groups["rubber"].attrs["modulus"]) if "rubber" in groups else "",
@@ -81,7 +81,7 @@ def surface_rows(name: str, groups: Mapping[str, xr.Dataset], quality: str) -> S
     )
 
 
-def _roughness(moments: xr.Dataset, psd: xr.Dataset) -> Row:
+def _roughness(moments: xr.Dataset, psd: xr.Dataset | None) -> Row:
     rough = dict.fromkeys(ROUGHNESS)
     for name in _ISO:
         rough[column(name)] = float(moments[name].mean())
@@ -94,8 +94,10 @@ def _roughness(moments: xr.Dataset, psd: xr.Dataset) -> Row:
         for end in _BAND:
             if name + end in moments:
                 rough[column(name + end)] = float(moments[name + end])
-    attrs = psd.attrs | moments.attrs
+    attrs = ({} if psd is None else psd.attrs) | moments.attrs
     rough |= {key: attrs[key] for key in ROUGHNESS if key in attrs}
+    if psd is None:
+        return rough
     q = psd.wavenumber.values
     rough |= {"wavenumber_low_1_m": q[0], "wavenumber_high_1_m": q[-1]}
     return rough

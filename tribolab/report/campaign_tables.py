@@ -91,7 +91,8 @@ def write_tables(
 ) -> None:
     """Write all tables of a campaign but that of its findings.
 
-    Without runs there are none of friction, without scans none of surfaces.
+    Without runs there are none of friction, without scans none of surfaces, and
+    where no contact is asked about none of contact and adhesion.
 
     Parameters
     ----------
@@ -117,6 +118,8 @@ def write_tables(
         if not any(surface.files for surface in outcome.surfaces):
             break
         named = [{"surface": s.name, "quality": s.quality, **row} for s in rows for row in of(s)]
+        if not named and all(surface.done for surface in outcome.surfaces):
+            continue  # no contact was asked about
         short[name] = pd.DataFrame(named, columns=["surface", "quality", *wanted])
     if outcome.models:
         every = list(models.values())

@@ -193,12 +193,14 @@ def spectra_of_scans(
     surface, scans
         From `usable_scans`.
     q_low
-        Smallest wavenumber of the contact [1/m], if it is known.
+        Smallest wavenumber of the contact [1/m], if it is known; None if no contact is asked about,
+        and nothing relies on what is extrapolated.
 
     Returns
     -------
     tuple
-        ``psd_1d`` (of profiles), ``psd`` (extrapolated) and ``roughness``, and the findings.
+        ``psd_1d`` (of profiles), ``psd`` (extrapolated) and ``roughness``, and the findings. Where
+        no contact is asked about, a surface that has no spectrum has its roughness all the same.
     """
     options, groups, findings = dict(surface.roughness), {}, []
     form = options.get("form", "auto")
@@ -208,36 +210,46 @@ def spectra_of_scans(
     flat = scans if form == "none" else remove_form(scans, form)
     if form == "circle" and (doubt := _doubtful_circle(scans, flat)):
         findings.append(Finding("note", doubt))
-    tip = options.get("tip_radius")
+    cut = options.get("lambda_c", "auto")
+    iso = roughness_parameters(flat, lambda_c=cut).assign(Pq=primary_roughness(flat))
     if is_map:
-        measured = psd_2d(flat)
-    else:
-        groups["psd_1d"] = psd_1d(flat, form="none" if form == "none" else "auto", tip_radius=tip)
-        measured = psd_2d(groups["psd_1d"])
-    psd, doubts = _extrapolated(measured, options, q_low)
+        iso = iso.merge(areal_roughness(flat), combine_attrs="override")
+    removed = {"form_removed": form}
+    removed |= {k: v for k, v in flat.attrs.items() if k == "form_radius_m"}
+    tip = options.get("tip_radius")
+    try:
+        if is_map:
+            measured = psd_2d(flat)
+        else:
+            by = "none" if form == "none" else "auto"
+            groups["psd_1d"] = psd_1d(flat, form=by, tip_radius=tip)
+            measured = psd_2d(groups["psd_1d"])
+        psd, doubts = _extrapolated(measured, options, q_low)
+    except AnalysisError as error:
+        if q_low is not None or "q_low" in options:  # a contact is asked about
+            raise
+        text = f"no spectrum of the surface, roughness parameters alone: {error.what}"
+        groups["roughness"] = iso.assign_attrs(scans=flat.sizes.get("scan", 1), **removed)
+        return groups, [*findings, Finding("suspect", text)]
     findings += doubts
     whole = spectral_roughness(psd).isel(wavenumber=-1, drop=True)
     seen = psd.wavenumber.values[psd.origin.values == 0]
     part = band(psd, float(seen[0]), float(seen[-1]))
     share = (rms_slope(part) / float(whole.rms_slope)) ** 2
     groups["psd"] = psd
-    cut = options.get("lambda_c", "auto")
-    iso = roughness_parameters(flat, lambda_c=cut).assign(Pq=primary_roughness(flat))
-    if is_map:
-        iso = iso.merge(areal_roughness(flat), combine_attrs="override")
     groups["roughness"] = iso.merge(whole, combine_attrs="drop_conflicts")
     groups["roughness"].attrs |= {
         "measured_rms_roughness_m": rms_roughness(part),
         "measured_rms_slope": rms_slope(part),
         "measured_low_1_m": float(seen[0]),
         "measured_high_1_m": float(seen[-1]),
-        "form_removed": form,
-    } | {k: v for k, v in flat.attrs.items() if k == "form_radius_m"}
+    } | removed
     if psd.attrs["rolloff"].startswith("not reached"):
         findings.append(Finding("note", f"roll-off {psd.attrs['rolloff']}"))
     if share < 1 - _NOTED:
         text = f"{100 * (1 - share):.0f} % of the mean square slope is extrapolated, not measured"
-        findings.append(Finding("suspect" if share < 1 - _SUSPECT else "note", text))
+        relied_on = q_low is not None and share < 1 - _SUSPECT  # by the theory of a contact
+        findings.append(Finding("suspect" if relied_on else "note", text))
     return groups, findings
 
 

@@ -146,7 +146,7 @@ def process_surface(task: SurfaceTask) -> SurfaceRecord:
         write_data({None: root} | groups, task.folder / surface.data_file)
         shown = {name: data for name, data in groups.items() if name != _SCANS}
         rows = surface_rows(surface.name, shown, checked.quality)
-        shaping = digest(groups["psd"], groups.get("adhesion_loads"))
+        shaping = digest(groups.get("psd"), groups.get("adhesion_loads"))
     except OutputError:
         raise
     except Exception as error:  # recorded: one bad surface must not stop the others
@@ -179,6 +179,8 @@ def analyse_surface(
         findings.append(Finding("note", text))
     groups, more = spectra_of_scans(surface, checked.scans, q_low)
     findings += more
+    if "psd" not in groups:
+        return {_SCANS: checked.raw} | groups, findings
     contact, more = contact_groups(surface, groups["psd"])
     return {_SCANS: checked.raw} | groups | contact, findings + more
 
