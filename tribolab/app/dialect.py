@@ -70,15 +70,34 @@ def _run_said(file: Path, dialect: Path) -> str:
             "looks like motion to and fro, whose mean is no friction coefficient; state stroke and "
             'frequency under [speed], with source = "stroke"'
         )
-    mu = np.atleast_1d(friction["friction_coefficient"].values)
-    sem = np.atleast_1d(friction["friction_coefficient_sem"].values)[np.isfinite(mu)]
-    mu = mu[np.isfinite(mu)]
+    return f"{said}{_coefficients(friction)}"
+
+
+def _coefficients(friction: xr.Dataset) -> str:
+    """Say the friction coefficient: of segments at one speed their mean, else that of each."""
+    # late: starting stays quick
+    from tribolab.friction.stribeck import measured_stribeck_curve
+    from tribolab.records.wording import with_error
+
+    name = "friction_coefficient"
+    of, values, at = "", friction, ""
+    curve = measured_stribeck_curve([friction])
+    if 0 < curve.sizes["sliding_speed"] < friction.sizes["segment"]:
+        of, values = "means of the segments of a speed, ", curve
+        speeds = curve.sizes["sliding_speed"]
+        at = f" at {Count(speeds):speed|speeds}" if speeds > 1 else ""
+    mu, sem = (np.atleast_1d(values[f"{name}{end}"].values) for end in ("", "_sem"))
+    sem, mu = sem[np.isfinite(mu)], mu[np.isfinite(mu)]
     if not mu.size:
-        return said
+        return ""
+    if mu.size == 1 and of and np.isfinite(sem[0]):
+        count = int(curve["segments"].values[0])
+        said = with_error(float(mu[0]), float(sem[0]))
+        return f", friction coefficient {said} (mean of {count}; standard error, statistical only)"
     span = f"{mu.min():.3g}" + (f" to {mu.max():.3g}" if mu.size > 1 else "")
     known = sem[np.isfinite(sem)]
     width = f"at most {known.max():.2g}" if known.size else "not known"
-    return f"{said}, friction coefficient {span} (standard error {width}, statistical only)"
+    return f", friction coefficient {span}{at} ({of}standard error {width}, statistical only)"
 
 
 def _undirected(run: xr.Dataset, segments: xr.Dataset) -> bool:

@@ -32,6 +32,8 @@ def with_error(value: float | None, error: float | None, unit: str = "") -> str:
     # two digits of an error that begins with 1, else one
     place = math.floor(math.log10(error))
     decimals = min(max((error / 10**place < 1.95) - place, 0), 6)
+    if round(error, decimals) == 0.0:  # far below what anyone reads
+        return number(value) + unit
     text = f"{value:.{decimals}f} ± {error:.{decimals}f}".replace("-", MINUS)
     return f"({text}){unit}" if unit else text
 
