@@ -68,10 +68,19 @@ def test_raw_files_need_no_campaign_file(tmp_path, monkeypatch):
     again = CliRunner().invoke(cli.app, ["run", *files])
     assert "is written" not in again.output and "1 unchanged since the last time" in again.output
     assert {path: path.read_bytes() for path in (tmp_path / "raw").iterdir()} == before
-    # another file would need another campaign file: the one that stands here stays
+    # what else is said of a file that the campaign file names is not passed over
     other = CliRunner().invoke(cli.app, ["run", files[0]])
     assert other.exit_code == 2, other.output
-    assert "stands here already" in other.output
+    assert "stands here already" in other.output and "tribolab run campaign.toml" in other.output
+    assert tomllib.loads((tmp_path / "campaign.toml").read_text("utf-8")) == said
+    # another file has a campaign file and results of its own
+    write_run(tmp_path / "raw" / "disc 8.csv", force)
+    for _ in range(2):
+        beside = CliRunner().invoke(cli.app, ["run", "raw/disc 8.csv"])
+        assert beside.exit_code == 0, beside.output
+    assert "results_disc_8/report.html" in beside.output
+    own = tomllib.loads((tmp_path / "campaign_disc_8.toml").read_text("utf-8"))
+    assert own["run"] == [{"files": ["disc 8.csv"]}]
     assert tomllib.loads((tmp_path / "campaign.toml").read_text("utf-8")) == said
 
 
@@ -173,8 +182,8 @@ def test_a_file_that_cannot_be_read_leaves_nothing_that_hinders_the_next(tmp_pat
     (tmp_path / "campaign.toml").unlink()
     again = CliRunner().invoke(cli.app, ["run", "odd.txt", "--figures", "none"])
     assert again.exit_code == 3 and (tmp_path / "results" / "report.html").is_file()
-    other = CliRunner().invoke(cli.app, ["run", "raw/disc.csv"])
-    assert other.exit_code == 2 and "name all files at once" in other.output
+    other = CliRunner().invoke(cli.app, ["run", "raw/disc.csv", "--figures", "none"])
+    assert other.exit_code == 0 and "campaign_disc.toml is written" in other.output
 
 
 def test_of_strokes_it_is_said_which_part_counts(tmp_path, monkeypatch):

@@ -272,7 +272,7 @@ def show(checked: Sequence[Checked], *, notes: bool = False, everything: bool = 
 
     for checked_file in checked:
         if checked_file.error:
-            say(f"{checked_file.name}: unreadable")
+            say(f"{checked_file.name}: not read, so nothing was checked")
             say(f"tribolab: {checked_file.error}", to_stderr=True)
             continue
         say(f"{checked_file.name}: {checked_file.summary}")

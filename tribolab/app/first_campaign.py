@@ -8,6 +8,9 @@ import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 
+from tribolab.campaign.settings.files import scan_files
+from tribolab.campaign.settings.load import load_and_plan
+from tribolab.campaign.settings.run_names import safe_name
 from tribolab.campaign.store.ledger import Ledger
 from tribolab.draft.dialect.tables import quoted
 from tribolab.draft.on_the_fly import holds_run
@@ -33,7 +36,8 @@ def campaign_file(
         A campaign file, the folder that holds it, or raw files: runs and scans, in any folders.
     folder
         Where a new one is written; one there that says the same is taken as it is, one that was
-        written for the same files without their instrument is written anew.
+        written for the same files without their instrument is written anew. Beside one of other
+        files it is named by its first file, as are its results.
     instrument
         What the raw files are from: a name, or the file of a dialect.
 
@@ -45,8 +49,8 @@ def campaign_file(
     Raises
     ------
     ConfigError
-        If another campaign file stands there, or several are named, or there is no such
-        instrument.
+        If another campaign file of that name stands there, or several are named, or there is no
+        such instrument.
     """
     if len(paths) == 1 and (not paths[0].is_file() or _is_campaign(paths[0])):
         if instrument is not None:
@@ -62,25 +66,46 @@ def campaign_file(
                 f"{path}: {what}", cure="name one campaign file or folder, or raw files alone"
             )
     whole = [path.resolve() for path in paths]
-    text = _campaign_of(whole, folder.resolve(), instrument)
     file = folder / NAME
+    if file.exists() and not _names(file, whole):  # it is of other files
+        file = folder / f"campaign_{safe_name(paths[0].stem)}.toml"
+    results = results_of(file)
+    text = _campaign_of(whole, folder.resolve(), results, instrument)
     try:
-        if instrument is not None and _says(file, _campaign_of(whole, folder.resolve())):
+        if instrument is not None and _says(file, _campaign_of(whole, folder.resolve(), results)):
             file.unlink()  # ours, of a try before; nobody has completed it
         with file.open("x", encoding="utf-8") as new:
             new.write(text)
     except FileExistsError:
         if not _says(file, text):
             raise ConfigError(
-                f"{file} stands here already, and says something else",
-                cure="name all files at once, and delete that file if it is of an earlier "
-                "`tribolab run`; or add the files to it ([[run]] files = ..., [[surface]] scans = "
-                "...) and run that; or go to another folder",
+                f"{file} stands here already, and says something else of these files",
+                cure=f"run it, if it was completed: tribolab run {file}; delete it, if it is of an "
+                "earlier `tribolab run` of raw files; or go to another folder",
             ) from None
         return file, False
     except OSError as error:
         raise ConfigError(f"{file}: the campaign file cannot be written: {error}") from error
     return file, True
+
+
+def results_of(file: Path) -> str:
+    """Return the results folder of a campaign file that is written here, relative to it.
+
+    >>> results_of(Path("campaign.toml")), results_of(Path("campaign_disc_7.toml"))
+    ('results', 'results_disc_7')
+    """
+    return file.stem.replace("campaign", RESULTS, 1)
+
+
+def _names(file: Path, paths: Sequence[Path]) -> bool:
+    """Whether a campaign file names any of the files; of one that cannot be read it is taken so."""
+    try:
+        campaign, runs = load_and_plan(file)
+        named = [path for run in runs for path in run.files] + scan_files(campaign)
+    except TribolabError:
+        return True
+    return not {path.resolve() for path in named}.isdisjoint(paths)
 
 
 def withdraw(file: Path, results: Path | None = None) -> None:
@@ -132,13 +157,16 @@ def _is_campaign(path: Path) -> bool:
     return bool({"campaign", "run", "surface"} & told.keys())
 
 
-def _campaign_of(paths: Sequence[Path], folder: Path, instrument: str | None = None) -> str:
+def _campaign_of(
+    paths: Sequence[Path], folder: Path, results: str, instrument: str | None = None
+) -> str:
     raw = Path(os.path.commonpath([path.parent for path in paths]))
     where = os.path.relpath(raw, folder) if raw.is_relative_to(folder) else str(raw)
     name = paths[0].stem if len(paths) == 1 else raw.name
     groups = [[Path(path) for path in group] for group in group_files(paths)]
     runs = [group for group in groups if len(group) > 1 or _holds_run(group[0], instrument)]
     lines = [_ABOUT, "[campaign]", f"name = {quoted(name)}", f"raw = {quoted(where)}"]
+    lines += [f"output = {quoted(results)}"] if results != RESULTS else []
     if runs:
         files = ",\n    ".join(quoted(str(path.relative_to(raw))) for run in runs for path in run)
         lines += ["", "[[run]]", f"files = [\n    {files},\n]", *_said(instrument, folder)]

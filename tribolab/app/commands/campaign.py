@@ -118,7 +118,8 @@ def run(
 
     Raw files are only read. Results appear whole or not at all, and what did not change since
     the last time is not done again. Of raw files alone a campaign.toml is written here first, to
-    be completed with what is known of them.
+    be completed with what is known of them; beside one of other files it is called by the first
+    file, as are its results.
 
         tribolab run campaign.toml
 
@@ -130,11 +131,16 @@ def run(
     """
     with reported(debug, audience="campaign"):
         # late: starting stays quick
-        from tribolab.app.first_campaign import RESULTS, campaign_file, why_unread, withdraw
+        from tribolab.app.first_campaign import (
+            campaign_file,
+            results_of,
+            why_unread,
+            withdraw,
+        )
         from tribolab.app.run import run_campaign
 
         file, written = campaign_file(campaign, Path(), instrument)
-        place = output or file.parent / RESULTS
+        place = output or file.parent / results_of(file)
         new_folder = written and not place.exists()
         try:
             with progress_bars(quiet) as progress:
