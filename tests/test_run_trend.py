@@ -72,3 +72,28 @@ def test_a_rise_along_the_run_is_no_error_of_its_mean():
     errors = [float(curve.friction_coefficient_sem[0]) for curve in curves]
     assert np.std(means) < np.median(errors) < 2.5 * np.std(means)
     assert max(abs(mean - 0.3) for mean in means) < 3 * np.median(errors)
+
+
+def strokes(mu):
+    values = {"friction_coefficient": mu, "sliding_speed": np.full(mu.size, 0.01)}
+    values |= {f"trimmed_{end}": n + np.arange(mu.size) for n, end in enumerate(("start", "stop"))}
+    values |= {"start": np.arange(mu.size), "stop": 1.0 + np.arange(mu.size)}
+    return xr.Dataset({name: ("segment", of) for name, of in values.items()})
+
+
+@pytest.mark.parametrize("depth", [0.08, -0.05])
+def test_a_run_in_is_told_by_where_it_begins_and_settles(depth):
+    n, rng = np.arange(200), np.random.default_rng(4)
+    mu = 0.2 + depth * np.exp(-n / 12) + 0.002 * rng.standard_normal(n.size)
+    (found,) = trends_along(strokes(mu), mu)
+    assert found.settles and abs(found.last - 0.2) < 4 * found.error
+    first = float((0.2 + depth * np.exp(-n[:20] / 12)).mean())
+    assert found.first == pytest.approx(first, abs=0.003)
+    assert found.text.endswith("the mean holds the run-in")
+
+
+def test_noise_settles_nowhere():
+    rng = np.random.default_rng(9)
+    for _ in range(30):
+        mu = 0.2 + 0.002 * rng.standard_normal(200)
+        assert trends_along(strokes(mu), mu) == []

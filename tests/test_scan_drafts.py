@@ -567,6 +567,41 @@ def test_a_column_of_heights_row_after_row_is_a_map(tmp_path, head, heights):
         np.testing.assert_allclose(np.diff(scan[dim]), step)
 
 
+MAP_HEAD = (
+    "Points per line: 25\nNumber of lines: 16\nPixel size x: 250 nm\nPixel size y: 500 nm\n{}\n"
+    "Height [um]"
+)
+
+
+@pytest.mark.parametrize(
+    ("order", "by_columns"),
+    [
+        ("Order: column by column", True),
+        ("Volgorde: kolom voor kolom", True),
+        ("Reihenfolge: Zeile für Zeile", False),
+        ("data order: column-major", True),
+        ("顺序: 逐列", True),
+    ],
+)
+def test_heights_of_a_map_may_stand_column_after_column(tmp_path, order, by_columns):
+    heights = HEIGHTS.reshape(16, 25)
+    column = (heights.T if by_columns else heights).ravel()
+    text = MAP_HEAD.format(order) + "\n" + "\n".join(f"{z:.3f}" for z in column) + "\n"
+    (tmp_path / "a.txt").write_text(text, "utf-8")
+    scan = read_scans(tmp_path / "a.txt")
+    np.testing.assert_allclose(scan.height.values.reshape(16, 25), 1e-6 * heights)
+    for dim, step in zip("yx", (5e-7, 2.5e-7), strict=True):
+        np.testing.assert_allclose(np.diff(scan[dim]), step)
+
+
+@pytest.mark.parametrize("order", ["Order: rows, meandering", "Reihenfolge: y zuletzt"])
+def test_an_order_of_heights_that_is_not_known_is_refused(tmp_path, order):
+    text = MAP_HEAD.format(order) + "\n" + "\n".join(f"{z:.3f}" for z in HEIGHTS) + "\n"
+    (tmp_path / "a.txt").write_text(text, "utf-8")
+    with pytest.raises(ReadError, match="the order of the heights is not understood: '.*'"):
+        read_scans(tmp_path / "a.txt")
+
+
 def test_a_column_of_other_than_the_stated_number_of_heights_is_no_map(tmp_path):
     head = '\\Samps/line: 20\n\\Lines: 20\n\\Scan Size: 5000 nm\n"Height_Sensor(nm)"\n'
     (tmp_path / "a.txt").write_text(head + "\n".join(f"{z:.3f}" for z in HEIGHTS[:390]) + "\n")

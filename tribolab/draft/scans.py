@@ -18,6 +18,7 @@ from tribolab.draft.on_the_fly import DRAFTED, draft_of, lacks_distance
 from tribolab.errors import ReadError
 from tribolab.io import cures
 from tribolab.io.dialects.find import Dialect, Instrument
+from tribolab.io.scans.column_map import UnclearOrderError
 from tribolab.io.scans.extent import doubt_about_heights
 from tribolab.io.scans.read import files_of, read_known_scans, stacked
 from tribolab.io.scans.undescribed import is_own_text
@@ -155,6 +156,8 @@ def file_of(trace: Path) -> Path:
 def _read(file: Path, units: dict[str, str | None]) -> list[xr.Dataset]:
     try:
         return read_known_scans([file], **units)
+    except UnclearOrderError:
+        raise
     except ReadError as error:
         dialect = None if any(units.values()) else _drafted(file, error)
         if dialect is None:

@@ -14,6 +14,9 @@ from tribolab.errors import shown
 
 _LONGEST = 300  # characters of a line that are looked at
 _AXIS = re.compile(r"(?:f|force|kraft|sila|forza)?(?:[xyz]|[1-3])")  # names of a sensor's axes
+_WORDS = (
+    r"(?:[^\W\d][^;|,；，]|[぀-ヿ一-鿿가-힣])[^;|,；，]{1,60}"  # two of such letters make a word
+)
 _NAMED = 4  # letters of a name that a text speaks of
 _TOLD = 0.3  # share of an explanation that a known word makes up
 _NORMAL = re.compile(
@@ -93,7 +96,7 @@ def _explanation(column: DraftColumn, lines: Sequence[str]) -> str:
     """Return what a line says a name is: "Fx = vertical", or "vertical force (Fx)"."""
     name = re.escape(bare_name(column)[0].strip())
     behind = re.compile(
-        rf"(?<![^\W_]){name}(?![^\W_])\s{{0,3}}[=:–—-]\s{{0,3}}(?P<about>[^\W\d][^;|,]{{2,60}})"
+        rf"(?<![^\W_]){name}(?![^\W_])\s{{0,3}}[=:：＝–—-]\s{{0,3}}(?P<about>{_WORDS})"
     )
     before = re.compile(rf"(?P<about>[^\W\d][^;|,()]{{2,40}})\(\s*{name}\s*\)")
     for line in lines:

@@ -47,6 +47,10 @@ _ORDER = re.compile(  # an order that is stated in other words
 )
 
 
+class UnclearOrderError(ReadError):
+    """The heights of a map stand in an order that is stated in words that are not known."""
+
+
 def read_column_map(path: Path) -> xr.Dataset | None:
     """Read a map whose heights stand below each other.
 
@@ -60,6 +64,11 @@ def read_column_map(path: Path) -> xr.Dataset | None:
     xarray.Dataset or None
         ``height`` [m] (y, x); None where the file is no such column, or does not say how many
         heights make a row, how far they lie apart and in what unit they are.
+
+    Raises
+    ------
+    UnclearOrderError
+        If the text states an order that is not known.
     """
     with path.open("rb") as file:
         head = file.read(_HEAD)
@@ -89,7 +98,7 @@ def _goes_by_columns(path: Path, above: list[str]) -> bool:
         return True
     said = [line for line in above if _ORDER.search(line)]
     if said and not any(_BY_ROWS.search(line) for line in above):
-        raise ReadError(
+        raise UnclearOrderError(
             f"the order of the heights is not understood: '{shown(said[0].strip(), 80)}'",
             where=path,
             cure="save it as a matrix, or say 'row by row' or 'column by column'",
