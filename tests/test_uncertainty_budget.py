@@ -234,7 +234,7 @@ def test_a_single_run_of_a_curve_says_noise_and_several_say_runs():
     speed = {"sliding_speed": 1e-3, "friction_coefficient_sem": 1e-4}
     runs = runs_that_scatter(one_segment(0.1, 50.0, **speed), 0.03)
     alone, together = (tl.uncertainty_budget(some).data for some in (runs[:1], runs))
-    assert alone.part.values.tolist() == ["noise and zero within the run"]
+    assert alone.part.values.tolist() == ["noise and known zero of the run"]
     assert together.part.values.tolist() == ["between runs"]
     assert float(together.friction_coefficient_dof[0]) == pytest.approx(4)
     bare = 0.003 / np.sqrt(5)
@@ -376,7 +376,7 @@ def test_a_stated_zero_counts_once_in_a_curve_of_one_run():
     for given in (run, [run]):
         data = tl.uncertainty_budget(given, zero).data
         assert float(data.friction_coefficient_u[0]) == pytest.approx(sem, rel=1e-6)
-        assert float(data.uncertainty_part.sel(part="noise and zero within the run")[0]) == (
+        assert float(data.uncertainty_part.sel(part="noise and known zero of the run")[0]) == (
             pytest.approx(noise, rel=1e-6)
         )
 

@@ -91,7 +91,7 @@ def points_table(outcome: Outcome) -> Table | None:
         if isinstance(speed := row["sliding_speed_m_s"], float)
         and row["friction_coefficient"] is not None
     ]
-    if not 1 < len(known) <= _MOST_POINTS:
+    if not 1 <= len(known) <= _MOST_POINTS:
         return None
     table = Table(box=None, pad_edge=False, header_style="bold")
     unit, scale = ("m/s", 1.0) if max(speed for _, speed in known) >= 1 else ("mm/s", 1e3)

@@ -12,7 +12,7 @@ from scipy import special
 from tribolab.io.uncertainty import Known
 from tribolab.stamping import stamp
 
-NOISE, BETWEEN = "noise and zero within the run", "between runs"
+NOISE, BETWEEN = "noise and known zero of the run", "between runs"
 _NOT_STATED = "calibration not stated: statistical only"
 _RECTANGULAR = ("half-width", "step")
 # Few repeats that agree by chance would count as known from many. Where a scatter has fewer degrees
@@ -184,8 +184,8 @@ def part_words(name: str) -> str:
 
     Examples
     --------
-    >>> part_words("cross_talk_friction_from_normal"), part_words("noise and zero within the run")
-    ('cross-talk friction from normal', 'noise and zero within the run')
+    >>> part_words("cross_talk_friction_from_normal"), part_words("noise and known zero of the run")
+    ('cross-talk friction from normal', 'noise and known zero of the run')
     """
     of, comma, whose = name.partition(", ")
     return of.replace("cross_talk", "cross-talk").replace("_", " ") + comma + whose

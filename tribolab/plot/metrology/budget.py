@@ -61,7 +61,7 @@ def uncertainty_budget(
     >>> stated = {"tilt": {"value": "0.5 deg", "as": "half-width"}}
     >>> figure = uncertainty_budget(tl.uncertainty_budget(friction, stated))
     >>> tl.plot.figure_data(figure).part.tolist()
-    ['tilt', 'noise and zero within the run', 'combined']
+    ['tilt', 'noise and known zero of the run', 'combined']
     """
     table = budget.table(at)
     mu = abs(table.attrs["friction_coefficient"])
