@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from tribolab.errors import AnalysisError
+from tribolab.words import many
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -102,6 +103,8 @@ def roughness_lines(scan: xr.Dataset) -> list[str]:
             else f"tilt and a faint bend (R = {radius:.3g} m)"
         )
     rows = ", along its rows" if is_map else ""
+    count = iso.attrs.get("sampling_lengths")
+    lengths = "sampling lengths" if count is None else many(int(count), "sampling length")
     beside = ""
     if abs(level / all_waves - 1) > _OTHER_FORM:
         beside = (
@@ -110,7 +113,7 @@ def roughness_lines(scan: xr.Dataset) -> list[str]:
         )
     return [
         f"  Rq      {told['Rq']}, Ra {told['Ra']}: {form} taken off, {filtered}; means over "
-        f"sampling lengths{rows} (ISO 4287)",
+        f"{lengths}{rows} (ISO 4287)",
         f"  Pq      {all_waves:.3g} um, Pa {_mean_deviation(flat):.3g} um: {form} taken off, "
         f"waves of every length{rows}{beside}",
     ]
