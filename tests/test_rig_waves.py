@@ -108,3 +108,39 @@ def test_the_mode_says_run_out_or_what_to_compare():
     assert blind.verdict == UNEXPLAINED
     assert re.search("compare the wavelength, 11[2-4] mm at every speed", blind.decide[0])
     assert "circumference of the track" in blind.decide[0]
+
+
+@pytest.mark.parametrize("turning", [1.0, 1.0005])  # and a speed that is a little off
+@pytest.mark.parametrize("hertz", [4.0, 8.0, 5.7])
+def test_run_out_that_the_record_is_too_slow_for_is_no_stick_slip(hertz, turning):
+    """What turns eight times a second shows twice a second in a record of five samples."""
+    time = np.arange(0, 150, 0.2)
+    wave = 0.012 * np.sin(2 * np.pi * hertz * time + 0.4)
+    noise = 0.003 * np.random.default_rng(3).standard_normal(time.size)
+    run = xr.Dataset(
+        {
+            "friction_coefficient": ("time", 0.46 + wave + noise),
+            "sliding_velocity": ("time", np.full(time.size, 2 * np.pi * RADIUS * hertz)),
+            "rotation_speed": ("time", np.full(time.size, turning * 2 * np.pi * hertz)),
+        },
+        {"time": time},
+    )
+    slip = slip_of(run)
+    assert slip["waveform"].values.tolist() == ["smooth sliding"]
+    (said,) = slip["instrument"].values
+    assert said.startswith("run-out: repeats once a turn; faster than half the record's rate")
+    assert float(slip["rig_swing"][0]) == pytest.approx(0.024, rel=0.1)
+    mode = mode_of(run)
+    assert mode.verdict == NO_STICK_SLIP and "repeats once a turn at 1 of 1" in mode.text
+
+
+def test_noise_and_other_lines_in_slow_records_seldom_pass_for_run_out():
+    claims = 0
+    for seed in range(200):
+        rng = np.random.default_rng(seed)
+        size = int(rng.integers(200, 1200))
+        angle = 2 * np.pi * rng.uniform(0.6, 3.0) * np.arange(size)
+        line = np.sin(2 * np.pi * rng.uniform(0.05, 0.45) * np.arange(size)) * (seed % 2)
+        red = lfilter([1], [1, -rng.uniform(0, 0.9)], rng.standard_normal(size))
+        claims += rig_wave(red + 2 * line, angle) is not None
+    assert claims <= 6

@@ -6,7 +6,9 @@ A disc that runs out, or whose track differs from place to place, moves the fric
 multiples of its turns. Where to look is known, as of the mains: at the rig's own angle. A speed
 that is some per cent off would lose step with the disc over many turns, so the waves are fitted
 to a few turns at a time. They are the rig's where they stand out of what lies beside them and go
-on from one piece to the next in step; stick-slip whose period is a turn by chance does not.
+on from one piece to the next in step; stick-slip whose period is a turn by chance does not. In a
+record that is too slow for its turns their waves are seen at another frequency (8 Hz at 2 Hz in 5
+samples a second), and are sought at the rig's angle all the same.
 """
 
 from __future__ import annotations
@@ -30,16 +32,25 @@ _CHANCE = 1e-3  # that noise shows as much at one of the orders
 _TALLER = 2.0  # times its surroundings
 _IN_STEP = 0.5  # coherence from piece to piece
 _LATE = 0.02  # of a turn for each turn, by which the stated speed may be off
+_SLOW = 0.4  # periods in a sample: of more, what repeats is seen at another frequency
+_OF_FAST = 64  # samples in a piece that tells waves as fast as that
+_ORDERS_OF_FAST = 2
+_LATE_OF_FAST = 0.1  # of a period for each such piece
+_APART = 0.03  # cycles in a sample, from a constant and from every other sample
 REPEATS = "repeats"  # the word by which what repeats is known among what is the instrument's
 _TIMES = {1: "once", 2: "twice"}
 
 
 class RigWave(NamedTuple):
-    """What repeats with a rig: its values (time), its swing, and how often in a turn or cycle."""
+    """What repeats with a rig: its values (time), its swing, and how often in a turn or cycle.
+
+    `undersampled` waves are faster than half the rate of the record.
+    """
 
     signal: np.ndarray
     swing: float
     orders: tuple[int, ...]
+    undersampled: bool = False
 
     def words(self, what: str) -> str:
         """Say how often it repeats in what, e.g. "turn".
@@ -107,18 +118,39 @@ def rig_wave(values: np.ndarray, angle: np.ndarray) -> RigWave | None:
     if n < 16 or not np.isfinite(angle[-1]) or not np.isfinite(values.sum()):
         return None
     turns = abs(float(angle[-1] - angle[0])) / (2 * np.pi)
-    orders = np.arange(1, min(_ORDERS, int(0.4 * n / max(turns, 1e-9))) + 1)
-    if turns < _FEWEST or not orders.size:
+    if turns < _FEWEST:
         return None
-    count = max(1, round(turns / _TURNS))
+    slow = int(_SLOW * n / turns)
+    orders = np.arange(1, min(_ORDERS, slow) + 1)
+    size = max(1, int(n / turns / _SAMPLED))
+    found = None
+    if orders.size:
+        found = _repeated(values, angle, orders, max(1, round(turns / _TURNS)), size, _LATE)
+    if found is not None:
+        return found
+    fast = np.arange(slow + 1, _ORDERS_OF_FAST + 1)
+    seen = np.abs((fast * turns / n + 0.5) % 1 - 0.5)  # cycles in a sample
+    fast = fast[(seen > _APART) & (seen < 0.5 - _APART)]
+    count = n // _OF_FAST
+    if not fast.size or not count:
+        return None
+    late = _LATE_OF_FAST * count / turns
+    wave = _repeated(values, angle, fast, count, 1, late)
+    return None if wave is None else wave._replace(undersampled=True)
+
+
+def _repeated(
+    values: np.ndarray, angle: np.ndarray, orders: np.ndarray, count: int, size: int, late: float
+) -> RigWave | None:
+    """Look for waves of some orders in `count` pieces, in blocks of `size` samples."""
+    n, turns = values.size, abs(float(angle[-1] - angle[0])) / (2 * np.pi)
     turn = np.linspace(angle[0], angle[-1], count + 1)
     edges = np.searchsorted(np.sign(turn[-1] - turn[0]) * angle, np.sign(turn[-1] - turn[0]) * turn)
     edges[-1] = n
-    size = max(1, int(n / turns / _SAMPLED))
     if np.diff(edges).min() < 3 * size * (2 * orders.size + 2):
         return None
     fits = [_fit(values[a:b], angle[a:b], size, orders, turns / count) for a, b in _ranges(edges)]
-    believed, real = _believed(orders, fits, turns / count)
+    believed, real = _believed(orders, fits, turns / count, late)
     if not believed.size:
         return None
     signal = np.zeros(n)
@@ -163,7 +195,9 @@ def _fit(
     return _Fit(amplitude, beside, freedom)
 
 
-def _believed(orders: np.ndarray, fits: list[_Fit], turns: float) -> tuple[np.ndarray, float]:
+def _believed(
+    orders: np.ndarray, fits: list[_Fit], turns: float, off: float
+) -> tuple[np.ndarray, float]:
     """Places of the orders that stand out and stay in step, and the part that noise is not."""
     size = np.array([fit.size for fit in fits])
     power, beside = (abs(size) ** 2).mean(axis=0), np.mean([fit.beside for fit in fits], axis=0)
@@ -173,7 +207,7 @@ def _believed(orders: np.ndarray, fits: list[_Fit], turns: float) -> tuple[np.nd
     if len(fits) > 2:
         step = (size[1:] * size[:-1].conj()).sum(axis=0)
         whole = np.sqrt((abs(size[1:]) ** 2).sum(axis=0) * (abs(size[:-1]) ** 2).sum(axis=0))
-        late = 2 * np.pi * _LATE * turns * orders
+        late = 2 * np.pi * off * turns * orders
         clear &= (abs(step) > _IN_STEP * whole) & (abs(np.angle(step)) < late)
     if not clear[orders <= _FIRST].any():
         return np.zeros(0, int), 0.0

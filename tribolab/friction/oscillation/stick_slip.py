@@ -354,6 +354,7 @@ def _instrument(
         names = [f"mains at {line.name}" for line in e.oscillation.mains]
         if wave is not None and motion is not None:
             names.append(wave.words(motion.what))
+            names += ["faster than half the record's rate, so it shows slower"] * wave.undersampled
         if rings:
             names.append(f"resonance at {e.oscillation.frequency:.4g} Hz")
         texts.append("; ".join(names))
