@@ -56,13 +56,20 @@ def test_noise_is_no_trend_along_the_run_nor_within_a_stroke():
         assert not any("with a significant trend" in message for message in told)
 
 
-def test_a_rise_along_the_run_is_no_error_of_its_mean():
-    """The mean is one over the run: its error is that about the line, as repeats would show it."""
+@pytest.mark.parametrize(
+    "course",
+    [
+        0.3 * (1 + 0.077 * np.linspace(-0.5, 0.5, 200)),
+        0.12 + 0.03 * np.exp(-np.arange(200) / 25),
+        0.25 - 0.05 * np.exp(-np.arange(200) / 60),
+    ],
+)
+def test_how_friction_changes_along_a_run_is_no_error_of_its_mean(course):
+    """The mean is one over the run: its error is that about the course, as repeats show it."""
     rng = np.random.default_rng(11)
     curves = []
     for _ in range(40):
-        rise = 0.3 * (1 + 0.077 * np.linspace(-0.5, 0.5, 200))
-        mu = rise + 0.006 * rng.standard_normal(200)
+        mu = course + 0.006 * rng.standard_normal(200)
         friction = {"friction_coefficient": mu, "friction_coefficient_std": np.full(200, 0.01)}
         friction |= {"friction_coefficient_sem": np.full(200, 0.004)}
         friction |= {"sliding_speed": np.full(200, 0.01)}
@@ -71,7 +78,8 @@ def test_a_rise_along_the_run_is_no_error_of_its_mean():
     means = [float(curve.friction_coefficient[0]) for curve in curves]
     errors = [float(curve.friction_coefficient_sem[0]) for curve in curves]
     assert np.std(means) < np.median(errors) < 2.5 * np.std(means)
-    assert max(abs(mean - 0.3) for mean in means) < 3 * np.median(errors)
+    assert max(abs(mean - course.mean()) for mean in means) < 3 * np.median(errors)
+    assert min(float(curve.friction_coefficient_dof[0]) for curve in curves) > 20
 
 
 def strokes(mu):

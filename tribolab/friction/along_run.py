@@ -13,6 +13,7 @@ _MATTERS = 0.02  # change along the run over the mean
 
 
 _SURE_OF_START = 8.0  # standard errors of the first block's distance, of 4 degrees of freedom
+_LASTS = 25  # how long a run-in may last, of which the best is taken
 _START_MATTERS = 0.05  # of the friction that the run settles at
 
 
@@ -70,11 +71,15 @@ def line_along(time: np.ndarray, values: np.ndarray) -> Line | None:
 
 
 class RunIn(NamedTuple):
-    """Friction of the first tenth of a run's strokes, and of the half at which it settles."""
+    """Friction of the first tenth of a run's strokes, and of the half at which it settles.
+
+    `error` is that of their difference, `settled_error` that of the latter.
+    """
 
     first: float
     settled: float
     error: float
+    settled_error: float
 
 
 def run_in(values: np.ndarray) -> RunIn | None:
@@ -106,4 +111,41 @@ def run_in(values: np.ndarray) -> RunIn | None:
     off = abs(float(blocks[0]) - settled)
     if off <= _SURE_OF_START * error or off <= _START_MATTERS * abs(settled):
         return None
-    return RunIn(float(blocks[0]), settled, error)
+    own = float(late.std(ddof=1) / np.sqrt(late.size))
+    return RunIn(float(blocks[0]), settled, error, own)
+
+
+def course_along(values: np.ndarray) -> np.ndarray | None:
+    """Return the course of friction along a run (stroke): a line, or how it runs in.
+
+    What is left about it tells how well the mean over the run is known. None where friction does
+    not surely change.
+
+    Parameters
+    ----------
+    values
+        Friction of each stroke, in order (stroke).
+
+    Notes
+    -----
+    A run-in is fitted as ``a + b exp(-n / c)`` by least squares, with c from a hundredth of the run
+    to all of it.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(0)
+    >>> n, noise = np.arange(200.0), 0.002 * rng.standard_normal(200)
+    >>> course = course_along(0.3 + 0.1 * np.exp(-n / 10) + noise)
+    >>> course[[0, 199]].round(1).tolist(), course_along(0.3 + noise)
+    ([0.4, 0.3], None)
+    """
+    number = np.arange(values.size, dtype=float)
+    line = line_along(number, values)
+    if line is None and run_in(values) is None:
+        return None
+    fitted = [] if line is None else [line.at(number)]
+    for lasts in values.size * np.geomspace(0.01, 1.0, _LASTS):
+        design = np.stack([np.ones(number.size), np.exp(-number / lasts)], axis=1)
+        told, *_ = np.linalg.lstsq(design, values, rcond=None)
+        fitted.append(design @ told)
+    return min(fitted, key=lambda course: float(((values - course) ** 2).sum()))

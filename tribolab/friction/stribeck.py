@@ -10,7 +10,7 @@ import xarray as xr
 from scipy import special
 
 from tribolab.errors import AnalysisError, shown
-from tribolab.friction.along_run import line_along
+from tribolab.friction.along_run import course_along
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.joined import Label, grouped, joined_curves
 from tribolab.friction.statistics import error_of_mean, student_widening
@@ -103,7 +103,7 @@ def measured_stribeck_curve(
     the spread between runs is unknown, and the error is that run's own. Where it has 24
     observations or more at a speed, as a crank gives, those that follow each other need not be
     independent: the error is at least that of the mean of a series with their spectrum, about the
-    straight line along the run where friction surely rises or falls over a hundred and more: the
+    line or the run-in along the run where friction surely changes over a hundred and more: the
     mean is one over the run.
 
     References
@@ -276,9 +276,26 @@ def mean_of_observations(
     _, first, which = np.unique(observation, return_index=True, return_inverse=True)
     count = np.bincount(which)
     mean, own = (np.bincount(which, part) / count for part in (value, sem))
+    mean = _about_course(mean, first)
     level = _random_effects(mean, own, [_Known(float(error), np.inf) for error in own])
     middle, error, _ = _wandering(level, mean[np.argsort(first)].tolist())
     return middle, error
+
+
+def _about_course(values: np.ndarray, order: np.ndarray) -> np.ndarray:
+    """Return a run's observations about how friction changes along it, where it surely does.
+
+    What is told as a trend, or as a run-in, leaves the mean over the run as it is.
+    """
+    if values.size < _LONG:
+        return values
+    along = np.argsort(order, kind="stable")
+    course = course_along(values[along])
+    if course is None:
+        return values
+    result = values.copy()
+    result[along] += course.mean() - course
+    return result
 
 
 def _wandering(
@@ -289,10 +306,6 @@ def _wandering(
     if len(in_order) < _MANY:
         return level
     series = np.array(in_order)
-    number = np.arange(series.size, dtype=float)
-    line = line_along(number, series) if series.size >= _LONG else None
-    if line is not None:  # what is told as a trend leaves the mean as it is
-        series = series - line.at(number) + mean
     plain, wide = (float(part[0]) for part in error_of_mean(series[None]))
     if not plain > known.u:
         return mean, max(error, plain), known
@@ -308,8 +321,10 @@ def _combined(values: list[_Value]) -> tuple[float, ...]:
     for number in np.unique(run):
         part = run == number
         own = [v for v in values if v.run == number]
-        level = _random_effects(mu[part], sem[part], [v.known for v in own])
-        means.append(_wandering(level, [v.mu for v in sorted(own, key=lambda v: v.order)]))
+        order = np.array([v.order for v in own])
+        about = _about_course(mu[part], order)
+        level = _random_effects(about, sem[part], [v.known for v in own])
+        means.append(_wandering(level, about[np.argsort(order, kind="stable")].tolist()))
         squares += float(np.sum((mu[part] - mu[part].mean()) ** 2))
         freedom += int(part.sum()) - 1
     y, s = np.array([mean[:2] for mean in means]).T

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.friction.along_run import FEWEST, line_along, run_in
+from tribolab.records.wording import with_error
 from tribolab.words import duration, many, number, percent, speed_text
 
 OUTSIDE = "what lies outside "  # how the text of strokes of which a part counts begins
@@ -30,6 +31,8 @@ class RunTrend(NamedTuple):
         How many there are, and the time from the first to the last [s].
     settles
         Whether it is that of the run-in, and `last` the mean of the last half.
+    settled_error
+        Standard error of that mean.
     """
 
     speed: float
@@ -39,6 +42,7 @@ class RunTrend(NamedTuple):
     segments: int
     lasted: float
     settles: bool = False
+    settled_error: float | None = None
 
     @property
     def text(self) -> str:
@@ -46,9 +50,10 @@ class RunTrend(NamedTuple):
         verb = "rises" if abs(self.last) > abs(self.first) else "falls"
         share = percent(abs(self.last - self.first) / abs(self.first))
         if self.settles:
+            settled = with_error(self.last, self.settled_error)
             return (
                 f"friction {verb} along the run as it begins, from {number(self.first)} in its "
-                f"first tenth to {number(self.last)} in its last half, by {share}, over "
+                f"first tenth to {settled} in its last half, by {share}, over "
                 f"{many(self.segments, 'segment')} at {speed_text(self.speed)}: the mean holds "
                 "the run-in"
             )
@@ -93,9 +98,9 @@ def _trend(
         early = run_in(values[part])
         if early is None:
             return None
-        usual = float(np.median(speed[part]))
-        size = part.size
-        return RunTrend(usual, early.first, early.settled, early.error, size, lasted, settles=True)
+        usual, own = float(np.median(speed[part])), early.settled_error
+        told = usual, early.first, early.settled, early.error, part.size, lasted
+        return RunTrend(*told, settles=True, settled_error=own)
     tenth = max(part.size // 10, 1)  # what ends of a line would exceed where the change levels off
     first, last = (float(values[end].mean()) for end in (part[:tenth], part[-tenth:]))
     return RunTrend(
