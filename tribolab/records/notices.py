@@ -23,6 +23,7 @@ from tribolab.records.run_facts import (
     values_of,
 )
 from tribolab.records.run_record import DecisionRow
+from tribolab.records.run_steps import steps_that_differ
 from tribolab.records.run_trend import OUTSIDE, trends_along
 from tribolab.words import duration, many, percent
 
@@ -80,6 +81,8 @@ def notices_of(
     if quantity == "friction_coefficient" and quantity in friction:
         for trend in trends_along(friction, values):
             say("note", "friction", trend.text)
+        if differ := steps_that_differ(friction, values):
+            say("suspect", "friction", differ)
     for text in _remarks(friction):
         say("note", "friction", text)
     if str(friction.attrs.get("offset", "")).startswith("none"):

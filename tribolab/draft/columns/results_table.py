@@ -25,7 +25,8 @@ def are_points(columns: Sequence[DraftColumn], numbers: np.ndarray) -> bool:
         Their numbers (rows, columns) as written.
     """
     held = {column.quantity: column for column in columns if column.used}
-    column = held.get("sliding_velocity") or held.get("rotation_speed")
+    speeds = ("sliding_velocity", "rotation_speed", "rolling_speed")
+    column = next((held[name] for name in speeds if name in held), None)
     if column is None or not _FEWEST <= len(numbers) <= _MOST:
         return False
     size = np.abs(numbers[:, column.place - 1])

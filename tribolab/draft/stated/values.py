@@ -14,6 +14,7 @@ from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.draft.words.levers import weight_on_lever
 from tribolab.draft.words.named_radius import radius_in_name
+from tribolab.draft.words.roles import role_of, without_role
 from tribolab.draft.words.sentences import Phrase, label_of, phrases
 from tribolab.draft.words.stated_words import (
     ACROSS,
@@ -65,6 +66,8 @@ _DRIVEN = re.compile(  # "reciprocating rig, crank drive"
     r"[- ]?(?:driv\w*|(?:an)?trieb\w*|mechanism)"
     r"|\b(?:sinusoidal|sinusf[oö]rmige?|triangular|constant[- ]speed)"
     r" (?:motion|strokes?|bewegung)"
+    r"|\b(?:movimi?ento|moto|mouvements?) (?:senoidal|sinuso[iï]d\w*|arm[oó]nico|harmonique)"
+    r"|\bsinus(?:vormig\w*|formad\w*|formet\w*|oidaln\w*)"
     r"|\bsinusf[oö]rmig\w*|\bkurbel(?:schleife|schwinge)\b|\bkreuzschubkurbel\b"
     r"|\bcrank(?:[- ]slider)?\b|\b(?:excéntrica|exc[eê]ntrico|eccentrico|exzenter)\b"
     r"|\b(?:vevdriv\w+|vevdrift|veivdrift|krumtapdrift|kampikäyttö|biel\w+[- ]maniv\w+|manivelle"
@@ -291,6 +294,9 @@ def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:
     options = matches(key, unit)
     if options and options[0].score > 0.5:
         quantity = _SET.get(options[0].quantity, options[0].quantity)
+        name = without_role(key) if role_of(key) == "set" else key
+        bare = squeezed(_BRACKETS.sub("", name))
+        plain = bare if LOAD.search(bare) else plain
         other = quantity == "set_normal_force" and not LOAD.search(plain)  # a preload is none
         if quantity.startswith("set_") and not other:
             read_as = options[0].unit or unit

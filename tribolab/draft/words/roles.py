@@ -10,7 +10,8 @@ _TOKENS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[^\W\d_A-Z]+")
 _SET = frozenset(
     "set setpoint setp sp soll sollwert target nominal nom command commanded cmd demand demanded "
     "desired programmed prescribed requested consigne nominale objetivo nennwert "
-    "satt innstilt inställd inställt indstillet ingesteld zadane zadané nastavené nastaveno "
+    "satt innstilt inställd inställt indstillet ingesteld ingestelde zadane zadané nastavené "
+    "nastaveno "
     "asetettu asetus beállított ayar ayarlanan ajustado ajustada impostato impostata réglé "
     "réglée".split()
 )

@@ -12,18 +12,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribolab.io.key_words import UNIT_KEYS
 from tribolab.io.seal import is_sealed
 from tribolab.io.tables.settings_text import plain, setting_lines
 from tribolab.trials import try_out
 
 _OF_HDF5 = {
-    *("units", "unit", "CLASS", "NAME", "TITLE", "VERSION", "DIMENSION_LIST", "_FillValue"),
+    *UNIT_KEYS,
+    *("CLASS", "NAME", "TITLE", "VERSION", "DIMENSION_LIST", "_FillValue"),
     *("MATLAB_class", "MATLAB_fields", "MATLAB_int_decode", "MATLAB_empty", "REFERENCE_LIST"),
     *("_Netcdf4Dimid", "_NCProperties", "long_name", "description", "columns", "column_names"),
 }
 _OF_LIBRARY = ("#refs#", "#subsystem#")
 _NAMES = ("columns", "column_names", "names", "labels", "channels", "fields")
-_UNITS = ("units", "unit", "column_units", "Units", "Unit", "unit_string")
+_UNITS = (*UNIT_KEYS, "column_units", "Units", "Unit")
 _MEANINGS = ("long_name", "description", "standard_name", "label", "title")
 _MOST_ELEMENTS = 500  # of a structure array
 

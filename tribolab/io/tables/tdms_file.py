@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribolab.errors import ReadError, brief
+from tribolab.io.key_words import UNIT_KEYS
 from tribolab.io.tables.settings_text import setting_lines, text_of
 
 _DAMAGE = (
@@ -19,7 +20,7 @@ _DAMAGE = (
 
 # how the text of a TDMS file says the time from row to row
 INCREMENT_PATTERN = r"^wf_increment: (\S+)"
-_UNITS = ("unit_string", "NI_UnitDescription", "unit", "units", "Unit")
+_UNITS = ("unit_string", "NI_UnitDescription", "Unit", *UNIT_KEYS)
 _WHOLE = 1e-3  # of an interval, how far the ratio of two may be from a whole number
 
 

@@ -1,0 +1,55 @@
+"""Whether friction at one speed differs from step to step of a run, as at several temperatures."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from tribolab.words import many, percent
+
+_SAME_SPEED = 0.05  # relative difference of the speeds of alike segments
+_FEWEST = 3  # speeds that several steps have in common
+_DIFFERS = 0.1  # of the friction, from step to step
+TEXT = "friction at one speed differs from step to step"  # how its text begins
+
+
+def steps_that_differ(friction: xr.Dataset, values: np.ndarray) -> str:
+    """Say that the mean over steps is one of different conditions; "" where it is not.
+
+    Parameters
+    ----------
+    friction
+        From `friction_coefficient`: ``sliding_speed`` and ``step`` (segment).
+    values
+        Friction coefficient of each (segment); NaN where it is not known.
+
+    Examples
+    --------
+    >>> cold = xr.Dataset({"sliding_speed": ("segment", [1.0, 2.0, 4.0] * 2)})
+    >>> cold["step"] = "segment", [1, 1, 1, 2, 2, 2]
+    >>> steps_that_differ(cold, np.array([0.10, 0.08, 0.06, 0.13, 0.10, 0.08]))[:47]
+    'friction at one speed differs from step to step'
+    >>> steps_that_differ(cold, np.array([0.10, 0.08, 0.06, 0.10, 0.08, 0.06]))
+    ''
+    """
+    if "step" not in friction:
+        return ""
+    speed, step = (np.asarray(friction[name], float) for name in ("sliding_speed", "step"))
+    known = np.isfinite(values) & np.isfinite(step) & (speed > 0)
+    order = np.flatnonzero(known)[np.argsort(speed[known], kind="stable")]
+    if order.size < 2 * _FEWEST:
+        return ""
+    cuts = np.flatnonzero(np.diff(np.log(speed[order])) > _SAME_SPEED) + 1
+    apart = []
+    for part in np.split(order, cuts):
+        means = [values[part][step[part] == each].mean() for each in np.unique(step[part])]
+        if len(means) > 1:
+            apart.append(float(np.ptp(means)) / abs(float(np.mean(means))))
+    if len(apart) < _FEWEST or np.median(apart) < _DIFFERS:
+        return ""
+    steps = np.unique(step[order]).size
+    usual = percent(float(np.median(apart)))
+    return (
+        f"{TEXT} (temperature, surface?), usually by {usual}, at {many(len(apart), 'speed')} of "
+        f"{many(steps, 'step')}: the curve is a mean of them, tables/friction.csv has each"
+    )
