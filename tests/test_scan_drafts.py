@@ -652,3 +652,14 @@ def test_abscissae_are_positions_whatever_length_is_stated(tmp_path, names):
     rows = ROWS.replace(",", ";").replace(".", ",")
     scan = read_scans(written(tmp_path, f"Longueur palpée (mm);0,05\n\n{names}\n{rows}\n"))
     np.testing.assert_allclose(scan.height[0], 1e-6 * Z, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("said", ["# Unidades: mm", "Units: mm", "Einheiten; mm"])
+def test_one_unit_for_a_table_is_that_of_all_its_lengths(tmp_path, said):
+    rows = "\n".join(f"{0.00025 * n:.5f} {z / 1000:.7f}" for n, z in enumerate(Z))
+    scan = read_scans(written(tmp_path, f"{said}\n# X Z\n{rows}\n"))
+    np.testing.assert_allclose(scan.height[0], 1e-6 * Z, rtol=0, atol=1e-13)
+    assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
+    two = written(tmp_path, f"{said}\n# lateral resolution unit: um\n# X Z\n{rows}\n", "two.txt")
+    with pytest.raises(ReadError):
+        read_scans(two)

@@ -13,6 +13,7 @@ _LINES = {
         Friction force | Tangential force | Lateral force | Frictional force | Traction force
         | Shear force | Drag force | Horizontal force | F friction | Pull force | Pulling force
         Fuerza de tracción | Força de tração | Force de traction | Forza di trazione | Zugkraft
+        Forza di tiro | Forza tiro | Forza di traino | Forza traino | Fuerza de tiro | Fuerza tiro
         Traktionskraft | Trakční síla | Siła trakcji | Сила тяги | Тяговое усилие | Trekkraft
         Trækkraft | Dragkraft | Trekkracht | Vetovoima | Vonóerő | Çekme kuvveti | 牵引力 | 견인력
         摩擦力 | 切向力 | 摩擦阻力

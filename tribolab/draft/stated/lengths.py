@@ -111,6 +111,8 @@ def find_profile_length(layout: Layout) -> DraftValue | None:
 def find_height_unit(layout: Layout) -> str:
     """Return the unit of heights that the text before them states in a line of its own, or "".
 
+    One unit for a whole table ("Units: mm") is theirs, too, where no other is stated.
+
     Parameters
     ----------
     layout
@@ -123,7 +125,17 @@ def find_height_unit(layout: Layout) -> str:
     if layout.width == 1 and not own:
         own = {unit for key, unit in said if UNIT.search(key)}
         own |= {unit for key, unit in said if unit in _USUAL and not NO_HEIGHT.search(key)}
-    return own.pop() if len(own) == 1 else ""
+    if len(own) > 1:
+        return ""
+    return own.pop() if own else _of_all(layout)
+
+
+def _of_all(layout: Layout) -> str:
+    """Return the unit of all lengths of a table of several columns: "Units: mm"; "" if none is."""
+    said = [(squeezed(key), length_unit(text)) for key, text in words_said(layout, bare=True)]
+    units = {unit for key, unit in said if unit}
+    stated = [unit for key, unit in said if unit and UNIT.search(key)]
+    return stated[0] if layout.width > 1 and len(stated) == len(units) == 1 else ""
 
 
 _HEIGHTS_IN = re.compile(
@@ -151,7 +163,9 @@ def find_unit_along(layout: Layout) -> str:
     """
     said = [(squeezed(key), length_unit(text)) for key, text in words_said(layout, bare=True)]
     units = {unit for key, unit in said if unit and ALONG.search(key)}
-    return units.pop() if len(units) == 1 else ""
+    if len(units) > 1:
+        return ""
+    return units.pop() if units else _of_all(layout)
 
 
 def _names_heights(key: str) -> bool:

@@ -105,7 +105,9 @@ POINTS = or_term(
     "points",
 )
 UNIT = re.compile(
-    r"^(?:unit|units|einheit|einheiten|unite|unites|unidad|unidades|unita|unidade|eenheid|单位|単位)$"
+    r"^(?:unit|units|einheit|einheiten|unite|unites|unidad|unidades|unita|unidade|eenheid"
+    r"|eenheden|enhet|enheter|enhed|enheder|yksikko|yksikot|jednostka|jednostki|jednotka|jednotky"
+    r"|mertekegyseg|birim|birimler|единицы?|单位|単位)$"
 )
 HEIGHT_UNIT = re.compile(
     r"^(?:z|height|hoehe?n?|profile?|amplitude|hauteur|altura|altezza|quota|cota|hoogte|ordinate|data|value)s?"
