@@ -341,3 +341,13 @@ def test_turns_may_be_typed_with_the_radius_of_their_track(tmp_path, monkeypatch
     assert float(run.set_speed.mean()) == pytest.approx(speed, rel=1e-5)
     assert 'name = "normal_force"' not in Path("disc.toml").read_text("utf-8")
     assert float(run.normal_force.mean()) == pytest.approx(15)
+
+
+def test_a_description_that_was_drafted_of_a_file_is_named_where_it_lies(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    file = write(tmp_path / "odd.csv", log())
+    told = command("info", file.name)
+    assert told.exit_code == 3 and "is a description of it" not in told.output
+    assert command("dialect", file.name, "--ask", typed="1\nms\n2\nmN\n3\nN\n\n\n").exit_code == 0
+    told = command("info", file.name)
+    assert told.exit_code == 3 and "--instrument odd.toml is a description of it" in told.output

@@ -35,6 +35,7 @@ _OF_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 _WANTED = {*_OF_FRICTION, "normal_force", "normal_stress", "sliding_velocity", "position", "time"}
 _LIKE_NUMBER = re.compile(r"[<>~]?\s*[+-]?\d[\d.,' ]*(?:[eE][+-]?\d+)?\s*[A-Za-z%µ°/]{0,6}")
 _TOLD = 12  # questions of one file that are told
+_MOST_BESIDE = 50  # descriptions in the file's folder that are looked at
 _RADII = ("another length",)
 _RATE = ("a sample rate, e.g. 100 Hz", "a column of time")
 
@@ -267,7 +268,22 @@ class GuessedError(ReadError):
             return f"{self.where}: {self.what}{guessed}{lacks}; {cure}"
         rows = ["Guesses:", *_aligned(self.asked[:_TOLD]), *listed[_TOLD:]] if listed else []
         rows += [f"Missing: {lack}" for lack in self.lacks]
-        return "\n".join([f"{self.where}: {self.what}. {rows[0]}", *rows[1:], cure])
+        kept = [f"--instrument {name} is a description of it" for name in _drafts_of(self.where)]
+        return "\n".join([f"{self.where}: {self.what}. {rows[0]}", *rows[1:], cure, *kept])
+
+
+def _drafts_of(path: object) -> list[str]:
+    """Return the descriptions beside a file that were drafted from it, as they are named there."""
+    file = Path(str(path))
+    first = f"# Drafted from '{file.name}'."
+    found = []
+    for beside in sorted(file.parent.glob("*.toml"))[:_MOST_BESIDE]:
+        try:
+            with beside.open(encoding="utf-8") as text:
+                found += [str(beside)] if text.readline().startswith(first) else []
+        except (OSError, ValueError):
+            continue
+    return found[:1]
 
 
 def _aligned(asked: Sequence[Question]) -> list[str]:

@@ -250,12 +250,11 @@ def _checked(
 def _ambiguous(strokes: StrokeMeans, loops: Middles, loop: ZeroReference) -> ZeroReference:
     """Say that an offset and an asymmetry look the same where no other zero tells them apart."""
     half = (strokes.mean[loops.member] * (0.5, -0.5)).sum(axis=1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.abs(loops.value / half)
-    share = float(median_of_known(share[np.isfinite(share)])) if np.isfinite(share).any() else 0.0
+    offset, usual = median_of_known(loops.value), median_of_known(np.abs(half))
+    share = float(abs(offset) / usual) if usual > 0 and np.isfinite(offset) else 0.0
     text = (
         "no rest without load: friction that depends on direction and an offset cannot be told "
-        f"apart. The offset that was removed, {median_of_known(loops.value):+.3g}{strokes.unit}, "
+        f"apart. The offset that was removed, {offset:+.3g}{strokes.unit}, "
     )
     if share < 1:
         text += f"would be {share:.1%} more friction one way and less the other; "
