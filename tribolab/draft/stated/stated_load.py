@@ -11,6 +11,9 @@ from tribolab.draft.stated.values import DraftValue
 from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.draft.words.stated_words import LOAD
 from tribolab.io.dialects.patterns import guarded
+from tribolab.units import conversion
+
+_ALIKE = 0.01  # relative difference of a weight and of the force of it, both rounded
 
 
 def find_load(values: Sequence[DraftValue]) -> DraftValue | None:
@@ -35,7 +38,17 @@ def find_load(values: Sequence[DraftValue]) -> DraftValue | None:
             fitting.append(value._replace(name="set_normal_force", unit=unit, to=None))
     if not fitting and len(of_name) == 1:
         return of_name[0]
+    if len(fitting) == 2 and _are_one(*fitting):
+        return fitting[fitting[0].unit in WEIGHTS.values()]  # the force, as it is stated
     return fitting[0] if len(fitting) == 1 else None
+
+
+def _are_one(one: DraftValue, other: DraftValue) -> bool:
+    """Whether two loads are a weight and the force of it, as "2.5 kg" and "24.5 N"."""
+    if "step" in (one.source, other.source) or one.unit == other.unit:
+        return False
+    sizes = [stated_number(v) * conversion(v.unit or "N", "N")[0] for v in (one, other)]
+    return abs(sizes[0] - sizes[1]) <= _ALIKE * max(sizes)
 
 
 def lifted_on_return(layout: Layout) -> bool:
