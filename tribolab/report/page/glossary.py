@@ -77,6 +77,31 @@ OF_SURFACES = frozenset(
 # Of these what only its contact makes.
 OF_CONTACT = frozenset(("A/A₀", "Pull-off force"))
 
+# What only a rubber and a fitted theory speak of.
+OF_MODELS = frozenset(
+    (
+        *("Shear stress σ", "95 % interval", "χ² per freedom", "Runs test p", "Forced wetting"),
+        "Macroscopic instability, controlled by adhesion",
+    )
+)
+
+
+def words_of(*, runs: bool, surfaces: bool, contact: bool, models: bool) -> dict[str, str]:
+    """Return the words that a page with these sections speaks of, with their meanings.
+
+    >>> sorted(words_of(runs=False, surfaces=True, contact=False, models=False))[:3]
+    ['Hurst exponent', 'Pq', 'Roll-off']
+    """
+    left = set() if models else OF_MODELS
+    left = left if contact else left | OF_CONTACT
+    left = left if surfaces else left | OF_SURFACES
+    return {
+        word: meaning
+        for word, meaning in GLOSSARY.items()
+        if word not in left and (runs or word in OF_SURFACES)
+    }
+
+
 # Words in the sentences of the first screen that are explained where they stand.
 TERMS: dict[str, str] = {
     "lift off": GLOSSARY["Lift-off"],

@@ -16,6 +16,7 @@ from tribolab.records.packed import deflated
 from tribolab.records.traces import script_json
 from tribolab.report.live.shown import ShownFigure
 from tribolab.report.page.answer import cards, of_nothing
+from tribolab.report.page.glossary import words_of
 from tribolab.report.page.in_short import in_short
 from tribolab.report.page.sections import shown_sections
 from tribolab.report.page.templating import environment, framing, library
@@ -94,6 +95,12 @@ def _context(
     first, rest = parted(grouped_runs(every), _MOST_ROWS)
     context = dict(document) | {
         "has_contact": any(surface["contact"] or surface["adhesion"] for surface in surfaces),
+        "words": words_of(
+            runs=bool(every),
+            surfaces=bool(surfaces),
+            contact=any(surface["contact"] or surface["adhesion"] for surface in surfaces),
+            models=bool(document.get("models")),
+        ),
         "left_out": omitted_rows(every),
         "places": {run["name"]: place + 1 for place, run in enumerate(every)},
         "cards": cards(document),

@@ -23,7 +23,7 @@ from tribolab.records.model_words import is_described, stress_interval
 from tribolab.records.packed import deflated
 from tribolab.records.roughness_words import form_in_words
 from tribolab.report.live.points import run_error
-from tribolab.report.page.glossary import GLOSSARY, HEADS, OF_CONTACT, OF_SURFACES, TERMS
+from tribolab.report.page.glossary import HEADS, TERMS
 from tribolab.report.page.in_words import conditions, oscillation_text
 from tribolab.report.page.sections import Section
 from tribolab.report.plain import plain_speed, plain_speeds, without_exponents
@@ -169,9 +169,6 @@ def environment(folder: Path) -> jinja2.Environment:
         "hurst_verdict": hurst_verdict,
         "run_error": run_error,
         "HEADS": HEADS,
-        "GLOSSARY": GLOSSARY,
-        "OF_SURFACES": OF_SURFACES,
-        "OF_CONTACT": OF_CONTACT,
         "explained": explained,
         "UNITS": wording.UNITS,
         "SYMBOLS": wording.SYMBOLS,
