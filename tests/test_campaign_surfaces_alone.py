@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from campaigns import surfaces_alone
-from report_pages import page_of
+from report_pages import figures_of, page_of
 from typer.testing import CliRunner
 
 from tribolab import rig
@@ -89,3 +89,27 @@ def test_roughness_does_not_wait_for_a_spectrum_where_no_contact_is_asked_about(
     (tmp_path / "campaign.toml").write_text(asked + 'normal_forces = ["30 N"]\n')
     failed = CliRunner().invoke(app, ["run", str(tmp_path / "campaign.toml")])
     assert failed.exit_code != 0 and "wavenumbers can be trusted" in failed.output, failed.output
+
+
+def test_the_page_shows_profiles_one_above_another_without_their_form(tmp_path):
+    rng = np.random.default_rng(3)
+    x = np.arange(6000) * 0.5e-3  # mm
+    waves = np.convolve(rng.standard_normal(6200), np.hanning(41) / 20, "valid")[:6000]
+    waves[3000] += 9.0  # one point that no thinning may lose
+    for name, form in (("flat", 0.4 * x), ("round", -((x - 1.5) ** 2) / 2 / 20 * 1e3)):
+        rows = "\n".join(f"{a:.4f}\t{z:.4f}" for a, z in zip(x, waves + form, strict=True))
+        (tmp_path / f"{name}.txt").write_text(f"X [mm]\tZ [um]\n{rows}\n")
+    surfaces = "".join(f'[[surface]]\nname = "{n}"\nscans = "{n}.txt"\n' for n in ("flat", "round"))
+    (tmp_path / "campaign.toml").write_text(f'[campaign]\nname = "a"\nraw = "."\n{surfaces}')
+    done = CliRunner().invoke(app, ["run", str(tmp_path / "campaign.toml")])
+    assert done.exit_code == 0, done.output
+    upper, lower = figures_of(tmp_path / "results")["surfaces-profiles"]["series"]
+    for one in (upper, lower):
+        z = np.array(one["y"], float)
+        assert (
+            len(z) <= 1200 and one["x"][0] == 0 and one["x"][-1] == pytest.approx(x[-1], rel=1e-3)
+        )
+        assert np.ptp(z) == pytest.approx(
+            np.ptp(waves), rel=0.02
+        )  # without the form, with the peak
+    assert max(lower["y"]) < min(upper["y"])

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from tribolab.campaign.store.data_files import read_data
+from tribolab.plot.runs.reduce import envelope
 from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, places, thinned
 from tribolab.report.live.record import LiveRecord
 from tribolab.report.live.shown import shown_figures
+from tribolab.surface.form import remove_form
 from tribolab.untyped import Arguments
 from tribolab.words import is_dry
 
@@ -22,6 +25,8 @@ if TYPE_CHECKING:
 
 _AREA = Axis("relative contact area A/A₀", log=True)
 _Y = "_low", "_high"
+_COLUMNS = 600  # of a profile, each with its lowest and its highest point
+_BETWEEN = 0.1  # of a profile's heights, between it and the next
 
 
 class _Surface(NamedTuple):
@@ -73,6 +78,8 @@ def record_of_surfaces(
         series = [drawn for surface in opened for drawn in kind.draw(surface)]
         if kind.once:
             series = [drawn for drawn in series if drawn.surface == series[0].surface]
+        if kind.stacked:
+            series = _stacked(series)
         if series:
             loads = len({drawn.load for drawn in series if drawn.load is not None}) > 1
             alt = f"{kind.title}: {', '.join(dict.fromkeys(drawn.surface for drawn in series))}."
@@ -101,6 +108,40 @@ class _Kind(NamedTuple):
     y: Axis
     draw: Callable[[_Surface], list[Series]]
     once: bool = False
+    stacked: bool = False
+
+
+def _heights(surface: _Surface) -> list[Series]:
+    """One profile of a surface, of maps the row in the middle, without the form that was taken off.
+
+    Marks of missing heights are gaps.
+    """
+    scans, rough = surface.read("scans"), surface.read("roughness")
+    if scans is None or rough is None:
+        return []
+    form = str(rough.attrs.get("form_removed", "none"))
+    first = scans[["height"]].isel({dim: [0] for dim in ("scan",) if dim in scans.dims})
+    flat = first if form == "none" else remove_form(first, form)
+    height = flat["height"]
+    middle = {dim: height.sizes[dim] // 2 for dim in height.dims if dim != "x"}
+    profile = height.isel(middle)
+    if not np.isfinite(profile.values).any():  # a row of a map without any height
+        return []
+    x, z = envelope(profile["x"].values, profile.values, _COLUMNS)
+    return [surface.series("", 1e3 * (x - x[0]), 1e6 * (z - np.nanmean(z)))]
+
+
+def _stacked(series: Sequence[Series]) -> list[Series]:
+    """Profiles one above another, the first on top, by as much as their heights reach."""
+    result: list[Series] = []
+    top = 0.0
+    for one in series:
+        z = np.asarray(one.y, float)
+        if result:
+            z = z - np.nanmax(z) + top
+        top = float(np.nanmin(z)) - _BETWEEN * float(np.nanmax(z) - np.nanmin(z))
+        result.append(replace(one, y=z))
+    return result
 
 
 def _spectra(surface: _Surface) -> list[Series]:
@@ -199,6 +240,17 @@ def _modulus(surface: _Surface) -> list[Series]:
 
 
 _KINDS = (
+    _Kind(
+        "profiles",
+        "surfaces",
+        "Profiles",
+        "The first scan of each surface without the form that was taken off (of a map the row in "
+        "its middle), one above another; a column of points shows its lowest and highest.",
+        Axis("position", "mm"),
+        Axis("height", "µm"),
+        _heights,
+        stacked=True,
+    ),
     _Kind(
         "spectra",
         "surfaces",
