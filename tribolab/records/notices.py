@@ -20,6 +20,7 @@ from tribolab.records.run_facts import (
     left_out,
     main_quantity,
     position_range,
+    times_of_strokes,
     values_of,
 )
 from tribolab.records.run_record import DecisionRow
@@ -92,10 +93,7 @@ def notices_of(
         say("note", "left out", f"{OUTSIDE}positions {low} to {high} mm of each stroke")
     if (share := segments.attrs.get("stroke_middle")) is not None and segments.sizes["segment"]:
         share = float(share)
-        whole, used = (
-            float((segments[f"{part}stop"] - segments[f"{part}start"]).sum())
-            for part in ("", "trimmed_")
-        )
+        whole, used = times_of_strokes(segments)
         strokes = many(segments.sizes["segment"], "stroke")
         text = f"{OUTSIDE}the middle {percent(share)} of the way of each of {strokes}"
         slow = " (at the ends the contact is slow)" if (whole - used) / whole > 1 - share else ""

@@ -18,6 +18,7 @@ from tribolab.records.decision_rows import decision_rows
 from tribolab.records.frames import friction_columns, plain_rows
 from tribolab.records.judgement import not_decided
 from tribolab.records.run_record import CheckRow, Highlight, LeftOut, RunFacts, Waveform
+from tribolab.records.same_speed import of_one_speed
 from tribolab.records.traces import flagged_spans
 from tribolab.records.wording import SPREAD_OF, plain_value
 from tribolab.words import many, percent
@@ -120,7 +121,6 @@ def findings_of(run: xr.Dataset) -> list[FindingRow]:
 
 
 _SHIFT = ("clock_shift_s", "clock_shift_uncertainty_s")
-_SAME_SPEED = 1.05  # times the slower of two: strokes of one speed
 
 
 def friction_facts(friction: xr.Dataset) -> RunFacts:
@@ -140,7 +140,9 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
     sem = values_of(friction, f"{of}_sem", value.size)
     alone = independent(friction)
     middle = friction.attrs.get("stroke_middle")
-    told = value[finite] if middle is None else _means_at(speed[finite], value[finite])
+    told = value[finite]
+    if middle is not None:  # one of hundreds of strokes tells little
+        told = np.array([value[part].mean() for part in of_one_speed(speed, finite)])
     return RunFacts(
         quantity=name,
         offset=str(friction.attrs.get("offset", "")),
@@ -155,17 +157,6 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
         unsteady_segments=int((values_of(friction, "steady", value.size) == 0).sum()),
         highlights=tuple(_highlights(speed, value, std, sem, alone)),
     )
-
-
-def _means_at(speed: np.ndarray, value: np.ndarray) -> np.ndarray:
-    """Return the mean of the values at each speed: one of hundreds of strokes tells little.
-
-    >>> _means_at(np.array([1.0, 1.01, 2.0]), np.array([0.2, 0.4, 0.1])).round(3).tolist()
-    [0.3, 0.1]
-    """
-    order = np.argsort(speed)
-    edges = np.flatnonzero(speed[order][1:] > _SAME_SPEED * speed[order][:-1]) + 1
-    return np.array([part.mean() for part in np.split(value[order], edges) if part.size])
 
 
 def _speed_told(attrs: Mapping[str, Any]) -> str:
@@ -308,15 +299,21 @@ def _highlights(
     return highlights
 
 
+def times_of_strokes(segments: xr.Dataset) -> tuple[float, float]:
+    """Return how long all strokes last, and the parts of them that count [s]."""
+    whole, used = (
+        float((segments[f"{part}stop"] - segments[f"{part}start"]).sum())
+        for part in ("", "trimmed_")
+    )
+    return whole, used
+
+
 def ends_of_strokes(segments: xr.Dataset) -> list[LeftOut]:
     """Return what a chosen middle part leaves of the strokes, in a row of its own."""
     share = segments.attrs.get("stroke_middle")
     if share is None or not segments.sizes["segment"]:
         return []
-    whole, used = (
-        float((segments[f"{part}stop"] - segments[f"{part}start"]).sum())
-        for part in ("", "trimmed_")
-    )
+    whole, used = times_of_strokes(segments)
     reason = f"ends of strokes, outside the middle {percent(float(share))} of the way"
     return [LeftOut(reason, 2 * segments.sizes["segment"], whole - used)]
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from tribolab.records.same_speed import of_one_speed
 from tribolab.words import many, percent
 
-_SAME_SPEED = 0.05  # relative difference of the speeds of alike segments
 _FEWEST = 3  # speeds that several steps have in common
 _DIFFERS = 0.1  # of the friction, from step to step
 TEXT = "friction at one speed differs from step to step"  # how its text begins
@@ -35,19 +35,14 @@ def steps_that_differ(friction: xr.Dataset, values: np.ndarray) -> str:
     if "step" not in friction:
         return ""
     speed, step = (np.asarray(friction[name], float) for name in ("sliding_speed", "step"))
-    known = np.isfinite(values) & np.isfinite(step) & (speed > 0)
-    order = np.flatnonzero(known)[np.argsort(speed[known], kind="stable")]
-    if order.size < 2 * _FEWEST:
-        return ""
-    cuts = np.flatnonzero(np.diff(np.log(speed[order])) > _SAME_SPEED) + 1
     apart = []
-    for part in np.split(order, cuts):
+    for part in of_one_speed(speed, np.isfinite(values) & np.isfinite(step)):
         means = [values[part][step[part] == each].mean() for each in np.unique(step[part])]
         if len(means) > 1:
             apart.append(float(np.ptp(means)) / abs(float(np.mean(means))))
     if len(apart) < _FEWEST or np.median(apart) < _DIFFERS:
         return ""
-    steps = np.unique(step[order]).size
+    steps = np.unique(step[np.isfinite(step)]).size
     usual = percent(float(np.median(apart)))
     return (
         f"{TEXT} (temperature, surface?), usually by {usual}, at {many(len(apart), 'speed')} of "

@@ -7,13 +7,13 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.along_run import FEWEST, line_along, run_in
+from tribolab.friction.along_run import line_along, run_in
+from tribolab.records.same_speed import of_one_speed
 from tribolab.records.wording import with_error
 from tribolab.words import duration, many, number, percent, speed_text
 
 OUTSIDE = "what lies outside "  # how the text of strokes of which a part counts begins
 TRENDS = ("friction rises along", "friction falls along")  # how its text begins
-_SAME_SPEED = 0.05  # relative difference of the speeds of alike segments
 
 
 class RunTrend(NamedTuple):
@@ -80,12 +80,8 @@ def trends_along(segments: xr.Dataset, values: np.ndarray) -> list[RunTrend]:
     """
     speed = segments["sliding_speed"].values
     middle = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
-    known = np.isfinite(values) & np.isfinite(speed) & (speed > 0)
-    order = np.flatnonzero(known)[np.argsort(speed[known], kind="stable")]
-    if order.size < FEWEST:
-        return []
-    cuts = np.flatnonzero(np.diff(np.log(speed[order])) > _SAME_SPEED) + 1
-    found = (_trend(speed, middle, values, np.sort(part)) for part in np.split(order, cuts))
+    known = np.isfinite(values) & np.isfinite(speed)
+    found = (_trend(speed, middle, values, part) for part in of_one_speed(speed, known))
     return [trend for trend in found if trend is not None]
 
 
