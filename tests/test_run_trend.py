@@ -12,6 +12,7 @@ from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.segments.find import find_segments
 from tribolab.records.notices import notices_of
 from tribolab.records.run_trend import trends_along
+from tribolab.report.page.in_short import in_short
 
 RATE, STROKES = 250.0, 120
 
@@ -105,3 +106,15 @@ def test_noise_settles_nowhere():
     for _ in range(30):
         mu = 0.2 + 0.002 * rng.standard_normal(200)
         assert trends_along(strokes(mu), mu) == []
+
+
+def test_what_changes_along_a_run_stands_above_the_cards():
+    def finding(run, message):
+        return {"run": run, "message": message}
+
+    told = [finding("pin", "friction falls along the run from 0.2 to 0.1"), finding("pin", "else")]
+    assert in_short({"curves": [], "findings": told}) == [
+        "pin: friction falls along the run from 0.2 to 0.1."
+    ]
+    many = [finding(f"pin {n}", "friction rises along the run") for n in range(7)]
+    assert in_short({"curves": [], "findings": many}) == ["Friction changes along 7 runs."]

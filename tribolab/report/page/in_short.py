@@ -7,9 +7,13 @@ from typing import Any, NamedTuple
 
 from tribolab.records.model_words import is_described
 from tribolab.records.roughness_words import roughness_in_words
+from tribolab.records.run_steps import TEXT
+from tribolab.records.run_trend import TRENDS
 from tribolab.report.page.in_words import by_speed, conditions, half_speed
 from tribolab.report.plain import listed, plain_speed
 from tribolab.words import force_text, is_dry, many
+
+_MOST = 3  # runs of which it is told one by one
 
 
 class Fall(NamedTuple):
@@ -21,7 +25,7 @@ class Fall(NamedTuple):
 
 
 def in_short(document: Mapping[str, Any]) -> list[str]:
-    """Return which surface lifts off last, which curves no model describes, and roughness.
+    """Return which surface lifts off last, which curves no model describes, trends, and roughness.
 
     Parameters
     ----------
@@ -40,7 +44,16 @@ def in_short(document: Mapping[str, Any]) -> list[str]:
     ('In oil at 31 N', 'rough needs the highest speed to lift off.')
     """
     rough = ((s["name"], s["roughness"]) for s in document.get("surfaces", ()) if s["roughness"])
-    return [*_falls(document["curves"]), *_models(document), *roughness_in_words(rough)]
+    along = _along(document.get("findings", ()))
+    return [*_falls(document["curves"]), *_models(document), *along, *roughness_in_words(rough)]
+
+
+def _along(findings: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Say of which runs friction changes from stroke to stroke or from step to step."""
+    told = [row for row in findings if row["message"].startswith((*TRENDS, TEXT))]
+    if len(told) > _MOST:
+        return [f"Friction changes along {many(len({row['run'] for row in told}), 'run')}."]
+    return [f"{row['run']}: {row['message']}." for row in told]
 
 
 def _falls(curves: Iterable[Mapping[str, Any]]) -> Iterable[str]:
