@@ -351,3 +351,18 @@ def test_a_description_that_was_drafted_of_a_file_is_named_where_it_lies(tmp_pat
     assert command("dialect", file.name, "--ask", typed="1\nms\n2\nmN\n3\nN\n\n\n").exit_code == 0
     told = command("info", file.name)
     assert told.exit_code == 3 and "--instrument odd.toml is a description of it" in told.output
+
+
+def test_of_fast_strokes_the_first_are_shown(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    time = np.arange(0, 60, 0.01)
+    force = 3 * np.sign(np.sin(2 * np.pi * 1.0 * time + 0.1))
+    file = write(tmp_path / "pin.csv", {"Time [s]": time, "Friction force [N]": force})
+    shown = command("dialect", file.name).stdout
+    assert re.search(r"signals +first 6\.\d+ s", shown)
+    (line,) = [line for line in shown.splitlines() if line.strip().startswith("friction_force N ")]
+    assert 10 <= len(re.findall("█▁|▁█|█[▂-▇]▁|▁[▂-▇]█", line)) <= 14
+    steady = write(
+        tmp_path / "steady.csv", {"Time [s]": time, "Friction force [N]": 3 + force / 100}
+    )
+    assert "first" not in command("dialect", steady.name).stdout.split("signals")[1].splitlines()[0]

@@ -123,7 +123,7 @@ def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
     return (
         str(len(curve.run_names)),
         str(segments) if "segments" in points[0] else "",
-        f"{range_of(f'{min(speed):.2g}', f'{max(speed):.2g}')} m/s",
+        f"{range_of(f'{min(speed):.3g}', f'{max(speed):.3g}')} m/s",
         range_of(f"{min(mu):.3f}", f"{max(mu):.3f}"),
         _error_of(points),
     )
