@@ -398,7 +398,10 @@ def test_evidence_leads_to_traces_and_what_is_the_same_is_said_once(tmp_path):
     section = page.split('<h3 id="mode-1">')[1].split("</section>")[0]
     assert section.startswith("Sand S, dry, at 31 N; sand/s, dry, at 31 N</h3>")
     assert 'href="#sliding-traces"' in section and "mode-2" not in page
-    traces = figures_of(made.folder)["sliding-traces"]["series"]
+    figure = figures_of(made.folder)["sliding-traces"]
+    traces, way = figure["series"], figure["panels"][0]["x"]
+    longest = max(one["x"][-1] for one in traces)  # in a unit that needs no powers of ten
+    assert way["unit"] in ("µm", "mm", "m") and 1 <= longest < 1e4
     assert {one["surface"] for one in traces} == {"Sand S", "sand/s"}
     report = json.loads((made.folder / "report.json").read_text())
     drawn = [Path(one["file"]).stem for one in report["sliding_figures"]]

@@ -307,8 +307,9 @@ def _from_outside(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroR
     )
     example = _example(strokes)
     cure = (
-        f'State `zero_uncertainty` (e.g. "{example}") in the [[run]], or of the column in the '
-        "dialect; or measure strokes both ways, or a rest without load."
+        f'State `zero_uncertainty` (e.g. "{example}"), how far the signal may read from zero '
+        "without contact, in the [[run]], or of the column in the dialect; or measure strokes both "
+        "ways, or a rest without load."
     )
     return replace(result, doubts=(doubt(text, cure, np.arange(strokes.size)),))
 

@@ -266,13 +266,20 @@ def _by_line(opened: Sequence[_Open], first: str, second: str) -> str:
     return f"In a liquid{unnamed}, {wet}. Dry, {dry}."
 
 
+_UNITS_OF_WAY = (("m", 1e-6, 1e6), ("mm", 1e-3, 1e4), ("µm", 1.0, 0.0))  # from so many µm on
+
+
 def _traces(opened: Sequence[_Open]) -> LiveFigure:
     series = []
+    longest = max((d[-1] for c in opened for _, d, _ in c.traces if d.size), default=0.0)
+    unit, scale = next((u, s) for u, s, least in _UNITS_OF_WAY if longest >= least)
     for contact in opened:
         for number_, (speed, distance, values) in enumerate(contact.traces):
             style = _STYLES[number_ > 0][contact.labels["open"]]
             told, run = f"{contact.name}, {plain_speed(speed)}", (contact.run,)
-            line = contact.series(contact.name, distance, values, style, told=told, goes_to=run)
+            line = contact.series(
+                contact.name, scale * distance, values, style, told=told, goes_to=run
+            )
             series.append(line)
     return LiveFigure(
         "sliding-traces",
@@ -281,7 +288,7 @@ def _traces(opened: Sequence[_Open]) -> LiveFigure:
         _by_line(opened, "the slowest speed", "the next")
         + " At the lowest load of each surface and medium.",
         "Friction over sliding distance, a line for each condition and speed.",
-        (Panel(Axis("sliding distance", "µm"), Axis("friction coefficient µ")),),
+        (Panel(Axis("sliding distance", unit), Axis("friction coefficient µ")),),
         tuple(series),
     )
 
