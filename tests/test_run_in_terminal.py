@@ -5,6 +5,7 @@ import tomllib
 import numpy as np
 import pandas as pd
 import pytest
+from report_pages import figures_of
 from typer.testing import CliRunner
 
 from tribolab import cli
@@ -198,3 +199,9 @@ def test_of_strokes_it_is_said_which_part_counts(tmp_path, monkeypatch):
     assert done.exit_code == 0, done.output
     assert "pin: left out: what lies outside the middle 50 % of the way of each of" in done.output
     assert not (tmp_path / "results" / "tables" / "roughness.csv").exists()
+    (along,) = figures_of(tmp_path / "results")["curves-along"]["series"]
+    friction = pd.read_csv(tmp_path / "results" / "tables" / "friction.csv")
+    assert len(along["x"]) == len(friction) > 30
+    np.testing.assert_allclose(along["y"], friction.friction_coefficient, rtol=1e-5)
+    middles = (friction.trimmed_start_s + friction.trimmed_stop_s) / 2
+    np.testing.assert_allclose(along["x"], middles, rtol=1e-5)

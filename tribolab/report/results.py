@@ -33,6 +33,8 @@ from tribolab.report.figures.models import draw_model, plan_model_figures
 from tribolab.report.figures.sliding import draw_sliding, plan_sliding_figures
 from tribolab.report.figures.stage import Figures, FigureTask, planned
 from tribolab.report.figures.surfaces import draw_surfaces, plan_surface_figures
+from tribolab.report.live.along import MOST_RUNS, Strokes, along_figures, strokes_of
+from tribolab.report.live.figure import LiveFigure
 from tribolab.report.live.gather import begun_live_figures
 from tribolab.report.live.points import RunPoint, run_points
 from tribolab.report.page.page import prepare_page, write_page
@@ -86,7 +88,7 @@ def write_report(
     curves = [entry.record for entry in store.all("curve", CurveRecord)]
     surfaces = [entry.record for entry in store.all("surface", SurfaceRecord)]
     models = [entry.record for entry in store.all("model", ModelRecord)]
-    briefs, said, points = _runs(outcome)
+    briefs, said, points, along = _runs(outcome)
     findings = _of_parts(outcome, surfaces, models) + said
     shown, missing = shown_curves(curves, {run["name"]: run["quantity"] for run in briefs})
     findings += missing
@@ -105,7 +107,7 @@ def write_report(
     fitted = [joint for joint in joints if joint.done]
 
     rows = model_rows_of(models)
-    making = begun_live_figures(outcome, shown, points, rows, modes, fitted, executor)
+    making = begun_live_figures(outcome, shown, points, along, rows, modes, fitted, executor)
     known = [curve.outcome for curve in shown]
     tasks = _figures(outcome, known, surfaces, rows, fitted, modes, figures, pdf)
     drawing = begun(Figures(store, tasks), executor, tell)
@@ -177,11 +179,13 @@ def _documents(outcome: Outcome) -> Iterator[Json]:
 
 def _runs(
     outcome: Outcome,
-) -> tuple[list[Json], list[Notice], dict[str, list[RunPoint]]]:
-    """Return what is brief of every run, what is said of it, and its friction over speed."""
+) -> tuple[list[Json], list[Notice], dict[str, list[RunPoint]], list[LiveFigure]]:
+    """Return what is brief of every run and said of it, its friction over speed and by strokes."""
     briefs: list[Json] = []
     said: list[Notice] = []
     points: dict[str, list[RunPoint]] = {}
+    strokes: list[Strokes] = []
+    count = 0
     for entry in outcome.store.all("run", RunRecord):
         briefs.append(brief_run(run_document(entry.record)))
         said += entry.record.notices
@@ -190,7 +194,10 @@ def _runs(
         run = entry.record.outcome
         filed = dict(zip(run.measured_levels, run.load_levels, strict=True))
         points[name] = run_points(name, facts.segments, facts.offset, filed)
-    return briefs, said, points
+        if (of_run := strokes_of(name, facts.segments)) is not None:
+            count += 1
+            strokes += [of_run] * (len(strokes) < MOST_RUNS)
+    return briefs, said, points, along_figures(strokes, count)
 
 
 def _of_parts(

@@ -16,6 +16,7 @@ from tribolab.records.parts import Notice
 from tribolab.report.document.models import ModelRow
 from tribolab.report.live.compared import comparisons
 from tribolab.report.live.curves import FrictionOverSpeed, card_figures, model_figures
+from tribolab.report.live.figure import LiveFigure
 from tribolab.report.live.joint import record_of_joint_fits
 from tribolab.report.live.models import record_of_models
 from tribolab.report.live.points import RunPoint
@@ -33,6 +34,7 @@ def begun_live_figures(
     outcome: OpenOutcome,
     curves: Sequence[CurveRecord],
     points: Mapping[str, Sequence[RunPoint]],
+    along: Sequence[LiveFigure],
     rows: Mapping[str, ModelRow],
     modes: Mapping[str, ModeRecord],
     joints: Sequence[JointRecord],
@@ -50,6 +52,8 @@ def begun_live_figures(
         Measured curves that can be shown.
     points
         Friction over speed of each run, by its name.
+    along
+        Figures of friction from stroke to stroke.
     rows
         Models that are done, by their names.
     modes
@@ -73,7 +77,7 @@ def begun_live_figures(
             missed |= record.missed
         by_curve = {row.model.curve: row for row in models}
         known = FrictionOverSpeed(curves, points, by_curve, bands, missed, surfaces)
-        figures = [*card_figures(known), *comparisons(known), *model_figures(known)]
+        figures = [*card_figures(known), *comparisons(known), *along, *model_figures(known)]
         return [
             *shown_figures(figures),
             *(figure for record in records for figure in record.figures),
