@@ -9,12 +9,12 @@ from typing import NamedTuple
 from tribolab.units import conversion
 
 _LONGEST = 300  # characters of a line that are looked at
-_UNIT = (
+UNIT = (
     r"(?:[npuµμ]m|mm|cm|m|Å|microns?|(?:nano|micro|milli)met(?:er|re)s?|微米|纳米|毫米)(?![^\W\d_])"
 )
 _UNITS = frozenset("nm pm um µm μm mm cm m Å".split())
 _EASTERN = {"微米": "um", "纳米": "nm", "毫米": "mm"}
-_IN_KEY = re.compile(rf"[\[(]\s*({_UNIT})\s*[\])]|(?<![^\W\d_])({_UNIT})[\s:=,;]*$")
+_IN_KEY = re.compile(rf"[\[(]\s*({UNIT})\s*[\])]|(?<![^\W\d_])({UNIT})[\s:=,;]*$")
 _OF_UNIT = (
     r"units?|einheit(?:en)?|unit[eéà]s?|unidad(?:es)?|单位|単位|단위"
     r"|egys[ée]g\w*|jednostk\w|jednotk\w|enhet\w*|eenheid|yksikk\w|birim\w*|единиц\w*"
@@ -26,14 +26,14 @@ _HEIGHTS = (
     r"|y(?:ü|ue|u)ksekli\w+|visin\w+|высот\w*|높이|高度|vert[iy][ck]?al\w*|depths?|tiefen?"
     r"|(?<![^\W\d_])z(?![^\W\d_])"
 )
-_SAYS_UNIT = re.compile(rf"(?:{_OF_UNIT})\W.*?(?<![^\W\d_])(?P<unit>{_UNIT})\W*$", re.IGNORECASE)
+_SAYS_UNIT = re.compile(rf"(?:{_OF_UNIT})\W.*?(?<![^\W\d_])(?P<unit>{UNIT})\W*$", re.IGNORECASE)
 _SAYS_HEIGHTS = re.compile(
-    rf"(?:{_HEIGHTS})(?:[_ ]\w{{1,12}})?\W*(?:[\[(]|\b{_IN}\b)\s*(?P<unit>{_UNIT})\W*(?:[,;(].*)?$",
+    rf"(?:{_HEIGHTS})(?:[_ ]\w{{1,12}})?\W*(?:[\[(]|\b{_IN}\b)\s*(?P<unit>{UNIT})\W*(?:[,;(].*)?$",
     re.IGNORECASE,
 )
 # "korkeus: nm", an entry that is a unit and nothing else; not one of what lies across the surface
 _IS_UNIT = re.compile(
-    rf"^\W*(?P<key>[^\W\d][^:：=;\t]*?)\s*(?:[:：=;,\t]|\s{{2,80}})\W*(?P<unit>{_UNIT})\W*$",
+    rf"^\W*(?P<key>[^\W\d][^:：=;\t]*?)\s*(?:[:：=;,\t]|\s{{2,80}})\W*(?P<unit>{UNIT})\W*$",
     re.IGNORECASE,
 )
 _NO_HEIGHT = re.compile(
@@ -252,7 +252,7 @@ def _said(text: str, mark: str, *, commas_part: bool) -> _Said | None:
         return None
     key = text[: first.start()]
     numbers, units = [], []
-    for match in re.finditer(rf"({number})[\s,;]*[(\[]?({_UNIT})?", text[first.start() :]):
+    for match in re.finditer(rf"({number})[\s,;]*[(\[]?({UNIT})?", text[first.start() :]):
         numbers.append(_number(match[1], mark))
         units.append(match[2] or "")
     if len(numbers) > 2:  # a date, a time, a row of results

@@ -12,6 +12,7 @@ from tribolab.io.scans.column_map import read_column_map
 from tribolab.io.scans.formats import NotSaidError, read_foreign
 from tribolab.io.scans.gauges import is_gauge, read_gauge
 from tribolab.io.scans.held_arrays import holds_arrays, is_npz
+from tribolab.io.scans.labelled_map import read_labelled_map
 from tribolab.io.scans.matrix import read_matrix
 from tribolab.io.scans.named_units import units_in_name
 from tribolab.io.scans.sdf import as_standard, is_sdf_draft
@@ -57,7 +58,8 @@ def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) ->
     -----
     Ours are those that SurfaceTopography 1.27 reads in part or not at all: x3p and its bare XML,
     lists of values in XML, SMD and PRF text of soft gauges, packed Surf files, SDF of the
-    standard's draft, matrices of heights below lines that say their size, and arrays by name.
+    standard's draft, matrices of heights below lines that say their size or between positions along two sides, and
+    arrays by name.
     """
     try:
         return _read(path, x_unit, height_unit)
@@ -88,6 +90,8 @@ def _read(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset
         return read_surfer(path, x_unit, height_unit)
     if head.startswith(ZIP) and (main := main_of(path)) is not None:
         return read_x3p(path, main)
+    if head.startswith(ZIP) and (scan := read_labelled_map(path, x_unit, height_unit)) is not None:
+        return scan
     if is_iso_xml(head):
         return read_iso_xml(path)
     if is_xml(head):
@@ -124,4 +128,5 @@ def _of_text(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Data
         except ReadError as error:
             raise lacking from error
     scan = read_column_map(path) if scan is None else scan
+    scan = read_labelled_map(path, x_unit, height_unit) if scan is None else scan
     return read_foreign(path, x_unit, height_unit) if scan is None else scan
