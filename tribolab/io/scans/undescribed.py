@@ -58,8 +58,8 @@ def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) ->
     -----
     Ours are those that SurfaceTopography 1.27 reads in part or not at all: x3p and its bare XML,
     lists of values in XML, SMD and PRF text of soft gauges, packed Surf files, SDF of the
-    standard's draft, matrices of heights below lines that say their size or between positions along two sides, and
-    arrays by name.
+    standard's draft, matrices of heights below lines that say their size or between positions
+    along two sides, and arrays by name.
     """
     try:
         return _read(path, x_unit, height_unit)
