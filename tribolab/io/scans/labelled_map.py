@@ -21,6 +21,7 @@ from tribolab.io.content.read import measurable
 from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.matrix import texts_of, value_of
 from tribolab.io.scans.matrix_header import UNIT, header_of
+from tribolab.io.scans.named_units import unsaid
 from tribolab.io.tables.workbook import sheets_of
 from tribolab.io.unpacked import ZIP
 from tribolab.units import conversion
@@ -83,7 +84,7 @@ def read_labelled_map(
             f"a map with positions along two sides, from '{shown(found.corner, 20)}' on, that does "
             f"not say the unit of its {' and '.join(lacking)}",
             where=path,
-            cure="say x_unit= and height_unit=, e.g. x_unit='mm', height_unit='um'",
+            cure=unsaid(path, along=not along, up=height is None),
         )
     step = conversion(along, "m")[0]
     heights = height * found.heights
