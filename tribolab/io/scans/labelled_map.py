@@ -15,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import shown
 from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.read import measurable
 from tribolab.io.scans.formats import NotSaidError
@@ -81,8 +80,8 @@ def read_labelled_map(
     lacking = ["positions"] * (not along) + ["heights"] * (height is None)
     if lacking or height is None:
         raise NotSaidError(
-            f"a map with positions along two sides, from '{shown(found.corner, 20)}' on, that does "
-            f"not say the unit of its {' and '.join(lacking)}",
+            "a map with positions along two sides that does not say the unit of its "
+            f"{' and '.join(lacking)}",
             where=path,
             cure=unsaid(path, along=not along, up=height is None),
         )
