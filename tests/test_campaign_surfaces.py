@@ -334,6 +334,8 @@ def test_what_is_extrapolated_is_in_doubt_where_a_contact_relies_on_it(tmp_path)
     assert [extrapolated in text for text in said(alone, "note")].count(True) == 1
     assert not any(extrapolated in text for text in said(alone, "suspect"))
     assert any(extrapolated in text for text in said(asked, "suspect"))
+    over_pressure = recorded(tmp_path, [file], forces=(), lowest_force=None).outcome
+    assert any(extrapolated in text for text in said(over_pressure, "suspect"))
 
 
 def test_without_loads_contact_is_known_over_pressure_only(tmp_path, profiles):

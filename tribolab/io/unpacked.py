@@ -90,12 +90,22 @@ def of_the_file(error: ReadError, inside: Path, path: Path) -> ReadError:
 
 def holds_arrays(path: Path) -> bool:
     """Whether an archive holds NumPy's arrays and nothing else."""
+    names = _names(path)
+    return bool(names) and all(name.endswith(".npy") for name in names)
+
+
+def is_workbook(path: Path) -> bool:
+    """Whether an archive is a workbook of Excel."""
+    return any(name.startswith("xl/workbook") for name in _names(path))
+
+
+def _names(path: Path) -> list[str]:
+    """Names of all that an archive holds; none where it cannot be opened."""
     try:
         with zipfile.ZipFile(path) as archive:
-            names = archive.namelist()
+            return archive.namelist()
     except (zipfile.BadZipFile, OSError, ValueError):
-        return False
-    return bool(names) and all(name.endswith(".npy") for name in names)
+        return []
 
 
 def _members(path: Path) -> list[str] | None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tribolab.campaign.surfaces.contact import line_contact
 from tribolab.draft.scans import read_traces
 from tribolab.errors import AnalysisError, TribolabError
 from tribolab.io.scans.read import stacked
@@ -193,8 +194,7 @@ def spectra_of_scans(
     surface, scans
         From `usable_scans`.
     q_low
-        Smallest wavenumber of the contact [1/m], if it is known; None if no contact is asked about,
-        and nothing relies on what is extrapolated.
+        Smallest wavenumber of the contact [1/m], if it is known.
 
     Returns
     -------
@@ -217,6 +217,8 @@ def spectra_of_scans(
     removed = {"form_removed": form}
     removed |= {k: v for k, v in flat.attrs.items() if k == "form_radius_m"}
     tip = options.get("tip_radius")
+    # by the theory of a contact
+    asked = q_low is not None or "q_low" in options or line_contact(surface) is not None
     try:
         if is_map:
             measured = psd_2d(flat)
@@ -226,7 +228,7 @@ def spectra_of_scans(
             measured = psd_2d(groups["psd_1d"])
         psd, doubts = _extrapolated(measured, options, q_low)
     except AnalysisError as error:
-        if q_low is not None or "q_low" in options:  # a contact is asked about
+        if asked:
             raise
         text = f"no spectrum of the surface, roughness parameters alone: {error.what}"
         groups["roughness"] = iso.assign_attrs(scans=flat.sizes.get("scan", 1), **removed)
@@ -248,7 +250,7 @@ def spectra_of_scans(
         findings.append(Finding("note", f"roll-off {psd.attrs['rolloff']}"))
     if share < 1 - _NOTED:
         text = f"{100 * (1 - share):.0f} % of the mean square slope is extrapolated, not measured"
-        relied_on = q_low is not None and share < 1 - _SUSPECT  # by the theory of a contact
+        relied_on = asked and share < 1 - _SUSPECT
         findings.append(Finding("suspect" if relied_on else "note", text))
     return groups, findings
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import json
 import re
-import zipfile
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,7 +13,7 @@ from tribolab.io import cures
 from tribolab.io.dialects.arranged import holds_names
 from tribolab.io.dialects.declared_records import declares_records
 from tribolab.io.patterns import why_missing
-from tribolab.io.unpacked import ZIP, holds_arrays, unpacked
+from tribolab.io.unpacked import ZIP, holds_arrays, is_workbook, unpacked
 
 HEAD = 1 << 20  # bytes looked at for preamble and header
 
@@ -153,7 +152,7 @@ def _format(path: Path, head: bytes, *, binary: bool) -> str:
     for magic, name in _MAGIC.items():
         if head.startswith(magic):
             return name
-    if head.startswith(ZIP) and _is_workbook(path):
+    if head.startswith(ZIP) and is_workbook(path):
         return "excel"
     if head.startswith(ZIP) and holds_arrays(path):
         return "npz"
@@ -195,14 +194,6 @@ def _holds_tables(path: Path, size: int, changed: int) -> bool:
     try:
         return holds_tables(path.read_text("utf-8-sig"))
     except (OSError, UnicodeDecodeError):
-        return False
-
-
-def _is_workbook(path: Path) -> bool:
-    try:
-        with zipfile.ZipFile(path) as archive:
-            return any(n.startswith("xl/workbook") for n in archive.namelist())
-    except (zipfile.BadZipFile, OSError, ValueError):
         return False
 
 

@@ -6,9 +6,8 @@ So spreadsheets and mathematics programs write maps: x across the top, y down th
 from __future__ import annotations
 
 import re
-import zipfile
 from collections.abc import Iterator, Sequence
-from itertools import islice
+from itertools import islice, starmap
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,18 +17,17 @@ import xarray as xr
 from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.read import measurable
 from tribolab.io.scans.formats import NotSaidError
-from tribolab.io.scans.matrix import texts_of, value_of
+from tribolab.io.scans.matrix import GRAMMARS, cells_of, texts_of, value_of
 from tribolab.io.scans.matrix_header import UNIT, header_of
 from tribolab.io.scans.named_units import unsaid
 from tribolab.io.tables.workbook import sheets_of
-from tribolab.io.unpacked import ZIP
+from tribolab.io.unpacked import ZIP, is_workbook
 from tribolab.units import conversion
 
 _HEAD_LINES = 60  # above the positions
 _FEWEST = 8  # rows, and heights of each
 _HEAD = 1 << 20  # bytes in which a map begins
 _EVEN = 1e-2  # of a step, by which positions may be rounded
-_GRAMMARS = (("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", "."), (None, "."), (None, ","))
 _AND = r"(?:e|y|and|und|et|i|og|och|en|ja|és|ve|a|и|和|と)?"
 _ALONG = re.compile(  # "X e Y em mm", "x/y [um]", "XY unit: mm", "Y \ X (mm)"
     rf"(?<![^\W\d_])[xy]\W{{0,3}}{_AND}\W{{0,3}}[xy](?![^\W\d_])[^\d,;]{{0,20}}?(?<![^\W\d_])(?P<unit>{UNIT})",
@@ -45,6 +43,7 @@ class _Map(NamedTuple):
     x: np.ndarray
     y: np.ndarray
     heights: np.ndarray
+    mark: str
 
 
 def read_labelled_map(
@@ -69,13 +68,13 @@ def read_labelled_map(
     NotSaidError
         If it is one and does not say in which units its positions and heights are.
     """
-    found = next(filter(None, map(_map_of, _tables(path))), None)
+    found = next(filter(None, starmap(_map_of, _tables(path))), None)
     if found is None:
         return None
     lines = [*found.above, found.corner]
     said = {match["unit"] for line in lines if (match := _ALONG.search(line))}
     along = x_unit or (said.pop() if len(said) == 1 else "")
-    header = header_of(lines, found.heights.shape, ".")
+    header = header_of(lines, found.heights.shape, found.mark)
     height = conversion(height_unit, "m")[0] if height_unit else header.height
     lacking = ["positions"] * (not along) + ["heights"] * (height is None)
     if lacking or height is None:
@@ -98,29 +97,20 @@ def read_labelled_map(
     return scan.sortby(["y", "x"])
 
 
-def _tables(path: Path) -> Iterator[list[list[str]]]:
-    """Give the cells of each sheet, or of the text by each grammar, numbers with a point."""
+def _tables(path: Path) -> Iterator[tuple[list[list[str]], str]]:
+    """Give the cells and the decimal mark of each sheet, or of the text by each grammar."""
     with path.open("rb") as file:
         head = file.read(_HEAD)
     if head.startswith(ZIP):
-        sheets = sheets_of(path).values() if _is_workbook(path) else ()
-        yield from ([[_cell(cell) for cell in row] for row in sheet] for sheet in sheets)
+        sheets = sheets_of(path).values() if is_workbook(path) else ()
+        yield from (([[_cell(cell) for cell in row] for row in sheet], ".") for sheet in sheets)
         return
     if not any(_grammars(text.splitlines()) for text in texts_of(head)):
         return
     for text in texts_of(path.read_bytes()):
         lines = text.splitlines()
         for delimiter, mark in _grammars(lines):
-            rows = [_cells(line, delimiter) for line in lines]
-            yield [[_plain(cell, mark) for cell in row] for row in rows]
-
-
-def _is_workbook(path: Path) -> bool:
-    try:
-        with zipfile.ZipFile(path) as archive:
-            return any(name.startswith("xl/workbook") for name in archive.namelist())
-    except (zipfile.BadZipFile, OSError, ValueError):
-        return False
+            yield [cells_of(line, delimiter) for line in lines], mark
 
 
 def _grammars(lines: Sequence[str]) -> list[tuple[str | None, str]]:
@@ -128,8 +118,8 @@ def _grammars(lines: Sequence[str]) -> list[tuple[str | None, str]]:
     head = lines[: _HEAD_LINES + _FEWEST]
     return [
         (delimiter, mark)
-        for delimiter, mark in _GRAMMARS
-        if _begin([_cells(line, delimiter) for line in head], mark) is not None
+        for delimiter, mark in GRAMMARS
+        if _begin([cells_of(line, delimiter) for line in head], mark) is not None
     ]
 
 
@@ -137,58 +127,46 @@ def _cell(cell: object) -> str:
     return repr(float(cell)) if isinstance(cell, int | float) else str(cell).strip()
 
 
-def _cells(line: str, delimiter: str | None) -> list[str]:
-    cells = [cell.strip().strip('"') for cell in line.split(delimiter)]
-    return cells[:-1] if delimiter is not None and line.rstrip(" ").endswith(delimiter) else cells
-
-
-def _plain(cell: str, mark: str) -> str:
-    number = value_of(cell, mark)
-    return cell if number is None or not cell else repr(number)
-
-
-def _begin(rows: Sequence[Sequence[str]], mark: str = ".") -> int | None:
+def _begin(rows: Sequence[Sequence[str]], mark: str) -> int | None:
     """Return the row of positions below which rows of as many cells begin with theirs."""
     for place, row in enumerate(islice(rows, _HEAD_LINES)):
         below = rows[place + 1 : place + 1 + _FEWEST]
         if len(row) <= _FEWEST or len(below) < _FEWEST or {len(r) for r in below} != {len(row)}:
             continue
-        if _even(row[1:], mark) and _even([r[0] for r in below], mark):
+        if _even(_numbers(row[1:], mark)) and _even(_numbers([r[0] for r in below], mark)):
             return place
     return None
 
 
-def _even(cells: Sequence[str], mark: str = ".") -> bool:
-    """Whether cells are numbers that rise or fall by even steps."""
-    values = [value_of(cell, mark) if cell else None for cell in cells]
-    if None in values:
+def _numbers(cells: Sequence[str], mark: str) -> np.ndarray | None:
+    """Return cells as numbers, NaN of an empty one; None where one is other text."""
+    values = [value_of(cell, mark) for cell in cells]
+    return None if None in values else np.array(values, float)
+
+
+def _even(values: np.ndarray | None) -> bool:
+    """Whether numbers rise or fall by even steps."""
+    if values is None:
         return False
-    steps = np.diff(np.array(values, float))
+    steps = np.diff(values)
     usual = float(np.median(steps))
-    return bool(usual and (np.abs(steps - usual) <= _EVEN * abs(usual) + 1e-12).all())
+    return bool(usual and (np.abs(steps - usual) <= _EVEN * abs(usual)).all())
 
 
-def _map_of(rows: Sequence[Sequence[str]]) -> _Map | None:
-    place = _begin(rows)
-    if place is None:
+def _map_of(rows: Sequence[Sequence[str]], mark: str) -> _Map | None:
+    place = _begin(rows, mark)
+    across = None if place is None else _numbers(rows[place][1:], mark)
+    if place is None or across is None:
         return None
-    across, body = rows[place], []
+    body = []
     for row in rows[place + 1 :]:
-        if len(row) != len(across):
-            break
-        values = [value_of(cell, ".") for cell in row]
-        if None in values or not row[0]:
+        values = _numbers(row, mark) if len(row) == across.size + 1 else None
+        if values is None or np.isnan(values[0]):
             break
         body.append(values)
-    table = np.array(body, float)
-    if len(body) < _FEWEST or not _even([repr(y) for y in table[:, 0].tolist()]):
+    table = np.array(body)
+    if len(body) < _FEWEST or not _even(table[:, 0]):
         return None
     above = [" ".join(filter(None, row)) for row in rows[:place]]
-    x, y = (
-        np.linspace(float(a), float(b), n)
-        for a, b, n in (
-            (across[1], across[-1], len(across) - 1),
-            (table[0, 0], table[-1, 0], len(table)),
-        )
-    )
-    return _Map(above, across[0], x, y, table[:, 1:])
+    x, y = (np.linspace(side[0], side[-1], side.size) for side in (across, table[:, 0]))
+    return _Map(above, rows[place][0], x, y, table[:, 1:], mark)

@@ -48,7 +48,7 @@ _MARKS = frozenset(
 )
 _SIGNS = frozenset("*-#?")
 _ENCODINGS = ("utf-8-sig", "cp932", "gb18030", "latin-1")
-_GRAMMARS = (
+GRAMMARS = (
     *(("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", "."), (None, "."), (None, ",")),
 )
 
@@ -170,8 +170,8 @@ def _matrix(lines: list[str]) -> _Matrix | None:
         first = lines[start : start + _ROWS]
         if len(first) < _ROWS or not first[0].strip():
             continue
-        for delimiter, mark in _GRAMMARS:
-            columns = len(_cells(first[0], delimiter))
+        for delimiter, mark in GRAMMARS:
+            columns = len(cells_of(first[0], delimiter))
             trial = _Matrix(lines[:start], [], delimiter, mark, columns)
             if columns < _ROWS or any(_numbers(line, trial) is None for line in first):
                 continue
@@ -182,7 +182,7 @@ def _matrix(lines: list[str]) -> _Matrix | None:
 def _is_named(matrix: _Matrix) -> bool:
     """Whether names or positions of columns stand above."""
     last = next((line for line in reversed(matrix.above) if line.strip()), "")
-    return len(_cells(last, matrix.delimiter)) >= max(_ROWS, matrix.columns - 1)
+    return len(cells_of(last, matrix.delimiter)) >= max(_ROWS, matrix.columns - 1)
 
 
 def _filled(lines: Sequence[str], like: _Matrix) -> _Matrix:
@@ -200,19 +200,20 @@ def _filled(lines: Sequence[str], like: _Matrix) -> _Matrix:
 
 def _is_part(line: str, like: _Matrix) -> bool:
     """Whether a line is a shorter row of numbers."""
-    cells = _cells(line, like.delimiter) if line.strip() else []
+    cells = cells_of(line, like.delimiter) if line.strip() else []
     part = like._replace(columns=len(cells))
     return 0 < len(cells) < like.columns and _numbers(line, part) is not None
 
 
-def _cells(line: str, delimiter: str | None) -> list[str]:
+def cells_of(line: str, delimiter: str | None) -> list[str]:
+    """Return the cells of a line; a delimiter at its end begins none."""
     cells = [cell.strip().strip('"') for cell in line.split(delimiter)]
     return cells[:-1] if delimiter is not None and line.rstrip().endswith(delimiter) else cells
 
 
 def _numbers(line: str, like: _Matrix) -> list[float] | None:
     """Return the numbers of a row, NaN where no height is; None of any other line."""
-    cells = _cells(line, like.delimiter)
+    cells = cells_of(line, like.delimiter)
     if len(cells) == like.columns - 1 and like.delimiter is not None:
         cells.append("")  # the last height is missing
     if len(cells) != like.columns:
