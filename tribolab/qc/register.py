@@ -8,6 +8,7 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
+from tribolab.core.limit import Limit
 from tribolab.errors import ConfigError, nearest, shown
 from tribolab.pieces import one_by_one, samples_where
 from tribolab.qc.flags import FAIL, SUSPECT, is_uniform
@@ -23,15 +24,6 @@ Subject = TypeVar("Subject", contravariant=True)  # a run, or scans
 
 class Skip(Exception):  # noqa: N818 - not an error: the check has nothing to look at
     """Raised by a check that has nothing to look at; the text says why."""
-
-
-@dataclass(frozen=True)
-class Limit:
-    """A limit of a check: its default in SI, its unit, and why it is what it is."""
-
-    value: float
-    unit: str
-    reason: str
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from tribolab.core.limit import Limit
 from tribolab.medians import median, median_of_known
 from tribolab.pieces import one_by_one
-from tribolab.qc.register import Check, Limit, Result, Skip
+from tribolab.qc.register import Check, Result, Skip
 from tribolab.qc.run.per_segment import by_segment, status_of
 from tribolab.qc.run.subject import RunSubject
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tribolab.core.limit import Limit
 from tribolab.friction.coefficient import steadiness
 from tribolab.friction.coefficient.steadiness import chance_limit, relative_change, undecided
 from tribolab.friction.oscillation.lines import Line
@@ -15,7 +16,7 @@ from tribolab.friction.oscillation.regularity import SLIP_KINDS
 from tribolab.friction.oscillation.survey import CHANCE
 from tribolab.friction.oscillation.waveform import CLASSES
 from tribolab.qc.flags import FAIL, GOOD
-from tribolab.qc.register import Check, Limit, Result, Skip
+from tribolab.qc.register import Check, Result, Skip
 from tribolab.qc.run.per_segment import by_segment, status_of
 from tribolab.qc.run.subject import RunSubject
 from tribolab.words import Count, duration

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
+from tribolab.core.limit import Limit
 from tribolab.errors import AnalysisError, ConfigError, Cure, nearest, shown
 from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.qc import signals
@@ -15,7 +16,6 @@ from tribolab.qc.flags import FAIL, SUSPECT, attach
 from tribolab.qc.register import (
     SWITCHED_OFF,
     Check,
-    Limit,
     Result,
     resolve_limits,
     results_of_checks,

@@ -7,9 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
+from tribolab.core.limit import Limit
 from tribolab.errors import AnalysisError
 from tribolab.io.scans.extent import doubt_about_heights
-from tribolab.qc.register import Check, Limit, Result
+from tribolab.qc.register import Check, Result
 from tribolab.qc.scan.subject import ScanSubject
 from tribolab.surface.roughness import roughness_parameters
 
