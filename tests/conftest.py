@@ -11,6 +11,8 @@ import pytest
 from chromium import BROWSER, chromium
 from hypothesis import settings
 
+from tribolab.reading.raw.opening import stop_reading
+
 os.environ.setdefault("MPLBACKEND", "Agg")
 # of jsonschema, for a format that no schema of ours has: its grammar takes a second to build
 sys.modules.setdefault("rfc3987_syntax", None)
@@ -39,6 +41,22 @@ def pytest_collection_modifyitems(items):
     """Put the files with the most slow tests first: so no worker is left alone with one."""
     slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
     items.sort(key=lambda item: -slow[item.path])
+
+
+@pytest.fixture
+def without(tmp_path_factory, monkeypatch):
+    """Have libraries be missing for what reads files: in this process, and in its children."""
+
+    def missing(*libraries: str) -> None:
+        folder = tmp_path_factory.mktemp("absent")
+        for name in libraries:
+            monkeypatch.setitem(sys.modules, name, None)
+            (folder / f"{name}.py").write_text(f"raise ImportError(name={name!r})")
+        monkeypatch.syspath_prepend(str(folder))
+        stop_reading()
+
+    yield missing
+    stop_reading()
 
 
 @pytest.fixture(scope="session")

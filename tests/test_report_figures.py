@@ -137,7 +137,7 @@ def test_nothing_is_read_back_to_be_shown(made, tmp_path, monkeypatch):
     def refuse(*given, **more):
         raise AssertionError("a data file was opened to be shown")
 
-    for name in ("read_netcdf", "read_groups", "opened"):
+    for name in ("read_netcdf", "read_groups"):
         monkeypatch.setattr(f"tribolab.io.netcdf.{name}", refuse)
     write_report(later, figures="none")
     here, before = report_of(later), report_of(made)

@@ -145,9 +145,9 @@ def test_the_instruments_own_spreadsheet_holds_the_same_as_its_csv(shared_data):
     assert master.angular_frequency.size == 210
 
 
-def test_a_spreadsheet_without_its_reader_says_what_to_install(shared_data, monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "python_calamine", None)
-    with pytest.raises(ReadError, match="install"):
+def test_a_spreadsheet_without_its_reader_says_what_to_install(shared_data, without):
+    without("python_calamine")
+    with pytest.raises(ReadError, match="needs the package python-calamine; install it: pip"):
         read_modulus(shared_data / "dma_pyvisco_BSD3/freq_Eplexor_raw.xls")
 
 

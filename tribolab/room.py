@@ -71,6 +71,11 @@ def filled(count: int, value: float, kind: type[np.generic] = np.float64) -> np.
     return result
 
 
+def take_in(mapped: mmap.mmap) -> None:
+    """Have a shared mapping of a nameless file treated as the scratch files of this module."""
+    _mapped.add(mapped)
+
+
 def let_go() -> None:
     """Give back the memory that looking at long arrays took; they are read again when needed."""
     if not _mapped:  # said behind every piece of every run: mostly there is nothing

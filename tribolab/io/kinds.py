@@ -10,7 +10,7 @@ from tribolab.errors import ReadError
 from tribolab.io.dialects.find import is_scan, load_dialect, recognise
 from tribolab.io.dialects.signature import is_results, peek
 from tribolab.io.scans.held_arrays import holds_arrays
-from tribolab.io.seal import is_sealed
+from tribolab.io.seal import carries_seal
 
 _LAST_NUMBER = re.compile(r"[ _-]*\d+$")
 
@@ -60,7 +60,7 @@ def _holds_map(path: Path) -> bool:
     try:
         with path.open("rb") as file:
             head = file.read(16)
-        if not holds_arrays(path, head) or is_sealed(path):
+        if not holds_arrays(path, head) or carries_seal(path):
             return False
         # late: starting stays quick
         from tribolab.io.scans.arrays import holds_map

@@ -12,14 +12,15 @@ from typing import TYPE_CHECKING, Literal
 
 import xarray as xr
 
-from tribolab.errors import ReadError, TribolabError, brief, shown
+from tribolab.errors import ReadError, TribolabError, shown
 from tribolab.io.attributes import decoded
-from tribolab.io.seal import is_sealed, seal, unseal
+from tribolab.io.seal import check_seal, seal, unseal
 from tribolab.io.storage import write_into
 from tribolab.io.stored import read_plain
 from tribolab.pieces import pieces
+from tribolab.reading.raw.hdf5_safety import check_self_contained
+from tribolab.reading.raw.opening import damage_told, isolated
 from tribolab.room import is_long, room
-from tribolab.trials import try_out
 
 if TYPE_CHECKING:
     import netCDF4
@@ -27,13 +28,9 @@ if TYPE_CHECKING:
 # The library is not safe under threads, which some executors use.
 _LIBRARY = threading.RLock()
 _CACHE = 1 << 20  # bytes of a long variable that the library keeps
+_HDF5 = b"\x89HDF\r\n\x1a\n"
 _GROUPS = "groups"  # attribute of the root of a file of groups
-# What netCDF4 and xarray raise on a file that is damaged.
-_DAMAGE = (
-    *(OSError, ValueError, TypeError, KeyError, IndexError, AttributeError, RuntimeError),
-    *(MemoryError, OverflowError),
-)
-# What they raise on data that netCDF cannot hold, and on a disk that takes no more.
+# What netCDF4 and xarray raise on data that netCDF cannot hold, and on a disk that takes no more.
 _REFUSED = (OSError, ValueError, TypeError, AttributeError, KeyError, RuntimeError)
 
 
@@ -151,32 +148,6 @@ def _plain_name(path: Path) -> Iterator[Path]:
         yield path
 
 
-@contextlib.contextmanager
-def opened(path: str | Path) -> Iterator[netCDF4.Dataset]:
-    """Open a netCDF file to read it, whatever the bytes of its name are; one thread at a time.
-
-    Parameters
-    ----------
-    path
-        The file.
-
-    Yields
-    ------
-    netCDF4.Dataset
-        The open file.
-
-    Raises
-    ------
-    OSError
-        If there is no such file, or it is no netCDF.
-    """
-    # late: netCDF4 takes long to load
-    import netCDF4
-
-    with _LIBRARY, _plain_name(Path(path)) as plain, netCDF4.Dataset(plain) as file:
-        yield file
-
-
 def read_netcdf(path: str | Path, group: str | None = None) -> xr.Dataset:
     """Read a dataset that `write_netcdf` wrote, into memory.
 
@@ -194,8 +165,8 @@ def read_netcdf(path: str | Path, group: str | None = None) -> xr.Dataset:
 
     Notes
     -----
-    A file that carries no seal, or is not what it was when it was sealed, is tried in another
-    process first.
+    The file is read in a child process. One that carries a seal and is not what it was when it was
+    sealed is refused.
 
     Examples
     --------
@@ -234,7 +205,18 @@ def read_groups(
     ReadError
         As `read_netcdf`.
     """
-    path, only = Path(path), only or {}
+    wanted = {name: tuple(names) for name, names in (only or {}).items()}
+    return _read_groups(Path(path), list(groups), optional=optional, only=wanted)
+
+
+@isolated("netCDF4", "h5py", "xarray")
+def _read_groups(
+    path: Path,
+    groups: list[str | None],
+    *,
+    optional: bool,
+    only: Mapping[str, Collection[str]],
+) -> dict[str | None, xr.Dataset]:
     datasets = {}
     with _whole(path) as file:
         there = list(file.groups)
@@ -265,7 +247,12 @@ def read_short(path: str | Path, most: int) -> dict[str | None, xr.Dataset]:
     ReadError
         As `read_netcdf`.
     """
-    with _whole(Path(path)) as file:
+    return _read_short(Path(path), most)
+
+
+@isolated("netCDF4", "h5py", "xarray")
+def _read_short(path: Path, most: int) -> dict[str | None, xr.Dataset]:
+    with _whole(path) as file:
         short: list[str | None] = [None] if _values(file) <= most else []
         short += [name for name, group in file.groups.items() if _values(group) <= most]
         return {name: _group(file, name, None) for name in short}
@@ -277,20 +264,18 @@ def _values(group: netCDF4.Dataset) -> int:
 
 @contextlib.contextmanager
 def _whole(path: Path) -> Iterator[netCDF4.Dataset]:
-    """Open a file that is there; one that is not known to be whole is tried out first."""
-    if not path.is_file():
-        raise ReadError(f"{path}: there is no such file")
-    try:
-        if not is_sealed(path):
-            try_out(path)
-    except OSError as error:
-        raise ReadError(f"{path}: the file cannot be read: {error}") from error
-    try:
-        with opened(path) as file:
-            yield file
-    except _DAMAGE as error:
-        told = f"{path}: this is not a netCDF file that can be read: {brief(error)}"
-        raise ReadError(told) from error
+    """Open a file that is what it was when it was written, and holds its own data."""
+    # late: netCDF4 takes long to load
+    import netCDF4
+
+    with path.open("rb") as file:
+        is_hdf5 = file.read(len(_HDF5)) == _HDF5
+    with damage_told(path, "netCDF file"):
+        check_seal(path)
+        if is_hdf5:
+            check_self_contained(path)
+        with _plain_name(path) as plain, netCDF4.Dataset(plain) as opened:
+            yield opened
 
 
 def _loaded(data: xr.Dataset) -> xr.Dataset:

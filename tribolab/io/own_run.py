@@ -12,7 +12,8 @@ import xarray as xr
 from tribolab.errors import ReadError
 from tribolab.io.dialects.find import UnknownFileError
 from tribolab.quantities import QUANTITIES
-from tribolab.trials import CrashedError, try_out
+from tribolab.reading.raw.hdf5_safety import check_self_contained
+from tribolab.reading.raw.opening import CrashedError
 from tribolab.untyped import Json
 
 _NUMBERS = "fiub"
@@ -51,7 +52,7 @@ def read_own_run(path: Path, content: Path | None = None) -> xr.Dataset:
     try:
         run = read_netcdf(content or path, group="run?")
     except CrashedError as error:  # HDF5 that is no netCDF may be sound all the same
-        try_out(content or path, "HDF5")
+        check_self_contained(content or path)
         what = "this HDF5 file is no netCDF"
         raise UnknownFileError(what, where=path, cure=cure) from error
     if "time" not in run.coords or run.sizes.get("time", 0) == 0:

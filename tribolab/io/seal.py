@@ -1,7 +1,7 @@
-"""The seal of what tribolab writes: whether an HDF5 file is whole is told before it is opened.
+"""The seal of what tribolab writes: a checksum, by which damage is noticed when a file is read.
 
-`seal` puts the SHA-256 of a file behind its last byte, where HDF5 does not look; `is_sealed` finds
-it whole. What is sealed is opened as fast as ever; the rest is tried out, see `tribolab.trials`.
+`seal` puts the SHA-256 of a file behind its last byte, where HDF5 does not look; `check_seal`
+refuses a file that is not what it was. The seal has no key: it detects damage, not forgery.
 """
 
 from __future__ import annotations
@@ -9,6 +9,9 @@ from __future__ import annotations
 import hashlib
 import os
 from pathlib import Path
+from typing import BinaryIO
+
+from tribolab.errors import ReadError
 
 _MARK = b"\ntribolab sha256 "
 _LENGTH = len(_MARK) + 64
@@ -32,22 +35,43 @@ def unseal(path: Path) -> None:
                 file.truncate(size - _LENGTH)
 
 
-def is_sealed(path: Path) -> bool:
-    """Whether a file carries a seal, and is what it was when it was sealed."""
+def carries_seal(path: Path) -> bool:
+    """Whether a file ends in a seal, as what tribolab writes."""
     with path.open("rb") as file:
-        left = file.seek(0, os.SEEK_END) - _LENGTH
-        if left < 0:
-            return False
-        file.seek(left)
-        magic = file.read()
-        if not magic.startswith(_MARK):
-            return False
+        return bool(_mark_of(file)[1])
+
+
+def _mark_of(file: BinaryIO) -> tuple[int, bytes]:
+    """Return the size of what is sealed, and the seal; b"" if there is none."""
+    left = file.seek(0, os.SEEK_END) - _LENGTH
+    if left < 0:
+        return 0, b""
+    file.seek(left)
+    mark = file.read()
+    return (left, mark) if mark.startswith(_MARK) else (0, b"")
+
+
+def check_seal(path: Path) -> None:
+    """Refuse a file that carries a seal and is not what it was when it was sealed.
+
+    A file without a seal, as other programs write it, passes.
+
+    Raises
+    ------
+    ReadError
+        If its bytes changed.
+    """
+    with path.open("rb") as file:
+        left, mark = _mark_of(file)
+        if not mark:
+            return
         file.seek(0)
         digest = hashlib.sha256()
-        while left > 0:
-            block = file.read(min(left, 1 << 20))
-            if not block:
-                return False
+        while left > 0 and (block := file.read(min(left, 1 << 20))):
             digest.update(block)
             left -= len(block)
-    return magic == _MARK + digest.hexdigest().encode()
+    if mark != _MARK + digest.hexdigest().encode():
+        raise ReadError(
+            "the file is damaged: its checksum does not match its content; copy or write it again",
+            where=path,
+        )

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-import atexit
 import dataclasses
 import functools
 import gzip
 import re
-import shutil
-import tempfile
 import zipfile
 import zlib
 from pathlib import Path
 from typing import Protocol
 
 from tribolab.errors import Cure, ReadError, TribolabError, shown
+from tribolab.reading.raw.opening import largest_unpacked, scratch_folder
 
 _GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
 _OFFICE = ("[Content_Types].xml", "main.xml")  # Office files and x3p are archives, too
-_MOST = 64  # GB of what is unpacked
-_TIMES = 1000  # the size of the archive: beyond it, it is a bomb
 _CHUNK = 1 << 20
 _LONGEST_README = 1 << 16  # bytes
 _LONGEST_LETTER = 3  # bytes of it that may stand at the end of what was read
@@ -36,7 +32,6 @@ _DOCUMENT = re.compile(
     r"|\.(?:pdf|docx?|odt|rtf|html?|png|jpe?g|gif|svg|bmp|tiff?|md5|sha1|sha256|py|m|r|ipynb)$",
     re.IGNORECASE,
 )
-_SMALL = 1 << 26  # bytes that may be unpacked whatever the ratio
 
 
 class _Source(Protocol):
@@ -124,8 +119,7 @@ def _members(path: Path) -> list[str] | None:
 
 @functools.lru_cache(maxsize=64)
 def _unpacked(path: Path, size: int, modified: int, kind: str) -> Path:
-    folder = Path(tempfile.mkdtemp(prefix="tribolab-"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    folder = scratch_folder()
     try:
         if kind == "gz":
             target = folder / (path.stem if path.suffix.lower() in (".gz", ".z") else path.name)
@@ -189,11 +183,11 @@ class _Chained:
 
 def _copy(source: _Source, target: Path, size: int, path: Path) -> None:
     """Copy what is unpacked, and stop where it becomes larger than data can be."""
-    done = 0
+    done, most = 0, largest_unpacked(size)
     with target.open("wb") as file:
         while part := source.read(_CHUNK):
             done += len(part)
-            if done > max(_SMALL, _TIMES * size) or done > _MOST * 1e9:
+            if done > most:
                 raise ReadError(
                     f"this compressed file unpacks to more than {done / 1e6:.0f} MB: that is no "
                     "measurement",

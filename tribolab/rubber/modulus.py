@@ -6,7 +6,7 @@ import csv
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 import pandas as pd
@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from tribolab.errors import AnalysisError, Cure, ReadError, UnitError, shown
 from tribolab.quantities import unit_conversion
-from tribolab.trials import workbook_tried
+from tribolab.reading.raw.opening import damage_told, isolated
 from tribolab.turns import reciprocal
 from tribolab.units import conversion, positive
 
@@ -273,16 +273,7 @@ def _find_table(path: Path, sheet: str | None) -> pd.DataFrame:
     if not path.is_file():
         raise ReadError(f"{path}: there is no such file")
     if path.suffix.lower() in (".xls", ".xlsx", ".ods"):
-        try:
-            wanted = None if sheet is None else [sheet]
-            with workbook_tried(path):
-                sheets = pd.read_excel(path, sheet_name=wanted, dtype=object, engine="calamine")
-        except ImportError as error:
-            raise ReadError(
-                f"{path.name}: spreadsheets need the package python-calamine; install it, or "
-                "save the table as .csv"
-            ) from error
-        tables = list(sheets.values())
+        tables = [pd.DataFrame(t.cells, columns=t.names) for t in _workbook_tables(path, sheet)]
     else:
         tables = [_text_table(path)]
     for table in tables:
@@ -297,6 +288,21 @@ def _find_table(path: Path, sheet: str | None) -> pd.DataFrame:
         f"{path.name}: columns for frequency, storage and loss modulus are wanted, e.g. f, E', "
         f"E''; it has {seen}"
     )
+
+
+class _Cells(NamedTuple):
+    """A sheet: the names of its columns, and the cells below them (row, column)."""
+
+    names: list[str]
+    cells: np.ndarray
+
+
+@isolated("pandas", "python_calamine")
+def _workbook_tables(path: Path, sheet: str | None) -> list[_Cells]:
+    wanted = None if sheet is None else [sheet]
+    with damage_told(path, "workbook"):
+        sheets = pd.read_excel(path, sheet_name=wanted, dtype=object, engine="calamine")
+    return [_Cells(list(map(str, s.columns)), s.to_numpy(dtype=object)) for s in sheets.values()]
 
 
 def _text_table(path: Path) -> pd.DataFrame:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from tribolab.campaign.store.catalogue import Store
+from tribolab.errors import ReadError
 from tribolab.records.part_records import ModelRecord, SurfaceRecord
 from tribolab.records.parts import Finding
 
@@ -24,12 +25,12 @@ GONE = "it is not there"
 def kept_text(path: Path, why: str) -> str:
     """Return since when a part is kept, as its data file knows it, and why."""
     # late: starting stays quick
-    from tribolab.io.netcdf import opened
+    from tribolab.io.netcdf import read_groups
 
     try:
-        with opened(path) as file:
-            when = str(getattr(file, "history", "")).split(" ")[0]
-    except (OSError, RuntimeError):
+        root = read_groups(path, [None], only={"": ()})[None]
+        when = str(root.attrs.get("history", "")).split(" ")[0]
+    except ReadError:
         when = ""
     return f"kept from {when or 'before'}: {why}"
 

@@ -222,16 +222,16 @@ def _mat(path: Path) -> tuple[Held, list[HeldColumn]]:
 
 def _tdms(path: Path) -> tuple[Held, list[HeldColumn]]:
     """Return the channels of the group that holds most numbers, and what shares its clock."""
-    file = open_tdms(path, "read")
-    groups = file.groups()
-    size = [sum(len(channel) for channel in group.channels()) for group in groups]
+    file = open_tdms(path)
+    groups = file.groups
+    size = [sum(channel.values.size for channel in group.channels) for group in groups]
     if not groups:
         return Held("tdms"), []
     best = groups[int(np.argmax(size))]
-    every = [channel for group in groups for channel in group.channels()]
+    every = [channel for group in groups for channel in group.channels]
     grid = on_one_grid(every)
     if grid is None:
-        channels, values = best.channels(), [channel[:] for channel in best.channels()]
+        channels, values = best.channels, [channel.values for channel in best.channels]
     else:
         channels, values = every, grid.values
     columns = []

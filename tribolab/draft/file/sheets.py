@@ -13,7 +13,7 @@ from tribolab.draft.file.layout import Held
 from tribolab.errors import ReadError, shown
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.tables import columnar
-from tribolab.trials import workbook_tried
+from tribolab.io.tables.workbook import sheets_of
 
 _ABOVE = 40  # rows of a sheet above its names
 _MOMENTS = (dt.datetime, dt.time, dt.timedelta)
@@ -32,15 +32,8 @@ def main_sheet(path: Path) -> tuple[Held, set[str]]:
     ReadError
         If no sheet holds such rows.
     """
-    # late: python_calamine takes long to load
-    from python_calamine import CalamineWorkbook
-
-    with workbook_tried(path):
-        book = CalamineWorkbook.from_path(path)
-        sheets = [(name, book.get_sheet_by_name(name)) for name in book.sheet_names]
-        pages = [(name, s.to_python(skip_empty_area=False, nrows=ROWS)) for name, s in sheets]
     tables: list[tuple[int, Held, set[str]]] = []
-    for sheet, rows in pages:
+    for sheet, rows in sheets_of(path, ROWS).items():
         place = _names_row(rows)
         if place is not None:
             held = Held("excel", sheet, place + 1, not _is_numeric(rows[place + 1]))

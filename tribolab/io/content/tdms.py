@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from tribolab.io.dialects.columns import resolve, scales_of, symbols
 from tribolab.io.dialects.layout import Marks
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import guarded
-from tribolab.io.tables.tdms_file import on_one_grid, open_tdms, text_beside
+from tribolab.io.tables.tdms_file import TdmsContent, on_one_grid, open_tdms, text_beside
 from tribolab.provenance import sha256_of_file
 from tribolab.units import conversion
 
@@ -34,16 +33,16 @@ def read_tdms(path: Path, dialect: Dialect) -> Content:
     ReadError
         If the file is damaged, or channels are missing or differ in length.
     """
-    file = open_tdms(path, "read")
+    file = open_tdms(path)
     groups = {column.group for column in dialect.column}
-    channels = [c for g in file.groups() if g.name in groups for c in g.channels()]
+    channels = [c for g in file.groups if g.name in groups for c in g.channels]
     named = [split_name(channel.name) for channel in channels]
     names, units = [n for n, _ in named], [u for _, u in named]
     signals, unused = resolve(str(path), names, units, len(names), dialect)
     grid = on_one_grid([channels[s.place] for s in signals]) if dialect.time.rate_pattern else None
     columns = {}
     for number, signal in enumerate(signals):
-        numbers = grid.values[number] if grid else np.asarray(channels[signal.place][:])
+        numbers = grid.values[number] if grid else channels[signal.place].values
         if numbers.dtype.kind not in "fiu":
             raise ReadError(f"{path}: channel '{shown(signal.label)}' holds no numbers")
         with np.errstate(over="ignore", invalid="ignore"):  # damaged numbers may be anything
@@ -51,9 +50,11 @@ def read_tdms(path: Path, dialect: Dialect) -> Content:
     lengths = {len(column) for column in columns.values()}
     if len(lengths) > 1:
         raise ReadError(f"{path}: the channels differ in length: {sorted(lengths)}")
-    read = [group for group in file.groups() if group.name in groups]
+    read = [group for group in file.groups if group.name in groups]
     text = text_beside(file, read, grid.increment if grid else 0.0)
-    notes = _incomplete(file)
+    notes = {}
+    if file.incomplete:
+        notes["file_incomplete"] = "the file ends before its last segment does"
     if dialect.marks is not None:
         columns["step"], more = _steps(path, file, columns["time"], dialect.marks)
         notes |= more
@@ -65,20 +66,12 @@ def read_tdms(path: Path, dialect: Dialect) -> Content:
     return Content(path, sha256, [piece], labels, tuple(unused), {}, notes, own, scales)
 
 
-def _incomplete(file: Any) -> dict[str, str]:
-    """Note that the file ends within its last segment: the run is shorter than it was."""
-    status = file.file_status
-    if not status.incomplete_final_segment:
-        return {}
-    return {"file_incomplete": "the file ends before its last segment does"}
-
-
 def _steps(
-    path: Path, file: Any, time: np.ndarray, marks: Marks
+    path: Path, file: TdmsContent, time: np.ndarray, marks: Marks
 ) -> tuple[np.ndarray, dict[str, str]]:
     """Step k lasts from mark k to mark k + 1; before the first mark it is 0."""
-    group = next((g for g in file.groups() if g.name == marks.group), None)
-    clocks = [] if group is None else group.channels()
+    group = next((g for g in file.groups if g.name == marks.group), None)
+    clocks = [] if group is None else group.channels
     clocks = [channel for channel in clocks if split_name(channel.name)[0] == marks.time]
     if group is None or not clocks:
         raise ReadError(
@@ -90,7 +83,7 @@ def _steps(
             f"{path}: the marks' time has no unit; give it in the dialect: [marks] unit"
         )
     scale, _ = conversion(unit, "s")
-    at = np.sort(np.asarray(clocks[0][:], dtype=float) * scale)
+    at = np.sort(np.asarray(clocks[0].values, dtype=float) * scale)
     texts = [
         str(value)
         for key, value in group.properties.items()

@@ -161,17 +161,17 @@ def settings_text(variables: Sequence[Variable]) -> str:
 
 
 def _tdms(path: Path) -> HeldFile:
-    file = open_tdms(path, "read")
+    file = open_tdms(path)
     found = _Gathered()
     found.said[""] = text_beside(file, [], 0.0).split("\n")
-    for group in file.groups():
-        channels = [channel for channel in group.channels() if len(channel)]
+    for group in file.groups:
+        channels = [channel for channel in group.channels if channel.values.size]
         grid = on_one_grid(channels)
         clock = [f"wf_increment: {grid.increment!r}"] if grid else []
         found.said[group.name] = [*clock, *properties_of(group)]
         for place, channel in enumerate(channels):
             name, unit = split_name(channel.name)
-            values = grid.values[place] if grid else np.asarray(channel[:])
+            values = grid.values[place] if grid else channel.values
             meaning = str(channel.properties.get("description", ""))
             found.column(group.name, name, unit or unit_of(channel), values, meaning)
     return found.file(sort=False)

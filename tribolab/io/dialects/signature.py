@@ -14,6 +14,7 @@ from tribolab.io.dialects.arranged import holds_names
 from tribolab.io.dialects.declared_records import declares_records
 from tribolab.io.patterns import why_missing
 from tribolab.io.unpacked import ZIP, holds_arrays, is_workbook, unpacked
+from tribolab.reading.raw.hdf5_safety import refuse_outside
 
 HEAD = 1 << 20  # bytes looked at for preamble and header
 
@@ -93,7 +94,10 @@ def peek(path: str | Path, *, binary: bool = False) -> File:
     wide = bool(wide_encoding(head))
     if not head.strip(b"\xef\xbb\xbf \t\r\n" + b"\xff\xfe\0" * wide):
         raise ReadError(f"{path}: the file is empty")
-    return File(path, _format(path, head, binary=binary), size, head)
+    found = File(path, _format(path, head, binary=binary), size, head)
+    if found.format in ("hdf5", "netcdf"):
+        refuse_outside(path)
+    return found
 
 
 def wide_encoding(head: bytes) -> str:

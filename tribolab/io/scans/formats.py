@@ -19,6 +19,7 @@ from tribolab.io.content.read import measurable
 from tribolab.io.dialects.signature import peek
 from tribolab.io.scans.grid import even
 from tribolab.io.scans.safety import formats_to_try
+from tribolab.reading.raw.opening import isolated
 from tribolab.units import conversion, to_si
 from tribolab.untyped import Arguments, Json
 
@@ -27,6 +28,7 @@ class NotSaidError(ReadError):
     """A scan could be read, if its file said what is lacking."""
 
 
+@isolated("xarray", "SurfaceTopography", "SurfaceTopography.IO")
 def read_foreign(
     path: Path, x_unit: str | None = None, height_unit: str | None = None
 ) -> xr.Dataset:
@@ -50,11 +52,9 @@ def read_foreign(
         If SurfaceTopography is missing or does not know the format, or no unit is known.
     """
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", ImportWarning)  # of optional parts that it goes without
-            # late: SurfaceTopography takes long to load
-            from SurfaceTopography.IO import open_topography, readers
-            from SurfaceTopography.IO.Reader import MagicMatch
+        # late: SurfaceTopography takes long to load
+        from SurfaceTopography.IO import open_topography, readers
+        from SurfaceTopography.IO.Reader import MagicMatch
     except ImportError as error:
         raise ReadError(
             "no dialect fits, and other formats need the package SurfaceTopography: "

@@ -10,9 +10,9 @@ import numpy as np
 
 from tribolab.errors import ReadError, brief
 from tribolab.io.scans.safety import DAMAGE, refuse_bomb
-from tribolab.io.seal import is_sealed
 from tribolab.io.tables.mat5 import read_variables
-from tribolab.trials import try_out
+from tribolab.reading.raw.hdf5_safety import check_self_contained
+from tribolab.reading.raw.opening import isolated
 from tribolab.untyped import Json
 
 NPY = b"\x93NUMPY"
@@ -70,8 +70,6 @@ def read_arrays(path: Path) -> HeldArrays:
     if head.startswith(_NETCDF):
         reader = _of_netcdf
     elif head.startswith((_HDF5, b"MATLAB 7.3")):
-        if not is_sealed(path):
-            try_out(path, "HDF5")
         reader = _of_hdf5
     try:
         return reader(path)
@@ -81,6 +79,7 @@ def read_arrays(path: Path) -> HeldArrays:
         raise ReadError(f"{path}: the file is damaged: {brief(error)}; save it again") from error
 
 
+@isolated()
 def _of_numpy(path: Path) -> HeldArrays:
     with path.open("rb") as file:
         alone = file.read(len(NPY)) == NPY
@@ -110,6 +109,7 @@ def _of_mat(path: Path) -> HeldArrays:
     return held
 
 
+@isolated("scipy.io")
 def _of_netcdf(path: Path) -> HeldArrays:
     # late: SciPy takes long to load
     from scipy.io import netcdf_file
@@ -123,6 +123,7 @@ def _of_netcdf(path: Path) -> HeldArrays:
     return held
 
 
+@isolated("h5py")
 def _of_hdf5(path: Path) -> HeldArrays:
     # late: h5py takes long to load
     import h5py
@@ -148,6 +149,7 @@ def _of_hdf5(path: Path) -> HeldArrays:
                 values = values.ravel() if values.ndim == 2 and 1 in values.shape else values
             _take(held, name, values, attrs)
 
+    check_self_contained(path)
     with h5py.File(path, "r") as file:
         visit("", file)
         file.visititems(visit)

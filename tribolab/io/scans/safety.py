@@ -13,12 +13,10 @@ from typing import IO
 import numpy as np
 
 from tribolab.errors import ReadError, shown
-from tribolab.io.seal import is_sealed
-from tribolab.trials import try_out
+from tribolab.reading.raw.hdf5_safety import check_self_contained
+from tribolab.reading.raw.opening import largest_unpacked
 
 _MEGABYTE = 1 << 20
-_UNPACKED = 64 * _MEGABYTE  # an archive up to this size is no bomb, however well it is packed
-_RATIO = 100  # tables as XML are packed 10 to 30 times, measured heights 5 times
 _DEEPEST = 500  # elements of XML within one another; office files have a dozen
 DAMAGE = (
     *(zipfile.BadZipFile, zlib.error, OSError, EOFError, NotImplementedError, RuntimeError),
@@ -55,9 +53,10 @@ def formats_to_try(path: Path, sure: list[str], possible: list[str]) -> list[str
         refuse_bomb(path)
     elif head.startswith(b"MATLAB 5.0"):
         _arrays_only(path)
-    elif head.startswith((b"\x89HDF\r\n\x1a\n", b"CDF\x01", b"CDF\x02", b"CDF\x05")):
-        if not is_sealed(path):
-            try_out(path)
+    elif head.startswith(b"\x89HDF\r\n\x1a\n"):
+        check_self_contained(path)
+    elif head.startswith((b"CDF\x01", b"CDF\x02", b"CDF\x05")):
+        pass
     elif b"\0" not in head or head.startswith((b"\xff\xfe", b"\xfe\xff")):
         return list(dict.fromkeys([*sure, *_text_formats(path)]))
     # any bytes of twice a square number make a map of "hgt", which has no mark but its name
@@ -88,7 +87,7 @@ def refuse_bomb(path: Path) -> None:
         raise ReadError(
             f"{path}: the zip or Office file is damaged: {e}; copy or save it again"
         ) from e
-    if unpacked > max(_UNPACKED, _RATIO * path.stat().st_size):
+    if unpacked > largest_unpacked(path.stat().st_size):
         raise ReadError(
             f"{path}: the file unpacks to {unpacked / _MEGABYTE:.0f} MB, "
             f"{unpacked / path.stat().st_size:.0f} times its size; that is no measurement. Export "

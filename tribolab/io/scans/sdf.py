@@ -5,11 +5,10 @@ Their layout is that of ``aISO-1.0`` and ``bISO-1.0``, which alone SurfaceTopogr
 
 from __future__ import annotations
 
-import atexit
 import functools
-import shutil
-import tempfile
 from pathlib import Path
+
+from tribolab.reading.raw.opening import scratch_folder
 
 _DRAFTS = {b"aBCR-1.0": b"aISO-1.0", b"bBCR-1.0": b"bISO-1.0"}
 _MARK = 8  # bytes
@@ -33,8 +32,7 @@ def as_standard(path: Path) -> Path:
 @functools.lru_cache(maxsize=8)
 def _copied(path: Path, size: int, modified: int) -> Path:
     content = path.read_bytes()
-    folder = Path(tempfile.mkdtemp(prefix="tribolab-"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    folder = scratch_folder()
     copy = folder / path.name
     copy.write_bytes(_DRAFTS[content[:_MARK]] + content[_MARK:])
     return copy

@@ -5,15 +5,13 @@ Since 2010 the makers' software packs the heights (``DSCOMPRESSED``) unless it i
 
 from __future__ import annotations
 
-import atexit
 import functools
-import shutil
 import struct
-import tempfile
 import zlib
 from pathlib import Path
 
 from tribolab.errors import ReadError, brief
+from tribolab.reading.raw.opening import scratch_folder
 
 _PLAIN, _PACKED = b"DIGITAL SURF", b"DSCOMPRESSED"
 _HEADER = 512
@@ -63,8 +61,7 @@ def _copied(path: Path, size: int, modified: int) -> Path:
             f"{path}: the Surf file is damaged: {brief(error)}; is it whole?"
         ) from error
     header = _PLAIN + content[12 : _UNITS.start] + units + content[_UNITS.stop : _HEADER]
-    folder = Path(tempfile.mkdtemp(prefix="tribolab-"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    folder = scratch_folder()
     copy = folder / path.name
     copy.write_bytes(header + content[_HEADER : _HEADER + comment + private] + body)
     return copy

@@ -22,6 +22,7 @@ from tribolab.io.content.read import measurable
 from tribolab.io.scans.grid import even, gridded
 from tribolab.io.scans.safety import DAMAGE, refuse_bomb
 from tribolab.io.scans.xml_values import parsed
+from tribolab.reading.raw.opening import isolated
 
 _MAIN = "main.xml"
 _ROOT = b"ISO5436_2"
@@ -69,6 +70,7 @@ def is_iso_xml(head: bytes) -> bool:
     return head.lstrip(b"\xef\xbb\xbf \r\n\t").startswith(b"<") and _ROOT in head[:4096]
 
 
+@isolated()
 def read_x3p(path: Path, main: str) -> xr.Dataset:
     """Read an x3p archive: a map or a profile, with its mask of valid points.
 

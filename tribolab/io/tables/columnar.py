@@ -11,6 +11,7 @@ import numpy as np
 from tribolab.errors import ReadError
 from tribolab.io.key_words import UNIT_KEYS
 from tribolab.io.tables.settings_text import plain, setting_lines, text_of
+from tribolab.reading.raw.opening import damage_told, isolated
 
 _OF_LIBRARIES = (b"pandas", b"ARROW:schema", b"PANDAS_ATTRS")
 
@@ -72,27 +73,42 @@ def seconds_of(values: np.ndarray) -> np.ndarray:
     return np.where(known, since.astype(np.int64) / 1e9, np.nan)
 
 
-def _of_arrow(table: object) -> NamedColumns:
+class _ArrowColumns(NamedTuple):
+    """Names of columns, their units and values; text beside."""
+
+    names: list[str]
+    units: list[str | None]
+    arrays: list[np.ndarray]
+    text: str
+
+
+@isolated("pyarrow", "pyarrow.parquet", "pyarrow.feather")
+def _arrow_columns(path: Path, form: str) -> _ArrowColumns:
     # late: pyarrow takes long to load
     import pyarrow as pa
+    from pyarrow import feather
+    from pyarrow import parquet as pq
 
-    assert isinstance(table, pa.Table)
+    with damage_told(path, f"{form} file"):
+        read = pq.read_table if form == "parquet" else feather.read_table
+        table = read(path, use_threads=False, memory_map=False)
     names = list(table.column_names)
     units = [_unit_of_field(table.schema.field(place)) for place in range(len(names))]
-
-    def column(place: int) -> np.ndarray:
+    arrays = []
+    for place in range(len(names)):
         values = table.column(place)
         if pa.types.is_dictionary(values.type):  # words, or numbers that are kept once
             values = values.cast(values.type.value_type)
         if pa.types.is_decimal(values.type):
             values = values.cast(pa.float64())
-        numbers: np.ndarray = values.to_numpy()
-        return numbers
-
+        with damage_told(path, f"{form} file"):
+            numbers = values.to_numpy()
+        # what is no number (words, lists, structures) is of no use as a column
+        arrays.append(numbers if numbers.dtype.kind in "fiubMm" else np.empty(0, "U1"))
     said = dict(table.schema.metadata or {})
     kept = {plain(key): value for key, value in said.items() if key not in _OF_LIBRARIES}
     lines = [line for key, value in kept.items() for line in setting_lines(str(key), value)]
-    return NamedColumns(names, units, column, text_of(lines))
+    return _ArrowColumns(names, units, arrays, text_of(lines))
 
 
 def _unit_of_field(field: Any) -> str | None:
@@ -102,17 +118,13 @@ def _unit_of_field(field: Any) -> str | None:
 
 
 def _parquet(path: Path, layout: ColumnLayout) -> NamedColumns:
-    # late: pyarrow takes long to load
-    import pyarrow.parquet as pq
-
-    return _of_arrow(pq.read_table(path))
+    names, units, arrays, text = _arrow_columns(path, "parquet")
+    return NamedColumns(names, units, arrays.__getitem__, text)
 
 
 def _feather(path: Path, layout: ColumnLayout) -> NamedColumns:
-    # late: pyarrow takes long to load
-    from pyarrow import feather
-
-    return _of_arrow(feather.read_table(path))
+    names, units, arrays, text = _arrow_columns(path, "feather")
+    return NamedColumns(names, units, arrays.__getitem__, text)
 
 
 def _hdf5(path: Path, layout: ColumnLayout) -> NamedColumns:

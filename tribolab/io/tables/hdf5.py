@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribolab.io.key_words import UNIT_KEYS
-from tribolab.io.seal import is_sealed
 from tribolab.io.tables.settings_text import plain, setting_lines
-from tribolab.trials import try_out
+from tribolab.reading.raw.hdf5_safety import check_self_contained
+from tribolab.reading.raw.opening import damage_told, isolated
 
 _OF_HDF5 = {
     *UNIT_KEYS,
@@ -40,6 +40,7 @@ class Hdf5Columns(NamedTuple):
     said: dict[str, list[str]]
 
 
+@isolated("h5py")
 def read_hdf5(path: Path) -> Hdf5Columns:
     """Read the columns of an HDF5 file and what its attributes and single values say.
 
@@ -47,16 +48,21 @@ def read_hdf5(path: Path) -> Hdf5Columns:
     ----------
     path
         The file.
+
+    Raises
+    ------
+    ReadError
+        If it is damaged, or takes data from outside.
     """
     # late: h5py takes long to load
     import h5py
 
-    if not is_sealed(path):
-        try_out(path, "HDF5")
     found = _Found(h5py)
-    with h5py.File(path, "r") as file:
-        found.tell("", file)
-        file.visititems(found.visit)
+    with damage_told(path, "HDF5 file"):
+        check_self_contained(path)
+        with h5py.File(path, "r") as file:
+            found.tell("", file)
+            file.visititems(found.visit)
     return found.columns
 
 

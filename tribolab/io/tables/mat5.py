@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.errors import ReadError, brief
+from tribolab.reading.raw.opening import isolated
 
 _HEADER = 128
 _MATRIX, _COMPRESSED = 14, 15
@@ -40,6 +41,7 @@ class Variable(NamedTuple):
     texts: tuple[str, ...] = ()
 
 
+@isolated()
 def read_variables(path: Path) -> list[Variable]:
     """Read the variables of a MAT file.
 

@@ -15,8 +15,8 @@ import numpy as np
 
 from tribolab.errors import ReadError, shown
 from tribolab.io.tables.settings_text import plain, setting_lines
+from tribolab.reading.raw.opening import isolated, largest_unpacked
 
-_MOST = 1 << 33  # bytes of what is unpacked
 _NAMES = re.compile(r"(?:columns?|names?|labels?|channels?|fields?|headers?|keys)$", re.IGNORECASE)
 _STEP = re.compile(  # step2_force, force_s03, run1/load
     r"(?:(?P<table>[^\W\d_]+[_-]?\d+)[_./-](?P<name>\D\w*)|(?P<own>\D\w*?)[_./-](?P<last>[^\W\d_]*\d+))"
@@ -30,6 +30,7 @@ class NpzColumns(NamedTuple):
     said: dict[str, list[str]]
 
 
+@isolated()
 def read_npz(path: Path) -> NpzColumns:
     """Read the arrays of an archive.
 
@@ -41,12 +42,12 @@ def read_npz(path: Path) -> NpzColumns:
     Raises
     ------
     ReadError
-        If it is damaged, unpacks to more than 8 GB, or holds objects of Python.
+        If it is damaged, unpacks to far more than its size, or holds objects of Python.
     """
     try:
         with zipfile.ZipFile(path) as archive:
             size = sum(info.file_size for info in archive.infolist())
-        if size > _MOST:
+        if size > largest_unpacked(path.stat().st_size):
             raise ReadError(f"this archive unpacks to {size / 1e9:.0f} GB", where=path)
         with np.load(path, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-import struct
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError, brief
 from tribolab.io.key_words import UNIT_KEYS
 from tribolab.io.tables.settings_text import setting_lines, text_of
+from tribolab.reading.raw.opening import damage_told, isolated
 
-_DAMAGE = (
-    *(ValueError, KeyError, IndexError, TypeError, OSError, EOFError, struct.error),
-    *(MemoryError, OverflowError, NotImplementedError, AttributeError),
-)
-
+Settings = dict[str, int | float | str]
 # how the text of a TDMS file says the time from row to row
 INCREMENT_PATTERN = r"^wf_increment: (\S+)"
 _UNITS = ("unit_string", "NI_UnitDescription", "Unit", *UNIT_KEYS)
@@ -31,13 +26,38 @@ class Grid(NamedTuple):
     increment: float
 
 
-def on_one_grid(channels: list[Any]) -> Grid | None:
+class Channel(NamedTuple):
+    """A channel: names of it and its group, what its properties say, its values."""
+
+    name: str
+    group_name: str
+    properties: Settings
+    values: np.ndarray
+
+
+class Group(NamedTuple):
+    """A group of channels, with what its properties say."""
+
+    name: str
+    properties: Settings
+    channels: list[Channel]
+
+
+class TdmsContent(NamedTuple):
+    """What a TDMS file holds; whether it ends within its last segment."""
+
+    properties: Settings
+    groups: list[Group]
+    incomplete: bool
+
+
+def on_one_grid(channels: list[Channel]) -> Grid | None:
     """Bring channels that have a clock of their own (waveforms) to that of the fastest.
 
     Parameters
     ----------
     channels
-        From nptdms.
+        From `open_tdms`.
 
     Returns
     -------
@@ -50,7 +70,7 @@ def on_one_grid(channels: list[Any]) -> Grid | None:
         (str(c.properties.get("wf_start_time")), str(c.properties.get("wf_start_offset", 0.0)))
         for c in channels
     }
-    values = [np.asarray(channel[:]) for channel in channels]
+    values = [channel.values for channel in channels]
     if not values or len(starts) > 1 or not all(step > 0 for step in steps):
         return None
     if any(v.dtype.kind not in "fiu" or not v.size for v in values):
@@ -73,28 +93,29 @@ def _number(said: object) -> float:
     return float(said) if isinstance(said, int | float) and np.isfinite(said) else 0.0
 
 
-def properties_of(item: Any) -> list[str]:
+def properties_of(item: Group | TdmsContent) -> list[str]:
     """Return the properties of a file or a group as lines."""
     return [line for key, value in item.properties.items() for line in setting_lines(key, value)]
 
 
-def text_beside(file: Any, groups: Iterable[Any], increment: float) -> str:
+def text_beside(file: TdmsContent, groups: Iterable[Group], increment: float) -> str:
     """Return what a file says beside its channels, as the text of a file stands above a table.
 
     Parameters
     ----------
     file, groups
-        From nptdms: the file, and those of its groups whose channels are read.
+        From `open_tdms`: the file, and those of its groups whose channels are read.
     increment
         The time [s] from row to row; 0 where there is none for all.
     """
     clock = [f"wf_increment: {increment!r}"] if increment else []
     own = [f"{key}: {value}" for key, value in file.properties.items()]
-    more = [line for item in (file, *groups) for line in properties_of(item)]
+    own = [f"{key}: {value}" for key, value in file.properties.items()]
+    more = properties_of(file) + [line for group in groups for line in properties_of(group)]
     return text_of([*clock, *own, *more])
 
 
-def unit_of(channel: Any) -> str | None:
+def unit_of(channel: Channel) -> str | None:
     """Return the unit that a channel's properties say; None if none."""
     said = (str(channel.properties.get(key, "")).strip() for key in _UNITS)
     return next((unit for unit in said if unit), None)
@@ -108,28 +129,49 @@ def channel_names(path: Path) -> set[str]:
     ReadError
         If the file is damaged.
     """
-    file = open_tdms(path, "read_metadata")
-    return {f"{g.name}/{c.name}" for g in file.groups() for c in g.channels()}
+    file = open_tdms(path, values=False)
+    return {f"{group.name}/{channel.name}" for group in file.groups for channel in group.channels}
 
 
-def open_tdms(path: Path, how: str) -> Any:
-    """Open a TDMS file by one of `nptdms.TdmsFile`'s ways: ``"read"``, ``"read_metadata"``.
+@isolated("nptdms")
+def open_tdms(path: Path, *, values: bool = True) -> TdmsContent:
+    """Read a TDMS file, or the names and properties of its channels alone.
+
+    An index file beside it is not looked at.
 
     Raises
     ------
     ReadError
         If the file is damaged, or nptdms is not installed.
     """
-    try:
-        # late: nptdms takes long to load
-        from nptdms import TdmsFile
-    except ImportError as error:
-        raise ReadError(
-            f"{path}: TDMS files need the package nptdms: pip install 'tribolab[formats]'"
-        ) from error
-    try:
-        return getattr(TdmsFile, how)(str(path))
-    except _DAMAGE as error:
-        raise ReadError(
-            f"{path}: the TDMS file is damaged: {brief(error)}; copy or save it again"
-        ) from error
+    # late: nptdms takes long to load
+    from nptdms import TdmsFile
+
+    with damage_told(path, "TDMS file"), path.open("rb") as stream:
+        file = (TdmsFile.read if values else TdmsFile.read_metadata)(stream)
+        groups = [
+            Group(
+                group.name,
+                _plain(group.properties),
+                [
+                    Channel(
+                        channel.name,
+                        group.name,
+                        _plain(channel.properties),
+                        np.asarray(channel[:]) if values and len(channel) else np.empty(0),
+                    )
+                    for channel in group.channels()
+                ],
+            )
+            for group in file.groups()
+        ]
+        incomplete = bool(file.file_status.incomplete_final_segment)
+        return TdmsContent(_plain(file.properties), groups, incomplete)
+
+
+def _plain(properties: Mapping[str, Any]) -> Settings:
+    kinds = (int, float, str)
+    return {
+        str(key): value if isinstance(value, kinds) else str(value)
+        for key, value in properties.items()
+    }

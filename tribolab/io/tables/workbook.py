@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.errors import ReadError, shown
-from tribolab.trials import workbook_tried
+from tribolab.reading.raw.opening import damage_told, isolated
 
 _MOST_CELLS = 50_000_000  # of a sheet
 _MOST_ROWS, _MOST_WIDE = 100, 12  # of settings that stand in cells
@@ -27,25 +27,56 @@ class SheetColumns(NamedTuple):
     text: str
 
 
-def sheets_of(path: Path) -> dict[str, list[list[object]]]:
+@isolated("python_calamine")
+def sheets_of(path: Path, rows: int | None = None) -> dict[str, Cells]:
     """Return the cells of every sheet by its name, in the order of the workbook.
+
+    Parameters
+    ----------
+    path
+        The workbook.
+    rows
+        How many rows of each sheet; by default all.
 
     Raises
     ------
     ReadError
-        If a sheet is larger than a table of numbers.
+        If it is damaged, or a sheet is larger than a table of numbers.
     """
     # late: python_calamine takes long to load
     from python_calamine import CalamineWorkbook
 
-    cells: dict[str, list[list[object]]] = {}
-    with workbook_tried(path):
+    cells: dict[str, Cells] = {}
+    with damage_told(path, "workbook"):
         book = CalamineWorkbook.from_path(path)
         for name in book.sheet_names:
             page = book.get_sheet_by_name(name)
-            _check_size(path, name, page)
-            cells[name] = [list(row) for row in page.to_python(skip_empty_area=False)]
+            if rows is None:
+                _check_size(path, name, page)
+            cells[name] = page.to_python(skip_empty_area=False, nrows=rows)
     return cells
+
+
+@isolated("python_calamine")
+def _sheet_and_settings(path: Path, sheet: str | None) -> tuple[str, Cells, list[Cells]]:
+    """Return a sheet's name and cells, and the cells of small other sheets."""
+    # late: python_calamine takes long to load
+    from python_calamine import CalamineWorkbook
+
+    with damage_told(path, "workbook"):
+        book = CalamineWorkbook.from_path(path)
+        sheet = sheet or book.sheet_names[0]
+        if sheet not in book.sheet_names:
+            there = ", ".join(map(shown, book.sheet_names[:8]))
+            raise ReadError(f"there is no sheet '{shown(sheet)}'; there are {there}", where=path)
+        page = book.get_sheet_by_name(sheet)
+        _check_size(path, sheet, page)
+        rows = page.to_python(skip_empty_area=False)
+        others = (book.get_sheet_by_name(name) for name in book.sheet_names if name != sheet)
+        few: list[Cells] = [
+            page.to_python(skip_empty_area=False) for page in others if is_small(page)
+        ]
+    return sheet, rows, few
 
 
 def read_sheet(
@@ -69,21 +100,8 @@ def read_sheet(
     ReadError
         If there is no such sheet, or it ends before the table.
     """
-    # late: python_calamine takes long to load
-    from python_calamine import CalamineWorkbook
-
-    with workbook_tried(path):
-        book = CalamineWorkbook.from_path(path)
-        sheet = sheet or book.sheet_names[0]
-        if sheet not in book.sheet_names:
-            there = ", ".join(map(shown, book.sheet_names[:8]))
-            raise ReadError(f"there is no sheet '{shown(sheet)}'; there are {there}", where=path)
-        page = book.get_sheet_by_name(sheet)
-        _check_size(path, sheet, page)
-        rows = page.to_python(skip_empty_area=False)
+    sheet, rows, few = _sheet_and_settings(path, sheet)
     table = table_below(path, sheet, rows, line, skip, units_below=units_below)
-    others = (book.get_sheet_by_name(name) for name in book.sheet_names if name != sheet)
-    few = (page.to_python(skip_empty_area=False) for page in others if is_small(page))
     text = [table.text, *map(settings_above, few)]
     return table._replace(text="\n".join(filter(None, text)))
 

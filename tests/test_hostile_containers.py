@@ -1,0 +1,144 @@
+"""Files that reach for other files, or for all of the machine, cost one message each."""
+
+import zipfile
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+import tribolab as tl
+from tribolab.errors import ReadError
+from tribolab.io.netcdf import read_netcdf
+from tribolab.reading.raw.hdf5_safety import check_self_contained
+
+SECRET = "root:secret of this machine"
+
+
+@pytest.fixture
+def secret(tmp_path):
+    path = tmp_path / "elsewhere" / "secret.txt"
+    path.parent.mkdir()
+    path.write_text(SECRET * 40)
+    with h5py.File(path.with_suffix(".h5"), "w") as file:
+        file["Fx [N]"] = np.full(100, 7.0)
+    return path
+
+
+def external(file, secret):
+    size = secret.stat().st_size // 8
+    file.create_dataset("Fx [N]", (size,), "f8", external=[(str(secret), 0, 8 * size)])
+
+
+def external_bytes(file, secret):
+    file.create_dataset("notes", (100,), "u1", external=[(str(secret), 0, 100)])
+
+
+def external_in_group(file, secret):
+    external(file.create_group("a").create_group("b"), secret)
+
+
+def link(file, secret):
+    file["Fx [N]"] = h5py.ExternalLink(str(secret.with_suffix(".h5")), "/Fx [N]")
+
+
+def soft_link_through_a_link(file, secret):
+    file["away"] = h5py.ExternalLink(str(secret.with_suffix(".h5")), "/")
+    file["Fx [N]"] = h5py.SoftLink("/away/Fx [N]")
+
+
+def virtual(file, secret):
+    layout = h5py.VirtualLayout(shape=(100,), dtype="f8")
+    layout[:] = h5py.VirtualSource(str(secret.with_suffix(".h5")), "Fx [N]", shape=(100,))
+    file.create_virtual_dataset("Fx [N]", layout)
+
+
+WAYS = [external, external_bytes, external_in_group, link, soft_link_through_a_link, virtual]
+
+
+@pytest.mark.parametrize("ending", ["h5", "nc", "mat"])
+@pytest.mark.parametrize("way", WAYS, ids=lambda way: way.__name__)
+def test_data_from_another_file_are_refused_by_name_by_every_reader(way, ending, secret, tmp_path):
+    path = tmp_path / f"a.{ending}"
+    userblock = 512 if ending == "mat" else 0
+    with h5py.File(path, "w", userblock_size=userblock) as file:
+        file["Time [s]"] = np.arange(100) / 10
+        way(file, secret)
+    if ending == "mat":
+        with path.open("r+b") as raw:
+            raw.write(b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM")
+    readers = [check_self_contained, tl.read, tl.read_scans]
+    readers += [read_netcdf] * (ending == "nc")
+    for reader in readers:
+        with pytest.raises(ReadError) as caught:
+            reader(path)
+        assert "tribolab reads no data from outside a file" in str(caught.value)
+        assert SECRET[:10] not in str(caught.value)
+
+
+def test_a_filter_that_is_not_the_librarys_is_refused(tmp_path):
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        made = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+        made.set_chunk((10,))
+        made.set_filter(32004, h5py.h5z.FLAG_OPTIONAL, ())
+        space = h5py.h5s.create_simple((100,))
+        h5py.h5d.create(file.id, b"Fx [N]", h5py.h5t.NATIVE_DOUBLE, space, made)
+    with pytest.raises(ReadError, match=r"'Fx \[N\]' is packed with filter 32004"):
+        check_self_contained(tmp_path / "a.h5")
+
+
+def test_files_with_their_own_data_pass(tmp_path):
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["a/x"] = np.arange(4.0)
+        file["a/soft"] = h5py.SoftLink("/a/x")
+        for name in ("gzip", "lzf"):
+            file.create_dataset(name, data=np.arange(100.0), compression=name, shuffle=True)
+    check_self_contained(tmp_path / "a.h5")
+
+
+def sparse_workbook(path: Path) -> None:
+    """Two cells in opposite corners of a sheet: 1.7e10 cells lie between them."""
+    main = "http://schemas.openxmlformats.org/spreadsheetml/2006/main"
+    office = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
+    package = "http://schemas.openxmlformats.org/package/2006"
+    cell = '<row r="{0}"><c r="{1}{0}"><v>1</v></c></row>'
+    parts = {
+        "[Content_Types].xml": f'<Types xmlns="{package}/content-types"/>',
+        "_rels/.rels": f'<Relationships xmlns="{package}/relationships"><Relationship Id="r1" '
+        f'Type="{office}/officeDocument" Target="xl/workbook.xml"/></Relationships>',
+        "xl/workbook.xml": f'<workbook xmlns="{main}" xmlns:r="{office}"><sheets>'
+        '<sheet name="a" sheetId="1" r:id="r1"/></sheets></workbook>',
+        "xl/_rels/workbook.xml.rels": f'<Relationships xmlns="{package}/relationships">'
+        f'<Relationship Id="r1" Type="{office}/worksheet" Target="worksheets/sheet1.xml"/>'
+        "</Relationships>",
+        "xl/worksheets/sheet1.xml": f'<worksheet xmlns="{main}"><sheetData>'
+        f"{cell.format(1, 'A')}{cell.format(1048576, 'XFD')}</sheetData></worksheet>",
+    }
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, text in parts.items():
+            archive.writestr(name, text)
+
+
+@pytest.mark.parametrize("reader", [tl.read, tl.read_scans, tl.read_modulus])
+def test_a_workbook_of_two_far_cells_costs_one_message(reader, tmp_path):
+    sparse_workbook(tmp_path / "a.xlsx")
+    with pytest.raises(ReadError, match=r"a\.xlsx"):
+        reader(tmp_path / "a.xlsx")
+
+
+@pytest.mark.parametrize("shape", [(10**12,), (10**6, 10**7)])
+def test_a_dataset_of_terabytes_costs_one_message(shape, tmp_path):
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file.create_dataset("Fx [N]", shape, "f8", chunks=(1000,) * len(shape))
+    for reader in (tl.read, tl.read_scans):
+        with pytest.raises(ReadError, match=r"a\.h5"):
+            reader(tmp_path / "a.h5")
+
+
+def test_an_index_beside_a_tdms_file_is_not_looked_at(shared_data, tmp_path):
+    whole = shared_data / "tdms_force_MIT" / "TDMSSample.tdms"
+    (tmp_path / "a.tdms").write_bytes(whole.read_bytes())
+    (tmp_path / "a.tdms_index").write_bytes(b"TDSh" + b"\xff" * 400)
+    from tribolab.io.tables.tdms_file import open_tdms
+
+    assert len(open_tdms(tmp_path / "a.tdms").groups) == len(open_tdms(whole).groups) > 0

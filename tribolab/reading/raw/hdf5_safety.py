@@ -1,0 +1,127 @@
+"""HDF5 and netCDF-4 files must hold their own data, read with the library's own filters.
+
+HDF5 can store a dataset in any other file of the machine, or show parts of one as its own. An
+untrusted file could so bring a secret into results that are published.
+"""
+
+from __future__ import annotations
+
+import functools
+from pathlib import Path
+from typing import Any
+
+from tribolab.errors import ReadError, shown
+from tribolab.reading.raw.opening import isolated
+
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+# registered numbers of the filters in the library (deflate, shuffle, fletcher32, szip, nbit,
+# scaleoffset) and of LZF, which h5py brings: https://github.com/HDFGroup/hdf5_plugins
+_OWN_FILTERS = frozenset((1, 2, 3, 4, 5, 6, 32000))
+
+
+class OutsideError(ReadError):
+    """A file takes data from outside of it."""
+
+
+@isolated("h5py")
+def check_self_contained(path: Path) -> None:
+    """Refuse an HDF5 file that takes data from elsewhere, before any of its data are read.
+
+    Parameters
+    ----------
+    path
+        An HDF5 file: netCDF-4 and MAT 7.3 are, too.
+
+    Raises
+    ------
+    ReadError
+        If it has a link to another file, a dataset in external storage, a virtual dataset, or a
+        filter that is not part of the HDF5 library. The message names it.
+    """
+    # late: h5py takes long to load
+    import h5py
+
+    with h5py.File(path, "r") as file:
+        look = _Look(path, h5py, file)
+        file.id.links.visit(look)
+    if look.found:
+        name, what = look.found
+        raise OutsideError(
+            f"{path}: '{shown(name, 80)}' is {what}; tribolab reads no data from outside a file. "
+            "Save a copy that holds its own data (h5repack, or read it and write it again)"
+        )
+
+
+def refuse_outside(path: Path) -> None:
+    """Refuse a file that takes data from elsewhere, before anything of it is read.
+
+    Parameters
+    ----------
+    path
+        A file that looks like HDF5 or netCDF. A damaged one passes: its reader says more of it.
+
+    Raises
+    ------
+    ReadError
+        As `check_self_contained`.
+    """
+    state = path.stat()
+    _refuse(path.resolve(), state.st_size, state.st_mtime_ns, state.st_ino)
+
+
+@functools.lru_cache(maxsize=256)
+def _refuse(path: Path, size: int, written: int, inode: int) -> None:
+    with path.open("rb") as file:
+        if file.read(len(_HDF5)) != _HDF5 and not _has_user_block(path):
+            return
+    try:
+        check_self_contained(path)
+    except OutsideError:
+        raise
+    except (ReadError, OSError, ValueError, RuntimeError, KeyError):
+        return
+
+
+def _has_user_block(path: Path) -> bool:
+    """Whether HDF5 begins at 512 bytes, as in MAT 7.3."""
+    with path.open("rb") as file:
+        file.seek(512)
+        return file.read(len(_HDF5)) == _HDF5
+
+
+class _Look:
+    """Looks at one link after the other; stops at the first that leads out of the file."""
+
+    def __init__(self, path: Path, h5py: Any, file: Any) -> None:
+        self._h5py, self._file = h5py, file
+        self.found: tuple[str, str] | None = None
+
+    def __call__(self, name: bytes) -> bool | None:
+        h5 = self._h5py
+        kind = self._file.id.links.get_info(name).type
+        what = ""
+        if kind == h5.h5l.TYPE_HARD:
+            what = self._outside(name)
+        elif kind == h5.h5l.TYPE_EXTERNAL:
+            what = "a link to another file"
+        elif kind != h5.h5l.TYPE_SOFT:
+            what = "a link of an unknown kind"
+        if what:
+            self.found = name.decode("utf-8", "replace"), what
+        return True if what else None
+
+    def _outside(self, name: bytes) -> str:
+        h5 = self._h5py
+        item = h5.h5o.open(self._file.id, name)
+        if not isinstance(item, h5.h5d.DatasetID):
+            return ""
+        made = item.get_create_plist()
+        if made.get_external_count():
+            return f"stored in another file ({shown(made.get_external(0)[0], 60)})"
+        if made.get_layout() == h5.h5d.VIRTUAL:
+            return "a virtual dataset, which shows parts of other files"
+        for number in range(made.get_nfilters()):
+            code = made.get_filter(number)[0]
+            if code not in _OWN_FILTERS:
+                return f"packed with filter {code}, which is not part of the HDF5 library"
+        return ""

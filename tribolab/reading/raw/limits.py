@@ -1,0 +1,30 @@
+"""How much a file may take of the machine while it is read."""
+
+from tribolab.core.limit import Limit
+
+CPU_FOR_ANY_FILE = Limit(
+    4.0, "s", "computing time that a small file may take; a sound one takes less than 1 s"
+)
+BYTES_PER_CPU_SECOND = Limit(
+    1e6, "1/s", "slowest sound reading: workbooks take 1 s for 1 to 2 MB of packed cells",
+    "measured with python-calamine 0.4 on 1e6 cells",
+)  # fmt: skip
+MEMORY_FOR_ANY_FILE = Limit(
+    0.7e9, "byte", "memory beyond the libraries' own: reading a small file stays below 1 GB"
+)
+MEMORY_PER_BYTE = Limit(
+    40.0, "1", "memory per byte of the file: a workbook's cells take 30 times their packed size",
+    "measured with python-calamine 0.4 on 1e6 cells",
+)  # fmt: skip
+UNPACKED_FOR_ANY_FILE = Limit(
+    64e6, "byte", "what a packed file may unpack to, however well it is packed"
+)
+UNPACKED_PER_BYTE = Limit(
+    100.0, "1", "times its size that a packed file may unpack to: measured signals shrink 2 to 20 "
+    "times, set-points and clocks 30 times",
+)  # fmt: skip
+MAX_UNPACKED = Limit(
+    16e9, "byte", "what any file may unpack to; the environment variable TRIBOLAB_MAX_UNPACKED "
+    "(bytes) changes it",
+)  # fmt: skip
+PATIENCE = Limit(60.0, "s", "waiting for a child beyond its computing time, on a busy machine")
