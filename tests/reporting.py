@@ -164,6 +164,7 @@ def made_curve(speeds=SPEEDS, mu=0.8, surface="Sb-R", medium="glycerol", load=31
             "friction_coefficient": ("sliding_speed", mean),
             "friction_coefficient_std": ("sliding_speed", 0.05 * mean),
             "friction_coefficient_sem": ("sliding_speed", 0.01 * mean),
+            "friction_coefficient_U95": ("sliding_speed", 0.02 * mean),
             "friction_coefficient_within": ("sliding_speed", 0.05 * mean),
             "friction_coefficient_between": ("sliding_speed", 0.02 * mean),
             "runs": ("sliding_speed", np.full(speeds.size, 3)),

@@ -225,13 +225,19 @@ def test_unknown_speeds_number_the_segments(made):
     assert plot.figure_data(figure).segment.tolist() == [1, 2, 3, 4, 5, 6]
 
 
-def test_error_bars_are_the_standard_deviation_and_the_standard_error():
+@pytest.mark.parametrize("errors", ["U95", "std"])
+def test_error_bars_are_u95_or_on_request_the_standard_deviation(errors):
     curve = made_curve()
-    figure = plot.stribeck(curve)
-    bars = [c for c in figure.axes[0].collections if hasattr(c, "get_segments")]
-    reach = [np.array([np.ptp(s[:, 1]) / 2 for s in c.get_segments()]) for c in bars]
-    np.testing.assert_allclose(reach[0], curve.friction_coefficient_std.values)
-    np.testing.assert_allclose(reach[1], curve.friction_coefficient_sem.values)
+    curve["friction_coefficient_U95"] = 2.3 * curve.friction_coefficient_sem
+    figure = plot.stribeck(curve, errors=errors)
+    [bars] = [c for c in figure.axes[0].collections if hasattr(c, "get_segments")]
+    reach = np.array([np.ptp(s[:, 1]) / 2 for s in bars.get_segments()])
+    np.testing.assert_allclose(reach, curve[f"friction_coefficient_{errors}"].values)
+
+
+def test_an_unknown_kind_of_error_bar_is_an_error_that_names_the_known_ones():
+    with pytest.raises(AnalysisError, match="'sem' is not known; take 'U95' or 'std'"):
+        plot.stribeck(made_curve(), errors="sem")
 
 
 @pytest.mark.parametrize("points", [1, 2, 13])

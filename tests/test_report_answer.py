@@ -12,7 +12,7 @@ from tribolab.report.page.answer import cards
 from tribolab.report.page.in_short import in_short
 
 CHECK = {"check": "friction_sign", "status": "fail", "decision": "", "message": "it drives. Look"}
-SEM = {"friction_coefficient_sem": 0.01, "runs": 2}
+SEM = {"friction_coefficient_U95": 0.02, "runs": 2}
 
 
 def run(name, load, status="done", quality="pass"):
@@ -49,11 +49,11 @@ def test_a_sentence_says_of_each_error_what_it_holds():
         row["runs"] = runs
     (card,) = cards(one)
     assert card.at_loads[0].text == "31 N"
-    assert card.at_loads[0].sentences[0].endswith(" (± between runs and within the run).")
+    assert card.at_loads[0].sentences[0].endswith(" (± U95, between runs and within the run).")
     for row in one["curves"][0]["points"]:
         row["runs"] = 1
     (card,) = cards(one)
-    assert card.at_loads[0].sentences[0].endswith(", the fastest speed (± within the run).")
+    assert card.at_loads[0].sentences[0].endswith(", the fastest speed (± U95, within the run).")
 
 
 def test_a_card_says_shape_stress_mode_and_what_the_model_misses():
@@ -63,8 +63,8 @@ def test_a_card_says_shape_stress_mode_and_what_the_model_misses():
     (found,) = card.at_loads
     # half of 1.1 lies between the last two points: 100 um/s * 100^((1.07 - 0.55) / 0.87)
     assert found.sentences == (
-        "Plateau of µ = 1.100 ± 0.010 up to 100 µm/s; half of it at about 1.6 mm/s; lowest "
-        "0.200 ± 0.010 at 10 mm/s, the fastest speed (± between runs).",
+        "Plateau of µ = 1.10 ± 0.02 up to 100 µm/s; half of it at about 1.6 mm/s; lowest "
+        "0.20 ± 0.02 at 10 mm/s, the fastest speed (± U95, between runs).",
         "Steady sliding, no stick-slip at any speed.",
         "Shear stress 0.880 MPa (95 %: 0.800 to 0.950 MPa).",
         "The model describes the curve within the errors.",
@@ -93,9 +93,9 @@ def test_a_point_of_a_run_holds_one_of_its_loads():
 def test_a_plateau_is_of_points_that_agree_within_their_errors():
     one = report([])
     for row in one["curves"][0]["points"]:
-        row["friction_coefficient_sem"] = 0.002
+        row["friction_coefficient_U95"] = 0.004
     (card,) = cards(one)
-    assert card.at_loads[0].sentences[0].startswith("Highest µ = 1.100 ± 0.002 at 1 µm/s; half")
+    assert card.at_loads[0].sentences[0].startswith("Highest µ = 1.100 ± 0.004 at 1 µm/s; half")
 
 
 @pytest.mark.parametrize(

@@ -72,7 +72,7 @@ def test_the_first_screen_is_the_answer(browser, results):
         assert all(0 < card["top"] < 450 for card in seen)
         # 15 % a decade over seven decades: the curve says what the sentence says
         assert re.match(
-            r"31 N: Highest µ = 0.800 ± 0.008 at 1 µm/s; half of it at about", seen[0]["said"]
+            r"31 N: Highest µ = 0.800 ± 0.016 at 1 µm/s; half of it at about", seen[0]["said"]
         )
         assert "oscillat" in seen[0]["said"] or "sliding" in seen[0]["said"]
 
@@ -81,9 +81,9 @@ def test_the_first_screen_is_the_answer(browser, results):
 def test_points_say_what_their_error_holds_and_lead_to_their_run(browser, results):
     series = figures_of(results)["card-1"]["series"][0]
     words = series["told"][0]
-    assert "(between runs)" in words and "within the run: ± " in words
-    # ± is of the mean of the runs, and what is no error of a mean has no ±
-    assert "mean of 3 runs, its ± widened\n" in words
+    assert "(U95, between runs)" in words and "U95 within one run: " in words
+    # only the uncertainty of the mean has a ±
+    assert "mean of 3 runs\n" in words and words.count("±") == 1
     assert "scatter of the runs: 0.016" in words
     assert re.search(r"\d+ independent samples\nsb-r_1$", series["told"][0])
     with browser.page(results / "report.html") as page:

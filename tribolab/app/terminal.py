@@ -68,7 +68,7 @@ def outcome_table(outcome: Outcome) -> Table:
     nameless = any(not (curve.surface or curve.medium) for curve in done)
     for heading in (*(("run",) if nameless else ()), "surface", "medium"):
         table.add_column(heading)
-    for heading in (*_COUNTS, "speeds", "friction coefficient", "standard error"):
+    for heading in (*_COUNTS, "speeds", "friction coefficient", "± U95"):
         table.add_column(heading, justify="right")
     for curve in done:
         load = load_text(None, curve.load_from) if curve.load_from == LOAD_VARIES else _NONE
@@ -96,7 +96,7 @@ def points_table(outcome: Outcome) -> Table | None:
         return None
     table = Table(box=None, pad_edge=False, header_style="bold")
     unit, scale = ("m/s", 1.0) if max(speed for _, speed in known) >= 1 else ("mm/s", 1e3)
-    for heading in (f"speed ({unit})", "friction coefficient", "± 95 %", "scatter", "segments"):
+    for heading in (f"speed ({unit})", "friction coefficient", "± U95", "scatter", "segments"):
         table.add_column(heading, justify="right")
     for row, speed in known:
         cells = [
@@ -130,8 +130,8 @@ def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
 
 
 def _error_of(points: Sequence[Row]) -> str:
-    """Say what is the largest standard error, and what it holds."""
-    own = [row.get("friction_coefficient_sem") for row in points]
+    """Return the largest U95, and whether it is within or between runs."""
+    own = [row.get("friction_coefficient_U95") for row in points]
     known = [float(v) for v in own if v is not None]
     if not known:
         return _NONE

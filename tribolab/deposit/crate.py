@@ -214,7 +214,7 @@ def _measured(report: Json) -> list[Json]:
             speed, value = point["sliding_speed_m_s"], point["friction_coefficient"]
             if value is None:
                 continue
-            error = point.get("friction_coefficient_sem")
+            error = point.get("friction_coefficient_U95")
             where = ", ".join(filter(None, (curve["surface"], curve["medium"])))
             at = "" if speed is None else f" at {speed:.3g} m/s"
             entity: Json = {
@@ -225,7 +225,7 @@ def _measured(report: Json) -> list[Json]:
                 "unitText": "1",
             }
             if error is not None:
-                entity["description"] = f"standard error between runs {error:.2g}"
+                entity["description"] = f"expanded uncertainty (95 % coverage) {error:.2g}"
             made.append(entity)
     return made
 

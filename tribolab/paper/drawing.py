@@ -106,7 +106,7 @@ def _friction_of(curves: Iterable[xr.Dataset]) -> str:
 def dry_friction(data: PaperData) -> FigureAndText:
     """Dry mu(v)."""
     measured = [data.measured(name, "dry") for name in SURFACES]
-    return plot.stribeck(measured, surfaces=SURFACES), _friction_of(measured)
+    return plot.stribeck(measured, surfaces=SURFACES, errors="std"), _friction_of(measured)
 
 
 def paper_modulus(data: PaperData) -> FigureAndText:
@@ -193,7 +193,7 @@ def both_rough(data: PaperData) -> FigureAndText:
     force = data.forces[0]
     measured = [data.measured(name, medium) for name in ROUGH for medium in ("glycerol", "dry")]
     models = [data.model(name, force) for name in ROUGH]
-    return plot.stribeck(measured, models, surfaces=SURFACES), _friction_of(measured)
+    return plot.stribeck(measured, models, surfaces=SURFACES, errors="std"), _friction_of(measured)
 
 
 def all_loads(data: PaperData, name: str) -> FigureAndText:
@@ -205,7 +205,9 @@ def all_loads(data: PaperData, name: str) -> FigureAndText:
         for m, model in zip(measured, models, strict=True)
     ]
     worst = f" Points and lines part by at most {100 * max(off):.2g} %."
-    return plot.stribeck(measured, models, surfaces=SURFACES), _friction_of(measured) + worst
+    return plot.stribeck(measured, models, surfaces=SURFACES, errors="std"), _friction_of(
+        measured
+    ) + worst
 
 
 def _at(model: xr.Dataset, points: xr.Dataset) -> np.ndarray:
@@ -233,7 +235,9 @@ def smooth_and_theory(data: PaperData) -> FigureAndText:
     model = model.isel(sliding_speed=np.flatnonzero((v >= _BOUNDARY) & (v < 3e-2)))
     highest = float(model.friction_coefficient.max())
     said = f" The theory reaches µ = {highest:.3g} at {speed_text(float(v.min()))}."
-    return plot.stribeck(measured, model, surfaces=SURFACES), _friction_of(measured) + said
+    return plot.stribeck(measured, model, surfaces=SURFACES, errors="std"), _friction_of(
+        measured
+    ) + said
 
 
 def separation(data: PaperData) -> FigureAndText:

@@ -20,14 +20,14 @@ _STAND_IN = (
     "measured are published as a picture."
 )
 _POINTS = (
-    "Points: simulated by the virtual rig and analysed like measured ones; wide pale bars: "
-    "standard deviation while sliding, narrow bars: standard error, both mostly smaller than the "
-    "markers (Appendix C shows them)."
+    "Points: simulated by the virtual rig and analysed like measured ones; bars: "
+    "standard deviation while sliding, as in the paper, mostly smaller than the markers "
+    "(Appendix C shows them)."
 )
 _BARS = (
     "Points: simulated by the virtual rig. (a) Bars: standard deviation while sliding, within one "
     "run at each load; lines guide the eye. (b) The bars themselves: standard deviation (filled) "
-    "and standard error of the mean (open), which tell nothing of how well a run would repeat."
+    "and U95 of the mean (open, 95 % coverage) within one run; repeatability is not included."
 )
 _RIG = "What the authors measured is published as a picture without numbers."
 _TRACES = (

@@ -205,7 +205,7 @@ def beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
     data = curve.rename(friction_coefficient="friction_coefficient_model").assign(
         {
             f"friction_coefficient{end}": points[f"friction_coefficient{end}"]
-            for end in ("", "_std", "_sem", "_u")
+            for end in ("", "_std", "_sem", "_u", "_dof", "_U95")
             if f"friction_coefficient{end}" in points
         }
     )

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from tribolab.errors import AnalysisError
+from tribolab.plot.look.error_bars import ErrorBars, draw_error_bars, error_bar
 from tribolab.plot.look.frame import speed_axis
 from tribolab.plot.look.labels import column, label, plain
 from tribolab.plot.look.panel import one_panel
@@ -49,6 +50,7 @@ def stribeck(
     model: MeasuredCurves = None,
     *,
     surfaces: Sequence[str] = (),
+    errors: ErrorBars = "U95",
     title: str = "",
     ax: Axes | None = None,
 ) -> Figure:
@@ -66,6 +68,9 @@ def stribeck(
     surfaces
         All surfaces of the study in their order, so that each keeps its colour from figure to
         figure.
+    errors
+        The error bars: ``"U95"``, the expanded uncertainty of the mean (95 % coverage), or
+        ``"std"``, the standard deviation while sliding (the error bar of the reference study).
     title
         Text above the figure.
     ax
@@ -75,8 +80,7 @@ def stribeck(
     Returns
     -------
     matplotlib.figure.Figure
-        Marker: mean. Wide pale bar: standard deviation of the friction coefficient while sliding
-        (the error bar of the reference paper). Narrow bar with caps: standard error of the mean.
+        Marker: mean. Narrow bar with caps: U95. Wide pale bar: standard deviation.
         Dry contacts have open markers and dashed lines. Where no speed is known, the segments
         are numbered instead; where no load is known, the friction force is drawn.
 
@@ -109,7 +113,7 @@ def stribeck(
         for curve in curves:
             look = _look(curve, styles, loads, len(set(every)))
             text = _label(curve, curves + models) or ("" if ax is None else _whole_label(curve))
-            drawn += _points(figure, axes, curve, name, numbered, look, text, bool(models))
+            drawn += _points(figure, axes, curve, name, numbered, look, text, bool(models), errors)
         for curve in models:
             look = _look(curve, styles, loads, len(set(every)))
             words = _label(curve, curves + models)
@@ -226,29 +230,21 @@ def _points(
     look: _Look,
     text: str,
     with_model: bool,
+    errors: ErrorBars,
 ) -> int:
     if name not in curve:
         return 0
     y = np.atleast_1d(np.asarray(curve[name], float))
     x = np.arange(1.0, y.size + 1) if numbered else np.asarray(curve["sliding_speed"], float)
     x = np.atleast_1d(x)
-    std, sem = (
-        np.atleast_1d(np.asarray(curve[name + end], float)) if name + end in curve else y * np.nan
-        for end in ("_std", "_sem")
-    )
+    size = error_bar(curve, name, errors)
     fine = np.isfinite(y) & (np.ones_like(x, bool) if numbered else np.nan_to_num(x) > 0)
     if not fine.any():
         return 0
     order = np.argsort(x[fine], kind="stable")
-    x, y, std, sem = (a[fine][order] for a in (x, y, std, sem))
+    x, y, size = (a[fine][order] for a in (x, y, size))
     colour, dry = look.colour, look.dry
-    for spread, width, alpha, cap in ((std, 2.4, 0.28, 0), (sem, 0.8, 1.0, 1.8)):
-        there = np.isfinite(spread)
-        if there.any():
-            axes.errorbar(
-                x[there], y[there], spread[there], fmt="none", ecolor=colour, elinewidth=width,
-                alpha=alpha, capsize=cap, capthick=0.8, zorder=2 + alpha,
-            )  # fmt: skip
+    draw_error_bars(axes, x, y, size, colour, errors)
     joined = not with_model and not numbered and np.unique(x).size == x.size
     axes.plot(
         x, y, color=colour, marker=look.marker, markersize=4.2, markeredgewidth=0.9,
@@ -257,7 +253,7 @@ def _points(
         label=text or "_nolegend_", zorder=4,
     )  # fmt: skip
     where = "segment" if numbered else column("sliding_speed")
-    numbers = {where: x, column(name): y, column(name + "_std"): std, column(name + "_sem"): sem}
+    numbers = {where: x, column(name): y, column(f"{name}_{errors}"): size}
     keep(figure, "curve", text or "measured", **numbers)
     return int(fine.sum())
 

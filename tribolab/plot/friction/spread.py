@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
 from tribolab.plot.friction.curves import curve_looks
+from tribolab.plot.look.error_bars import error_bar
 from tribolab.plot.look.frame import logarithmic, speed_axis
 from tribolab.plot.look.labels import column, label
 from tribolab.plot.look.panel import Panels, name_all, name_panel, several_panels
@@ -32,7 +33,7 @@ def friction_spread(
     ----------
     measured
         One or several measured curves, as for `tribolab.plot.stribeck`, each with
-        ``friction_coefficient_std`` and, where known, ``friction_coefficient_sem``.
+        ``friction_coefficient_std`` and, if known, ``friction_coefficient_U95``.
     surfaces
         All surfaces of the study in their order, so that each keeps its colour.
     title
@@ -44,9 +45,9 @@ def friction_spread(
     Returns
     -------
     matplotlib.figure.Figure
-        Above: points with bars of one standard deviation while sliding; lines guide the eye.
-        Below, on a logarithmic scale: the standard deviation with filled markers, the standard
-        error of the mean with open ones.
+        Above: points with bars of one standard deviation while sliding, the error bar of the
+        reference study; lines guide the eye. Below, on a logarithmic scale: the standard deviation
+        with filled markers, the expanded uncertainty of the mean with open ones.
 
     Raises
     ------
@@ -78,13 +79,13 @@ def friction_spread(
                 x, mu, std, color=look.colour, marker=look.marker, markersize=1.6, linewidth=0.5,
                 elinewidth=0.9, capsize=2.2, capthick=0.9, label=text or "measured",
             )  # fmt: skip
-            sem = curve.get("friction_coefficient_sem", curve["friction_coefficient"] * np.nan)
-            for y, face in ((std, look.colour), (sem.values, "white")):
+            wide = error_bar(curve, "friction_coefficient")
+            for y, face in ((std, look.colour), (wide, "white")):
                 below.plot(
                     x, np.where(y > 0, y, np.nan), color=look.colour, marker=look.marker,
                     markersize=3.0, markerfacecolor=face, markeredgewidth=0.7, linewidth=0.5,
                 )  # fmt: skip
-            numbers = dict(zip(_COLUMNS, (x, mu, std, sem.values), strict=True))
+            numbers = dict(zip(_COLUMNS, (x, mu, std, wide), strict=True))
             keep(figure, "error bars", text or "measured", **numbers)
         _finish(above, below)
         if isinstance(figure, PaperFigure) and axes is None:
@@ -98,7 +99,7 @@ def friction_spread(
 
 _COLUMNS = (
     column("sliding_speed"),
-    *(column(f"friction_coefficient{end}") for end in ("", "_std", "_sem")),
+    *(column(f"friction_coefficient{end}") for end in ("", "_std", "_U95")),
 )
 
 
@@ -124,7 +125,7 @@ def _finish(above: Axes, below: Axes) -> None:
     logarithmic(below, "y")
     below.set_ylim(bottom / 2, 5 * top)  # room for the letter
     below.set_ylabel(r"error bar of $\mu$")
-    for words, face in (("standard deviation", GREY), ("standard error", "white")):
+    for words, face in (("standard deviation", GREY), ("U95", "white")):
         below.plot(
             [], [], color=GREY, marker="o", markersize=3.0, markerfacecolor=face, linewidth=0.5,
             label=words,

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from tribolab.plot.look.error_bars import COVERAGE
 from tribolab.plot.look.frame import shaded_band, speed_axis
 from tribolab.plot.look.labels import column, label, plain
 from tribolab.plot.look.panel import Panels, name_all, name_panel, several_panels
@@ -67,10 +68,10 @@ def joint_fit(
     Returns
     -------
     matplotlib.figure.Figure
-        Above: points with their standard errors; the model at each load with the 95 % band by its
-        parameters and, paler, with the errors that the points of a load share as well. Below:
-        measured over computed friction less 1, in %, and as a line what of it the fit ascribes to
-        the level of a load and to neighbouring speeds.
+        Above: points with 95 % intervals of their own errors; the model at each load with the 95 %
+        band of its parameters and, paler, with the errors that the points of a load share as well.
+        Below: the relative residuals in %, and as a line the share that the fit assigns to an
+        offset per load and to errors correlated between neighbouring speeds.
 
     Examples
     --------
@@ -149,13 +150,13 @@ def _points(
     figure: Figure, axes: Axes, points: xr.Dataset, name: str, colour: str, marker: str
 ) -> None:
     v, mu = points["sliding_speed"].values, points["friction_coefficient"].values
-    sem = points["friction_coefficient_sem"].values
+    size = COVERAGE * points["friction_coefficient_sem"].values
     axes.errorbar(
-        v, mu, sem, color=colour, marker=marker, markersize=3.6, linestyle="none",
+        v, mu, size, color=colour, marker=marker, markersize=3.6, linestyle="none",
         elinewidth=0.8, capsize=1.6, capthick=0.8, zorder=4, label=plain(name),
     )  # fmt: skip
     columns = {column("sliding_speed"): v, "friction_coefficient": mu}
-    keep(figure, "points", name, **columns, friction_coefficient_sem=sem)
+    keep(figure, "points", name, **columns, friction_coefficient_U95=size)
 
 
 def _left(
@@ -164,7 +165,8 @@ def _left(
     """Draw differences, and beneath them what is shared; each run's points are joined."""
     v, off = points["sliding_speed"].values, 100 * np.expm1(points["relative_residual"].values)
     shared = 100 * np.expm1(points["shared_residual"].values)
-    error = 100 * (points["friction_coefficient_sem"] / points["friction_coefficient"]).values
+    relative = points["friction_coefficient_sem"] / points["friction_coefficient"]
+    error = 100 * COVERAGE * relative.values
     axes.errorbar(
         v, off, error, color=colour, marker=marker, markersize=2.8, linestyle="none",
         elinewidth=0.7, capsize=1.4, capthick=0.7, zorder=4,

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from tribolab.plot.look.error_bars import COVERAGE, ErrorBars, draw_error_bars, error_bar
 from tribolab.plot.look.frame import (
     SurfaceOrSeveral,
     by_surface,
@@ -46,6 +47,7 @@ def mixed_curve(
     dry: xr.Dataset | None = None,
     surface: str = "",
     surfaces: Sequence[str] = (),
+    errors: ErrorBars = "U95",
     title: str = "",
     axes: Panels | None = None,
 ) -> Figure:
@@ -54,7 +56,7 @@ def mixed_curve(
     Parameters
     ----------
     fit
-        ``friction_coefficient`` with ``_sem`` and, where known, ``_std`` (sliding_speed), and
+        ``friction_coefficient`` with ``_U95``, ``_sem`` and, if known, ``_std`` (sliding_speed);
         ``friction_coefficient_residual`` from `tribolab.fit_shear_stress`: the group "fit" of a
         model's data file.
     curve
@@ -65,6 +67,8 @@ def mixed_curve(
         The measured curve of the dry contact at the same load.
     surface, surfaces
         Its name, and all names of the study in their order, for the colour.
+    errors
+        ``"U95"`` or ``"std"``, as for `tribolab.plot.stribeck`.
     title
         Text above the figure.
     axes
@@ -76,10 +80,9 @@ def mixed_curve(
     matplotlib.figure.Figure
         Where the fitted shear stress is not positive there is no model: of its lines only the
         viscous part is drawn, and the differences are from that.
-        Above: points with wide pale bars (standard deviation) and narrow ones (standard error),
-        the model as a line, its solid part dashed and its viscous part dotted, dry points open.
-        Below: measured less model, with the standard uncertainties of both where the fit knows
-        them, else with the standard errors of the points.
+        Above: points with their error bars, the model as a line, its solid part dashed and its
+        viscous part dotted, dry points open. Below: the residuals (measured minus model) with
+        their 95 % uncertainty, the model's included where the fit knows it.
 
     Examples
     --------
@@ -103,9 +106,9 @@ def mixed_curve(
         if uncertainty is not None and modelled:
             _band(figure, above, uncertainty, style.colour)
         _model(figure, above, curve, style.colour, () if modelled else ("viscous",))
-        _measured(figure, above, fit, style, "measured")
+        _measured(figure, above, fit, style, "measured", errors)
         if dry is not None:
-            _measured(figure, above, dry, style, "dry", hollow=True)
+            _measured(figure, above, dry, style, "dry", errors, hollow=True)
         _misfit(figure, below, fit, style, "model" if modelled else "viscous part")
         speed_axis(below, curve["sliding_speed"].values, room=1.0)
         if axes is not None:
@@ -161,32 +164,25 @@ def _measured(
     data: xr.Dataset,
     style: SurfaceStyle,
     text: str,
+    errors: ErrorBars,
     hollow: bool = False,
 ) -> None:
     v, mu = data["sliding_speed"].values, data["friction_coefficient"].values
-    kept = {}
-    for end, look in (("_std", (2.4, 0.28, 0)), ("_sem", (0.8, 1.0, 1.8))):
-        name = f"friction_coefficient{end}"
-        if name in data:
-            width, alpha, cap = look
-            axes.errorbar(
-                v, mu, np.nan_to_num(data[name].values), fmt="none", ecolor=style.colour,
-                elinewidth=width, alpha=alpha, capsize=cap, capthick=0.8, zorder=3 + alpha,
-            )  # fmt: skip
-            kept[name] = data[name].values
+    size = error_bar(data, "friction_coefficient", errors)
+    draw_error_bars(axes, v, mu, size, style.colour, errors)
     axes.plot(
         v, mu, color=style.colour, marker=style.marker, markersize=4.2, markeredgewidth=0.9,
         markerfacecolor="white" if hollow else style.colour, linewidth=0.7,
         linestyle="--" if hollow else "none", label=text, zorder=5,
     )  # fmt: skip
     columns = {column("sliding_speed"): v, "friction_coefficient": mu}
-    keep(figure, "friction", text, **columns, **kept)
+    keep(figure, "friction", text, **columns, **{f"friction_coefficient_{errors}": size})
 
 
 def _misfit(figure: Figure, axes: Axes, fit: xr.Dataset, style: SurfaceStyle, what: str) -> None:
     v, off = fit["sliding_speed"].values, fit["friction_coefficient_residual"].values
     sizes = fit.get("friction_coefficient_residual_u", fit["friction_coefficient_sem"])
-    error = np.nan_to_num(sizes.values)
+    error = COVERAGE * np.nan_to_num(sizes.values)
     axes.axhline(0, color=GREY, linewidth=0.8, zorder=1)
     axes.errorbar(
         v, off, error, color=style.colour, marker=style.marker, markersize=3.2,
@@ -268,7 +264,7 @@ def shear_stress(
             ends = rows[["shear_stress_low_Pa", "shear_stress_high_Pa"]].to_numpy().T
             bars = _above_zero(stress, np.abs(ends - stress))
             corrected = rows["corrected_shear_stress_Pa"].to_numpy()
-            error = 1.96 * rows["corrected_shear_stress_error_Pa"].to_numpy()
+            error = COVERAGE * rows["corrected_shear_stress_error_Pa"].to_numpy()
             error = _above_zero(corrected, np.stack([error, error]))
             for y, bar, face, line in (
                 (stress, bars, "white", "--"),

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 
 _MOST_IN_ONE = 9  # curves that can be told apart in one figure
 _BARS = (
-    "Markers: mean over the strokes; wide pale bars: standard deviation while sliding; narrow bars "
-    "with caps: standard error of the mean. Dry: open markers, dashed."
+    "Markers: mean over the strokes; bars: U95 (expanded uncertainty, 95 % coverage). Dry: open "
+    "markers, dashed."
 )
 
 

@@ -259,12 +259,9 @@ def _sensitivity(task: _Opened) -> tuple[Figure, str]:
     return figure, f"Moved most by: {most}."
 
 
-_MEASURED = (
-    "Points: measured, wide pale bars the standard deviation while sliding, narrow bars the "
-    "standard error; "
-)
+_MEASURED = "Points: measured, with U95 (95 % coverage); "
 _CAPTION_OF_VISCOUS = (
-    _MEASURED + "dotted: the model's viscous part; open symbols: dry. Below: measured less that."
+    _MEASURED + "dotted: the model's viscous part; open symbols: dry. Below: the residuals."
 )
 
 _KINDS: dict[str, tuple[Callable[[_Opened], tuple[Figure, str]], str]] = {
@@ -272,14 +269,15 @@ _KINDS: dict[str, tuple[Callable[[_Opened], tuple[Figure, str]], str]] = {
         _curve,
         _MEASURED + "full: the model with the fitted shear stress; dashed: its solid part; "
         "dotted: its viscous part; shaded: what the model does not know; open symbols: dry. Below: "
-        "measured less model.",
+        "the residuals.",
     ),
     "loads": (_loads, "Points: measured; lines: the model with the shear stress of each load."),
     "joint": (
         _joint,
-        "Above: points with their standard errors; the model at each load with the 95 % band by "
-        "its parameters and, paler, with the errors that the points of a load share. Below: "
-        "measured over computed less 1; lines: what is ascribed to level and neighbouring speeds.",
+        "Above: points with 95 % intervals of their own errors; the model at each load with the "
+        "95 % band of its parameters and, paler, with the errors that the points of a load share. "
+        "Below: relative residuals; lines: the share of the offset per load and of errors "
+        "correlated between neighbouring speeds.",
     ),
     "shear_stress": (
         _shear_stress,

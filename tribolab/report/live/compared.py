@@ -59,7 +59,7 @@ def _falling(known: FrictionOverSpeed, colours: Mapping[str, int]) -> list[LiveF
         section="curves",
         title="At which speed friction falls",
         note="Each curve over its own highest friction, so that plateaus of different height stand "
-        "at 1. Bars: the standard error of the point. "
+        "at 1. Bars: U95 of the point. "
         + told_apart([curve.outcome.medium for curve in known.curves], "filled", "open"),
         alt=f"Friction relative to its highest value over sliding speed of "
         f"{many(len(series), 'curve')}.",
@@ -81,7 +81,7 @@ def _shares(curve: CurveRecord, label: str, colour: int) -> Series | None:
         return None
     shares = [mu / top for _, mu in drawn]
     errors = [
-        None if (sem := number_of(row, "friction_coefficient_sem")) is None else sem / top
+        None if (wide := number_of(row, "friction_coefficient_U95")) is None else wide / top
         for row in rows
     ]
     return Series(
@@ -156,6 +156,6 @@ def _told(point: RunPoint) -> str:
     within = "not known" if point.within is None else f"± {number(point.within, 2)}"
     return (
         f"{point.run}\nv = {plain_speed(point.speed)}\nµ = {number(point.mu)}\n"
-        f"within the run: {within}\n{many(point.segments, 'segment')}, "
+        f"U95 within the run: {within}\n{many(point.segments, 'segment')}, "
         f"{point.effective_samples:.0f} independent samples"
     )

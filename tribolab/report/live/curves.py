@@ -201,11 +201,11 @@ def _as_found(curve: CurveRecord) -> list[Series]:
             [row["friction_coefficient"] for row in rows],
             style="points",
             colour=_UNDECIDED,
-            error=[row["friction_coefficient_sem"] for row in rows],
+            error=[row.get("friction_coefficient_U95") for row in rows],
             told=[
                 "without decisions by hand\n"
                 f"v = {plain_speed(number_of(row, _SPEED))}\n"
-                f"µ = {with_error(number_of(row, _MU), number_of(row, f'{_MU}_sem'))}"
+                f"µ = {with_error(number_of(row, _MU), number_of(row, f'{_MU}_U95'))}"
                 for row in rows
             ],
             **(labels_of(curve.outcome) | {"open": True}),

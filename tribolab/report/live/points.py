@@ -15,7 +15,6 @@ from tribolab.records.wording import with_error
 from tribolab.report.plain import plain_speed
 from tribolab.words import many, number
 
-_FEW = 14  # runs: up to here the curve widens its error by Student's t
 _NAMED = 4  # runs, at a point
 _SAME = 1.1  # speeds within this ratio are one, as in the measured curves
 
@@ -33,7 +32,7 @@ class RunPoint(NamedTuple):
 
 
 class PointError(NamedTuple):
-    """The standard error of a point of a curve, what it holds, and what it is made of."""
+    """U95 of a point of a curve, what it includes, and the scatter of its runs."""
 
     size: float | None
     holds: str
@@ -136,35 +135,23 @@ def point_error(row: Mapping[str, Any], points: Sequence[RunPoint]) -> PointErro
     Returns
     -------
     PointError
-        ``size``, the curve's own standard error of the mean, with repeats widened for few runs, or
-        the standard uncertainty with what is stated of the calibration, where that is larger;
-        ``within``, the usual error within one run; ``scatter``, the standard deviation of the
-        runs.
+        ``size``, the expanded uncertainty of the point (95 % coverage); ``within``, the usual U95
+        within one run; ``scatter``, the standard deviation of the runs.
 
     Examples
     --------
-    >>> row = {"friction_coefficient_sem": 0.03, "friction_coefficient_between": 0.04, "runs": 4}
+    >>> row = {"friction_coefficient_U95": 0.06, "friction_coefficient_between": 0.04, "runs": 4}
     >>> point_error(row, [RunPoint("a", 1e-3, 0.8, 0.01, 50.0, 2)])
-    PointError(size=0.03, holds='between runs', within=0.01, scatter=0.04)
-    >>> point_error({"friction_coefficient_sem": 0.01, "runs": 1}, []).holds
+    PointError(size=0.06, holds='between runs', within=0.01, scatter=0.04)
+    >>> point_error({"friction_coefficient_U95": 0.01, "runs": 1}, []).holds
     'within the run'
-    >>> calibrated = {"friction_coefficient_sem": 0.01, "friction_coefficient_u": 0.02, "runs": 1}
-    >>> point_error(calibrated, []).holds
-    'within the run, with calibration'
     """
     runs = int(row.get("runs") or 1)
-    sem, scatter = row.get("friction_coefficient_sem"), row.get("friction_coefficient_between")
     own = [point.within for point in points if point.within is not None]
     within = math.sqrt(sum(e * e for e in own) / len(own)) if own else None
-    size = within if sem is None else sem
     holds = "between runs" if runs > 1 else "within the run"
-    if (
-        size is not None
-        and (u := row.get("friction_coefficient_u")) is not None
-        and u > 1.001 * size
-    ):
-        size, holds = u, f"{holds}, with calibration"
-    return PointError(size, holds, within, scatter if runs > 1 else None)
+    scatter = row.get("friction_coefficient_between") if runs > 1 else None
+    return PointError(row.get("friction_coefficient_U95"), holds, within, scatter)
 
 
 def told_point(
@@ -175,20 +162,17 @@ def told_point(
     `says` is what its uncertainty does not hold.
     """
     speed, mu = row["sliding_speed_m_s"], row["friction_coefficient"]
-    lines = [f"v = {plain_speed(speed)}", f"µ = {with_error(mu, error.size)} ({error.holds})"]
+    lines = [f"v = {plain_speed(speed)}", f"µ = {with_error(mu, error.size)} (U95, {error.holds})"]
     runs = int(row.get("runs") or 1)
     if runs > 1:
-        lines.append(f"mean of {runs} runs, its ± widened" if runs <= _FEW else f"{runs} runs")
+        lines.append(f"mean of {runs} runs")
         if error.scatter is not None:
             lines.append(f"scatter of the runs: {number(error.scatter, 2)}")
         if error.within is not None:
-            lines.append(f"within the run: ± {number(error.within, 2)}")
+            lines.append(f"U95 within one run: {number(error.within, 2)}")
     else:
         lines.append("between runs: not known, one run")
-    if (wide := row.get("friction_coefficient_U95")) is not None:
-        dof = row.get("friction_coefficient_dof")
-        lines.append(f"U95: ± {number(wide, 2)}" + (f" (ν = {dof:.2g})" if dof else ""))
-        lines += [says] * bool(says)
+    lines += [says] * bool(says)
     if points:
         samples = sum(point.effective_samples for point in points)
         count = sum(point.segments for point in points)

@@ -4,22 +4,17 @@ from __future__ import annotations
 
 GLOSSARY: dict[str, str] = {
     "µ": "Friction coefficient: friction force divided by normal force, both at the same moment, "
-    "averaged over a stroke. The number behind ± says what it holds.",
-    "± within the run": "Standard error of the mean from the scatter inside one run, with "
-    "neighbouring samples counted as far as they are independent; two strokes of one half loop "
-    "count once. It knows nothing of how well a run can be repeated.",
-    "± between runs": "Standard error of the mean of repeated runs of the same surface, medium and "
-    "load, widened by Student's t for few runs. The curves and the cards show it wherever there "
-    "are repeats.",
-    "± with calibration": "Standard uncertainty with what is stated of gains, tilt, zeros and the "
-    "rest in it, shown where it is larger than the standard error.",
-    "± scatter of the runs": "Standard deviation of repeated runs about their mean: how far a "
-    "single run lies from the others. It stands behind the friction of one run where it is larger "
-    "than the error within the run.",
-    "± U95": "Expanded uncertainty: the friction coefficient lies within it with 95 %, by scatter, "
-    "repeats and what is stated of the calibration. Without a calibration it is statistical only.",
-    "Degrees of freedom": "How much an uncertainty rests on, by Welch and Satterthwaite: of few, "
-    "Student's t widens U95; ∞ where it does not hang on few repeats.",
+    "averaged over a stroke.",
+    "± U95": "Expanded uncertainty with 95 % coverage. Every ± of a friction coefficient is a U95. "
+    "It includes the scatter of the data, the repeats if there are any, and the calibration "
+    "uncertainty if it was given. Without a calibration it is statistical only.",
+    "within the run": "U95 from the scatter within one run; correlated samples count less, and "
+    "the two strokes of a half loop count once. Repeatability is not included.",
+    "between runs": "U95 from the scatter of repeated runs of the same surface, medium and load. "
+    "Few runs widen it (Student's t).",
+    "Standard error": "Standard error of the mean (coverage 68 %), for the tables and the fits.",
+    "Degrees of freedom": "Effective degrees of freedom (Welch and Satterthwaite). Few degrees of "
+    "freedom widen U95 (Student's t).",
     "Plateau": "Range of slow speeds in which friction stays within a tenth of its highest value "
     "and differs from it by no more than their errors allow: the solids touch and the liquid "
     "carries nothing.",
@@ -115,8 +110,8 @@ TERMS: dict[str, str] = {
     "between them: what the model computes, without any instability.",
     "shear stress": GLOSSARY["Shear stress σ"],
     "segments": GLOSSARY["Segment"],
-    "between runs": GLOSSARY["± between runs"],
-    "within the run": GLOSSARY["± within the run"],
+    "between runs": GLOSSARY["between runs"],
+    "within the run": GLOSSARY["within the run"],
 }
 
 # Heads of columns that are explained by a word of the glossary or in their own words.
@@ -153,16 +148,15 @@ HEADS: dict[str, str] = {
     "Pull-off force": GLOSSARY["Pull-off force"],
     "Effective samples": GLOSSARY["Independent samples"],
     "Independent samples": GLOSSARY["Independent samples"],
-    "Standard error": GLOSSARY["± within the run"],
+    "Standard error": GLOSSARY["Standard error"],
     "Standard deviation": "How far friction varies about its mean while sliding.",
     "Trend": "Change of friction along the segment, and whether chance alone explains it.",
     "± U95": GLOSSARY["± U95"],
     "Degrees of freedom": GLOSSARY["Degrees of freedom"],
     "Standard uncertainty": "Root of the sum of squares of all parts, without Student's t.",
     "Parts of the variance": "Share of each part in the square of the standard uncertainty.",
-    "It holds": "Between runs: " + GLOSSARY["± between runs"] + " Within the run: the scatter "
-    "inside the only run.",
-    "± within the run": GLOSSARY["± within the run"],
+    "Includes": "Between runs: " + GLOSSARY["between runs"] + " Within the run: the scatter within "
+    "the only run.",
     "Macroscopic (mJ/m²)": "Effective work of adhesion seen without a magnifier, as the load "
     "vanishes; above zero there is a pull-off force.",
     "Work of adhesion (mJ/m²)": "Energy per area to part two smooth surfaces of these materials.",

@@ -15,7 +15,7 @@ from tribolab.report.plain import listed, plain_speed, plain_speeds
 from tribolab.words import aligned, force_text, many
 
 _FLAT = 0.75  # lowest over highest friction of a curve that has no fall to speak of
-_SURE = 3.0  # standard errors of a difference that is told
+_SURE = 1.5  # U95 of a difference that is stated: three standard errors
 _NEAR = 0.9  # of the highest friction: still on the plateau
 
 
@@ -42,13 +42,13 @@ def friction_in_words(points: Sequence[Mapping[str, Any]]) -> str:
     --------
     >>> def row(v, mu):
     ...     return {"sliding_speed_m_s": v, "friction_coefficient": mu,
-    ...             "friction_coefficient_sem": 0.01, "runs": 2}
+    ...             "friction_coefficient_U95": 0.01, "runs": 2}
     >>> friction_in_words([row(1e-6, 1.1), row(1e-5, 1.08), row(1e-3, 0.7), row(1e-2, 0.2)])
     'Plateau of µ = 1.100 ± 0.010 up to 10 µm/s; half of it at about 2 mm/s; lowest 0.200 ± \
-0.010 at 10 mm/s, the fastest speed (± between runs).'
+0.010 at 10 mm/s, the fastest speed (± U95, between runs).'
     >>> friction_in_words([row(1e-6, 1.1), row(1e-2, 1.05)])
     'µ falls by 4.5 % with speed: from 1.100 ± 0.010 at 1 µm/s to 1.050 ± 0.010 at 10 mm/s (± \
-between runs).'
+U95, between runs).'
     """
     known = by_speed(points)
     if not known:
@@ -74,7 +74,7 @@ def _flat(known: list[Mapping[str, Any]], low: Mapping[str, Any], high: Mapping[
     """Say how a curve without a fall depends on speed; `known` from slow to fast."""
     first, last = (plain_speed(known[k]["sliding_speed_m_s"]) for k in (0, -1))
     change = high["friction_coefficient"] - low["friction_coefficient"]
-    error = math.hypot(*(row["friction_coefficient_sem"] or 0.0 for row in (low, high)))
+    error = math.hypot(*(point_error(row, ()).size or 0.0 for row in (low, high)))
     between = f"from {first} to {last}"
     if change <= _SURE * error:
         return f"µ hardly depends on speed: {_mu(low)} to {_mu(high)} {between}"
@@ -90,7 +90,7 @@ def _held(rows: Sequence[Mapping[str, Any]]) -> str:
     """Return what the errors of a sentence hold, in brackets; "" where none is known."""
     errors = [point_error(row, ()) for row in rows]
     held = dict.fromkeys(error.holds for error in errors if error.size is not None)
-    return f" (± {' and '.join(held)})" if held else ""
+    return f" (± U95, {' and '.join(held)})" if held else ""
 
 
 def _mu(row: Mapping[str, Any]) -> str:

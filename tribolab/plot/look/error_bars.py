@@ -1,0 +1,80 @@
+"""Error bars of friction: the expanded uncertainty, or the reference study's standard deviation."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from scipy import special
+
+from tribolab.errors import AnalysisError, shown
+
+ErrorBars = Literal["U95", "std"]
+COVERAGE = float(special.ndtri(0.975))  # standard errors in a 95 % interval, many freedoms
+
+
+def error_bar(data: xr.Dataset, name: str, kind: ErrorBars = "U95") -> np.ndarray:
+    """Return the half length of each error bar.
+
+    Parameters
+    ----------
+    data
+        A measured curve or a friction result.
+    name
+        Of the variable, e.g. ``"friction_coefficient"``.
+    kind
+        ``"U95"``: the expanded uncertainty (95 % coverage). ``"std"``: the standard deviation while
+        sliding, the error bar of the reference study.
+
+    Returns
+    -------
+    numpy.ndarray
+        In the unit and with the dims of the variable; NaN where it is not known. If the data have
+        a standard error but no expanded uncertainty, U95 is 1.96 standard errors.
+
+    Raises
+    ------
+    AnalysisError
+        If there is no such kind of error bar.
+
+    Examples
+    --------
+    >>> curve = xr.Dataset({"friction_coefficient": ("sliding_speed", [0.3]),
+    ...     "friction_coefficient_U95": ("sliding_speed", [0.02])})
+    >>> error_bar(curve, "friction_coefficient"), error_bar(curve, "friction_coefficient", "std")
+    (array([0.02]), array([nan]))
+    """
+    if kind not in ("U95", "std"):
+        raise AnalysisError(f"errors = '{shown(kind)}' is not known; take 'U95' or 'std'")
+    if f"{name}_{kind}" in data:
+        return np.atleast_1d(np.asarray(data[f"{name}_{kind}"], float))
+    if kind == "U95" and f"{name}_sem" in data:
+        return COVERAGE * np.atleast_1d(np.asarray(data[f"{name}_sem"], float))
+    return np.full(np.atleast_1d(data[name]).shape, np.nan)
+
+
+def draw_error_bars(
+    axes: Axes, x: np.ndarray, y: np.ndarray, size: np.ndarray, colour: str, kind: ErrorBars = "U95"
+) -> None:
+    """Draw error bars: narrow with caps for U95, wide and pale for the standard deviation.
+
+    Parameters
+    ----------
+    axes
+        Where to draw.
+    x, y, size
+        The points and the half lengths of their bars (point); a bar that is NaN is not drawn.
+    colour
+        Of the bars.
+    kind
+        As for `error_bar`.
+    """
+    known = np.isfinite(size)
+    width, alpha, cap = {"U95": (0.8, 1.0, 1.8), "std": (2.4, 0.28, 0.0)}[kind]
+    if known.any():
+        axes.errorbar(
+            x[known], y[known], size[known], fmt="none", ecolor=colour, elinewidth=width,
+            alpha=alpha, capsize=cap, capthick=0.8, zorder=2 + alpha,
+        )  # fmt: skip
