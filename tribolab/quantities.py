@@ -69,6 +69,18 @@ _ROWS = [
     ("samples", "n", "1", "number of samples"),
     # friction
     ("friction_coefficient", "\\mu", "1", "friction coefficient"),
+    (
+        "friction_coefficient_level",
+        "\\mu",
+        "1",
+        "friction coefficient without the unfinished period of an oscillation",
+    ),
+    (
+        "friction_coefficient_beyond",
+        "\\mu",
+        "1",
+        "friction coefficient as an estimate for the surface beyond the path",
+    ),
     ("effective_samples", "n_eff", "1", "effective number of independent samples"),
     ("autocorrelation_time", "\\tau_int", "s", "integrated autocorrelation time"),
     ("trend", "d\\mu/dt", "1/s", "linear trend of the friction coefficient", "nothing"),

@@ -32,11 +32,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-MOST_TURNS = 40.0  # turns in a record: of more, each stretch of time holds half a turn
+MOST_TURNS = 64.0  # turns in a record: of more, finer stretches of time are looked at
 _TWICE = 2.0  # turns from which on a wave twice per turn is looked for, too
 _LEAST = 0.25  # of a turn: less is taken for as much
 _PER_TURN, _LEAST_PER_TURN = 8, 4  # stretches of each of many turns
-_FINEST = 6144  # stretches: of more turns, 16 and more are averaged in each of 96
+_FINEST = 6144  # stretches: of more turns, 16 and more are averaged in each of the coarse ones
 _SPEED_OFF = 0.01  # a set speed that is given as the measured one is as good as this
 _CLEAR = 12.0  # a wave so much above the spectrum beside it is no noise: chance e**-12
 
@@ -128,8 +128,8 @@ def stretches_for_many_turns(turns: float, coarse: int, samples: int) -> int:
 
     Examples
     --------
-    >>> stretches_for_many_turns(48.0, 96, 1440), stretches_for_many_turns(10.0, 96, 1440)
-    (384, 0)
+    >>> stretches_for_many_turns(100.0, 384, 1440), stretches_for_many_turns(10.0, 384, 1440)
+    (1152, 0)
     """
     if not turns > coarse / 6:
         return 0

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.statistics import estimate_of
+from tribolab.friction.statistics import NORMAL, estimate_of
 from tribolab.units import positive
 
 _TRIM = 0.1  # of each part with and without the weight, at both ends
@@ -89,7 +89,7 @@ def dead_weight_gain(
         inner = piece[int(_TRIM * piece.size) : piece.size - int(_TRIM * piece.size)]
         if inner.size >= _LEAST:
             told = estimate_of(time[inner], values[inner])
-            parts[bool(loaded[inner[0]])].append((told.mean, told.sem))
+            parts[bool(loaded[inner[0]])].append((told.mean, told.u95 / NORMAL))
             noise.append(told.std)
     if not parts[True] or not parts[False] or high - low < _CLEAR * float(np.median(noise)):
         raise AnalysisError(

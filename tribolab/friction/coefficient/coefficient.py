@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -14,7 +14,14 @@ from tribolab.friction.coefficient.reversal import reversal_of
 from tribolab.friction.coefficient.steadiness import judged
 from tribolab.friction.decisions.rejected import beside_rejected
 from tribolab.friction.run_out import turn_remark, turned
-from tribolab.friction.statistics import Estimate, estimates_of, student_remark, wander_remark
+from tribolab.friction.statistics import (
+    NORMAL,
+    Estimate,
+    estimates_of,
+    undetermined_remark,
+    wander_remark,
+    with_freedom,
+)
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import ZeroReference
 from tribolab.friction.zero.rests import light_rest, unloaded_rests
@@ -78,8 +85,12 @@ def friction_coefficient(
     xarray.Dataset
         The variables of `segments` and, on dim ``segment``: ``friction_coefficient`` (signed by
         direction, so that ordinary friction is positive), ``_std`` (sample standard deviation of
-        the pointwise ratio, the error bar of [1]_), ``_sem``, ``effective_samples``,
-        ``autocorrelation_time`` [s], ``trend`` [1/s], ``trend_change``, ``trend_p_value``,
+        the pointwise ratio, the error bar of [1]_), ``_sem``, ``_dof`` and ``_U95`` (95 %
+        coverage, t_0.975(dof) sem) of this mean over the path,
+        ``friction_coefficient_beyond_sem``, ``_dof`` and ``_U95`` of the same number as an estimate
+        for the surface beyond the path (a course along the path may go on),
+        ``friction_coefficient_level`` (without the unfinished period of an oscillation),
+        ``effective_samples``, ``autocorrelation_time`` [s], ``trend`` [1/s], ``trend_change``, ``trend_p_value``,
         ``steady`` (1; 0 not steady, 2 undecided); ``friction_force``, ``normal_force`` [N] (+
         ``_std``, ``_sem``), ``friction_force_offset``, ``normal_force_offset`` [N], ``pair``,
         ``half_loop`` [N], ``tilt_found`` [rad] (from both directions; where no rest without load
@@ -275,18 +286,21 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
     ratios = estimates_of(records())
     remarks = [said.remark(ratio) for said, ratio in zip(pointwise, ratios, strict=True)]
     mu, tilt = both.without_tilt(_column(ratios, "mean"), signs.sign, held)
-    scatter = _column(ratios, "sem")
-    # the load's fluctuations move friction and load together and leave the ratio alone: its own
-    # scatter, not the force's, says how well friction is known
-    known = np.isfinite(scatter)
-    errors_by_ratio = zero.error(np.where(known, scatter * held, own_errors))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        sem = np.where(known, errors_by_ratio / pressed, np.nan)
-        sem = np.hypot(sem, mu * n0_error / pressed)
+
+    def whole(scatter: np.ndarray) -> np.ndarray:
+        # the load's fluctuations move friction and load together and leave the ratio alone: its
+        # own scatter, not the force's, says how well friction is known
+        known = np.isfinite(scatter)
+        errors_by_ratio = zero.error(np.where(known, scatter * held, own_errors))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            error = np.where(known, errors_by_ratio / pressed, np.nan)
+            return np.hypot(error, mu * n0_error / pressed)
+
     data |= {
         "friction_coefficient": mu,
         "friction_coefficient_std": _column(ratios, "std"),
-        "friction_coefficient_sem": sem,
+        **_errors(ratios, whole),
+        "friction_coefficient_level": mu + _column(ratios, "level") - _column(ratios, "mean"),
         "normal_force": pressed,
         "normal_force_std": _column(loads, "std"),
         "normal_force_sem": np.hypot(_column(loads, "sem"), n0_error),
@@ -299,14 +313,25 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
     return _table(data, np.array(remarks, dtype=object), zero, run, both.middle)
 
 
+def _errors(
+    estimates: list[Estimate], whole: Callable[[np.ndarray], np.ndarray]
+) -> dict[str, np.ndarray]:
+    """Return standard errors, degrees of freedom and U95, over the path and beyond it (segment).
+
+    `whole` adds to standard errors of the signal what its zeros add.
+    """
+    errors = {}
+    for end, name in (("", "friction_coefficient"), ("_beyond", "friction_coefficient_beyond")):
+        wide = NORMAL * whole(_column(estimates, f"u95{end}") / NORMAL)
+        sem, dof = with_freedom(whole(_column(estimates, f"sem{end}")), wide)
+        errors |= {f"{name}_sem": sem, f"{name}_dof": dof, f"{name}_U95": wide}
+    return errors
+
+
 def _remark(estimate: Estimate) -> str:
     """Say why an error is wide, if it is."""
-    told = (
-        student_remark(estimate.effective_samples),
-        turn_remark(estimate.turns),
-        wander_remark(estimate),
-    )
-    return "; ".join(filter(None, told))
+    wide = undetermined_remark(estimate) or wander_remark(estimate)
+    return "; ".join(filter(None, (turn_remark(estimate.turns), wide)))
 
 
 class _Turning(NamedTuple):
@@ -395,7 +420,8 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr
         "friction_coefficient": mu,
         "tilt_found": tilt,
         "friction_coefficient_std": _column(estimates, "std"),
-        "friction_coefficient_sem": zero.error(own),
+        **_errors(estimates, zero.error),
+        "friction_coefficient_level": mu + _column(estimates, "level") - means,
         "friction_coefficient_offset": zero.value,
         "pair": pair,
         **_memory(estimates),

@@ -113,13 +113,12 @@ def friction_per_cycle(run: xr.Dataset, middle: str | float = 0.5) -> xr.Dataset
     if name == "friction_force" and load is not None:
         data["friction_coefficient_energy"] = _energy(run, strokes, first, last, data)
     whole = estimate_of(data["time"], mu)
-    if whole.trend_p_value < _TREND:  # the cycles' mean is known as well as they lie about the line
-        about = estimate_of(data["time"], mu - whole.trend * (data["time"] - data["time"].mean()))
-        whole = whole._replace(sem=about.sem, effective_samples=about.effective_samples)
     alone = {
         "mean_friction_coefficient": whole.mean,
         "mean_friction_coefficient_std": whole.std,
         "mean_friction_coefficient_sem": whole.sem,
+        "mean_friction_coefficient_dof": whole.dof,
+        "mean_friction_coefficient_U95": whole.u95,
         "effective_samples": whole.effective_samples,
         "trend": whole.trend,
         "trend_change": whole.trend_change,

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.statistics import estimates_of
+from tribolab.friction.statistics import NORMAL, estimates_of
 from tribolab.medians import median
 
 UNLOADED = 0.1  # share of the load by which the zero of the normal force may move between rests
@@ -109,8 +109,8 @@ def unloaded_rests(
     of_normal, of_friction = told[: len(levels)], told[len(levels) :]
     known = [k for k, estimate in enumerate(of_friction) if estimate.samples >= _FEWEST]
     return (
-        _zeros([(when[k], of_friction[k].mean, of_friction[k].sem) for k in known]),
-        _zeros([(at, own.mean, own.sem) for at, own in zip(when, of_normal, strict=True)]),
+        _zeros([(when[k], of_friction[k].mean, of_friction[k].u95 / NORMAL) for k in known]),
+        _zeros([(at, own.mean, own.u95 / NORMAL) for at, own in zip(when, of_normal, strict=True)]),
     )
 
 

@@ -1,0 +1,33 @@
+"""Numbers that decide the error of a mean; calibrated by ``tests/benchmarks/mean_coverage.py``."""
+
+from tribolab.core.limit import Limit
+
+_TABLE = "tests/benchmarks/mean_coverage.py, seeds 0 to 3; reported on seeds from 100 on"
+
+BLOCKS = Limit(384, "1", "equal stretches of time whose means stand for a record", _TABLE)
+COARSE_BLOCKS = Limit(96, "1", "stretches in which a slow course is looked for", _TABLE)
+MAX_LINES = Limit(3, "1", "oscillations that are fitted to a record", "judgement")
+MIN_CYCLES = Limit(1.2, "1", "cycles from which on an oscillation can be fitted", _TABLE)
+FEW_CYCLES = Limit(4.0, "1", "cycles below which an oscillation looks like a wander", _TABLE)
+LINE_OVER_NOISE = Limit(
+    25.0, "1", "power of an oscillation over the spectrum of the rest: by chance e**-25", _TABLE
+)
+SLOW_LINE_OVER_NOISE = Limit(
+    60.0, "1", "the same for few cycles: noise with a memory of a tenth of the record exceeds 30 "
+    "in 10 % of records, 65 in 2 %", _TABLE,
+)  # fmt: skip
+SLOW_LINE_SHARE = Limit(0.85, "1", "share of the variance that few cycles must explain", _TABLE)
+LEFT_IN_BAND = Limit(
+    0.2, "1", "share of the power about an oscillation that may remain: else it is no line", _TABLE
+)
+MAX_COURSES = Limit(2, "1", "courses (a line, an exponential) that are fitted to a record", _TABLE)
+COURSE_BY_CHANCE = Limit(5e-4, "1", "chance of a course in a record that has none", _TABLE)
+EXPONENTIAL_OVER_LINE = Limit(
+    1.04, "1", "squares that an exponential must save, beyond those of a line", _TABLE
+)
+CALM = Limit(0.7, "1", "chance, before the record is seen, that it has no slow wander", _TABLE)
+COSINES = Limit(24, "1", "lowest cosines of a record that tell how it wanders", _TABLE)
+HUMP = Limit(
+    4.0, "1", "peak of the spectrum over its lowest frequencies: the wander below the peak counts",
+    _TABLE,
+)  # fmt: skip

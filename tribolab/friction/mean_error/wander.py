@@ -1,0 +1,149 @@
+"""What the lowest cosines of a record say of the error of its mean.
+
+Notes
+-----
+The cosine coefficients of a record are nearly independent, and the lowest ones have the variance
+that the mean has, up to a factor that depends on how the record wanders. The record is described as
+calm (white at low frequencies) or as an Ornstein-Uhlenbeck wander beneath white noise. Every
+forgetting time from 1/20 of the record to six records and every share of white noise is weighed
+by how well it describes the cosines, their size integrated out with Jeffreys' prior [1]_. The
+standard error is the weighted median over the models, U95 the half interval that holds 95 % of the
+mixture of their Student distributions.
+
+References
+----------
+.. [1] Gelman et al. (2013), Bayesian Data Analysis, ch. 14. doi:10.1201/b16018
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from scipy import special
+from scipy.fft import dct
+
+from tribolab.friction.mean_error import limits
+from tribolab.friction.mean_error.autoregression import spectra_of
+
+_TIMES = np.geomspace(0.05, 6.0, 8)  # of the record
+_WHITE = np.array([0.0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0])  # of the wander
+_FEWEST_COSINES = 4
+_ROUNDS = 40  # of halving the bracket of U95: to the last digit that matters
+_OUTSIDE = 0.05
+
+
+class _Shapes(NamedTuple):
+    """Models: variances of the cosines (model, cosine) and of the mean (model), log prior."""
+
+    cosines: np.ndarray
+    mean: np.ndarray
+    prior: np.ndarray
+
+
+@lru_cache(maxsize=32)
+def _shapes(cosines: int) -> _Shapes:
+    f = np.arange(1, cosines + 1) / 2.0
+    rows, means = [np.ones(cosines)], [1.0]
+    for time in _TIMES:
+        wander = 2 * time / (1 + (2 * np.pi * f * time) ** 2)
+        level = wander[:4].mean()
+        mean = 2 * time * (1 - time * (1 - np.exp(-1 / time)))
+        rows += [wander / level + white for white in _WHITE]
+        means += [mean / level + white for white in _WHITE]
+    calm = limits.CALM.value
+    prior = np.full(len(rows), np.log((1 - calm) / (len(rows) - 1)))
+    prior[0] = np.log(calm)
+    return _Shapes(np.array(rows), np.array(means), prior)
+
+
+class MeanErrors(NamedTuple):
+    """Standard error and U95 of the means of records (record), in the records' unit."""
+
+    sem: np.ndarray
+    u95: np.ndarray
+
+
+def errors_of_means(
+    rest: np.ndarray, lines: Sequence[Sequence[float]], courses: Sequence[int]
+) -> MeanErrors:
+    """Return how far the means of records may be off.
+
+    Parameters
+    ----------
+    rest
+        Records without oscillations and courses (record, sample), of at least three samples.
+    lines
+        Cycles of the oscillations that were fitted to each: the cosines beside them say nothing.
+    courses
+        Number of courses that were fitted to each: they took as many of the lowest cosines.
+    """
+    count, samples = rest.shape
+    most = min(int(limits.COSINES.value), samples - 1)
+    kept = _kept_cosines(rest, most, lines, courses)
+    squares = dct(rest, norm="ortho", axis=1)[:, 1 : most + 1] ** 2 * kept
+    shapes = _shapes(most)
+    free = kept.sum(axis=1)
+    sums = squares @ (1 / shapes.cosines).T  # (record, model)
+    floor = 1e-300
+    likely = (
+        shapes.prior
+        - 0.5 * kept @ np.log(shapes.cosines).T
+        - 0.5 * free[:, None] * np.log(np.maximum(sums, floor))
+    )
+    weight = np.exp(likely - likely.max(axis=1, keepdims=True))
+    weight /= weight.sum(axis=1, keepdims=True)
+    errors = np.sqrt(np.maximum(sums, 0.0) / free[:, None] * shapes.mean / samples)
+    order = np.argsort(errors, axis=1, kind="stable")
+    beneath = np.cumsum(np.take_along_axis(weight, order, axis=1), axis=1)
+    middle = np.minimum((beneath < 0.5).sum(axis=1), errors.shape[1] - 1)
+    rows = np.arange(count)
+    sem = errors[rows, order[rows, middle]]
+    return MeanErrors(sem, _half_interval(weight, errors, free))
+
+
+def _kept_cosines(
+    rest: np.ndarray, most: int, lines: Sequence[Sequence[float]], courses: Sequence[int]
+) -> np.ndarray:
+    """Return which of the lowest cosines tell of the wander (record, cosine), as 0 or 1."""
+    count, samples = rest.shape
+    highest = np.full(count, most)
+    if samples >= 2 * _FEWEST_COSINES:
+        f = np.arange(1, samples) / 2.0
+        power = spectra_of(rest, f)
+        peak = np.where(f > 2.5, power, 0.0).argmax(axis=1)
+        at = f[peak]
+        low = f <= np.maximum(at / 4, 1.0)[:, None]
+        level = (power * low).sum(axis=1) / low.sum(axis=1)
+        hump = (at > 2.5) & (power[np.arange(count), peak] > limits.HUMP.value * level)
+        highest = np.where(hump, np.clip(at.astype(int), 5, most), most)
+    number = np.arange(1, most + 1)
+    kept = number <= highest[:, None]
+    for row, (cycles, fitted) in enumerate(zip(lines, courses, strict=True)):
+        before = kept[row].copy()
+        kept[row] &= number > min(fitted, 2)
+        for wave in cycles:
+            kept[row] &= (number != np.floor(2 * wave)) & (number != np.ceil(2 * wave))
+        if kept[row].sum() < _FEWEST_COSINES:
+            kept[row] = before & (number > min(fitted, 1))
+    kept[~kept.any(axis=1), 0] = True
+    return kept.astype(float)
+
+
+def _half_interval(weight: np.ndarray, errors: np.ndarray, free: np.ndarray) -> np.ndarray:
+    """Return the half interval that holds 95 % of each mixture (record)."""
+    quantile = special.stdtrit(free, 1 - _OUTSIDE / 2)
+    low, high = (quantile * end for end in (errors.min(axis=1), errors.max(axis=1)))
+    known = high > 0
+    low, high = np.maximum(low, 1e-12 * high), np.where(known, high, 1.0)
+    scale = np.where(errors > 0, errors, 1e-300)
+    for _ in range(_ROUNDS):
+        middle = np.sqrt(np.maximum(low, 1e-300) * high)
+        beyond = (weight * special.stdtr(free[:, None], -middle[:, None] / scale)).sum(axis=1)
+        out = beyond > _OUTSIDE / 2
+        low, high = np.where(out, middle, low), np.where(out, high, middle)
+        if np.all(high <= low * (1 + 1e-9)):
+            break
+    return np.where(known, high, 0.0)
