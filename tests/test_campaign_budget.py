@@ -158,8 +158,9 @@ def test_the_fit_knows_load_and_radius_and_the_liquid_its_temperature(tilted):
     assert (np.abs(curve.model_part).max("sliding_speed") > 0).all()
     own = table(results, "stribeck").friction_coefficient_sem.to_numpy()
     assert (fit.friction_coefficient_residual_u.values > own).all()
-    # a gain of 1 % and a liquid known to 3 % cannot make sigma_f known better than 1 %
-    assert fit.attrs["shear_stress_total_error_Pa"] > 0.01 * fit.attrs["shear_stress_Pa"]
+    # a gain of 1 % is an error of sigma_f of at least 1 %, but for what the fastest points, where
+    # the liquid's friction is known, say of the gain
+    assert fit.attrs["shear_stress_total_error_Pa"] > 0.009 * fit.attrs["shear_stress_Pa"]
 
 
 @pytest.mark.slow

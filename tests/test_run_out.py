@@ -28,7 +28,8 @@ def told(turns, amplitude, seed, records=200, memory=0.0, known=True):
 def held_and_width(estimates):
     off = np.array([each.mean for each in estimates]) - MU
     sem = np.array([each.sem for each in estimates])
-    return np.mean(np.abs(off) < 1.96 * sem), sem.mean() / np.sqrt(np.mean(off**2))
+    wide = np.array([each.u95 for each in estimates])
+    return np.mean(np.abs(off) < wide), sem.mean() / np.sqrt(np.mean(off**2))
 
 
 @pytest.mark.slow

@@ -78,9 +78,10 @@ def test_how_friction_changes_along_a_run_is_no_error_of_its_mean(course):
         curves.append(tl.measured_stribeck_curve([run]))
     means = [float(curve.friction_coefficient[0]) for curve in curves]
     errors = [float(curve.friction_coefficient_sem[0]) for curve in curves]
-    assert np.std(means) < np.median(errors) < 2.5 * np.std(means)
-    assert max(abs(mean - course.mean()) for mean in means) < 3 * np.median(errors)
-    assert min(float(curve.friction_coefficient_dof[0]) for curve in curves) > 20
+    wide = [float(curve.friction_coefficient_U95[0]) for curve in curves]
+    assert 0.7 * np.std(means) < np.median(errors) < 1.6 * np.std(means)
+    off = np.abs(np.array(means) - course.mean())
+    assert np.mean(off < wide) >= 0.9
 
 
 def strokes(mu):

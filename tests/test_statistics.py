@@ -4,19 +4,21 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import stats
 from scipy.signal import lfilter
 
+from tribolab.friction.mean_error.course import line_through
+from tribolab.friction.mean_error.level import levels_of
 from tribolab.friction.statistics import (
     MOST_STRETCHES,
-    error_of_mean,
+    error_of_series,
     estimate_of,
     on_grid,
     sample_weights,
-    student_widening,
-    trend,
+    with_freedom,
 )
 
-RECORDS, N = 2000, 960
+RECORDS, N = 240, 1920
 
 
 def white(rng, n=N):
@@ -44,67 +46,75 @@ def oscillation(rng, form, jitter, noise, fewest=5.0, most=10.0):
 
 
 def coverage(records):
-    """Share of records whose mean lies within one and three standard errors of the truth, 0."""
-    n = records.shape[1]
-    if n > MOST_STRETCHES:
-        assert n % MOST_STRETCHES == 0
-        blocks = records.reshape(RECORDS, MOST_STRETCHES, -1).mean(axis=2)
-    else:
-        blocks = records
-    _, sem = error_of_mean(blocks)
-    error = np.abs(records.mean(axis=1))
-    return np.mean(error < sem), np.mean(error < 3 * sem)
+    """Share of records whose U95 holds the truth, 0, and the standard error over the scatter."""
+    blocks = records
+    if records.shape[1] > MOST_STRETCHES:
+        blocks = records.reshape(len(records), MOST_STRETCHES, -1).mean(axis=2)
+    error = error_of_series(blocks)
+    mean = blocks.mean(axis=1)
+    inside = np.abs(mean) <= error.sem * stats.t.ppf(0.975, np.minimum(error.dof, 1e9))
+    return inside.mean(), np.median(error.sem) / np.sqrt(np.mean(mean**2))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "seed"),
-    [("white", 11), ("white, 40 samples", 12), ("memory of 1/200", 13), ("memory of 1/100", 14)],
+    [
+        ("white", 11),
+        ("white, 40 samples", 12),
+        ("memory of 1/200", 13),
+        ("memory of 1/50", 14),
+        ("memory of 1/20", 15),
+    ],
 )
-def test_error_covers_noise(kind, seed):
+def test_u95_covers_noise(kind, seed):
     rng = np.random.default_rng(seed)
     records = {
         "white": lambda: white(rng),
         "white, 40 samples": lambda: white(rng, 40),
         "memory of 1/200": lambda: memory(rng, N / 200),
-        "memory of 1/100": lambda: memory(rng, N / 100),
+        "memory of 1/50": lambda: memory(rng, N / 50),
+        "memory of 1/20": lambda: memory(rng, N / 20),
     }[kind]()
-    one, three = coverage(records)
-    assert 0.62 <= one <= 0.76
-    assert three >= 0.99
+    inside, width = coverage(records)
+    assert inside >= 0.90 and 0.6 < width < 1.6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["sine", "saw"])
-@pytest.mark.parametrize("noise", [0.1, 0.3, 1.0])
-def test_error_covers_stick_slip_of_few_periods(form, noise):
-    one, three = coverage(oscillation(np.random.default_rng(21), form, 0.05, noise))
-    assert 0.62 <= one <= 0.78  # 76 % within the scatter of 2000 records; the saw is the widest
-    assert three >= 0.99
+def test_u95_covers_stick_slip_of_few_periods(form):
+    inside, width = coverage(oscillation(np.random.default_rng(21), form, 0.05, 0.1))
+    assert inside >= 0.90 and width < (1.6 if form == "sine" else 3.0)
 
 
-def test_error_is_nearly_honest_for_a_memory_of_a_twentieth_of_the_record():
-    # ten effective samples: the limit of what one record can tell of its own memory
-    one, three = coverage(memory(np.random.default_rng(31), N / 20))
-    assert 0.62 <= one <= 0.76
-    assert three >= 0.98
+@pytest.mark.slow
+@pytest.mark.parametrize("course", ["drift", "running-in"])
+def test_a_course_along_the_path_is_no_error_of_the_mean_over_it(course):
+    t = (np.arange(N) + 0.5) / N
+    shape = 14 * t if course == "drift" else 9 * np.exp(-t / 0.25)
+    rng = np.random.default_rng(31)
+    records = shape - shape.mean() + memory(rng, N / 200)
+    inside, width = coverage(records)
+    assert inside >= 0.90 and width < 1.6
+    found = levels_of(records.reshape(RECORDS, MOST_STRETCHES, -1).mean(axis=2))
+    # the same number for the surface beyond the path: the course may go on
+    assert np.median(found.u95_beyond / found.u95) > 5
 
 
-def test_error_of_strongly_jittered_or_whole_periods_errs_on_the_wide_side():
-    rng = np.random.default_rng(41)
-    for records in (
-        oscillation(rng, "saw", 0.10, 0.1),
-        oscillation(rng, "saw", 0.05, 0.1, 5.0, 5.0),
-        oscillation(rng, "sine", 0.10, 0.1, 5.0, 5.0),
-    ):
-        one, three = coverage(records)
-        assert 0.62 <= one <= 0.95
-        assert three >= 0.99
+def test_error_and_freedom_make_u95():
+    wide = np.array([1.0, 1.96, 2.5, 4.0, 12.7, 30.0])
+    found = with_freedom(np.ones(6), wide)
+    assert found.sem * stats.t.ppf(0.975, np.minimum(found.dof, 1e9)) == pytest.approx(
+        wide, rel=1e-4
+    )
+    assert np.isinf(found.dof[0]) and found.dof[-1] == 1
 
 
 def test_stick_slip_is_known_better_than_independent_samples_would_tell():
     rng = np.random.default_rng(5)
     record = oscillation(rng, "saw", 0.05, 0.02, 30.0, 30.0)[0]
     found = estimate_of(np.arange(N) / 1e3, record)
-    assert found.sem < 0.5 * found.std / np.sqrt(N)
+    assert found.sem < 0.7 * found.std / np.sqrt(N)
 
 
 def test_memory_lengthens_the_autocorrelation_time_as_theory_says():
@@ -123,10 +133,9 @@ def test_white_noise_counts_every_sample():
 
 @pytest.mark.parametrize("time", [0.3, N / 100, N / 20])
 def test_wander_is_rarely_called_a_trend(time):
-    records = memory(np.random.default_rng(51), time)[:400]
-    blocks = records.reshape(400, MOST_STRETCHES, -1).mean(axis=2)
-    false = np.mean([trend(one)[1] < 0.05 for one in blocks])
-    assert false <= 0.10
+    records = memory(np.random.default_rng(51), time)
+    blocks = records.reshape(RECORDS, MOST_STRETCHES, -1).mean(axis=2)
+    assert np.mean(line_through(blocks).chance < 0.05) <= 0.10
 
 
 def test_real_trend_is_found_with_its_size():
@@ -136,14 +145,6 @@ def test_real_trend_is_found_with_its_size():
     assert found.trend == pytest.approx(1e-3, rel=0.1)
     assert found.trend_change == pytest.approx(0.02, rel=0.1)
     assert found.trend_p_value < 1e-6
-
-
-def test_drift_widens_the_error_because_it_is_not_removed():
-    rng = np.random.default_rng(9)
-    time = np.arange(2000) * 0.01
-    noise = 0.005 * rng.standard_normal(2000)
-    steady, drifting = estimate_of(time, noise), estimate_of(time, noise + 1e-3 * time)
-    assert drifting.sem > 3 * steady.sem
 
 
 def test_uneven_sampling_is_weighted_by_time():
@@ -210,37 +211,8 @@ def test_estimates_follow_scale_shift_and_time_origin(seed, n, scale, shift, ori
     assert other.trend_p_value == pytest.approx(plain.trend_p_value, abs=1e-4)
 
 
-@pytest.mark.slow
-def test_intervals_of_few_effective_samples_hold_by_student_s_t():
-    """A memory of a third of the record: 95 % intervals missed the mean two times in five."""
-    rng = np.random.default_rng(77)
-    time = np.arange(N) * 0.01
-    found = [estimate_of(time, record) for record in memory(rng, N / 4)[:400]]
-    few = [one for one in found if one.effective_samples < 4]
-    assert len(few) > 100
-    inside = np.mean([abs(one.mean) < 1.96 * one.sem for one in few])
-    blocks = (
-        memory(np.random.default_rng(77), N / 4)[:400].reshape(400, MOST_STRETCHES, -1).mean(axis=2)
-    )
-    plain, _ = error_of_mean(blocks)
-    assert np.mean(np.abs(blocks.mean(axis=1)) < 1.96 * plain) < 0.75
-    assert inside > 0.85
-    for one in few:
-        assert one.sem >= 0.99 * student_widening(one.effective_samples) * one.std / np.sqrt(
-            one.effective_samples
-        )
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("share", [0.05, 0.15, 0.3])
-def test_three_errors_hold_the_mean_of_friction_whose_memory_is_long_beside_the_stroke(share):
-    records = memory(np.random.default_rng(17), share * N)[:150]
-    found = [estimate_of(np.arange(N) * 0.1, one) for one in records]
-    off = np.abs([one.mean / one.sem for one in found])
-    assert np.mean(off > 3) <= 0.02
-
-
-def test_a_memory_that_might_be_there_hardly_widens_the_error_of_white_noise():
-    found = [estimate_of(np.arange(N) * 0.1, one) for one in white(np.random.default_rng(18))[:100]]
-    error = np.array([one.sem for one in found]) * np.sqrt(N)
-    assert 0.95 < np.median(error) < 1.3
+def test_a_record_too_short_for_its_wander_is_not_determined():
+    found = [estimate_of(np.arange(N) * 0.1, r) for r in memory(np.random.default_rng(17), N / 3)]
+    assert np.mean([one.determined for one in found[:80]]) < 0.3
+    calm = [estimate_of(np.arange(N) * 0.1, r) for r in white(np.random.default_rng(18))[:80]]
+    assert all(one.determined for one in calm)

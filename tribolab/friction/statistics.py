@@ -42,7 +42,7 @@ _WANDERS = 2.0  # times the error by the scatter, from which it is worth a remar
 _FEWEST_TO_TURN = 40  # stretches in which waves of a turning rig are looked for
 _GRID = 1024  # frequencies of a spectrum beside which a wave of a turning rig stands out
 # degrees of freedom over the width of their 95 % interval
-_DOF = np.geomspace(1.0, 1e4, 400)
+_DOF = np.geomspace(1.0, 1e4, 8000)
 _WIDTHS = special.stdtrit(_DOF, 0.975)
 
 

@@ -8,10 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 from pydantic import ValidationError
-from scipy import special
 
 from tribolab.errors import AnalysisError, Cure, nearest, shown
-from tribolab.friction.statistics import STUDENT
 from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.io.uncertainty import NAMES, Known, StatedUncertainty, Uncertainty
 from tribolab.metrology.budget_curve import with_curve_uncertainty
@@ -57,8 +55,8 @@ def uncertainty_budget(
     -----
     ``u^2 = sum (c_i u_i)^2`` with the sensitivities of `contributions`, degrees of freedom by
     Welch and Satterthwaite, ``U95 = t_0.975(nu) u`` (JCGM 100:2008). The noise within the run is
-    the standard error without the Student factor of few effective samples, whose degrees of freedom
-    go into nu instead. Where one rectangular part dominates, U95 is too wide, and `says` says so.
+    the standard error of the mean with its degrees of freedom. Where one rectangular part
+    dominates, U95 is too wide, and `says` says so.
 
     Examples
     --------
@@ -155,8 +153,9 @@ def with_uncertainty(friction: xr.Dataset, known: Mapping[str, Known]) -> xr.Dat
     alone = zero_apart(friction, known)
     parts = contributions(readings_of(friction), alone.known)
     noise = alone.friction["friction_coefficient_sem"].values.astype(float)
-    widening, dof = _freedom(friction)
-    scatter = [ScatterPart(noise / widening, dof, NOISE)]
+    dof = alone.friction.get("friction_coefficient_dof")
+    free = np.full(noise.size, np.inf) if dof is None else dof.values.astype(float)
+    scatter = [ScatterPart(noise, free, NOISE)]
     return combined(friction, "segment", scatter, parts, known)
 
 
@@ -186,15 +185,3 @@ def zero_apart(friction: xr.Dataset, known: Mapping[str, Known]) -> ZeroApart:
     noise = np.sqrt(np.maximum(error.values.astype(float) ** 2 - part**2, 0.0))
     alone = friction.assign(friction_coefficient_sem=error.copy(data=noise))
     return ZeroApart(alone, inputs)
-
-
-def _freedom(friction: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return what widened each standard error for few effective samples, and what is left free."""
-    size = friction.sizes["segment"]
-    if "effective_samples" not in friction:
-        return np.ones(size), np.full(size, np.inf)
-    samples = friction["effective_samples"].values
-    few = samples < STUDENT
-    free = np.maximum(np.where(few, samples, STUDENT) - 1, 1.0)
-    widening = np.where(few, special.stdtrit(free, 0.975) / special.ndtri(0.975), 1.0)
-    return widening, np.where(few, free, np.inf)

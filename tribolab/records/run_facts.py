@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from tribolab.friction.coefficient.steadiness import chance_limit
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.oscillation.waveform import NOT_CLEAR, NOT_LOOKED_AT, oscillating
-from tribolab.friction.stribeck import mean_of_observations
+from tribolab.friction.points.strokes import run_means
+from tribolab.friction.statistics import NORMAL
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.medians import median
 from tribolab.records.decision_rows import decision_rows
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from tribolab.qc.findings import FindingRow
-
-_SPEED_TOLERANCE = 0.1
 
 _SPEED_FROM = {
     "stroke": "stroke and frequency",
@@ -137,8 +136,14 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
     finite = np.isfinite(value)
     scatter = std[finite] / np.abs(value[finite])
     scatter = scatter[np.isfinite(scatter)]
-    sem = values_of(friction, f"{of}_sem", value.size)
-    alone = independent(friction)
+    strokes = _Strokes(
+        speed,
+        value,
+        std,
+        values_of(friction, f"{of}_sem", value.size),
+        values_of(friction, f"{of}_U95", value.size),
+        pairs_of(friction),
+    )
     middle = friction.attrs.get("stroke_middle")
     told = value[finite]
     if middle is not None:  # one of hundreds of strokes tells little
@@ -155,7 +160,7 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
         relative_scatter=float(median(scatter)) if scatter.size else None,
         relative_drift=plain_value(drift_of(friction, value)),
         unsteady_segments=int((values_of(friction, "steady", value.size) == 0).sum()),
-        highlights=tuple(_highlights(speed, value, std, sem, alone)),
+        highlights=tuple(_highlights(strokes)),
     )
 
 
@@ -254,49 +259,49 @@ def values_of(data: xr.Dataset, name: str, size: int) -> np.ndarray:
     return np.asarray(data[name], float) if name in data else np.full(size, np.nan)
 
 
-def independent(friction: xr.Dataset) -> np.ndarray:
-    """Return which observation each segment belongs to: two strokes of one half loop are one."""
-    own = -1 - np.arange(friction.sizes["segment"])
+def pairs_of(friction: xr.Dataset) -> np.ndarray:
+    """Return the number of the pair that each segment is one observation with; -1 for none."""
     if "pair" not in friction or friction.attrs.get("offset") not in PAIRED:
-        return own
-    pair = friction["pair"].values
-    return np.where(pair >= 0, pair, own)
+        return np.full(friction.sizes["segment"], -1.0)
+    return np.asarray(friction["pair"], float)
 
 
-def _highlights(
-    speed: np.ndarray, value: np.ndarray, std: np.ndarray, sem: np.ndarray, alone: np.ndarray
-) -> list[Highlight]:
-    """Mean at the slowest, the middle and the fastest speed, over the strokes at that speed.
+class _Strokes(NamedTuple):
+    """A run's strokes in the order of time; the value in the unit of its quantity."""
 
-    `alone` tells which strokes are one observation.
-    """
-    fine = np.flatnonzero(np.isfinite(value))
-    known = fine[np.isfinite(speed[fine]) & (speed[fine] > 0)]
-    groups = [("all", fine)] if fine.size and not known.size else []
-    if known.size:
-        order = known[np.argsort(speed[known], kind="stable")]
-        breaks = np.diff(np.log(speed[order])) > np.log1p(_SPEED_TOLERANCE)
-        parts = np.split(order, np.flatnonzero(breaks) + 1)
-        chosen = {0: "slowest", len(parts) - 1: "fastest"}
-        if len(parts) > 2:
-            chosen[len(parts) // 2] = "middle"
-        chosen[0] = "slowest"
-        groups = [(word, parts[k]) for k, word in sorted(chosen.items())]
-    highlights = []
-    for word, index in groups:
-        in_time = np.sort(index)
-        mean, error = mean_of_observations(value[in_time], sem[in_time], alone[in_time])
-        highlights.append(
-            Highlight(
-                where=word,
-                sliding_speed_m_s=plain_value(float(np.mean(speed[index]))),
-                value=plain_value(mean),
-                std=plain_value(float(np.sqrt(np.mean(std[index] ** 2)))),
-                sem=plain_value(error),
-                segments=int(index.size),
-            )
+    speed: np.ndarray
+    value: np.ndarray
+    std: np.ndarray
+    sem: np.ndarray
+    u95: np.ndarray
+    pairs: np.ndarray
+
+
+def _highlights(strokes: _Strokes) -> list[Highlight]:
+    """Mean at the slowest, the middle and the fastest speed, over the strokes at that speed."""
+    u95 = np.where(np.isfinite(strokes.u95), strokes.u95, NORMAL * strokes.sem)
+    speed, known = strokes.speed, np.isfinite(strokes.value)
+    if not (known & (speed > 0)).any():  # one group of all that there is
+        speed = np.ones(speed.size)
+    means = run_means(speed, strokes.value, strokes.sem, u95, strokes.pairs)
+    if not means:
+        return []
+    chosen = {0: "slowest", len(means) - 1: "fastest"}
+    if len(means) > 2:
+        chosen[len(means) // 2] = "middle"
+    chosen[0] = "all" if speed is not strokes.speed else "slowest"
+    return [
+        Highlight(
+            where=word,
+            sliding_speed_m_s=plain_value(float(np.mean(strokes.speed[means[k].strokes]))),
+            value=plain_value(means[k].mean),
+            std=plain_value(float(np.sqrt(np.mean(strokes.std[means[k].strokes] ** 2)))),
+            sem=plain_value(means[k].sem),
+            U95=plain_value(means[k].u95),
+            segments=int(means[k].strokes.size),
         )
-    return highlights
+        for k, word in sorted(chosen.items())
+    ]
 
 
 def times_of_strokes(segments: xr.Dataset) -> tuple[float, float]:

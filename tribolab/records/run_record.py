@@ -51,6 +51,7 @@ class Highlight:
     sem: Annotated[
         float | None, means("standard error of the mean within the run: nothing of the next run")
     ]
+    U95: Annotated[float | None, means("expanded uncertainty (95 %) of the mean within the run")]
     segments: Natural
 
 

@@ -90,8 +90,9 @@ def friction_coefficient(
         ``friction_coefficient_beyond_sem``, ``_dof`` and ``_U95`` of the same number as an estimate
         for the surface beyond the path (a course along the path may go on),
         ``friction_coefficient_level`` (without the unfinished period of an oscillation),
-        ``effective_samples``, ``autocorrelation_time`` [s], ``trend`` [1/s], ``trend_change``, ``trend_p_value``,
-        ``steady`` (1; 0 not steady, 2 undecided); ``friction_force``, ``normal_force`` [N] (+
+        ``effective_samples``, ``autocorrelation_time`` [s], ``trend`` [1/s], ``trend_change``,
+        ``trend_p_value``, ``steady`` (1; 0 not steady, 2 undecided); ``friction_force``,
+        ``normal_force`` [N] (+
         ``_std``, ``_sem``), ``friction_force_offset``, ``normal_force_offset`` [N], ``pair``,
         ``half_loop`` [N], ``tilt_found`` [rad] (from both directions; where no rest without load
         shows the zero, with what the zero would be of it), ``zero_from`` (text: what the zero
@@ -320,7 +321,7 @@ def _errors(
 
     `whole` adds to standard errors of the signal what its zeros add.
     """
-    errors = {}
+    errors: dict[str, np.ndarray] = {}
     for end, name in (("", "friction_coefficient"), ("_beyond", "friction_coefficient_beyond")):
         wide = NORMAL * whole(_column(estimates, f"u95{end}") / NORMAL)
         sem, dof = with_freedom(whole(_column(estimates, f"sem{end}")), wide)

@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribolab.friction.stribeck import mean_of_observations
+from tribolab.friction.points.strokes import run_means
+from tribolab.friction.statistics import NORMAL
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.records.parts import Row, number_of
 from tribolab.records.wording import with_error
@@ -20,7 +21,7 @@ _SAME = 1.1  # speeds within this ratio are one, as in the measured curves
 
 
 class RunPoint(NamedTuple):
-    """Mean friction of one run at one speed [m/s], its error within the run, and its samples."""
+    """Mean friction of one run at one speed [m/s], its U95 within the run, and its samples."""
 
     run: str
     speed: float
@@ -62,10 +63,10 @@ def run_points(
     >>> rows = [{"sliding_speed_m_s": v, "friction_coefficient": mu, "pair": 0,
     ...          "friction_coefficient_sem": .01, "effective_samples": 50.}
     ...         for v, mu in ((1e-3, .8), (1.01e-3, .9))]
-    >>> [(round(p.mu, 3), round(p.within, 4), p.effective_samples) for p in run_points("r", rows)]
-    [(0.85, 0.0973, 100.0)]
+    >>> [(round(p.mu, 3), round(p.within, 2), p.effective_samples) for p in run_points("r", rows)]
+    [(0.85, 0.64, 100.0)]
     >>> [round(p.within, 4) for p in run_points("r", rows, "half loop")]
-    [0.01]
+    [0.0196]
     """
     if filed:
         parts: dict[float, list[Row]] = {}
@@ -77,35 +78,30 @@ def run_points(
             for load, rows in parts.items()
             for point in run_points(name, rows, offset)
         ]
-    known = []
-    for row in segments:
-        speed, mu = number_of(row, "sliding_speed_m_s"), number_of(row, "friction_coefficient")
-        # a segment that a person rejected stands in the tables, and no number rests on it
-        if speed is not None and mu is not None and speed > 0 and not row.get("rejected"):
-            known.append((float(speed), float(mu), row))
-    known.sort(key=lambda entry: entry[0])
-    groups: list[list[tuple[float, float, Row]]] = []
-    for entry in known:
-        if groups and entry[0] <= _SAME * groups[-1][-1][0]:
-            groups[-1].append(entry)
-        else:
-            groups.append([entry])
-    return [_point(name, group, offset in PAIRED) for group in groups]
+    # a segment that a person rejected is listed in the tables, and no number includes it
+    rows = [row for row in segments if not row.get("rejected")]
+    rows.sort(key=lambda row: number_of(row, "start_s") or 0.0)
 
+    def column(key: str) -> np.ndarray:
+        return np.array([number_of(row, key) for row in rows], float)
 
-def _point(name: str, group: list[tuple[float, float, Row]], paired: bool) -> RunPoint:
-    rows = sorted((row for _, _, row in group), key=lambda row: number_of(row, "start_s") or 0.0)
-    values, errors = (
-        np.array([number_of(row, f"friction_coefficient{end}") for row in rows], float)
-        for end in ("", "_sem")
-    )
-    pairs = np.array([number_of(row, "pair") if paired else -1 for row in rows], float)
-    pairs = np.where(pairs >= 0, pairs, -1.0 - np.arange(pairs.size))
-    mu, within = mean_of_observations(values, errors, pairs)
-    samples = sum(float(number_of(row, "effective_samples") or 0) for row in rows)
-    speed = sum(v for v, _, _ in group) / len(group)
-    known = within if np.isfinite(errors).any() else None
-    return RunPoint(name, speed, mu, known, samples, len(group))
+    name_of = "friction_coefficient"
+    sem, wide = column(f"{name_of}_sem"), column(f"{name_of}_U95")
+    wide = np.where(np.isfinite(wide), wide, NORMAL * sem)
+    pairs = column("pair") if offset in PAIRED else np.full(len(rows), -1.0)
+    samples = np.nan_to_num(column("effective_samples"))
+    means = run_means(column("sliding_speed_m_s"), column(name_of), sem, wide, pairs)
+    return [
+        RunPoint(
+            name,
+            mean.speed,
+            mean.mean,
+            mean.u95 if np.isfinite(mean.u95) else None,
+            float(samples[mean.strokes].sum()),
+            int(mean.strokes.size),
+        )
+        for mean in means
+    ]
 
 
 def _nearest(loads: Iterable[float], load: float) -> float:
@@ -181,31 +177,3 @@ def told_point(
         # a line for each: a long one would be cut beside the point, or lie on it
         lines += names[:_NAMED] + ([f"and {len(names) - _NAMED} more"] * (len(names) > _NAMED))
     return "\n".join(lines)
-
-
-def run_error(
-    points: Sequence[Mapping[str, Any]], speed: float | None, within: float | None
-) -> tuple[float | None, str]:
-    """Return how far one run's friction may be off: the larger of what is known, and what it is.
-
-    Parameters
-    ----------
-    points
-        Rows of the measured curve that the run belongs to; empty where there is none.
-    speed
-        At which [m/s].
-    within
-        Standard error within the run.
-
-    Examples
-    --------
-    >>> row = {"sliding_speed_m_s": 1e-3, "friction_coefficient_between": 0.04, "runs": 2}
-    >>> run_error([row], 1.01e-3, 0.01), run_error([], 1e-3, 0.01)
-    ((0.04, 'scatter of the runs'), (0.01, 'within the run'))
-    """
-    for row in points:
-        at, scatter = row["sliding_speed_m_s"], row.get("friction_coefficient_between")
-        near = speed is not None and bool(at) and at / _SAME <= speed <= at * _SAME
-        if near and scatter is not None and scatter > (within or 0.0):
-            return scatter, "scatter of the runs"
-    return within, "within the run"

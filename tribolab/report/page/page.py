@@ -112,7 +112,6 @@ def _context(
         "groups": first,
         "more_groups": rest,
         "said": grouped_findings(document["findings"]),
-        "points_of": {name: c["points"] for c in document["curves"] for name in c["runs"]},
     }
     template = environment(folder).get_template("run.html.j2")
 

@@ -22,7 +22,6 @@ from tribolab.records.hurst_words import hurst_verdict, is_steep
 from tribolab.records.model_words import is_described, stress_interval
 from tribolab.records.packed import deflated
 from tribolab.records.roughness_words import form_in_words
-from tribolab.report.live.points import run_error
 from tribolab.report.page.glossary import HEADS, TERMS
 from tribolab.report.page.in_words import conditions, oscillation_text
 from tribolab.report.page.sections import Section
@@ -167,7 +166,6 @@ def environment(folder: Path) -> jinja2.Environment:
         "is_steep": is_steep,
         "form_in_words": form_in_words,
         "hurst_verdict": hurst_verdict,
-        "run_error": run_error,
         "HEADS": HEADS,
         "explained": explained,
         "UNITS": wording.UNITS,

@@ -1,0 +1,38 @@
+"""Numbers that decide which speeds make one point, how repeats combine, and which contradict."""
+
+from tribolab.core.limit import Limit
+
+_GROUPS = "tests/benchmarks/speed_groups.py, seed 1; reported on seed 101"
+_MEANS = "tests/benchmarks/mean_of_repeats_coverage.py, seed 4; reported on seed 104"
+_ODD = "tests/benchmarks/odd_repeats.py, seed 5; reported on seed 105"
+
+SPEED_TOLERANCE = Limit(
+    0.1, "1", "largest relative difference of the speeds of one point", "judgement"
+)
+SPEED_FLOOR = Limit(
+    5e-3, "1", "relative difference of speed that a drive and its record make", _GROUPS
+)  # fmt: skip
+CLEAR_JUMP = Limit(
+    2.0, "1", "gaps between groups over those within, from which groups are clear", _GROUPS
+)  # fmt: skip
+FAIR_JUMP = Limit(1.4, "1", "the same ratio, below which the groups are not told apart", _GROUPS)
+NARROW_GAP = Limit(
+    0.5, "1", "gap over the width of the wider group: a narrower one parts nothing", _GROUPS
+)  # fmt: skip
+NARROW_GAPS = Limit(0.02, "1", "share of such gaps that is accepted", _GROUPS)
+SWEEP_STEPS = Limit(5.0, "1", "steps of a run whose speed goes one way: none repeats", "judgement")
+UNEQUAL_ERRORS = Limit(
+    5.0, "1", "largest over smallest error up to which the plain mean is better", _MEANS
+)  # fmt: skip
+POOLED_DOF = Limit(
+    4.0, "1", "degrees of freedom from which on the scatter at other speeds is of use", _MEANS
+)  # fmt: skip
+PRIOR_WIDTH = Limit(
+    1.5, "1", "scale of the prior of the scatter, over the pooled scatter", _MEANS
+)  # fmt: skip
+ODD_BY_CHANCE = Limit(0.01, "1", "chance per campaign that sound repeats are called odd", _ODD)
+SUSPECT_BY_CHANCE = Limit(0.05, "1", "the same for a repeat that is suspect", _ODD)
+UNEVEN_SCATTER = Limit(
+    0.3, "1", "standard deviation of ln(scatter) between conditions that are alike", "judgement"
+)
+TRIMMED = Limit(0.2, "1", "share of the largest contrasts that do not count as repeatability", _ODD)

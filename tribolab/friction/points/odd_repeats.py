@@ -1,0 +1,126 @@
+"""Repeats that contradict: an offset far beyond the repeatability of the other conditions.
+
+Notes
+-----
+The repeatability is that of the other conditions, from the squared contrasts of their repeats
+without the largest fifth. How large the largest deviation of a campaign may be by chance is found
+by simulation with as many conditions and repeats, whose scatter differs between conditions. Of two
+repeats that contradict it cannot be said which is wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.friction.points import limits
+
+_SIMULATED = 4000
+_SEED = 7
+_MANY = 5  # contrasts from which on the largest are left out
+
+
+class OddRepeat(NamedTuple):
+    """Repeats of one condition that contradict.
+
+    `repeat` is the odd one, -1 of two; `deviation` is relative to the others' mean, of two their
+    difference; `repeatability` is the relative standard deviation elsewhere; `odd` is False if it
+    is merely suspect.
+    """
+
+    condition: int
+    repeat: int
+    deviation: float
+    repeatability: float
+    odd: bool
+
+
+def _contrasts(k: int) -> np.ndarray:
+    """Return the Helmert contrasts of k repeats: independent, of variance 1 each."""
+    rows = np.zeros((k - 1, k))
+    for i in range(1, k):
+        rows[i - 1, :i], rows[i - 1, i] = 1.0, -float(i)
+        rows[i - 1] /= np.sqrt(i * (i + 1))
+    return rows
+
+
+def _scores(groups: Sequence[np.ndarray]) -> tuple[list[np.ndarray], np.ndarray]:
+    """Return z of each repeat (sample, repeat), of two repeats one, and the scatter elsewhere.
+
+    `groups` are (sample, repeat).
+    """
+    squares = [(values @ _contrasts(values.shape[1]).T) ** 2 for values in groups]
+    scores, scatters = [], []
+    for own, values in enumerate(groups):
+        others = np.concatenate([s for k, s in enumerate(squares) if k != own], axis=1)
+        count = others.shape[1]
+        kept = count - int(limits.TRIMMED.value * count) if count >= _MANY else count
+        scatter = np.sqrt(np.sort(others, axis=1)[:, :kept].mean(axis=1))
+        repeats = values.shape[1]
+        off = (values - values.mean(axis=1, keepdims=True)) / np.sqrt(1 - 1 / repeats)
+        z = np.abs(off) / np.maximum(scatter, 1e-300)[:, None]
+        scores.append(z[:, :1] if repeats == 2 else z)
+        scatters.append(scatter)
+    return scores, np.stack(scatters, axis=1)
+
+
+@lru_cache(maxsize=64)
+def _by_chance(repeats: tuple[int, ...]) -> np.ndarray:
+    """Return the sorted largest scores of campaigns whose repeats are sound."""
+    rng = np.random.default_rng(_SEED)
+    groups = []
+    for k in repeats:
+        scatter = np.exp(limits.UNEVEN_SCATTER.value * rng.standard_normal((_SIMULATED, 1)))
+        groups.append(scatter * rng.standard_normal((_SIMULATED, k)))
+    return np.sort(np.concatenate(_scores(groups)[0], axis=1).max(axis=1))
+
+
+def odd_repeats(groups: Sequence[np.ndarray]) -> list[OddRepeat]:
+    """Return the repeats that contradict, the worst first.
+
+    Parameters
+    ----------
+    groups
+        Logarithms of what was repeated, of each condition (repeat): of runs the mean of
+        ln(friction) over the speeds that they share, of scans ln(Rq). One condition alone has
+        nothing to be compared with.
+
+    Returns
+    -------
+    list of OddRepeat
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(0)
+    >>> groups = [0.01 * rng.standard_normal(2) for _ in range(9)]
+    >>> odd_repeats(groups)
+    []
+    >>> groups[4] = np.array([0.0, 0.16])
+    >>> [(odd.condition, odd.repeat, round(odd.deviation, 2)) for odd in odd_repeats(groups)]
+    [(4, -1, 0.17)]
+    """
+    left = [k for k, values in enumerate(groups) if values.size > 1]
+    found = []
+    while len(left) > 1:
+        own = [groups[k] for k in left]
+        scores, scatters = _scores([values[None] for values in own])
+        worst = int(np.argmax([z.max() for z in scores]))
+        limit = _by_chance(tuple(values.size for values in own))
+        z = float(scores[worst].max())
+        if z <= np.quantile(limit, 1 - limits.SUSPECT_BY_CHANCE.value):
+            break
+        values, two = own[worst], own[worst].size == 2
+        repeat = int(scores[worst][0].argmax())
+        others = np.delete(values, repeat)
+        deviation = float(np.expm1(abs(values[0] - values[1]))) if two else float(
+            np.expm1(values[repeat] - others.mean())
+        )  # fmt: skip
+        odd = bool(z > np.quantile(limit, 1 - limits.ODD_BY_CHANCE.value))
+        found.append(
+            OddRepeat(left[worst], -1 if two else repeat, deviation, float(scatters[0, worst]), odd)
+        )
+        del left[worst]
+    return found

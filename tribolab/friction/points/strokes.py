@@ -1,0 +1,255 @@
+"""Strokes of runs as observations, and what a run says at each of its speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy import special
+
+from tribolab.friction.points import limits
+from tribolab.friction.points.mean_of_repeats import Mean, mean_of_repeats, pooled_scatter
+from tribolab.friction.points.speed_groups import speed_groups, sweeps_of
+from tribolab.friction.statistics import error_of_series
+from tribolab.friction.zero.of_run import PAIRED
+
+_NORMAL = float(special.ndtri(0.975))
+_MANY = 24  # strokes of one speed whose order tells how long friction remembers
+
+
+class Observations(NamedTuple):
+    """Independent observations, one entry each: pairs of strokes, and strokes without a partner.
+
+    `sem` and `u95` are of a mean that is to hold beyond the stroke; `order` is the place in the
+    run; `variance` is the mean square of the scatter within the strokes.
+    """
+
+    run: np.ndarray
+    order: np.ndarray
+    speed: np.ndarray
+    set_speed: np.ndarray
+    mean: np.ndarray
+    sem: np.ndarray
+    u95: np.ndarray
+    variance: np.ndarray
+    strokes: np.ndarray
+
+    def of(self, members: np.ndarray) -> Observations:
+        """Return some of them."""
+        return Observations(*(column[members] for column in self))
+
+
+def observations_of(frictions: Sequence[xr.Dataset]) -> Observations:
+    """Return the observations of runs.
+
+    Parameters
+    ----------
+    frictions
+        Results of `tribolab.friction_coefficient`, without what a person rejected.
+    """
+    parts = [_of_run(friction, number) for number, friction in enumerate(frictions)]
+    if not parts:
+        return Observations(*(np.zeros(0) for _ in Observations._fields))
+    return Observations(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+
+
+def _of_run(friction: xr.Dataset, run: int) -> Observations:
+    speed = friction["sliding_speed"].values.astype(float)
+    value = friction["friction_coefficient"].values.astype(float)
+    blank = np.full(value.size, np.nan)
+
+    def column(*names: str) -> np.ndarray:
+        found = (friction[name].values.astype(float) for name in names if name in friction)
+        return next(found, blank)
+
+    name = "friction_coefficient"
+    sem = column(f"{name}_beyond_sem", f"{name}_sem")
+    wide = column(f"{name}_beyond_U95", f"{name}_U95")
+    wide = np.where(np.isfinite(wide), wide, _NORMAL * sem)
+    wanted = np.abs(column("set_speed"))
+    pairs = np.full(value.size, -1.0)
+    if "pair" in friction and friction.attrs.get("offset") in PAIRED:
+        pairs = friction["pair"].values.astype(float)
+    known = np.isfinite(value) & (speed > 0)
+    return grouped_strokes(
+        run, speed, wanted, value, sem, wide, column(f"{name}_std") ** 2, pairs, known
+    )
+
+
+def grouped_strokes(
+    run: int,
+    speed: np.ndarray,
+    set_speed: np.ndarray,
+    value: np.ndarray,
+    sem: np.ndarray,
+    u95: np.ndarray,
+    variance: np.ndarray,
+    pairs: np.ndarray,
+    known: np.ndarray,
+) -> Observations:
+    """Take the two strokes of a pair together: they share one error (stroke).
+
+    Parameters
+    ----------
+    run
+        Its number.
+    speed, set_speed, value, sem, u95, variance
+        Of each stroke; in the unit of the value, speeds in m/s.
+    pairs
+        The same number for the strokes of a pair, below 0 for one without a partner.
+    known
+        Which strokes count.
+    """
+    alone = -1.0 - np.arange(value.size)
+    place = np.flatnonzero(known)
+    key = np.where(pairs >= 0, pairs, alone)[place]
+    _, which = np.unique(key, return_inverse=True)
+    count = np.bincount(which)
+
+    def mean(column: np.ndarray) -> np.ndarray:
+        return np.bincount(which, column[place], count.size) / count
+
+    result = Observations(
+        np.full(count.size, run),
+        mean(np.arange(value.size, dtype=float)),
+        mean(speed),
+        mean(set_speed),
+        mean(value),
+        mean(sem),
+        mean(u95),
+        mean(variance),
+        count,
+    )
+    return result.of(np.argsort(result.order, kind="stable"))
+
+
+class Grouping(NamedTuple):
+    """The observations of each point, from the slowest on, and how clearly points differ."""
+
+    members: list[np.ndarray]
+    verdict: str
+
+
+def grouped_by_speed(seen: Observations, tolerance: float) -> Grouping:
+    """Put observations at one speed together; set speeds, if all are known, decide.
+
+    Parameters
+    ----------
+    seen
+        Of one run or of several.
+    tolerance
+        As for `tribolab.friction.points.speed_groups.speed_groups`.
+    """
+    if not seen.speed.size:
+        return Grouping([], "clear")
+    if np.isfinite(seen.set_speed).all() and (seen.set_speed > 0).all():
+        group = speed_groups(seen.set_speed, 1e-3).group
+        verdict = "stated"
+    else:
+        sweeps = sweeps_of(seen.run, seen.order, seen.speed)
+        group, verdict = speed_groups(seen.speed, tolerance, sweeps)
+    order = np.argsort(group, kind="stable")
+    cuts = np.flatnonzero(np.diff(group[order])) + 1
+    members = [np.sort(part) for part in np.split(order, cuts)]
+    middle = [float(np.log(seen.speed[part]).mean()) for part in members]
+    return Grouping([members[k] for k in np.argsort(middle, kind="stable")], verdict)
+
+
+def means_of_run(seen: Observations, members: Sequence[np.ndarray]) -> list[Mean]:
+    """Return the mean of one run at each of its speeds.
+
+    Parameters
+    ----------
+    seen
+        Of the run.
+    members
+        Which observations belong to each speed, in their order along the run.
+
+    Notes
+    -----
+    The scatter of a few strokes is known better from the strokes at all other speeds. Of many
+    strokes at one speed those that follow each other need not be independent: their mean has the
+    error of a series.
+    """
+    values = [seen.mean[part] for part in members]
+    means = []
+    for number, part in enumerate(members):
+        own = values[number]
+        if own.size == 1:
+            means.append(Mean(float(own[0]), float(seen.sem[part[0]]), float(seen.u95[part[0]])))
+        elif own.size < _MANY:
+            others = pooled_scatter(values[:number] + values[number + 1 :])
+            means.append(mean_of_repeats(own, seen.sem[part], others))
+        else:
+            means.append(_of_series(own, seen.sem[part]))
+    return means
+
+
+def _of_series(values: np.ndarray, errors: np.ndarray) -> Mean:
+    series = error_of_series(values[None])
+    sem, dof = float(series.sem[0]), float(series.dof[0])
+    wide = sem * (_NORMAL if np.isinf(dof) else float(special.stdtrit(dof, 0.975)))
+    known = errors[np.isfinite(errors)]
+    own = float(np.sqrt((known**2).sum()) / max(known.size, 1))
+    if _NORMAL * own > wide:  # strokes that agree better than each of them is known
+        return Mean(float(values.mean()), own, _NORMAL * own)
+    return Mean(float(values.mean()), sem, wide)
+
+
+class RunMean(NamedTuple):
+    """What a run says at one of its speeds [m/s]: the mean, its U95, and the strokes it is of."""
+
+    speed: float
+    mean: float
+    sem: float
+    u95: float
+    strokes: np.ndarray
+
+
+def run_means(
+    speed: np.ndarray,
+    value: np.ndarray,
+    sem: np.ndarray,
+    u95: np.ndarray,
+    pairs: np.ndarray,
+    tolerance: float = limits.SPEED_TOLERANCE.value,
+) -> list[RunMean]:
+    """Return the mean of a run at each of its speeds, as the points of a curve have it.
+
+    Parameters
+    ----------
+    speed, value, sem, u95
+        Of each stroke in the order of time; the value in any unit, the speed in m/s (stroke).
+    pairs
+        The same number for the two strokes of a pair, below 0 for one without a partner (stroke).
+    tolerance
+        Largest relative difference of the speeds of one point.
+
+    Examples
+    --------
+    >>> speed, value = np.array([1.0, 1.0, 2.0, 2.0]), np.array([0.3, 0.32, 0.5, 0.5])
+    >>> found = run_means(speed, value, np.full(4, 0.01), np.full(4, 0.02), np.array([0, 0, 1, 1]))
+    >>> [(mean.speed, round(mean.mean, 2), mean.u95, mean.strokes.tolist()) for mean in found]
+    [(1.0, 0.31, 0.02, [0, 1]), (2.0, 0.5, 0.02, [2, 3])]
+    """
+    known = np.isfinite(value) & (speed > 0)
+    blank = np.full(value.size, np.nan)
+    seen = grouped_strokes(0, speed, blank, value, sem, u95, blank, pairs, known)
+    members = grouped_by_speed(seen, tolerance).members
+    place = np.flatnonzero(known)
+    key = np.where(pairs >= 0, pairs, -1.0 - np.arange(value.size))[place]
+    _, which = np.unique(key, return_inverse=True)
+    order = np.bincount(which, place.astype(float)) / np.bincount(which)
+    rank = np.empty(order.size, int)
+    rank[np.argsort(order, kind="stable")] = np.arange(order.size)
+    of_observation = rank[which]
+    return [
+        RunMean(
+            float(np.exp(np.log(seen.speed[part]).mean())),
+            *mean,
+            strokes=place[np.isin(of_observation, part)],
+        )
+        for part, mean in zip(members, means_of_run(seen, members), strict=True)
+    ]
