@@ -47,7 +47,7 @@ def test_answers_make_a_dialect_that_reads_the_file_without_mending(tmp_path, mo
     done = command("dialect", file.name, "--ask", typed=typed)
     assert (done.exit_code, done.stderr) == (0, "")
     assert re.search(r"tried:  odd\.csv: 400 rows over 39\.9 s, 1 segment, friction coefficient "
-                     r"0\.(199|200|201|2)\d* \(standard error at most ", done.stdout)  # fmt: skip
+                     r"0\.(199|200|201|2)\d* \(± U95 at most ", done.stdout)  # fmt: skip
     assert "fill in" not in done.stdout.split("tried:")[1]
     run = tl.read(file, "odd.toml")
     assert float(run.normal_force.mean()) == pytest.approx(30, abs=0.05)
@@ -234,7 +234,7 @@ def test_a_set_speed_that_turns_over_tells_the_way_on_trial(tmp_path, monkeypatc
     )
     file.write_text("Time [s],Speed set [mm/s],Friction force [N],Normal force [N]\n" + rows)
     done = command("dialect", file.name, "--no-ask")
-    assert "8 segments, friction coefficient 0.2999 ± 0.0002 (mean of 8;" in done.output, (
+    assert "8 segments, friction coefficient 0.3000 ± 0.0005 (U95, mean of 8;" in done.output, (
         done.output
     )
 
@@ -317,7 +317,7 @@ def test_strokes_may_be_typed_and_one_of_both_is_not_enough(tmp_path, monkeypatc
     assert (done.exit_code, done.stderr) == (0, "")
     assert "strokes need a length, such as 8 mm, too" in done.stdout
     assert done.stdout.count("sliding_velocity m/s") == 2  # once a row, once as a line of blocks
-    assert "friction coefficient 0.2 (mean of 79;" in done.stdout.split("tried:")[1]
+    assert "friction coefficient 0.2 (U95, mean of 79;" in done.stdout.split("tried:")[1]
     said = tomllib.loads((tmp_path / "pin.toml").read_text())["speed"]
     crank = {"source": "stroke", "stroke": "8 mm", "frequency": "2 Hz", "drive": "crank"}
     assert said == crank

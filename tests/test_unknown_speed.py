@@ -98,7 +98,7 @@ def test_too_few_effective_samples_decide_nothing_of_steadiness(said):
     worst = said["HT-2n-6-4_2_002"]["steadiness"]
     # by which much the line falls, of the friction: -0.177 of 0.774
     assert worst["value"] == pytest.approx(-0.177 / 0.774, abs=2e-3)
-    assert "-22.82%" in worst["message"] and "2.8 effective samples" in worst["message"]
+    assert "-22.82%" in worst["message"] and " 1 effective samples" in worst["message"]
 
 
 def test_a_speed_that_is_unknown_is_suspect_for_what_may_be_inside(said):
@@ -163,14 +163,14 @@ def printed(outcome):
 
 def errors_of(outcome, run):
     friction = read_netcdf(outcome.folder / run.data_file, group="friction")
-    return friction["friction_coefficient_sem"].values.tolist()
+    return friction["friction_coefficient_U95"].values.tolist()
 
 
 def test_friction_is_printed_where_the_speed_is_unknown(together):
     (heading, row) = printed(together)
     assert heading[0] == "surface"
     load, friction = "1.961 N", "0.768 to 0.785"
-    assert heading[-1] == "standard error"
+    assert heading[-1] == "± U95"
     own = [v for run in together.runs for v in errors_of(together, run)]
     error = f"at most {max(own):.2g} within the run"
     assert row == ["HEA", "–", load, "3", "6", "speed unknown", friction, error]

@@ -86,18 +86,18 @@ def _coefficients(friction: xr.Dataset) -> str:
         of, values = "means of the segments of a speed, ", curve
         speeds = curve.sizes["sliding_speed"]
         at = f" at {Count(speeds):speed|speeds}" if speeds > 1 else ""
-    mu, sem = (np.atleast_1d(values[f"{name}{end}"].values) for end in ("", "_sem"))
-    sem, mu = sem[np.isfinite(mu)], mu[np.isfinite(mu)]
+    mu, wide = (np.atleast_1d(values[f"{name}{end}"].values) for end in ("", "_U95"))
+    wide, mu = wide[np.isfinite(mu)], mu[np.isfinite(mu)]
     if not mu.size:
         return ""
-    if mu.size == 1 and of and np.isfinite(sem[0]):
+    if mu.size == 1 and of and np.isfinite(wide[0]):
         count = int(curve["segments"].values[0])
-        said = with_error(float(mu[0]), float(sem[0]))
-        return f", friction coefficient {said} (mean of {count}; standard error, statistical only)"
+        said = with_error(float(mu[0]), float(wide[0]))
+        return f", friction coefficient {said} (U95, mean of {count}; statistical only)"
     span = f"{mu.min():.3g}" + (f" to {mu.max():.3g}" if mu.size > 1 else "")
-    known = sem[np.isfinite(sem)]
+    known = wide[np.isfinite(wide)]
     width = f"at most {known.max():.2g}" if known.size else "not known"
-    return f", friction coefficient {span}{at} ({of}standard error {width}, statistical only)"
+    return f", friction coefficient {span}{at} ({of}± U95 {width}, statistical only)"
 
 
 def _undirected(run: xr.Dataset, segments: xr.Dataset) -> bool:

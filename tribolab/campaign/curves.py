@@ -18,6 +18,7 @@ from tribolab.campaign.settings.run_names import distinct, safe_name
 from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.data_files import digest, write_data
 from tribolab.errors import TribolabError
+from tribolab.friction.points.limits import SPEED_TOLERANCE
 from tribolab.io.uncertainty import MODEL_INPUTS
 from tribolab.provenance import sha256_of
 from tribolab.records.part_records import CurveRecord, Origin
@@ -67,6 +68,7 @@ class CurveTask:
     found_files: tuple[str, ...] = ()
     levels: tuple[_Levels, ...] = ()
     found_levels: tuple[_Levels, ...] = ()
+    speed_tolerance: float = SPEED_TOLERANCE.value
 
     @property
     def name(self) -> str:
@@ -83,15 +85,22 @@ class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
         What the runs came to; those that failed, or their checks, are left out.
     store
         What is known, and where it is written down.
+    speed_tolerance
+        Largest relative difference of the speeds of one point.
     """
 
     name = "curves"
     kind = "curve"
     record = CurveRecord
 
-    def __init__(self, runs: Iterable[RunCame], store: Store) -> None:
+    def __init__(
+        self,
+        runs: Iterable[RunCame],
+        store: Store,
+        speed_tolerance: float = SPEED_TOLERANCE.value,
+    ) -> None:
         super().__init__(store)
-        self._runs = runs
+        self._runs, self._tolerance = runs, speed_tolerance
 
     def plan(self) -> list[CurveTask]:
         """Put together what is stated to be the same: surface, medium and load."""
@@ -133,6 +142,8 @@ class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
             contents += [tuple(map(str, own.measured + own.wanted)) for own in levels]
         if undecided:
             contents += [("as found",), *(came.content for came in undecided)]
+        if self._tolerance != SPEED_TOLERANCE.value:
+            contents.append((f"{self._tolerance!r}",))
         return CurveTask(
             outcome,
             tuple(came.outcome.data_file for came in used),
@@ -141,6 +152,7 @@ class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
             tuple(came.outcome.data_file for came in undecided),
             levels,
             tuple(_levels(came.outcome, load) for came in undecided),
+            self._tolerance,
         )
 
     def taken(self, task: CurveTask, record: CurveRecord) -> CurveRecord | None:
@@ -181,10 +193,10 @@ def process_curve(task: CurveTask) -> CurveRecord:
     parts = [read_groups(file, ("friction", SLIP), only={SLIP: NEEDED}) for file in files]
     parts = [_at_load(part, own) for part, own in zip(parts, task.levels, strict=True)]
     frictions = [part["friction"] for part in parts]
-    curve, known = _with_budget(frictions)
+    curve, known = _with_budget(frictions, task.speed_tolerance)
     levels: list[float | None] = []
     if len(frictions) > 1:
-        curve = stamp(curve.assign(run_level=("run", run_levels(frictions))))
+        curve = stamp(curve.assign(run_level=("run", run_levels(frictions, task.speed_tolerance))))
         levels = plain_value(curve["run_level"].values)
     groups: dict[str, xr.Dataset] = {}
     reason = ""
@@ -217,12 +229,14 @@ def process_curve(task: CurveTask) -> CurveRecord:
     )
 
 
-def _with_budget(frictions: list[xr.Dataset]) -> tuple[xr.Dataset, Mapping[str, Known]]:
+def _with_budget(
+    frictions: list[xr.Dataset], speed_tolerance: float
+) -> tuple[xr.Dataset, Mapping[str, Known]]:
     """Combine runs into a curve whose points have their whole uncertainty; and what is stated."""
     # late: starting stays quick
     from tribolab.metrology.budget import uncertainty_budget
 
-    budget = uncertainty_budget(frictions)
+    budget = uncertainty_budget(frictions, speed_tolerance=speed_tolerance)
     return budget.data, budget.known
 
 
@@ -250,7 +264,8 @@ def _as_found(task: CurveTask) -> xr.Dataset | None:
     parts = [read_groups(task.folder / n, wanted, optional=True) for n in task.found_files]
     undecided = [part.get(wanted[1], part[wanted[0]]) for part in parts]
     pairs = zip(undecided, task.found_levels, strict=True)
-    return _with_budget([friction.isel(segment=own.of(friction)) for friction, own in pairs])[0]
+    kept = [friction.isel(segment=own.of(friction)) for friction, own in pairs]
+    return _with_budget(kept, task.speed_tolerance)[0]
 
 
 def _at_load(part: Parts, own: _Levels) -> Parts:

@@ -12,6 +12,7 @@ from tribolab.campaign.curves import Curves
 from tribolab.campaign.engine.pool import WorkerDied
 from tribolab.campaign.engine.stage import Progress, begun, perform
 from tribolab.campaign.models.stage import Models
+from tribolab.campaign.odd_runs import REPEATS, with_odd_repeats
 from tribolab.campaign.runs.kept import keep_runs
 from tribolab.campaign.runs.repeats import with_loads_alike
 from tribolab.campaign.runs.stage import RunCame, Runs
@@ -83,8 +84,12 @@ def process(
     came = with_loads_alike(store, came)
     outcomes = tuple(run.outcome for run in came)
     surfacing = begun(Surfaces(campaign, outcomes, store), executor, progress)
-    combining = begun(Curves(came, store), executor, progress)  # while the last surfaces are done
+    combining = begun(
+        Curves(came, store, campaign.segments.speed_tolerance), executor, progress
+    )  # while the last surfaces are done
     surfaces, curves = surfacing(), combining()
+    came = with_odd_repeats(store, came, curves, skip=REPEATS in campaign.qc.skip)
+    outcomes = tuple(run.outcome for run in came)
     models = perform(Models(campaign, curves, surfaces, store), executor, progress)
     for part in (staging / "data").glob(f"*{UNFINISHED}"):  # of a worker that died while writing
         part.unlink()

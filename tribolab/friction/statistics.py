@@ -26,7 +26,7 @@ from scipy import special
 from tribolab.friction.mean_error import limits
 from tribolab.friction.mean_error.autoregression import spectra_of
 from tribolab.friction.mean_error.course import line_through
-from tribolab.friction.mean_error.level import levels_of
+from tribolab.friction.mean_error.level import levels_of, without_lines
 from tribolab.friction.run_out import (
     MOST_TURNS,
     fitted_waves,
@@ -135,8 +135,9 @@ def estimate_of(time: np.ndarray, values: np.ndarray) -> Estimate:
     Estimate
         ``std`` is the sample standard deviation (ddof 1). Where the spacing of the samples
         changes by more than a factor of two, mean and std are weighted by time.
-        ``effective_samples`` n_eff is std^2 over the variance of the mean, at most the number of
-        samples; ``autocorrelation_time`` is duration / (2 n_eff), half a spacing for white noise.
+        ``effective_samples`` n_eff is std^2 over the variance of the mean beyond the path, at most
+        the number of samples: a course along the path leaves few; ``autocorrelation_time`` is
+        duration / (2 n_eff), half a spacing for white noise.
         ``determined`` says whether U95 is at most half the range of the samples.
         ``trend_p_value`` tests the least-squares slope against the signal's own memory.
 
@@ -243,7 +244,7 @@ def _with_errors(records: list[_Record]) -> list[Estimate]:
     """Give the estimates of records with as many stretches each."""
     blocks, left = _without_turns(records)
     levels = levels_of(blocks)
-    line = line_through(np.stack([record.blocks for record in records]))
+    line = line_through(without_lines(blocks, levels.lines))
     # an unfinished period of an oscillation moves the mean over the path, but not the level
     moved = np.abs(levels.level - blocks.mean(axis=1))
     path, beyond = (
@@ -256,7 +257,8 @@ def _with_errors(records: list[_Record]) -> list[Estimate]:
     out = []
     for k, record in enumerate(records):
         sem, u95 = float(path.sem[k]), float(path.sem[k] * _width(path.dof[k]))
-        effective = float(np.clip((record.std / sem) ** 2, 1.0, record.samples)) if sem else 1.0
+        past = float(beyond.sem[k])
+        effective = float(np.clip((record.std / past) ** 2, 1.0, record.samples)) if past else 1.0
         change = float(line.change[k])
         out.append(
             Estimate(
@@ -272,9 +274,9 @@ def _with_errors(records: list[_Record]) -> list[Estimate]:
                 turns_of(record.angle),
                 float(path.dof[k]),
                 u95,
-                float(beyond.sem[k]),
+                past,
                 float(beyond.dof[k]),
-                float(beyond.sem[k] * _width(beyond.dof[k])),
+                float(past * _width(beyond.dof[k])),
                 record.mean + float(levels.level[k] - blocks[k].mean()),
                 u95 <= record.reach / 2,
             )
@@ -338,7 +340,7 @@ def wander_remark(estimate: Estimate) -> str:
     ('', 'U95 includes slow drift that this record is too short to resolve (4.2 times the value \
 by scatter)')
     """
-    scatter = NORMAL * estimate.std / np.sqrt(max(estimate.effective_samples, 1.0))
+    scatter = NORMAL * estimate.sem
     if not scatter > 0 or not estimate.u95 > _WANDERS * scatter:
         return ""
     return (

@@ -15,7 +15,9 @@ _HEAD = """# The checks
 What `tribolab check` and `tribolab run` ask of every run and scan. Limits are set in the campaign
 file under `[qc]`, as text with a unit or as numbers in SI: `limits.spikes.noise = 10`;
 `skip = ["hum"]` leaves a check out. Each answers pass, suspect, fail, skipped (and why) or error
-(and which). This page is made from the code, and a test keeps the two equal.
+(and which). In a campaign `repeats` also compares the runs of one condition with each other, and
+with how well runs repeat under all other conditions. This page is made from the code, and a test
+keeps the two equal.
 """
 
 

@@ -102,7 +102,9 @@ def analyse_run(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
 def run_labels(run: PlannedRun) -> dict[str, str]:
     """Return what every dataset of a run is labelled with."""
     return {"run_name": run.name} | {
-        key: value for key in ("surface", "medium", "mount") if (value := getattr(run, key))
+        key: value
+        for key in ("surface", "medium", "mount", "specimen")
+        if (value := getattr(run, key))
     }
 
 

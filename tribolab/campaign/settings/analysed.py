@@ -36,6 +36,9 @@ class Segments(Table):
     """Shorter segments are left out."""
     max_gap: Annotated[float, PositiveSi("s", "2 s")] | None = None
     """Longest pause between two samples within a segment; by default a twentieth of it."""
+    speed_tolerance: Annotated[float, Field(gt=0, lt=1)] = 0.1
+    """Largest relative difference of the speeds that make one point of a curve. Speeds are grouped
+    by the gaps between them; set speeds, where they are known, decide."""
     rest_speed: Annotated[float, PositiveSi("m/s", "0.1 um/s")] | None = None
     """Speed below which the slider is at rest; by default 1e-5 of the highest."""
 

@@ -139,9 +139,12 @@ class Campaign(Table):
 
     def segment_options(self, entry: RunEntry) -> Arguments:
         """Arguments of `find_segments` for the runs of an entry: its own over the campaign's."""
-        options = self.segments.model_dump(exclude_none=True)
+        of_curves = {"speed_tolerance"}
+        options = self.segments.model_dump(exclude_none=True, exclude=of_curves)
         if entry.segments is not None:
-            options |= entry.segments.model_dump(exclude_unset=True, exclude_none=True)
+            options |= entry.segments.model_dump(
+                exclude_unset=True, exclude_none=True, exclude=of_curves
+            )
         return options
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from tribolab.campaign.settings.files import (
     instrument_of,
@@ -40,7 +40,7 @@ class PlannedRun:
         Raw files, absolute.
     labels
         The same relative to the campaign file, as reports show them.
-    surface, medium, mount
+    surface, medium, mount, specimen
         "" where the campaign file says nothing.
     normal_force, sliding_speed
         Set-points [N, m/s], if the campaign file gives them.
@@ -85,6 +85,7 @@ class PlannedRun:
     quality: Arguments = field(default_factory=dict)
     uncertainty: Arguments = field(default_factory=dict)
     mount: str = ""
+    specimen: str = ""
     config_sha256: str = ""
     reading_sha256: str = ""
     decisions: tuple[Decision, ...] = ()
@@ -134,7 +135,8 @@ def plan_runs(campaign: Campaign) -> Plan:
                     name=name,
                     files=tuple(files),
                     labels=tuple(label_of(campaign, file) for file in files),
-                    mount=_mount(entry, files[0]),
+                    mount=_label(entry, files[0], "mount"),
+                    specimen=_label(entry, files[0], "specimen"),
                     **settings[id(entry)],
                 ),
                 campaign,
@@ -147,11 +149,12 @@ def plan_runs(campaign: Campaign) -> Plan:
     return Plan(runs, [])
 
 
-def _mount(entry: RunEntry, file: Path) -> str:
-    """Return which mounting of the specimen a run belongs to, stated or in the file's name."""
-    if entry.mount is not None or entry.labels_in_name is None:
-        return entry.mount or ""
-    return NamePattern(entry.labels_in_name).labels(file.stem).get("mount", "")
+def _label(entry: RunEntry, file: Path, key: Literal["mount", "specimen"]) -> str:
+    """Return the mount or the specimen of a run, as stated or as in the file's name."""
+    stated = getattr(entry, key)
+    if stated is not None or entry.labels_in_name is None:
+        return stated or ""
+    return NamePattern(entry.labels_in_name).labels(file.stem).get(key, "")
 
 
 def _weighed(run: PlannedRun, campaign: Campaign, weighed: set[Path]) -> PlannedRun:
@@ -238,7 +241,7 @@ def _settings(campaign: Campaign, entry: RunEntry) -> Json:
         "moving_mass": entry.moving_mass,
         "blank": [sha256_of_file(blank) if blank.is_file() else "" for blank in blanks],
     }
-    mounts = [entry.mount, entry.labels_in_name]
+    mounts = [entry.mount, entry.specimen, entry.labels_in_name]
     return settings | {
         "instrument": instrument,
         "config_sha256": sha256_of(settings | reading | {"mount": mounts}),

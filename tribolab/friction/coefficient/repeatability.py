@@ -7,16 +7,21 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import xarray as xr
 
+from tribolab.friction.points.limits import SPEED_TOLERANCE
 from tribolab.friction.stribeck import measured_stribeck_curve
 
 
-def run_levels(frictions: Sequence[xr.Dataset]) -> np.ndarray:
+def run_levels(
+    frictions: Sequence[xr.Dataset], speed_tolerance: float = SPEED_TOLERANCE.value
+) -> np.ndarray:
     """Friction of each run relative to that of all repeats together, over all speeds.
 
     Parameters
     ----------
     frictions
         Results of `friction_coefficient` of repeats, one for each run.
+    speed_tolerance
+        As for `measured_stribeck_curve`.
 
     Returns
     -------
@@ -28,11 +33,11 @@ def run_levels(frictions: Sequence[xr.Dataset]) -> np.ndarray:
     -----
     Mean of mu_run/mu over the speeds, weighted by the squared relative errors of the run's points.
     """
-    together = measured_stribeck_curve(frictions)
+    together = measured_stribeck_curve(frictions, speed_tolerance)
     speed = np.log(together["sliding_speed"].values)
     levels = []
     for friction in frictions:
-        own = measured_stribeck_curve([friction])
+        own = measured_stribeck_curve([friction], speed_tolerance)
         if not own.sizes["sliding_speed"]:  # e.g. an instrument's steps, of unknown speed
             levels.append(np.nan)
             continue

@@ -59,7 +59,7 @@ def levels_of(records: np.ndarray) -> Levels:
     scaled = (records - mean) / np.where(moved[:, None], size, 1.0)
     scaled[~moved] = np.where(np.arange(samples) % 2, 1.0, -1.0)  # any: their error is nothing
     lines = lines_of(scaled)
-    calm = _without_lines(scaled, lines)
+    calm = without_lines(scaled, lines)
     courses = courses_of(_coarse(calm))
     fits = [_fit(scaled[k], lines[k], courses[k]) for k in range(count) if lines[k] or courses[k]]
     fitted = iter(fits)
@@ -87,7 +87,8 @@ def levels_of(records: np.ndarray) -> Levels:
     )
 
 
-def _without_lines(records: np.ndarray, lines: list[list[float]]) -> np.ndarray:
+def without_lines(records: np.ndarray, lines: list[list[float]]) -> np.ndarray:
+    """Return records without oscillations of so many cycles each (record, sample)."""
     calm = records.copy()
     samples = records.shape[1]
     for k, cycles in enumerate(lines):

@@ -108,7 +108,11 @@ def _opposes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     if not np.isfinite(values).any():
         raise Skip("no segment has a friction coefficient")
     least = limits["share"] * float(np.nanmean(np.abs(values)))
-    clear = np.maximum(limits["errors"] * error, least)
+    # a signal that moves by more than its mean within a segment says nothing of the sign
+    spans = subject.segments["trimmed_stop"].values - subject.segments["trimmed_start"].values
+    slope = friction["trend" if name == "friction_coefficient" else "force_trend"].values
+    moved = np.nan_to_num(np.abs(slope * spans))
+    clear = np.maximum(np.maximum(limits["errors"] * error, moved), least)
     wrong, right = values < -clear, values > clear
     samples = subject.on_samples(np.where(wrong, FAIL, GOOD))
     if not wrong.any():

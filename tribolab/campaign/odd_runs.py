@@ -1,0 +1,119 @@
+"""Runs that contradict their repeats, found once all curves of a campaign are known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.campaign.runs.stage import RunCame
+from tribolab.campaign.store.catalogue import Store
+from tribolab.records.part_records import CurveRecord
+from tribolab.records.run_record import CheckRow, RunRecord
+from tribolab.words import percent
+
+REPEATS = "repeats"
+_VARIABLE = "friction_coefficient"
+_BY_HAND = ("accepted", "rejected")
+
+
+class _Condition(NamedTuple):
+    """Names of the repeats of one condition, and their levels over that of all [1]."""
+
+    runs: tuple[str, ...]
+    levels: np.ndarray
+
+
+def with_odd_repeats(
+    store: Store, came: Sequence[RunCame], curves: Iterable[CurveRecord], *, skip: bool = False
+) -> list[RunCame]:
+    """Mark the runs that differ from their repeats by far more than other repeats do.
+
+    Parameters
+    ----------
+    store
+        Has the records of the runs, in which the answer is written down.
+    came
+        What the runs came to.
+    curves
+        The records of the measured curves.
+    skip
+        Whether the check is switched off.
+    """
+    conditions = [] if skip else [c for c in map(_condition, curves) if c is not None]
+    said = _verdicts(conditions)
+    return [_judged(store, run, place, said) for place, run in enumerate(came)]
+
+
+def _condition(curve: CurveRecord) -> _Condition | None:
+    pairs = zip(curve.outcome.run_names, curve.levels, strict=False)
+    known = [(name, level) for name, level in pairs if level is not None and level > 0]
+    if len(known) < 2:
+        return None
+    names, levels = zip(*known, strict=True)
+    return _Condition(names, np.array(levels, dtype=float))
+
+
+def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
+    """Return what is said of each run that has repeats."""
+    # late: starting stays quick
+    from tribolab.friction.points.odd_repeats import odd_repeats
+
+    said: dict[str, CheckRow] = {}
+    alone = len(conditions) == 1
+    for condition in conditions:
+        for name in condition.runs:
+            text = "only one condition was repeated: how well runs repeat is not known elsewhere"
+            sound = "agrees with its repeats as well as repeats under other conditions do"
+            said[name] = _row("skipped", text) if alone else _row("pass", sound)
+    for odd in odd_repeats([np.log(condition.levels) for condition in conditions]):
+        runs = conditions[odd.condition].runs
+        usual = f"other repeats by {percent(odd.repeatability)} (standard deviation)"
+        if odd.repeat < 0:
+            for name, other in (runs, runs[::-1]):
+                text = (
+                    f"friction differs from that of its repeat {other} by "
+                    f"{percent(odd.deviation)}, {usual}. The mean of the two is doubtful. Repeat "
+                    "the measurement, or reject the wrong run in review.toml"
+                )
+                said[name] = _row("suspect", text, odd.deviation)
+            continue
+        name = runs[odd.repeat]
+        side = "above" if odd.deviation > 0 else "below"
+        text = (
+            f"friction is {percent(abs(odd.deviation))} {side} that of its "
+            f"{len(runs) - 1} repeats, {usual}. The mean includes it. Check mounting, zero and "
+            "specimen; reject the run in review.toml if it is wrong"
+        )
+        said[name] = _row("suspect", text, odd.deviation)
+    return said
+
+
+def _row(status: str, message: str, value: float | None = None) -> CheckRow:
+    return CheckRow(REPEATS, status, _VARIABLE, message, value, "1")
+
+
+def _judged(store: Store, run: RunCame, place: int, said: dict[str, CheckRow]) -> RunCame:
+    """Write down what is said of a run, instead of what was said of it before."""
+    name, quality = run.outcome.name, run.outcome.quality
+    entry = store.get("run", name, RunRecord)
+    if entry is None:
+        return run
+    before = entry.record.facts.checks
+    others = tuple(row for row in before if row.check != REPEATS)
+    own = said.get(name)
+    if own is not None and own.status == "suspect" and quality in _BY_HAND:
+        own = replace(own, decision=f"the run was {quality} by hand")
+    rows = others if own is None else (*others, own)
+    if rows == before:
+        return run
+    suspect = any(row.status == "suspect" and not row.decision for row in rows)
+    if quality in ("pass", "suspect"):
+        quality = "suspect" if suspect else "pass"
+    outcome = replace(run.outcome, quality=quality)
+    record = replace(entry.record, outcome=outcome, facts=replace(entry.record.facts, checks=rows))
+    trace = store.trace("run", name)
+    store.put("run", name, place, entry.fingerprint, record, trace)
+    return run._replace(outcome=outcome)
