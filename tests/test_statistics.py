@@ -13,10 +13,9 @@ from tribolab.friction.statistics import (
     MOST_STRETCHES,
     error_of_series,
     estimate_of,
-    on_grid,
-    sample_weights,
     with_freedom,
 )
+from tribolab.friction.time_weights import on_grid, sample_weights
 
 RECORDS, N = 240, 1920
 

@@ -13,10 +13,12 @@ from tribolab.friction.segments import slopes
 from tribolab.friction.segments.constancy import MeanVelocities
 from tribolab.friction.segments.locate import ConstancyLimits, VelocityPiece, held, locate, moving
 from tribolab.friction.segments.turns import strokes_within
+from tribolab.friction.time_weights import without_gaps
 from tribolab.medians import median
 from tribolab.pieces import anywhere
 
 _NOWHERE = 3.0  # standard deviations of a reading of the position: so far is nowhere
+_NEAR = 4  # intervals on each side of one that tell whether it is a gap
 _RESOLVED = 10.0  # errors of a block's velocity from which on its blocks are long enough
 
 
@@ -110,10 +112,9 @@ def from_position(run: xr.Dataset, limits: ConstancyLimits, max_gap: float | Non
     if time.size < 3 * slopes.FEWEST_OF_BLOCK:
         return _nothing(run, time.size)
     pieces = _by_slopes(time, position, limits, slopes.FEWEST_OF_BLOCK)
-    pieces = strokes_within(time, position, pieces, limits)
-    pieces = moving(time, pieces, limits)
     pieces = held(MeanVelocities(time, position=position), pieces, limits)
-    pieces = [_with_slope(time, position, p) for p in pieces]
+    pieces = strokes_within(time, position, pieces, limits)
+    pieces = moving(time, [_with_slope(time, position, p) for p in pieces], limits)
     if limits.rest_speed is None:
         pieces = _getting_somewhere(time, pieces, slopes.position_noise(time, position))
     share = 0.25  # one straight line on both sides of a pause shows that the speed held
@@ -255,8 +256,12 @@ def _gaps(
     wide = np.flatnonzero(spans > longest)  # only there can such a pause hide
     parts = []
     for block in wide:
-        part = inside[block * step : (block + 1) * step + 1]
-        parts.append(block * step + np.flatnonzero(np.diff(part) > longest))
+        near = max(int(block) * step - _NEAR, 0)
+        steps = np.diff(inside[near : (block + 1) * step + _NEAR + 1])
+        # a slower rate is no gap: it has as long intervals next to it
+        alone = (steps > without_gaps(steps)) | (max_gap is not None)
+        gap = near + np.flatnonzero((steps > longest) & alone)
+        parts.append(gap[(gap >= block * step) & (gap < (block + 1) * step)])
     return piece.first + np.concatenate(parts) if parts else np.zeros(0, dtype=int)
 
 
