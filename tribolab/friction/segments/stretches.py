@@ -110,10 +110,9 @@ def from_position(run: xr.Dataset, limits: ConstancyLimits, max_gap: float | Non
     if time.size < 3 * slopes.FEWEST_OF_BLOCK:
         return _nothing(run, time.size)
     pieces = _by_slopes(time, position, limits, slopes.FEWEST_OF_BLOCK)
-    pieces = strokes_within(time, position, pieces, limits)
-    pieces = moving(time, pieces, limits)
     pieces = held(MeanVelocities(time, position=position), pieces, limits)
-    pieces = [_with_slope(time, position, p) for p in pieces]
+    pieces = strokes_within(time, position, pieces, limits)
+    pieces = moving(time, [_with_slope(time, position, p) for p in pieces], limits)
     if limits.rest_speed is None:
         pieces = _getting_somewhere(time, pieces, slopes.position_noise(time, position))
     share = 0.25  # one straight line on both sides of a pause shows that the speed held

@@ -14,6 +14,9 @@ _INNER = 0.8  # of a stroke: what turns and starts lies outside
 _PARTS = 4  # of the inner part, whose speeds are compared
 _STRAIGHT = 0.6  # of the strokes of a stretch that have to hold their speed
 _SURE = 3.0  # standard errors
+_LEAVES = 0.005  # of a stroke, by which a position leaves its straight line
+_ALIKE = 0.1  # of a stroke's speed, by which a plateau of it may differ
+_COVERED = 0.6  # of a stroke, which plateaus cover if they have found it
 _ABOVE = 20.0  # times the noise of a reading: so far a slider goes to and fro
 
 
@@ -68,7 +71,7 @@ def turns_of(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def strokes_within(
     time: np.ndarray, position: np.ndarray, pieces: list[VelocityPiece], limits: ConstancyLimits
 ) -> list[VelocityPiece]:
-    """Take what seems to ramp or to rest, and goes to and fro evenly, apart where it turns.
+    """Return the pieces with a plateau for each straight stroke that the blocks have missed.
 
     Parameters
     ----------
@@ -81,58 +84,108 @@ def strokes_within(
 
     Notes
     -----
-    Slopes over blocks do not see strokes that last a few blocks only, and see no speed in as many
-    ways to as fro; between its turns each can be looked at alone. A stroke of a crank is no
-    straight line, and stays a ramp.
+    A block of slopes may cover a turn or a dwell. Strokes of a few blocks then look like ramps or
+    like rest. Each is examined between its turns, first over the whole record and then within each
+    piece that ramps or rests. The strokes of a crank are not straight and stay ramps.
     """
-    result: list[VelocityPiece] = []
     noise = slopes.position_noise(time, position)
+    whole = VelocityPiece(0, time.size, "ramp", 0.0, 0.0, 0.0)
+    if any(p.kind != "constant" and p.last - p.first >= limits.min_samples for p in pieces):
+        pieces = _completed(pieces, _strokes_of(time, position, whole, limits, noise))
+    least = _STROKES * limits.min_samples
+    result: list[VelocityPiece] = []
     for piece in pieces:
-        least = _STROKES * limits.min_samples
         few = piece.kind == "constant" or piece.last - piece.first < least
-        result += [piece] if few else _apart(time, position, piece, limits, noise)
+        strokes = [] if few else _strokes_of(time, position, piece, limits, noise)
+        result += _completed([piece], strokes)
     return result
 
 
-def _apart(
+def _completed(
+    pieces: list[VelocityPiece], strokes: list[VelocityPiece]
+) -> list[VelocityPiece]:
+    """Put strokes in place of what lies there, unless plateaus already cover most of them."""
+    if not strokes:
+        return pieces
+    first, last = (np.array([getattr(p, k) for p in pieces]) for k in ("first", "last"))
+    velocity = np.array([p.velocity if p.kind == "constant" else 0.0 for p in pieces])
+    missed: list[VelocityPiece] = []
+    for stroke in strokes:
+        i = int(np.searchsorted(last, stroke.first, side="right"))
+        j = int(np.searchsorted(first, stroke.last, side="left"))
+        common = np.minimum(last[i:j], stroke.last) - np.maximum(first[i:j], stroke.first)
+        alike = np.abs(velocity[i:j] - stroke.velocity) < _ALIKE * abs(stroke.velocity)
+        if common[alike].sum() < _COVERED * (stroke.last - stroke.first):
+            missed.append(stroke)
+    if not missed:
+        return pieces
+    # what is left of each piece between the missed strokes; a plateau that one of them cuts was none
+    begins = sorted([p.first for p in pieces] + [p.last for p in missed])
+    ends = sorted([p.last for p in pieces] + [p.first for p in missed])
+    rest: list[VelocityPiece] = []
+    for begin, end in zip(begins, ends, strict=True):
+        if end > begin:
+            own = pieces[int(np.searchsorted(last, begin, side="right"))]
+            cut = own.kind == "constant" and end - begin < own.last - own.first
+            rest.append(own._replace(first=begin, last=end, kind="ramp" if cut else own.kind))
+    return sorted(rest + missed)
+
+
+def _strokes_of(
     time: np.ndarray,
     position: np.ndarray,
     piece: VelocityPiece,
     limits: ConstancyLimits,
     noise: float,
 ) -> list[VelocityPiece]:
+    """Return the straight strokes of a piece; none where most strokes are not straight."""
     part = position[piece.first : piece.last]
     if np.ptp(part) < _ABOVE * noise:
-        return [piece]  # to and fro is but noise
+        return []  # to and fro is but noise
     turn = turns_of(part)[0] + piece.first
-    edges = np.unique(np.concatenate([[piece.first], turn, [piece.last]]))
     if turn.size < _STROKES:
-        return [piece]
-    parts = []
-    for first, last in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
-        speed = _speed_of(time[first:last], position[first:last], limits, noise)
-        kind = "ramp" if speed is None else "constant"
-        parts.append(piece._replace(first=first, last=last, kind=kind, velocity=speed or 0.0))
-    straight = sum(part.kind == "constant" for part in parts)
-    return parts if straight >= _STRAIGHT * len(parts) else [piece]
+        return []
+    edges = np.unique(np.concatenate([[piece.first], turn, [piece.last]])).tolist()
+    own = [
+        _straight_part(time[a:b], position[a:b], limits, noise)
+        for a, b in zip(edges[:-1], edges[1:], strict=True)
+    ]
+    found = [
+        piece._replace(first=a + part[0], last=a + part[1], kind="constant", velocity=part[2])
+        for a, part in zip(edges[:-1], own, strict=True)
+        if part is not None
+    ]
+    return found if len(found) >= _STRAIGHT * len(own) else []
 
 
-def _speed_of(
+def _straight_part(
     time: np.ndarray, position: np.ndarray, limits: ConstancyLimits, noise: float
-) -> float | None:
-    """Return the velocity [m/s] of a stroke; None where it does not hold it."""
-    if time.size < limits.min_samples:
+) -> tuple[int, int, float] | None:
+    """Return the samples [first, last) and the velocity [m/s] of a stroke without its dwells.
+
+    None where the stroke does not hold its speed.
+    """
+    low, high = float(position.min()), float(position.max())
+    margin = (1 - _INNER) / 2 * (high - low)
+    inside = np.flatnonzero((position > low + margin) & (position < high - margin))
+    if inside.size < limits.min_samples * _INNER:
         return None
-    margin = (1 - _INNER) / 2
-    inner = slice(round(margin * time.size), round((1 - margin) * time.size))
+    inner = slice(inside[0], inside[-1] + 1)
     t, x = time[inner], position[inner]
     edges = (t.size - 1) * np.arange(_PARTS + 1) // _PARTS
     lasted = np.diff(t[edges])
     if not (lasted > 0).all():
         return None
     speeds = np.diff(x[edges]) / lasted
-    mean = float((x[-1] - x[0]) / (t[-1] - t[0]))
+    offset, slope = slopes.line(t, x)
     error = np.sqrt(2) * noise / lasted
-    off = np.abs(speeds - mean) - _SURE * error
-    surely = abs(mean) > _SURE * float(np.median(error)) / np.sqrt(_PARTS)
-    return mean if surely and (off <= limits.drift / 2 * abs(mean)).all() else None
+    off = np.abs(speeds - slope) - _SURE * error
+    surely = abs(slope) > _SURE * float(np.median(error)) / np.sqrt(_PARTS)
+    if not surely or not (off <= limits.drift / 2 * abs(slope)).all():
+        return None
+    away = np.abs(position - offset - slope * time) > _SURE * noise + _LEAVES * (high - low)
+    before = np.flatnonzero(away[: inside[0]])
+    after = np.flatnonzero(away[inside[-1] :])
+    first = int(before[-1]) + 1 if before.size else 0
+    last = int(inside[-1] + after[0]) if after.size else time.size
+    return (first, last, slope) if last - first >= limits.min_samples else None
