@@ -101,34 +101,32 @@ def strokes_within(
     return result
 
 
-def _completed(
-    pieces: list[VelocityPiece], strokes: list[VelocityPiece]
-) -> list[VelocityPiece]:
-    """Put strokes in place of what lies there, unless plateaus already cover most of them."""
+def _completed(pieces: list[VelocityPiece], strokes: list[VelocityPiece]) -> list[VelocityPiece]:
+    """Put the strokes in place of what lies there, unless plateaus already cover each of them."""
     if not strokes:
         return pieces
     first, last = (np.array([getattr(p, k) for p in pieces]) for k in ("first", "last"))
     velocity = np.array([p.velocity if p.kind == "constant" else 0.0 for p in pieces])
-    missed: list[VelocityPiece] = []
-    for stroke in strokes:
+
+    def found(stroke: VelocityPiece) -> bool:
         i = int(np.searchsorted(last, stroke.first, side="right"))
         j = int(np.searchsorted(first, stroke.last, side="left"))
         common = np.minimum(last[i:j], stroke.last) - np.maximum(first[i:j], stroke.first)
         alike = np.abs(velocity[i:j] - stroke.velocity) < _ALIKE * abs(stroke.velocity)
-        if common[alike].sum() < _COVERED * (stroke.last - stroke.first):
-            missed.append(stroke)
-    if not missed:
+        return bool(common[alike].sum() >= _COVERED * (stroke.last - stroke.first))
+
+    if all(found(stroke) for stroke in strokes):
         return pieces
-    # what is left of each piece between the missed strokes; a plateau that one of them cuts was none
-    begins = sorted([p.first for p in pieces] + [p.last for p in missed])
-    ends = sorted([p.last for p in pieces] + [p.first for p in missed])
+    # what is left of each piece between the strokes; a plateau that one of them cuts was none
+    begins = sorted([p.first for p in pieces] + [p.last for p in strokes])
+    ends = sorted([p.last for p in pieces] + [p.first for p in strokes])
     rest: list[VelocityPiece] = []
     for begin, end in zip(begins, ends, strict=True):
         if end > begin:
             own = pieces[int(np.searchsorted(last, begin, side="right"))]
             cut = own.kind == "constant" and end - begin < own.last - own.first
             rest.append(own._replace(first=begin, last=end, kind="ramp" if cut else own.kind))
-    return sorted(rest + missed)
+    return sorted(rest + strokes)
 
 
 def _strokes_of(
