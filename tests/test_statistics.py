@@ -10,11 +10,10 @@ from tribolab.friction.statistics import (
     MOST_STRETCHES,
     error_of_mean,
     estimate_of,
-    on_grid,
-    sample_weights,
     student_widening,
     trend,
 )
+from tribolab.friction.time_weights import on_grid, sample_weights
 
 RECORDS, N = 2000, 960
 

@@ -46,6 +46,7 @@ from tribolab.friction.run_out import (
     stretches_for_many_turns,
     turns_of,
 )
+from tribolab.friction.time_weights import on_grid, sample_weights
 
 MOST_STRETCHES = 96  # stretches of a record; more resolve no slower memory
 _WANDERS = 2.0  # times the error by the scatter, from which it is said that it is larger
@@ -99,8 +100,8 @@ def estimate_of(time: np.ndarray, values: np.ndarray) -> Estimate:
     Returns
     -------
     Estimate
-        ``std`` is the sample standard deviation (ddof 1). Where the spacing of the samples
-        changes by more than a factor of two, mean and std are weighted by time.
+        ``std`` is the sample standard deviation (ddof 1). If the sampling rate
+        changes, mean and std are weighted by time.
         ``effective_samples`` n_eff is std^2 over the variance of the mean, at most the number of
         samples; ``autocorrelation_time`` is duration / (2 n_eff), half a spacing for white noise.
         ``sem`` is widened below 8 effective samples to what Student's t asks for, so that 1.96 of
@@ -321,38 +322,6 @@ seen in so short a record')
         f"the standard error is {estimate.sem / scatter:.2g} times what the scatter makes: "
         "it holds a wander too slow to be seen in so short a record"
     )
-
-
-def sample_weights(time: np.ndarray) -> np.ndarray | None:
-    """Weights by time, summing to one, if the spacing is uneven; None if it is even."""
-    bins = min(32, time.size // 8)
-    if bins < 2:
-        return None
-    edges = np.searchsorted(time, np.linspace(time[0], time[-1], bins + 1)[1:-1])
-    count = np.diff(np.concatenate([[0], edges, [time.size]]))
-    count = count[count > 0]  # a pause is not a slow rate
-    if count.max() <= 2 * count.min() + 2:
-        return None
-    steps = np.diff(time)
-    # the shorter neighbouring step, so that the samples beside a pause do not stand for the pause
-    weight = np.minimum(np.append(steps, steps[-1]), np.append(steps[0], steps))
-    return weight / weight.sum()
-
-
-def on_grid(time: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
-    """Means over `count` equal stretches of time; an empty one is interpolated."""
-    if count == values.size and sample_weights(time) is None:
-        return values
-    edges = np.linspace(time[0], time[-1], count + 1)
-    first = np.searchsorted(time, edges[:-1], side="left")
-    last = np.append(first[1:], time.size)
-    full = last > first
-    sums = np.add.reduceat(values, first[full])
-    result = np.full(count, np.nan)
-    result[full] = sums / (last - first)[full]
-    place = np.arange(count)
-    result[~full] = np.interp(place[~full], place[full], result[full])
-    return result
 
 
 def error_of_mean(records: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -83,10 +83,22 @@ def add_derived(
     if zeros := _stated_zeros(said, dialect):
         attrs["zeros_stated"] = zeros
     _add_ratio_of_stresses(columns, said, attrs)
+    _add_stated_rotation(columns, attrs, rows, dialect)
     for name in symbols:
         columns.pop(name, None)
     if said:
         attrs["derived"] = said
+
+
+def _add_stated_rotation(
+    columns: dict[str, np.ndarray], attrs: Json, rows: int, dialect: Dialect
+) -> None:
+    """Add the rotation speed that the header states, as if a column had it."""
+    turns = [v for v in dialect.value if v.unit is not None and v.si_unit == "rad/s"]
+    stated = [_number(value, attrs) for value in turns]
+    known = [number for number in stated if number]
+    if "rotation_speed" not in columns and len(known) == 1:
+        columns["rotation_speed"] = np.full(rows, known[0])
 
 
 def _add_ratio_of_stresses(

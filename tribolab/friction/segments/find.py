@@ -10,6 +10,7 @@ from tribolab.friction.segments.loaded import loaded
 from tribolab.friction.segments.locate import ConstancyLimits
 from tribolab.friction.segments.slopes import line
 from tribolab.friction.segments.specimens import apart
+from tribolab.friction.segments.standstill import without_standstills
 from tribolab.friction.segments.stretches import (
     Stretch,
     finite,
@@ -57,7 +58,8 @@ def find_segments(
     ----------
     run
         Dataset with dim ``time`` and one of ``sliding_velocity``, ``position``, ``step``; the
-        first of these that is there is used (see Notes).
+        first of these that is there is used (see Notes). If the position stands still in segments
+        of the recorded velocity, the position is used.
     trim
         Share of each segment's duration that is left out at each end, 0 <= trim < 0.5; ``"10 %"``
         is 0.1. Several shares, over a dim of their own, make that a dim of the result.
@@ -99,7 +101,8 @@ def find_segments(
         it has them. On dim ``omitted``: ``omitted_start``, ``omitted_stop`` [s] and
         ``omitted_reason``. Attributes ``trim`` and ``velocity_source`` (``"recorded"``,
         ``"position"``, ``"step"`` or ``"set speed"``); with a `position_range`,
-        ``position_low_m`` and ``position_high_m``; of middles of strokes ``stroke_middle``.
+        ``position_low_m`` and ``position_high_m``; of middles of strokes ``stroke_middle``;
+        ``standstill_s`` if the position stands still while the recorded velocity says otherwise.
 
     Raises
     ------
@@ -142,13 +145,16 @@ def find_segments(
     slow = None if rest_speed is None else to_si(rest_speed, "m/s", name="rest_speed")
     limits = ConstancyLimits(resolution, drift, min_samples, slow)
 
-    source = velocity_source(run)
+    source, stands = velocity_source(run), 0.0
     if run.attrs.get("rows_are") == "points":
         return _of_points(run, source)
     if stroke_middle is not None:
         return _of_strokes(run, source, to_si(stroke_middle, "1", "stroke_middle"), min_samples)
     if source == "recorded":
         stretches = from_velocity(run, limits, gap)
+        if "stroke_m" not in run.attrs:
+            stretches, stands = without_standstills(run, stretches)
+            source = "position" if stands else source
         if "stroke_m" in run.attrs:  # computed without noise: only what does not move rests
             stretches = [_driven(run, stretch) for stretch in stretches]
     elif source == "position":
@@ -163,6 +169,8 @@ def find_segments(
     ]
     stretches = loaded(run, stretches, limits)
     plateaus = measured(run, stretches, source, share, position_range)
+    if stands:
+        plateaus.attrs["standstill_s"] = stands
     by_chance = plateaus.sizes["segment"] and _covered(run, plateaus) < _BY_CHANCE
     if position_range is not None or (plateaus.sizes["segment"] and not by_chance):
         return plateaus

@@ -13,10 +13,12 @@ from tribolab.friction.segments import slopes
 from tribolab.friction.segments.constancy import MeanVelocities
 from tribolab.friction.segments.locate import ConstancyLimits, VelocityPiece, held, locate, moving
 from tribolab.friction.segments.turns import strokes_within
+from tribolab.friction.time_weights import without_gaps
 from tribolab.medians import median
 from tribolab.pieces import anywhere
 
 _NOWHERE = 3.0  # standard deviations of a reading of the position: so far is nowhere
+_NEAR = 4  # intervals on each side of one that tell whether it is a gap
 _RESOLVED = 10.0  # errors of a block's velocity from which on its blocks are long enough
 
 
@@ -254,8 +256,12 @@ def _gaps(
     wide = np.flatnonzero(spans > longest)  # only there can such a pause hide
     parts = []
     for block in wide:
-        part = inside[block * step : (block + 1) * step + 1]
-        parts.append(block * step + np.flatnonzero(np.diff(part) > longest))
+        near = max(block * step - _NEAR, 0)
+        steps = np.diff(inside[near : (block + 1) * step + _NEAR + 1])
+        # a slower rate is no gap: it has as long intervals next to it
+        alone = (steps > without_gaps(steps)) | (max_gap is not None)
+        gap = near + np.flatnonzero((steps > longest) & alone)
+        parts.append(gap[(gap >= block * step) & (gap < (block + 1) * step)])
     return piece.first + np.concatenate(parts) if parts else np.zeros(0, dtype=int)
 
 

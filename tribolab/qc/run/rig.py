@@ -7,11 +7,13 @@ from collections.abc import Mapping
 import numpy as np
 
 from tribolab.core.limit import Limit
-from tribolab.medians import median, median_of_known
+from tribolab.friction.segments.slopes import digit, position_noise
+from tribolab.medians import median
 from tribolab.pieces import one_by_one
 from tribolab.qc.register import Check, Result, Skip
 from tribolab.qc.run.per_segment import by_segment, status_of
 from tribolab.qc.run.subject import RunSubject
+from tribolab.words import duration
 
 
 def _zero_offset(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -73,35 +75,49 @@ def _velocity_set(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
 def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     if not {"sliding_velocity", "position"} <= set(subject.run):
         raise Skip("velocity and position were not both recorded")
-    slopes, scatter, spread = np.array(
-        [_slope(subject, part) for part in one_by_one(subject.slices)]
+    results = []
+    if stands := float(subject.segments.attrs.get("standstill_s", 0.0)):
+        text = (
+            f"the position stands still for at least {duration(stands)} while the recorded velocity "
+            "says that it moves; segments and speeds are taken from the position"
+        )
+        results.append(Result("suspect", "position", text, stands, "s", cure=_CURE_OF_STANDSTILL))
+    position = subject.signals["position"]
+    known = np.isfinite(position)
+    noise = position_noise(subject.time[known], position[known])
+    slopes, error = np.array(
+        [_slope(subject, part, noise) for part in one_by_one(subject.slices)]
     ).T
-    if not np.isfinite(slopes).any():
+    if not np.isfinite(slopes).any() and not results:
         raise Skip("no position within the segments")
-    # readings that repeat one value do not scatter, and yet are no more exact than the others
-    errors = np.fmax(scatter, median_of_known(scatter)) / spread
     # the slope is a mean over the segment: compare it with the mean of the signed velocity
     velocity = subject.segment_means("sliding_velocity")
     velocity = np.where(velocity == 0, np.nan, velocity)
     # a creep that the encoder does not resolve is no speed to compare with
-    resolved = limits["errors"] * errors < limits["suspect"] * np.abs(velocity)
-    error = np.where(resolved, slopes / velocity - 1, np.nan)
-    return by_segment(subject, "sliding_velocity", error, limits, "d(position)/dt off the velocity")
+    resolved = limits["errors"] * error < limits["suspect"] * np.abs(velocity)
+    off = np.where(resolved, slopes / velocity - 1, np.nan)
+    if results and not np.isfinite(off).any():
+        return results
+    told = by_segment(subject, "sliding_velocity", off, limits, "d(position)/dt off the velocity")
+    return [*results, *told]
 
 
-def _slope(subject: RunSubject, part: slice) -> tuple[float, float, float]:
-    """Slope of the position over a segment [m/s], scatter about it [m], spread of the times [s]."""
+def _slope(subject: RunSubject, part: slice, noise: float) -> tuple[float, float]:
+    """Slope of the position over a segment and its error [m/s], if a reading is off by `noise` [m].
+
+    What the position deviates from a line is not its noise: a stage that stops deviates as well.
+    Digits are off by as much all along a segment in which none of them changes.
+    """
     time, position = subject.time[part], subject.signals["position"][part]
     good = np.isfinite(position)
     if good.sum() < 3:
-        return float("nan"), float("nan"), float("nan")
+        return float("nan"), float("nan")
     if not good.all():
         time, position = time[good], position[good]
     t, x = time - time.mean(), position - position.mean()
-    slope, spread = float(t @ x) / float(t @ t), float(np.sqrt(t @ t))
-    t *= slope
-    x -= t
-    return slope, float(np.std(x)), spread
+    slope = float(t @ x) / float(t @ t)
+    white = noise / float(np.sqrt(t @ t))
+    return slope, max(white, digit(position) / float(time[-1] - time[0]))
 
 
 def _clock_shift(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -120,6 +136,11 @@ def _clock_shift(subject: RunSubject, limits: Mapping[str, float]) -> list[Resul
     text = f"the clocks are matched to {2.0 * error:.3g} s, {share:.1%} of the shortest segment"
     return [Result(status_of(share, limits), "time", text, error, "s")]
 
+
+_CURE_OF_STANDSTILL = (
+    "Look whether the stage stopped or the encoder slipped. If the position is wrong, leave its "
+    "column out in the dialect."
+)
 
 _OFF = "Calibrate or zero the instrument; check what the file calls its unit."
 

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.friction.time_weights import without_gaps
 from tribolab.medians import median, medians_of_rows
 from tribolab.pieces import pieces
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
 from tribolab.room import filled
 
+_PARTS = 16  # of a stretch, whose rates are compared
 _BLOCK = 64  # samples over which a sampling interval is called local
 
 
@@ -172,7 +174,7 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
     time
         [s] (time)
     factor
-        Ratio of the median intervals before and after that counts.
+        Ratio of the intervals before and after that counts.
 
     Returns
     -------
@@ -184,21 +186,44 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
     >>> rate_change(np.concatenate([np.arange(100.0), 100 + 0.1 * np.arange(100)]))
     100
     """
-    interval = np.diff(time)
-    parts = min(16, interval.size // 8)
-    if parts < 2 or 0 < interval.max() <= factor * interval.min():
+    if time.size < 2:
         return None
-    edges = np.linspace(0, interval.size, parts + 1).astype(int)
-    medians = np.array([median(interval[a:b]) for a, b in zip(edges, edges[1:], strict=False)])
-    if not medians.max() > factor * medians.min() or medians.min() <= 0:
+    interval = without_gaps(np.diff(time))
+    if 0 < interval.max() <= factor * interval.min():
+        return None
+    least = _least_median(interval, factor) or _least_of_slow(interval, factor)
+    if not least:
         return None
     # the cut that parts the logarithms best into two levels
-    level = np.log(np.maximum(interval, 1e-3 * medians.min()))
+    level = np.log(np.maximum(interval, 1e-3 * least))
     count = np.arange(1, level.size)
     total = np.cumsum(level)
     means = total[:-1] / count, (total[-1] - total[:-1]) / (level.size - count)
     cut = int(np.argmax(count * (level.size - count) * (means[0] - means[1]) ** 2)) + 1
     return cut
+
+
+def _least_median(interval: np.ndarray, factor: float) -> float:
+    """Return the least median interval of equal numbers of rows; 0 if all are alike."""
+    parts = min(_PARTS, interval.size // 8)
+    if parts < 2:
+        return 0.0
+    edges = np.linspace(0, interval.size, parts + 1).astype(int)
+    medians = np.array([median(interval[a:b]) for a, b in zip(edges, edges[1:], strict=False)])
+    return float(medians.min()) if medians.max() > factor * medians.min() else 0.0
+
+
+def _least_of_slow(interval: np.ndarray, factor: float) -> float:
+    """Return the usual interval if some of as many equal times have far fewer rows than others.
+
+    A slow rate has few rows: among equal numbers of rows it would not be seen.
+    """
+    cumulative = np.cumsum(interval)
+    marks = np.linspace(0, cumulative[-1], _PARTS + 1)
+    rows = np.diff(np.searchsorted(cumulative, marks))
+    # intervals that scatter make numbers of rows scatter by their roots at most
+    clear = rows.max() > factor * rows.min() + 4 * np.sqrt(rows.max())
+    return float(median(interval)) if clear else 0.0
 
 
 def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np.ndarray:
@@ -209,7 +234,7 @@ def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np
     time
         [s] (time)
     factor
-        Ratio of the median intervals before and after that counts.
+        Ratio of the mean intervals before and after that counts; gaps are not part of them.
     stretch
         Samples over which a rate has to hold.
 
@@ -223,10 +248,10 @@ def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np
     blocks = (time.size - 1) // stretch
     level = np.empty(blocks)
     for begin, end in pieces(0, blocks, block=stretch):
-        interval = np.diff(time[begin * stretch : end * stretch + 1])
-        level[begin:end] = medians_of_rows(interval.reshape(-1, stretch))
+        interval = without_gaps(np.diff(time[begin * stretch : end * stretch + 1]))
+        level[begin:end] = interval.reshape(-1, stretch).mean(axis=1)
     level = np.log(np.maximum(level, np.finfo(float).tiny))
-    # the block that holds the change may have any median: compare across it
+    # the block that holds the change may have any mean: compare across it
     jump = np.abs(level[2:] - level[:-2]) > np.log(factor)
     begins = np.flatnonzero(jump & ~np.concatenate([[False], jump[:-1]]))
     changes = []

@@ -1,0 +1,103 @@
+"""Where a recorded position stands still although the recorded velocity says that it moves."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from tribolab.friction.segments import slopes
+from tribolab.friction.segments.limits import (
+    MAX_SPEED_MISFIT,
+    MIN_SHARE_OF_SPEED,
+    MIN_STANDSTILL,
+    MIN_STEPS_OF_BLOCK,
+)
+from tribolab.friction.segments.stretches import Stretch, track
+from tribolab.pieces import anywhere, one_by_one
+
+_PARTS = (32, 16, 8)  # of a segment: as many as the noise of the position allows
+
+
+def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list[Stretch], float]:
+    """Return the stretches with every standstill of the position at rest, and their duration [s].
+
+    Parameters
+    ----------
+    run
+        With ``sliding_velocity``; without ``position`` no stretch changes.
+    stretches
+        From the recorded velocity. A standstill in the first or last tenth of one does not count: a
+        stage needs time to start.
+
+    Notes
+    -----
+    A velocity without noise is often a set-point. A position that agrees with it for most of the
+    time, and stops for a part of a segment, shows that the stage stopped. A position that never
+    agrees is another quantity, or has another unit, and shows nothing.
+    """
+    if "position" not in run or not anywhere(np.isfinite, run["position"].values):
+        return stretches, 0.0
+    time, position = track(run)
+    if time.size < 3 * slopes.FEWEST_OF_BLOCK:
+        return stretches, 0.0
+    noise = slopes.position_noise(time, position)
+    result: list[Stretch] = []
+    stands = agreeing = examined = 0.0
+    for stretch in one_by_one(stretches):
+        first, last = np.searchsorted(time, [stretch.start, stretch.stop])
+        size = _block(time[first:last], stretch, noise)
+        if not size:
+            result.append(stretch)
+            continue
+        lasted = stretch.stop - stretch.start
+        _, slope = slopes.block_slopes(time[first:last], position[first:last], size)
+        share = np.abs(slope / stretch.velocity)
+        examined += lasted
+        agreeing += lasted * float(np.mean(np.abs(share - 1) < MAX_SPEED_MISFIT.value))
+        begin, end = _standing(share)
+        stands += lasted * float((end - begin).sum()) / share.size
+        # a block at either end of a standstill may be half of it
+        begin, end = np.maximum(begin - 1, 0) * size, (end + 1) * size
+        result += _cut(stretch, time[first:last], begin, end)
+    return (result, stands) if agreeing > 0.5 * examined else (stretches, 0.0)
+
+
+def _block(time: np.ndarray, stretch: Stretch, noise: float) -> int:
+    """Return the samples of a block in which the position is resolved; 0 if there are none."""
+    if stretch.kind != "constant" or not stretch.velocity:
+        return 0
+    steps = abs(stretch.velocity) * (stretch.stop - stretch.start) / MIN_STEPS_OF_BLOCK.value
+    for parts in _PARTS:
+        if time.size >= parts * slopes.FEWEST_OF_BLOCK and steps >= noise * parts:
+            return time.size // parts
+    return 0
+
+
+def _standing(share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return first and last block of each standstill, from the speed over the recorded one."""
+    slow = share < MIN_SHARE_OF_SPEED.value
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], slow, [False]])))
+    begin, end = edges[::2], edges[1::2]
+    margin = 0.1 * share.size
+    inside = np.minimum(end, share.size - margin) - np.maximum(begin, margin)
+    long = inside >= max(2, MIN_STANDSTILL.value * share.size)
+    return begin[long], end[long]
+
+
+def _cut(stretch: Stretch, time: np.ndarray, begin: np.ndarray, end: np.ndarray) -> list[Stretch]:
+    """Return a stretch in parts that slide and, from sample to sample, parts at rest."""
+    result, at = [], 0
+    ends = [*time.tolist(), stretch.stop]
+    for a, b in zip(begin.tolist(), np.minimum(end, time.size).tolist(), strict=True):
+        result.append((at, max(a, at), stretch))
+        result.append((max(a, at), b, Stretch(0.0, 0.0, "at rest", 0.0)))
+        at = b
+    result.append((at, time.size, stretch))
+    ends[0] = stretch.start
+    return [
+        each._replace(start=ends[a], stop=ends[b])
+        if b - a >= slopes.FEWEST_OF_BLOCK or len(result) == 1
+        else Stretch(ends[a], ends[b], "too short", np.nan)
+        for a, b, each in result
+        if b > a
+    ]
