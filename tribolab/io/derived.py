@@ -19,6 +19,7 @@ from tribolab.untyped import Json
 
 _LIGHT, _UNLOADED = 0.4, 0.1  # shares of the usual normal stress: a light one, and none
 _FEWEST = 20  # samples that tell a zero
+_MOVES, _ONE_SPEED = 0.5, 0.1  # of the speed: less is starting, and more is another speed
 _NO_CONTACT = 0.02  # share of the greatest normal stress below which nothing is pressed
 
 
@@ -83,22 +84,27 @@ def add_derived(
     if zeros := _stated_zeros(said, dialect):
         attrs["zeros_stated"] = zeros
     _add_ratio_of_stresses(columns, said, attrs)
-    _add_stated_rotation(columns, attrs, rows, dialect)
+    _add_stated_rotation(columns, attrs, dialect)
     for name in symbols:
         columns.pop(name, None)
     if said:
         attrs["derived"] = said
 
 
-def _add_stated_rotation(
-    columns: dict[str, np.ndarray], attrs: Json, rows: int, dialect: Dialect
-) -> None:
-    """Add the rotation speed that the header states, as if a column had it."""
+def _add_stated_rotation(columns: dict[str, np.ndarray], attrs: Json, dialect: Dialect) -> None:
+    """Add the rotation speed that the header states, as if a column had it.
+
+    It holds while the rig slides at one speed; of several speeds nobody knows which one it is.
+    """
     turns = [v for v in dialect.value if v.unit is not None and v.si_unit == "rad/s"]
-    stated = [_number(value, attrs) for value in turns]
-    known = [number for number in stated if number]
-    if "rotation_speed" not in columns and len(known) == 1:
-        columns["rotation_speed"] = np.full(rows, known[0])
+    stated = [number for value in turns if (number := _number(value, attrs))]
+    velocity = np.abs(columns.get("sliding_velocity", np.zeros(0)))
+    moving = velocity[velocity > _MOVES * np.nanmax(velocity, initial=0.0)]
+    if "rotation_speed" in columns or len(stated) != 1 or not moving.size:
+        return
+    share = velocity / median(moving)
+    if np.mean(np.abs(share - 1) < _ONE_SPEED) > 0.9 * moving.size / velocity.size:
+        columns["rotation_speed"] = stated[0] * np.where(share > _MOVES, 1.0, share)
 
 
 def _add_ratio_of_stresses(

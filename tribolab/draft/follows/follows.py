@@ -24,7 +24,12 @@ from tribolab.draft.follows.model import (
     and_also,
     of_value,
 )
-from tribolab.draft.follows.speed import surfaces_of, with_difference, with_speed
+from tribolab.draft.follows.speed import (
+    stated_turns,
+    surfaces_of,
+    with_difference,
+    with_speed,
+)
 from tribolab.draft.follows.sums import loads_that_add
 from tribolab.draft.follows.two_bodies import Pair, Radii, radii_of, shaft_of_torque
 from tribolab.draft.model import Understood
@@ -123,7 +128,8 @@ def _speed(told: _Told, track: Track, pair: Pair | None, radii: Radii | None) ->
     turned = "rotation_speed" in names and bool(track.formula)
     says_speed = says_speed - ({"set_speed", "position"} if turned else {"set_speed"})
     if pair is not None or names & says_speed:
-        return Follows()
+        turns = stated_turns(told.values) if "sliding_velocity" in names else None
+        return Follows() if turns is None else Follows(values=(turns,))
     return with_speed(Follows(), names, told.values, understood, words_said(told.layout), track)
 
 

@@ -198,6 +198,12 @@ def _is_rotation(value: DraftValue) -> bool:
     return named and PER_MINUTE.fullmatch(value.own_unit or "") is not None
 
 
+def stated_turns(values: Sequence[DraftValue]) -> DraftValue | None:
+    """Return the one rotation speed that the text states, as a value of the dialect."""
+    turns = [value for value in values if _is_rotation(value)]
+    return turns[0]._replace(unit="rpm", to="rad/s", name="rotation") if len(turns) == 1 else None
+
+
 def angle_in(understood: Understood) -> DraftColumn | None:
     """Return the column that holds an angle, or counts turns and parts of them."""
     columns = understood.columns
@@ -207,13 +213,12 @@ def angle_in(understood: Understood) -> DraftColumn | None:
 def _with_set_speed(before: Follows, values: Sequence[DraftValue], track: Track) -> Follows:
     """Let the speed that the text states be that of the run, which is asked about."""
     stated = [value for value in values if value.name == "set_speed"]
-    turns = [value for value in values if _is_rotation(value)]
-    if not stated and len(turns) == 1 and track.values:
-        about = f"'{turns[0].text}' and the radius of the track"
-        rate = turns[0]._replace(unit="rpm", to="rad/s", name="rotation")
-        formula = DraftedFormula("sliding_velocity", f"rotation * {track.formula}", about)
-        guess = f"'{turns[0].text}' is how fast it turns all along"
-        speed = _asked_of(SpeedBy("none"), turns[0], guess)
+    rate = stated_turns(values)
+    if not stated and rate is not None and track.values:
+        about = f"'{rate.text}' and the radius of the track"
+        formula = DraftedFormula("sliding_velocity", f"{rate.name} * {track.formula}", about)
+        guess = f"'{rate.text}' is how fast it turns all along"
+        speed = _asked_of(SpeedBy("none"), rate, guess)
         return and_also(before, formula, (rate, *track.values))._replace(speed=speed)
     if len(stated) != 1:
         return before

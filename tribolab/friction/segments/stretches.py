@@ -256,7 +256,7 @@ def _gaps(
     wide = np.flatnonzero(spans > longest)  # only there can such a pause hide
     parts = []
     for block in wide:
-        near = max(block * step - _NEAR, 0)
+        near = max(int(block) * step - _NEAR, 0)
         steps = np.diff(inside[near : (block + 1) * step + _NEAR + 1])
         # a slower rate is no gap: it has as long intervals next to it
         alone = (steps > without_gaps(steps)) | (max_gap is not None)

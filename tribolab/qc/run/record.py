@@ -327,8 +327,8 @@ RECORD_CHECKS = (
         "rate_changes",
         4,
         "Does the sampling rate change within a segment?",
-        "Means are weighted by time; spectra and errors need one rate. Set the logger before the segment "
-        "starts.",
+        "Means are weighted by time; spectra and errors need one rate. Set the logger before the "
+        "segment starts.",
         {"factor": Limit(1.5, "1", "between a drifting clock and the next setting of a logger")},
         _rate_changes,
     ),

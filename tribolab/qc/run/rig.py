@@ -78,8 +78,8 @@ def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list
     results = []
     if stands := float(subject.segments.attrs.get("standstill_s", 0.0)):
         text = (
-            f"the position stands still for at least {duration(stands)} while the recorded velocity "
-            "says that it moves; segments and speeds are taken from the position"
+            f"the position stands still for at least {duration(stands)} while the recorded "
+            "velocity says that it moves; segments and speeds are taken from the position"
         )
         results.append(Result("suspect", "position", text, stands, "s", cure=_CURE_OF_STANDSTILL))
     position = subject.signals["position"]

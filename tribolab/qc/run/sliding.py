@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tribolab.core.limit import Limit
+from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient import steadiness
 from tribolab.friction.coefficient.steadiness import chance_limit, relative_change, undecided
 from tribolab.friction.oscillation.lines import Line
@@ -15,11 +16,14 @@ from tribolab.friction.oscillation.periods import AT_ODDS
 from tribolab.friction.oscillation.regularity import SLIP_KINDS
 from tribolab.friction.oscillation.survey import CHANCE
 from tribolab.friction.oscillation.waveform import CLASSES
+from tribolab.friction.segments.strokes import find_strokes
 from tribolab.qc.flags import FAIL, GOOD
 from tribolab.qc.register import Check, Result, Skip
 from tribolab.qc.run.per_segment import by_segment, status_of
 from tribolab.qc.run.subject import RunSubject
 from tribolab.words import Count, duration
+
+_NOT_CONSTANT = ("at rest", "ramp", "too short")
 
 _CURE_OF_UNKNOWN_STROKES = (
     'Say stroke and frequency in the dialect ([speed] source = "stroke"), or record the position.'
@@ -214,7 +218,38 @@ def _segments(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     if why:
         return [Result("suspect", "", why)]
     number = subject.segments.sizes["segment"]
-    return [Result("pass", "", f"{Count(number):segment|segments} of constant speed")]
+    found = Result("pass", "", f"{Count(number):segment|segments} of constant speed")
+    return _lost_strokes(subject, limits) or [found]
+
+
+def _lost_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    """Report strokes of which no part is a segment although the position shows that they slide."""
+    segments = subject.segments
+    if segments.attrs.get("velocity_source") != "position" or "stroke_middle" in segments.attrs:
+        return []
+    try:
+        strokes = find_strokes(subject.run)
+    except AnalysisError:
+        return []
+    number = strokes.number
+    middle = np.flatnonzero((number >= 0) & (np.abs(strokes.place - 0.5) < 0.25))
+    when, own = subject.time[middle], number[middle]
+    slides = np.isin(segments["omitted_reason"].values.astype(str), _NOT_CONSTANT)
+    start = np.sort(segments["omitted_start"].values[slides])
+    stop = np.sort(segments["omitted_stop"].values[slides])
+    omitted = np.searchsorted(start, when, side="right") > np.searchsorted(stop, when, side="left")
+    kept = np.bincount(own[~omitted], minlength=strokes.way.size) > 0
+    lost = strokes.usual & ~kept
+    share = float(lost.sum() / max(strokes.usual.sum(), 1))
+    if share <= limits["lost_strokes"]:
+        return []
+    first = int(np.flatnonzero(lost)[0])
+    where = f"first at t = {subject.time[strokes.first[first]]:.6g} s"
+    text = (
+        f"{lost.sum()} of {Count(strokes.usual.sum()):stroke|strokes} have no segment of constant "
+        f"speed, {where}; they are not part of the mean"
+    )
+    return [Result("suspect", "position", text, share, "1", where, int(lost.sum()))]
 
 
 def _segment_speed(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -329,7 +364,11 @@ SLIDING_CHECKS = (
         "campaign file; of what a crank drives, take the middle of each stroke "
         "(`segments.stroke_middle = 0.5` in its [[run]] takes half of it); see `drift` and "
         "`min_samples` under [segments].",
-        {},
+        {
+            "lost_strokes": Limit(
+                0.05, "1", "share of the strokes; the first and the last may be cut, others not"
+            ),
+        },
         _segments,
     ),
     Check(

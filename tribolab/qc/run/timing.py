@@ -191,7 +191,7 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
     interval = without_gaps(np.diff(time))
     if 0 < interval.max() <= factor * interval.min():
         return None
-    least = _least_median(interval, factor) or _least_of_slow(interval, factor)
+    least = _least_mean(interval, factor) or _least_of_slow(interval, factor)
     if not least:
         return None
     # the cut that parts the logarithms best into two levels
@@ -203,14 +203,14 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
     return cut
 
 
-def _least_median(interval: np.ndarray, factor: float) -> float:
-    """Return the least median interval of equal numbers of rows; 0 if all are alike."""
+def _least_mean(interval: np.ndarray, factor: float) -> float:
+    """Return the least mean interval of equal numbers of rows; 0 if all are alike."""
     parts = min(_PARTS, interval.size // 8)
     if parts < 2:
         return 0.0
     edges = np.linspace(0, interval.size, parts + 1).astype(int)
-    medians = np.array([median(interval[a:b]) for a, b in zip(edges, edges[1:], strict=False)])
-    return float(medians.min()) if medians.max() > factor * medians.min() else 0.0
+    means = np.add.reduceat(interval, edges[:-1]) / np.diff(edges)
+    return float(means.min()) if means.max() > factor * means.min() else 0.0
 
 
 def _least_of_slow(interval: np.ndarray, factor: float) -> float:
@@ -248,8 +248,11 @@ def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np
     blocks = (time.size - 1) // stretch
     level = np.empty(blocks)
     for begin, end in pieces(0, blocks, block=stretch):
-        interval = without_gaps(np.diff(time[begin * stretch : end * stretch + 1]))
-        level[begin:end] = interval.reshape(-1, stretch).mean(axis=1)
+        # two intervals more at either end: a gap is one beside those around it
+        low, high = max(begin * stretch - 2, 0), end * stretch + 2
+        interval = without_gaps(np.diff(time[low : high + 1]))
+        own = interval[begin * stretch - low :][: (end - begin) * stretch]
+        level[begin:end] = own.reshape(-1, stretch).mean(axis=1)
     level = np.log(np.maximum(level, np.finfo(float).tiny))
     # the block that holds the change may have any mean: compare across it
     jump = np.abs(level[2:] - level[:-2]) > np.log(factor)

@@ -1,0 +1,101 @@
+"""Weights that make a mean over rows a mean over time, whatever the sampling rate does.
+
+Notes
+-----
+Each row stands for half of the interval before it and half of that after it (trapezoidal rule).
+A gap counts as one usual interval: nobody knows what the signal did there. A slower rate is no gap:
+it has at least three such intervals in a row.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import ndimage
+
+from tribolab.friction.limits import MAX_UNEVEN, MIN_GAP
+
+_MARKS = 1024  # rows at which time is compared with even rows, before all of them are
+_AROUND = 5  # intervals whose median is the usual one
+
+
+def sample_weights(time: np.ndarray) -> np.ndarray | None:
+    """Weights by time, summing to one; None if the rows are even, so that the plain mean will do.
+
+    Parameters
+    ----------
+    time
+        Increasing sample times [s].
+
+    Examples
+    --------
+    >>> time = np.concatenate([np.arange(0.0, 10.0, 0.1), np.arange(10.0, 30.0, 2.0)])
+    >>> weight = sample_weights(time)
+    >>> round(float(weight[time < 10].sum()), 2), sample_weights(np.arange(50.0)) is None
+    (0.37, True)
+    """
+    if time.size < 3:
+        return None
+    marks = np.linspace(0, time.size - 1, min(time.size, _MARKS)).astype(int)
+    if not _is_uneven(time[marks]):
+        return None
+    steps = without_gaps(np.diff(time))
+    cumulative = np.concatenate([[0.0], np.cumsum(steps)])
+    if not _is_uneven(cumulative):
+        return None
+    weight = np.append(steps, steps[-1]) + np.append(steps[0], steps)
+    return weight / weight.sum()
+
+
+def without_gaps(steps: np.ndarray) -> np.ndarray:
+    """Return the intervals between rows, a gap as one usual interval of the rows around it.
+
+    Parameters
+    ----------
+    steps
+        Intervals [s].
+
+    Examples
+    --------
+    >>> without_gaps(np.array([1.0, 1.0, 1.0, 50.0, 1.0, 1.0])).tolist()
+    [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
+    """
+    usual = ndimage.median_filter(steps, min(_AROUND, steps.size), mode="nearest")
+    return np.where(steps > MIN_GAP.value * usual, usual, steps)
+
+
+def _is_uneven(time: np.ndarray) -> bool:
+    """Whether rows run ahead of even rows, or behind, by more than a share of the duration."""
+    lasted = float(time[-1] - time[0])
+    if not lasted > 0:
+        return False
+    even = np.linspace(0.0, 1.0, time.size)
+    ahead = float(np.abs((time - time[0]) / lasted - even).max())
+    # a few rows are never even to better than one of them
+    return ahead > MAX_UNEVEN.value + 1 / time.size
+
+
+def on_grid(time: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
+    """Means over `count` equal stretches of time; an empty one is interpolated.
+
+    Parameters
+    ----------
+    time, values
+        Increasing sample times [s], and the signal (time).
+    count
+        Stretches.
+    """
+    weight = sample_weights(time)
+    if weight is None:
+        if count == values.size:
+            return values
+        weight = np.ones(time.size)
+    edges = np.linspace(time[0], time[-1], count + 1)
+    first = np.searchsorted(time, edges[:-1], side="left")
+    last = np.append(first[1:], time.size)
+    full = last > first
+    result = np.full(count, np.nan)
+    total = np.add.reduceat(weight, first[full])
+    result[full] = np.add.reduceat(weight * values, first[full]) / total
+    place = np.arange(count)
+    result[~full] = np.interp(place[~full], place[full], result[full])
+    return result
