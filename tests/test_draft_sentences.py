@@ -157,7 +157,7 @@ def test_a_sentence_states_strokes_a_speed_and_a_load(tmp_path):
     head = "Belt rig, speed 0,3 m/min\ntime/s\tdrag/cN\tload/N"
     path = table(tmp_path / "b.txt", head, T, 100 * FORCE, LOAD)
     told = command("dialect", path, "--no-ask", "--output", tmp_path / "b.toml")
-    assert "friction coefficient 0.167 (standard error at most 0.0" in told
+    assert "friction coefficient 0.167 (± U95 at most 0.0" in told
     assert tl.read(path).attrs["set_speed_m_s"] == pytest.approx(0.005)
     fastest = table(tmp_path / "c.txt", head.replace("speed", "max speed"), T, 100 * FORCE, LOAD)
     assert "set_speed_m_s" not in tl.read(fastest).attrs

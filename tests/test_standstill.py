@@ -81,3 +81,12 @@ def test_a_slow_slide_that_stops_is_no_noise_of_the_encoder() -> None:
     segments = tl.find_segments(run.drop_vars("position"))
     results = [r for rule, r in tl.check(run, segments).results if rule.name == "velocity_position"]
     assert "suspect" in {r.status for r in results} or "fail" in {r.status for r in results}
+
+
+def test_steps_of_a_coarse_encoder_are_no_resets() -> None:
+    run = reciprocating(280, stops=True)
+    stroke = float(run["position"].max())
+    coarse = np.round(run["position"] / (0.015 * stroke)) * (0.015 * stroke)
+    found = tl.find_segments(run.assign(position=coarse.assign_attrs(units="m")))
+    assert found.attrs["velocity_source"] == "position"
+    assert found["sliding_speed"].values == pytest.approx(SPEED, rel=0.03)

@@ -11,12 +11,14 @@ from tribolab.draft.words.words import squeezed
 from tribolab.io.clocks.faults import find_faults, rows_at_fault
 from tribolab.io.content.newest_first import is_newest_first
 from tribolab.io.dialects.cells import split_name
+from tribolab.medians import median
 from tribolab.quantities import unit_conversion
 
 if TYPE_CHECKING:
     from tribolab.draft.file.layout import Layout
     from tribolab.draft.model import DraftColumn
 
+_FEW_AT_FAULT = 0.01  # of the rows
 _DAY, _HOUR = 86400.0, 3600.0  # [s]
 _REMAINING = re.compile(r"left|remain|rest|countdown|togo|verbleib|restante|剩余|残り")
 _INTERVALS = {"dt", "deltat", "δt", "interval", "intervall"}
@@ -85,6 +87,8 @@ def find_clock(
         told = f"{int(bad.sum())} rows whose time is not later than before"
         if lossless:  # no guess: nothing else could be done with them
             column = column._replace(note=f"{told} are left out: they say nothing new")
+        elif _fill_one_interval(time, bad):  # no guess: one even time fits between the others
+            column = column._replace(note=f"{told} get times between the others'")
         else:
             notes.append(f"{told} get times between the others'")
     if wraps:  # no guess: it falls by exactly what such a counter holds
@@ -92,3 +96,13 @@ def find_clock(
         column = column._replace(note=f"{column.note}; {told}" if column.note else told)
     column = column._replace(guessed=(*column.guessed, *dict.fromkeys(notes)))
     return on_repeat, restart, [column if c.place == column.place else c for c in columns]
+
+
+def _fill_one_interval(time: np.ndarray, bad: np.ndarray) -> bool:
+    """Whether each row at fault is one of many, and the rows around it leave room for just it."""
+    rows = np.flatnonzero(bad)
+    inside = rows[(rows > 0) & (rows < time.size - 1)]
+    if inside.size < rows.size or rows.size > _FEW_AT_FAULT * time.size:
+        return False
+    span = (time[rows + 1] - time[rows - 1]) / median(np.diff(time))
+    return bool((~bad[rows + 1] & ~bad[rows - 1] & (np.abs(span - 2) < 0.5)).all())

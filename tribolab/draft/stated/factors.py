@@ -29,6 +29,7 @@ _RATIO = re.compile(
     r"|reduktor|riduz|riduttore|prevod|przeloz|przeklad|vaihde|valitys|utvaexl|utveksling|gearing|attetel"
     r"|aktarma|disli|передат|редукт|减速|変速|减速|増速"
 )
+_GEAR = re.compile(r"reduc|gear|getriebe|untersetz|uebersetz|riduz|reduktor|przeloz|减速|減速")
 _NUMBER = r"\d+(?:[.,]\d+)?"
 _ONE_TO = re.compile(rf"(?<![\d:.,])(?P<one>{_NUMBER})\s?:\s?(?P<other>{_NUMBER})(?![\d:])")
 _PLAIN = re.compile(
@@ -134,8 +135,12 @@ def _missing(line: str) -> str:
         if named and _number(ratio["one"]) != _number(ratio["other"]):
             return f"signals are read as they stand, not times '{shown(line, 40)}'"
     plain = _PLAIN.match(line)
-    if plain and _begins_a_word(_FACTOR, plain["key"]) and _number(plain["number"]) != 1:
+    if plain is None or _number(plain["number"]) == 1:
+        return ""
+    if _begins_a_word(_FACTOR, plain["key"]):
         return f"signals are read as they stand, not times '{shown(line, 40)}'"
+    if _begins_a_word(_GEAR, plain["key"]):
+        return f"speeds are read as they stand, not divided by '{shown(line, 40)}'"
     return ""
 
 

@@ -15,6 +15,7 @@ from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.values import find_values
 from tribolab.draft.words.stated_words import INTERVAL, RATE
 from tribolab.draft.words.words import squeezed
+from tribolab.errors import shown
 
 # "# Cadence d'acquisition : 1000 pts/s", "Rate (kS/s) = 1"; "1000 samples per second" alone
 _GROUPS = r"[1-9]\d{0,2}(?:[ \u00a0\u202f']\d{3})+"  # 1 000
@@ -25,6 +26,16 @@ _STATES = re.compile(
     re.IGNORECASE,
 )
 _ALONE = re.compile(rf"(?P<before>\W*){_NUMBER}\s*{_UNIT}[\s;,]*$", re.IGNORECASE)
+_SOME_SAMPLES = re.compile(
+    r"\W*(?P<key>[^\W\d][^:=\t;,\d]{0,60}?)\s*[:=\t;, ]\s*[x×]?\s?(?P<number>\d{1,6})"
+    r"\s*(?:[x×]|[^\W\d]{1,12})?\W*$"
+)
+_AVERAGES = re.compile(
+    r"(?:data|signal|samples?)?(?:averag(?:e|es|ed|ing)|mittelung|mittelwerte|moyennage|promedios?"
+    r"|decimation|dezimierung|downsampling|oversampling|undersampling|subsampling|datareduction)"
+    r"(?:over|of|factor|faktor|facteur|samples?|points?|count|number|n)*"
+)
+_LONGEST = 200  # characters of a line that are looked at
 _BRACKET = re.compile(r"[\[(]([^\[\]()]+)[\])]\s*$")
 # a sample in the languages of laboratories, as it is written in a unit
 _SAMPLE = (
@@ -68,6 +79,23 @@ def find_sampling(layout: Layout) -> Sampling | None:
     """
     if (above := interval_above(layout)) is not None:
         return Sampling(*above)
+    said = _stated(layout)
+    if said is None or not (fewer := _fewer_rows(layout)):
+        return said
+    doubt = f"every sample is taken for a row, although the file states '{fewer}'"
+    return said._replace(guess=f"{said.guess}; {doubt}" if said.guess else doubt)
+
+
+def _fewer_rows(layout: Layout) -> str:
+    """Return the line that says that several samples are averaged or left out; "" if none does."""
+    for line in layout.text_above():
+        said = _SOME_SAMPLES.match(line.strip()[:_LONGEST])
+        if said and int(said["number"]) > 1 and _AVERAGES.fullmatch(squeezed(said["key"])):
+            return shown(line.strip(), 40)
+    return ""
+
+
+def _stated(layout: Layout) -> Sampling | None:
     guessed = None
     for line in layout.text_above(bare=layout.width == 1):
         if (said := _of_line(line.rstrip(), layout.decimal)) is None:

@@ -13,6 +13,11 @@ MIN_STANDSTILL = Limit(
 MAX_SPEED_MISFIT = Limit(
     0.2, "1", "a position that is further off in most blocks is another quantity or unit"
 )
-MIN_STEPS_OF_BLOCK = Limit(
-    10.0, "1", "way of a block in errors of a position reading; a shorter one shows no standstill"
+MAX_ERROR_OF_BLOCK = Limit(
+    0.1, "1", "standard error of a block's speed over the speed: five of them are half of the speed"
+)
+MIN_DIGITS_OF_BLOCK = Limit(
+    5.0,
+    "1",
+    "digits of the position in a block's way; the slope of two or three digits is arbitrary",
 )

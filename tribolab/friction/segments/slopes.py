@@ -12,6 +12,7 @@ from tribolab.room import room
 _WANTED_ERROR = 0.03  # relative error of a block's slope that the block size aims at
 FEWEST_OF_BLOCK = 8  # samples in a block
 _JUMP = 0.002  # of the range of positions: a smaller jump moves no segment
+_DIGITS_OF_JUMP = 2.5  # a coarse encoder goes on by a digit or two at once
 _FASTER = 3.0  # times the rate around it, for a single sample
 _ISOLATED = 20.0  # times the scatter of the rates around it: no slider does that
 _SAMPLE = 8192  # readings that suffice to find their last digit
@@ -119,6 +120,7 @@ def is_rounding(position: np.ndarray, noise: float) -> bool:
 def _far(time: np.ndarray, position: np.ndarray) -> np.ndarray:
     """Return the samples behind which the position goes on far away."""
     least = _JUMP * float(np.ptp(position)) if position.size else 0.0
+    least = max(least, _DIGITS_OF_JUMP * quantum(position))
     parts = [
         first
         + np.flatnonzero(

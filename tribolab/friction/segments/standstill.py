@@ -7,11 +7,13 @@ import xarray as xr
 
 from tribolab.friction.segments import slopes
 from tribolab.friction.segments.limits import (
+    MAX_ERROR_OF_BLOCK,
     MAX_SPEED_MISFIT,
+    MIN_DIGITS_OF_BLOCK,
     MIN_SHARE_OF_SPEED,
     MIN_STANDSTILL,
-    MIN_STEPS_OF_BLOCK,
 )
+from tribolab.friction.segments.plateaus import quantum
 from tribolab.friction.segments.stretches import Stretch, track
 from tribolab.pieces import anywhere, one_by_one
 
@@ -40,12 +42,12 @@ def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list
     time, position = track(run)
     if time.size < 3 * slopes.FEWEST_OF_BLOCK:
         return stretches, 0.0
-    noise = slopes.position_noise(time, position)
+    noise, digit = slopes.position_noise(time, position), quantum(position)
     result: list[Stretch] = []
     stands = agreeing = examined = 0.0
     for stretch in one_by_one(stretches):
         first, last = np.searchsorted(time, [stretch.start, stretch.stop])
-        size = _block(time[first:last], stretch, noise)
+        size = _block(time[first:last], stretch, noise, digit)
         if not size:
             result.append(stretch)
             continue
@@ -62,14 +64,17 @@ def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list
     return (result, stands) if agreeing > 0.5 * examined else (stretches, 0.0)
 
 
-def _block(time: np.ndarray, stretch: Stretch, noise: float) -> int:
+def _block(time: np.ndarray, stretch: Stretch, noise: float, digit: float) -> int:
     """Return the samples of a block in which the position is resolved; 0 if there are none."""
     if stretch.kind != "constant" or not stretch.velocity:
         return 0
-    steps = abs(stretch.velocity) * (stretch.stop - stretch.start) / MIN_STEPS_OF_BLOCK.value
     for parts in _PARTS:
-        if time.size >= parts * slopes.FEWEST_OF_BLOCK and steps >= noise * parts:
-            return time.size // parts
+        size = time.size // parts
+        way = abs(stretch.velocity) * (stretch.stop - stretch.start) / parts
+        error = noise * np.sqrt(12 / max(size, 1))
+        clear = error <= MAX_ERROR_OF_BLOCK.value * way and MIN_DIGITS_OF_BLOCK.value * digit <= way
+        if size >= slopes.FEWEST_OF_BLOCK and clear:
+            return size
     return 0
 
 
