@@ -31,7 +31,7 @@ def sample_weights(time: np.ndarray) -> np.ndarray | None:
     >>> time = np.concatenate([np.arange(0.0, 10.0, 0.1), np.arange(10.0, 30.0, 2.0)])
     >>> weight = sample_weights(time)
     >>> round(float(weight[time < 10].sum()), 2), sample_weights(np.arange(50.0)) is None
-    (0.37, True)
+    (0.34, True)
     """
     if time.size < 3:
         return None
