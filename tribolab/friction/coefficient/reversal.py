@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribolab.friction.zero import limits
 from tribolab.friction.zero.parts import ZeroReference
 from tribolab.friction.zero.rests import Zeros
 
@@ -110,9 +111,11 @@ def reversal_of(
     -----
     A zero and a tilt move the middle of a loop alike where the load is the same. What a load that
     changed by a share d between the strokes leaves is tilt d/2 if the middle is taken for a zero,
-    and zero/load d/2 if it is taken for a tilt. Rests without load tell the two apart. Without
-    them the middle is shared between the two as their stated variances are, (load tilt)^2 and
-    zero^2: all of it is a tilt where no zero is stated, and a zero where no tilt is.
+    and zero/load d/2 if it is taken for a tilt. Rests without load tell the two apart, if they lie
+    before and after the strokes or the loads differ, and if the angle is plausible and does not
+    change with time: else the zero has drifted since the rest. Without rests the middle is shared
+    between the two as their stated variances are, (load tilt)^2 and zero^2: all of it is a tilt
+    where no zero is stated, and a zero where no tilt is.
     """
     members = np.where((pair >= 0) & np.isfinite(zero.half_loop), pair, -1)
     nothing = np.zeros(pair.size)
@@ -120,11 +123,33 @@ def reversal_of(
         return Reversal(np.full(pair.size, -1), nothing, nothing, "")
     apart = zero.value - (rests.at(time)[0] if rests is not None else 0.0)
     most = np.nan_to_num(_of_pairs(apart, members))
-    if rests is not None:
+    if rests is not None and _is_tilt(apart, members, load, time, rests):
         return Reversal(members, most, most, RESTS)
+    if rests is not None:  # the zero moved since the rest, or the cell is askew by a little
+        return Reversal(members, nothing, most, ZERO)
     tilt, offset = (float(stated.get(n, {}).get("standard", 0)) for n in ("tilt", "friction_zero"))
     if not tilt:
         return Reversal(members, nothing, most, ZERO)
     tilting = (np.nan_to_num(_of_pairs(load, members)) * tilt) ** 2
     share = np.divide(tilting, tilting + offset**2, out=np.zeros(pair.size), where=tilting > 0)
     return Reversal(members, share * most, most, WEIGHED)
+
+
+def _is_tilt(
+    apart: np.ndarray, members: np.ndarray, load: np.ndarray, time: np.ndarray, rests: Zeros
+) -> bool:
+    """Whether what the middles differ from the rests is a tilt, and not a zero that drifts."""
+    paired = (members >= 0) & np.isfinite(apart) & (load > 0)
+    if not paired.any():
+        return False
+    between = bool(rests.around(time[paired]).all()) and rests.time.size > 1
+    several = load[paired].max() > limits.LOADS_DIFFER.value * load[paired].min()
+    if not (between or several):
+        return False
+    angle, at = apart[paired] / load[paired], time[paired]
+    mean = float(np.mean(angle))
+    moment = at - at.mean()
+    slope = float(moment @ angle) / max(float(moment @ moment), 1e-300)
+    changes = abs(slope) * float(np.ptp(at))
+    plausible = abs(mean) <= limits.MAX_SAMPLE_TILT.value
+    return plausible and changes <= limits.TILT_CHANGES.value * abs(mean)

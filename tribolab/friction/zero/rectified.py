@@ -6,14 +6,18 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy import special
 
+from tribolab.friction.zero import limits
 from tribolab.medians import median, median_of_known
 from tribolab.pieces import anywhere, one_by_one
 
+_INNER = float(2 * special.ndtri(0.95))  # standard deviations from the 5th to 95th percentile
 _DIP = 0.5  # of the strokes' level, below which the force at a reversal is on its way through zero
 _TOUCH = 5.0  # standard deviations from zero within which a force touches it
 _BELOW = 1.0  # of the lower stroke's scatter: what lies deeper beneath it is on its way, too
 _QUICK = 3  # readings so deep: where they are more, one of them would have come close to zero
+_SEVERAL = 3  # readings between two levels that noise does not put there at most turns
 _FEW = 0.1  # share of such turns that a spike or a slip may take below both levels
 _MOST = 0.5  # share of the reversals that have to show it
 _LIKE = 0.25  # of their mean: strokes that differ by less are of one level
@@ -115,6 +119,7 @@ class Fold(NamedTuple):
 
     kind: str
     why: str
+    seen: bool = False  # that the force passes through its middle, by several readings at a turn
 
 
 SIGNED = Fold("signed", "")
@@ -184,7 +189,7 @@ def _both_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
             return SIGNED
         if beside < 0.5 * between:
             return Fold("rectified", f"{one_sign}, and rests without load do not lie between them")
-    dips, below, straight, seen = _reversals(trace)
+    dips, below, straight, clear, seen = _reversals(trace)
     if dips >= _MOST:
         return Fold(
             "rectified", f"{one_sign}, and goes to zero and back at {dips:.0%} of the turns"
@@ -194,19 +199,19 @@ def _both_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
     error = np.sqrt(np.nanmean(np.nan_to_num(trace.error) ** 2) / strokes)
     differ = high - low > max(_CLEAR * error, 1e-6 * high)
     if seen and below <= _FEW and differ and straight >= _MOST:
-        return SIGNED
+        return SIGNED._replace(seen=clear >= _MOST)
     like = high - low < _LIKE * (high + low) / 2
     why = f"{one_sign}, and the turns do not show whether it passes through zero"
     return Fold("undecided: alike" if like else "undecided", why)
 
 
-def _reversals(trace: ForceTrace) -> tuple[float, float, float, int]:
-    """Share of the turns that dip towards zero, go below both levels, go straight; their number.
+def _reversals(trace: ForceTrace) -> tuple[float, float, float, float, int]:
+    """Share of turns that dip to zero, go below both levels, go straight, clearly; their number.
 
-    "Straight" is a turn with readings between the two levels and none below them, where these are
-    apart by more than the readings scatter; where they are not, one of at least ten readings.
+    "Clearly" is straight by several readings. "Straight" is a turn with readings between the two levels, beyond their noise, and none below
+    them, where these are apart; where they are not, one of at least ten readings.
     """
-    dips, below, straight, seen = 0, 0, 0, 0
+    dips, below, straight, clear, seen = 0, 0, 0, 0, 0
     for i in one_by_one(range(len(trace.parts) - 1)):
         if trace.sign[i] * trace.sign[i + 1] > 0 and (trace.sign < 0).any():
             continue
@@ -218,16 +223,29 @@ def _reversals(trace: ForceTrace) -> tuple[float, float, float, int]:
         ends = sorted(
             (np.percentile(part, [5, 95]) for part in (first, second)), key=lambda e: e[0]
         )
-        (low, top), (bottom, _) = ends
+        (low, top), (bottom, highest) = ends
         dip = bool(turn.min() < _DIP * low)
         dips += dip
         if dip or 0 < np.count_nonzero(turn < low - _BELOW * (top - low)) <= _QUICK:
             below += 1
         elif top < bottom:
-            straight += bool(((turn > top) & (turn < bottom)).any())
+            # farther from either level than the noise of so many readings reaches
+            far = _noise_reaches(turn.size) / _INNER
+            above = (low + top) / 2 + far * (top - low)
+            beneath = (bottom + highest) / 2 - far * (highest - bottom)
+            on_the_way = np.count_nonzero((turn > above) & (turn < beneath))
+            straight += on_the_way > 0
+            clear += on_the_way >= _SEVERAL
         else:
             straight += turn.size >= 10
-    return (dips / seen, below / seen, straight / seen, seen) if seen else (0.0, 0.0, 0.0, 0)
+    if not seen:
+        return 0.0, 0.0, 0.0, 0.0, 0
+    return dips / seen, below / seen, straight / seen, clear / seen, seen
+
+
+def _noise_reaches(count: int) -> float:
+    """Return the standard deviations that the largest of so many readings exceeds in a tenth."""
+    return float(special.ndtri(1 - limits.NOISE_PASSES.value / count))
 
 
 def _one_way(trace: ForceTrace) -> Fold:

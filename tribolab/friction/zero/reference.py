@@ -84,7 +84,7 @@ def find_reference(
     elif wanted == "zero load" and known.rests is not None:
         result = _from_rests(strokes, known, known.rests)
     elif loops is not None:
-        result = loop if wanted == "half loop" else _checked(strokes, known, loops, loop)
+        result = loop if wanted == "half loop" else _checked(strokes, known, loops, loop, fold)
     elif known.rests is not None:
         result = _from_rests(strokes, known, known.rests)
     else:
@@ -190,7 +190,7 @@ def _from_loops(strokes: StrokeMeans, known: KnownOfZero, loops: Middles) -> Zer
 
 
 def _checked(
-    strokes: StrokeMeans, known: KnownOfZero, loops: Middles, loop: ZeroReference
+    strokes: StrokeMeans, known: KnownOfZero, loops: Middles, loop: ZeroReference, fold: Fold
 ) -> ZeroReference:
     """Compare the middles of the loops with a zero that does not rest on them.
 
@@ -207,7 +207,7 @@ def _checked(
         value, error = np.zeros(loops.time.size), np.full(loops.time.size, known.stated)
         by = "the stated zero"
     else:
-        return _ambiguous(strokes, loops, loop)
+        return _ambiguous(strokes, loops, loop, fold)
     apart = loops.value - value
     half = (strokes.mean[loops.member] * (0.5, -0.5)).sum(axis=1)
     own = np.sqrt(((loops.share * strokes.error[loops.member]) ** 2).sum(axis=1))
@@ -247,7 +247,9 @@ def _checked(
     return replace(other, doubts=doubts)
 
 
-def _ambiguous(strokes: StrokeMeans, loops: Middles, loop: ZeroReference) -> ZeroReference:
+def _ambiguous(
+    strokes: StrokeMeans, loops: Middles, loop: ZeroReference, fold: Fold
+) -> ZeroReference:
     """Say that an offset and an asymmetry look the same where no other zero tells them apart."""
     half = (strokes.mean[loops.member] * (0.5, -0.5)).sum(axis=1)
     offset, usual = median_of_known(loops.value), median_of_known(np.abs(half))
@@ -256,12 +258,21 @@ def _ambiguous(strokes: StrokeMeans, loops: Middles, loop: ZeroReference) -> Zer
         "no rest without load: friction that depends on direction and an offset cannot be told "
         f"apart. The offset that was removed, {offset:+.3g}{strokes.unit}, "
     )
+    cure, status = "Measure a rest without load.", "pass"
     if share < 1:
         text += f"would be {share:.1%} more friction one way and less the other; "
-    else:
+        text += "their mean does not change"
+    elif fold.seen:
         text += "is larger than friction; what part of it is an asymmetry is not known; "
-    text += "their mean does not change"
-    remark = doubt(text, "Measure a rest without load.", np.arange(strokes.size), "pass")
+        text += "their mean does not change"
+    else:
+        text += (
+            "is larger than the friction that is left. If the signal lost its sign, friction is "
+            f"about {offset:.3g}{strokes.unit}"
+        )
+        cure = "State `rectified` in the [[run]], or measure a rest without load."
+        status = "suspect"
+    remark = doubt(text, cure, np.arange(strokes.size), status)
     remark["noted"] = bool(_ASYMMETRY < share < 1)
     return replace(loop, doubts=(*loop.doubts, remark))
 

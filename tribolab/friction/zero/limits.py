@@ -1,0 +1,33 @@
+"""Numbers that decide what the zero of the forces is."""
+
+from tribolab.core.limit import Limit
+
+MAX_SAMPLE_TILT = Limit(
+    0.09, "rad", "largest tilt between force cell and contact that is believed: five degrees; a "
+    "sample that is askew by more is seen with the bare eye",
+)  # fmt: skip
+TILT_CHANGES = Limit(
+    0.5, "1", "change of the loops' middle along a run, over its mean, from which on it drifts: a "
+    "tilt does not change with time",
+)  # fmt: skip
+LOADS_DIFFER = Limit(1.2, "1", "largest over smallest load that can tell a tilt from a zero")
+UNLOADED_NOISE = Limit(
+    3.0, "1", "standard deviations of the unloaded reading within which another rest is unloaded"
+)
+UNLOADED_SHARE = Limit(
+    3e-3, "1", "share of the load by which unloaded rests differ: creep and friction in the cell",
+    "data sheets of strain-gauge cells: 0.02 to 0.3 %",
+)  # fmt: skip
+DRIFT_IN_STROKES = Limit(
+    0.5, "1", "share of the change between rests that the load of the strokes must show, too, if "
+    "it is a drift of the cell's zero",
+)  # fmt: skip
+LOADED_REST_SHARE = Limit(
+    0.02, "1", "share of friction by which a loaded rest before any sliding may differ from an "
+    "unloaded one; more is a tilt or the cross-talk of the load",
+)  # fmt: skip
+DRAG_SHARE = Limit(0.02, "1", "share of friction that drag without load may have unreported")
+NOISE_PASSES = Limit(
+    0.1, "1", "chance that the noise of all readings at a turn passes for one on its way from one "
+    "level to the other",
+)  # fmt: skip
