@@ -22,10 +22,12 @@ from tribolab.friction.statistics import (
     wander_remark,
     with_freedom,
 )
+from tribolab.friction.zero import limits
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import ZeroReference
 from tribolab.friction.zero.rests import light_rest, unloaded_rests
-from tribolab.friction.zero.words import of_light_rest
+from tribolab.friction.zero.without_sliding import of_loaded_and_idle, without_sliding
+from tribolab.friction.zero.words import of_light_rest, of_partial_contact
 from tribolab.medians import median
 from tribolab.pieces import one_by_one
 from tribolab.several import of_runs, over_dims
@@ -33,7 +35,6 @@ from tribolab.stamping import stamp
 from tribolab.untyped import Json
 
 _OFFSETS = ("auto", "half loop", "zero load", "none")
-_NO_CONTACT = 0.02  # share of the run's load below which there is no contact
 _LOST = 0.05  # share of samples without contact that spoils a segment
 
 
@@ -240,7 +241,7 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
         loads = estimates_of((time[s], normal[s]) for s in one_by_one(parts))
         pressed = _column(loads, "mean")
         load = float(median(pressed[pressed > 0])) if (pressed > 0).any() else np.nan
-    rests, normal_rests = unloaded_rests(run, segments, load)
+    rests, normal_rests, partial = unloaded_rests(run, segments, load)
     n0, n0_error = np.zeros(means.size), np.zeros(means.size)
     middle = _middles(time, parts, segments)
     if normal_rests is not None and settings.offset != "none":
@@ -253,6 +254,10 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
     )
     if normal_rests is None and (light := light_rest(run, segments, load, pressed)):
         zero = replace(zero, doubts=(*zero.doubts, of_light_rest(light, load, means.size)))
+    if partial is not None and settings.offset != "none":
+        zero = replace(zero, doubts=(*zero.doubts, of_partial_contact(partial, load, means.size)))
+    others = without_sliding(run, segments, rests, load)
+    zero = replace(zero, doubts=(*zero.doubts, *of_loaded_and_idle(others, zero, means, load)))
     turn = signs.sign * signs.unfold
     data = {
         "friction_force": turn * means - signs.sign * zero.value,
@@ -387,7 +392,8 @@ def _ratio(
     if load.samples == 0 or normal.size == 0:
         why = "normal force is not a number" if normal.size else "no samples"
         return nothing, nothing, _Pointwise(why)
-    if not load.mean - zero > max(_NO_CONTACT * usual, 0.0):
+    noise = limits.UNLOADED_NOISE.value * np.nan_to_num(load.std)
+    if not load.mean - zero > max(limits.UNLOADED_SHARE.value * usual, noise, 0.0):
         why = f"no contact: mean normal force {load.mean - zero:.3g} N"
         return nothing, nothing, _Pointwise(why)
     pressed = known & (normal > 0)

@@ -222,7 +222,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
         if normal is not None and "omitted_reason" in segments and len(parts):
             first = np.concatenate([normal[s][:1000] for s in parts])
             if np.isfinite(first).any():
-                rests = unloaded_rests(run, segments, float(median_of_known(first)))[1]
+                rests = unloaded_rests(run, segments, float(median_of_known(first))).normal
                 zero = float(rests.value.mean()) if rests else 0.0
         for part, sign in one_by_one(zip(parts, direction, strict=True)):
             raw = force[part]

@@ -8,14 +8,16 @@ import xarray as xr
 from tribolab.friction.segments.load_steps import at_levels
 from tribolab.friction.segments.locate import ConstancyLimits
 from tribolab.friction.segments.stretches import Stretch
+from tribolab.friction.zero.limits import UNLOADED_NOISE, UNLOADED_SHARE
 from tribolab.medians import median
 from tribolab.pieces import one_by_one
 
 _NO_LOAD = "no load"
-_NO_CONTACT = 0.02  # share of the run's load below which there is no contact
+_NO_CONTACT = 0.02  # share of the run's load below which there is none, if no rest tells more
 _UNLOADED = 0.1  # share of the load below which a rest can tell the zero of the normal force
 _LOADED = 0.9  # share of a stretch's load from which on its load is there
 _LOST = 0.05  # a smaller share of a segment without contact is left to its mean
+_FEWEST = 10  # samples of a rest that tell its noise
 _BINS = 200  # in a stretch
 _MOST_CUTS = 5  # a load that is lost more often is a bouncing one, and no program
 
@@ -50,6 +52,8 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], limits: ConstancyLimits) -
     rests = rests[np.abs(rests) < _UNLOADED * usual]
     zero = float(median(rests)) if rests.size else 0.0
     least = _NO_CONTACT * (usual - zero)
+    if (noise := _noise_at_rest(time, force, stretches, zero, usual)) > 0:
+        least = min(least, max(UNLOADED_NOISE.value * noise, UNLOADED_SHARE.value * usual))
     result: list[Stretch] = []
     for stretch in one_by_one(stretches):
         if stretch.kind == "constant":
@@ -62,6 +66,19 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], limits: ConstancyLimits) -
         parts = at_levels(time, force, stretch, limits.min_samples) if steps else [stretch]
         cut += parts
     return cut
+
+
+def _noise_at_rest(
+    time: np.ndarray, force: np.ndarray, stretches: list[Stretch], zero: float, usual: float
+) -> float:
+    """Return the scatter of the reading of the first unloaded rest [N]; 0 without one."""
+    for stretch in one_by_one(stretches):
+        if stretch.kind == "at rest":
+            part = force[slice(*np.searchsorted(time, [stretch.start, stretch.stop]))]
+            part = part[np.abs(part - zero) < _UNLOADED * usual]
+            if part.size >= _FEWEST:
+                return float(median(np.abs(part - median(part))) / 0.6745)
+    return 0.0
 
 
 def _median(time: np.ndarray, force: np.ndarray, stretches: list[Stretch], kind: str) -> np.ndarray:

@@ -19,8 +19,8 @@ UNLOADED_SHARE = Limit(
     "data sheets of strain-gauge cells: 0.02 to 0.3 %",
 )  # fmt: skip
 DRIFT_IN_STROKES = Limit(
-    0.5, "1", "share of the change between rests that the load of the strokes must show, too, if "
-    "it is a drift of the cell's zero",
+    0.5, "1", "share of the scatter of the strokes' load that may remain once the readings at rest "
+    "are taken off, if these are a drift of the cell's zero",
 )  # fmt: skip
 LOADED_REST_SHARE = Limit(
     0.02, "1", "share of friction by which a loaded rest before any sliding may differ from an "

@@ -208,8 +208,9 @@ def _both_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
 def _reversals(trace: ForceTrace) -> tuple[float, float, float, float, int]:
     """Share of turns that dip to zero, go below both levels, go straight, clearly; their number.
 
-    "Clearly" is straight by several readings. "Straight" is a turn with readings between the two levels, beyond their noise, and none below
-    them, where these are apart; where they are not, one of at least ten readings.
+    "Straight" is a turn with readings between the two levels, beyond their noise, and none below
+    them, where these are apart; where they are not, one of at least ten readings. "Clearly" is
+    straight by several readings.
     """
     dips, below, straight, clear, seen = 0, 0, 0, 0, 0
     for i in one_by_one(range(len(trace.parts) - 1)):
@@ -233,7 +234,7 @@ def _reversals(trace: ForceTrace) -> tuple[float, float, float, float, int]:
             far = _noise_reaches(turn.size) / _INNER
             above = (low + top) / 2 + far * (top - low)
             beneath = (bottom + highest) / 2 - far * (highest - bottom)
-            on_the_way = np.count_nonzero((turn > above) & (turn < beneath))
+            on_the_way = int(np.count_nonzero((turn > above) & (turn < beneath)))
             straight += on_the_way > 0
             clear += on_the_way >= _SEVERAL
         else:

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.friction.statistics import NORMAL, estimates_of
+from tribolab.friction.zero import limits
 from tribolab.medians import median
 
 UNLOADED = 0.1  # share of the load by which the zero of the normal force may move between rests
@@ -73,9 +74,23 @@ class Zeros(NamedTuple):
         return (time > self.time[0]) & (time < self.time[-1])
 
 
-def unloaded_rests(
-    run: xr.Dataset, segments: xr.Dataset, load: float
-) -> tuple[Zeros | None, Zeros | None]:
+class PartialContact(NamedTuple):
+    """Rests that read more than the unloaded one: how many, how much [N], the first when [s]."""
+
+    rests: int
+    level: float
+    start: float
+
+
+class Rests(NamedTuple):
+    """Zeros of friction and of the normal force from rests without load; rests that are none."""
+
+    friction: Zeros | None
+    normal: Zeros | None
+    partial: PartialContact | None = None
+
+
+def unloaded_rests(run: xr.Dataset, segments: xr.Dataset, load: float) -> Rests:
     """Zeros of the friction force and of the normal force from rests without load.
 
     Parameters
@@ -87,15 +102,16 @@ def unloaded_rests(
 
     Returns
     -------
-    tuple
+    Rests
         Zeros of the friction force and of the normal force, in the order of time; None where no
-        rest tells them, nor a stretch without load that moves, in whatever way. The first reads
-        less than a tenth of the load; a later one no more than that above the one before, so that
-        a zero may drift further.
+        rest tells them, nor a stretch without load that moves, in whatever way. A rest reads less
+        than a tenth of the load, and no more than the lowest one by its noise, unless the zero
+        drifts: then the load of the strokes drifts with it. Rests that read more may be in partial
+        contact.
     """
     rests = _resting(run, segments, load)
     if rests is None:
-        return None, None
+        return Rests(None, None)
     time, normal, limits = rests
     friction = run["friction_force"].values if "friction_force" in run else None
     levels = _unloaded(time, normal, limits, load)
@@ -103,15 +119,63 @@ def unloaded_rests(
         levels = _unloaded(time, normal, _limits(segments, "no load"), load)
     if not levels:  # a speed that is noise alone, or recorded without sign, is no rest either
         levels = _bare(time, normal, _limits(segments), load)
+    levels, partial = _without_partial(time, normal, levels, load, run, segments)
     signals = [normal] if friction is None else [normal, friction]
     told = estimates_of((time[level], signal[level]) for signal in signals for level in levels)
     when = [float(time[level].mean()) for level in levels]
     of_normal, of_friction = told[: len(levels)], told[len(levels) :]
     known = [k for k, estimate in enumerate(of_friction) if estimate.samples >= _FEWEST]
-    return (
+    return Rests(
         _zeros([(when[k], of_friction[k].mean, of_friction[k].u95 / NORMAL) for k in known]),
         _zeros([(at, own.mean, own.u95 / NORMAL) for at, own in zip(when, of_normal, strict=True)]),
+        partial,
     )
+
+
+def _without_partial(
+    time: np.ndarray,
+    normal: np.ndarray,
+    levels: list[np.ndarray],
+    load: float,
+    run: xr.Dataset,
+    segments: xr.Dataset,
+) -> tuple[list[np.ndarray], PartialContact | None]:
+    """Leave out rests that read more than the lowest one and whose excess is no drift."""
+    if len(levels) < 2:
+        return levels, None
+    reads = np.array([float(np.mean(normal[level])) for level in levels])
+    lowest = int(reads.argmin())
+    noise = limits.UNLOADED_NOISE.value * float(np.std(normal[levels[lowest]]))
+    near = reads - reads[lowest] <= max(noise, limits.UNLOADED_SHARE.value * load)
+    if near.all() or _drifts(time, normal, levels, reads, segments):
+        return levels, None
+    first = int(np.flatnonzero(~near)[0])
+    excess = float(np.mean(reads[~near]) - np.mean(reads[near]))
+    partial = PartialContact(int((~near).sum()), excess, float(time[levels[first][0]]))
+    return [level for level, kept in zip(levels, near, strict=True) if kept], partial
+
+
+def _drifts(
+    time: np.ndarray,
+    normal: np.ndarray,
+    levels: list[np.ndarray],
+    reads: np.ndarray,
+    segments: xr.Dataset,
+) -> bool:
+    """Whether the load of the strokes changes with the readings at rest: the cell's zero drifts."""
+    at = np.array([float(time[level].mean()) for level in levels])
+    ends = (segments[f"trimmed_{end}"].values for end in ("start", "stop"))
+    first, last = (np.searchsorted(time, end) for end in ends)
+    fine = last > first
+    if fine.sum() < 2:
+        return False
+    loads = np.array([np.mean(normal[a:b]) for a, b in zip(first[fine], last[fine], strict=True)])
+    middle = (time[first[fine]] + time[last[fine] - 1]) / 2
+    if loads.max() > limits.LOADS_DIFFER.value * loads.min():
+        return True  # of several loads: a drift cannot be seen in them
+    zero = np.interp(middle, at, reads)
+    # what is left of the loads if the zero that the rests read is taken off
+    return bool(np.std(loads - zero) < limits.DRIFT_IN_STROKES.value * np.std(loads))
 
 
 class LightRest(NamedTuple):

@@ -7,7 +7,8 @@ import numpy as np
 from tribolab.friction.zero.middles import Middles
 from tribolab.friction.zero.parts import Doubt, KnownOfZero, StrokeMeans, doubt
 from tribolab.friction.zero.rectified import Fold
-from tribolab.friction.zero.rests import LightRest
+from tribolab.friction.zero.rests import LightRest, PartialContact
+from tribolab.words import many
 
 
 def words_of(
@@ -82,6 +83,19 @@ def of_fold(fold: Fold, unfolded: bool, size: int) -> tuple[Doubt, ...]:
     remark = doubt(f"{fold.why}; {done}", cure, np.arange(size))
     remark["check"] = "rectified"
     return (remark,)
+
+
+def of_partial_contact(partial: PartialContact, load: float, segments: int) -> Doubt:
+    """Doubt rests that read more than the unloaded one."""
+    share = partial.level / load
+    text = (
+        f"{many(partial.rests, 'rest')} from t = {partial.start:.4g} s on read {partial.level:.3g} "
+        f"N ({share:.1%} of the load) more than the unloaded one: contact was not quite lost "
+        "there, and they were not taken for the zero of the load. If the zero of the cell moved "
+        f"instead, the friction coefficient is {1 / (1 - share) - 1:.1%} larger"
+    )
+    cure = "Lift the sample clear at each rest, or measure a rest without load at the end."
+    return doubt(text, cure, np.arange(segments))
 
 
 def of_light_rest(rest: LightRest, load: float, segments: int) -> Doubt:

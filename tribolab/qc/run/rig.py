@@ -44,12 +44,50 @@ def _zero_drift(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
 def _normal_force_error(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     target = subject.target_normal_force
     means = subject.segment_means("normal_force")
-    if not np.isfinite(target).any():
-        raise Skip("the set-point of the normal force is not known")
     levels = subject.unloaded_levels("normal_force")
     zero = float(np.mean(levels)) if levels else 0.0
+    moved = _load_moves(subject, means - zero, limits)
+    if not np.isfinite(target).any():
+        if moved:
+            return moved
+        raise Skip("the set-point of the normal force is not known")
     error = (means - zero) / target - 1
-    return by_segment(subject, "normal_force", error, limits, "normal force off its set-point")
+    said = by_segment(subject, "normal_force", error, limits, "normal force off its set-point")
+    return moved if moved and said[0].status == "pass" else said
+
+
+def _load_moves(
+    subject: RunSubject, loads: np.ndarray, limits: Mapping[str, float]
+) -> list[Result]:
+    """Object to a load that was meant to be one and changes along the run, or along a segment."""
+    if "set_normal_force" in subject.run:
+        return []
+    parts = [part for part in subject.slices if part.stop > part.start]
+    known = loads[np.isfinite(loads) & (loads > 0)]
+    if not known.size or known.max() > limits["programme"] * known.min():
+        return []  # several loads that were meant
+    signal = subject.signals["normal_force"]
+    first, last = parts[0], parts[-1]
+    tenth = max((last.stop - last.start) // 10, 1), max((first.stop - first.start) // 10, 1)
+    begins = signal[first.start : first.start + tenth[1]]
+    ends = signal[last.stop - tenth[0] : last.stop]
+    begin, end = float(np.nanmean(begins)), float(np.nanmean(ends))
+    usual = float(np.median(known))
+    noise = np.hypot(*(np.nanstd(own) / np.sqrt(own.size) for own in (begins, ends)))
+    change = (end - begin) / usual
+    steps = np.diff(loads) / usual if loads.size > 1 else np.zeros(1)
+    if np.nanmax(np.abs(steps)) > abs(change):
+        change = float(steps[np.nanargmax(np.abs(steps))])
+    if abs(change) <= max(limits["change"], _CLEAR * noise / usual):
+        return []
+    text = (
+        f"the load changes by {change:+.1%} along the run, although one load was meant. If the "
+        "true load was constant, the friction coefficient is off by as much"
+    )
+    return [Result("suspect", "normal_force", text, change)]
+
+
+_CLEAR = 5.0  # standard errors of a change of the load
 
 
 def _normal_force_scatter(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -179,6 +217,8 @@ RIG_CHECKS = (
         {
             "suspect": Limit(0.03, "1", "friction coefficients of Hertz contacts go as F^-1/3"),
             "fail": Limit(0.15, "1", "half the step to the next load that is usually chosen"),
+            "change": Limit(0.03, "1", "change along the run; cells creep by 0.1 % and less"),
+            "programme": Limit(1.4, "1", "larger ratios of loads are meant, as of a programme"),
         },
         _normal_force_error,
     ),

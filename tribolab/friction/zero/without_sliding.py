@@ -1,0 +1,142 @@
+"""What the friction signal reads where nothing can rub: before any sliding, and without load."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.friction.zero import limits
+from tribolab.friction.zero.parts import Doubt, ZeroReference, doubt
+from tribolab.friction.zero.rests import Zeros
+from tribolab.medians import median
+
+_FEWEST = 20  # samples
+_LOADED = 0.8  # share of the load from which on a rest is under load
+_ERRORS = 4.0  # standard errors beyond which two readings differ
+
+
+class WithoutSliding(NamedTuple):
+    """Readings of the friction signal [N], each with its standard error; NaN where unknown.
+
+    `tilt` is what a loaded rest before any sliding reads beyond an unloaded one; `drag` is half the
+    loop of strokes without load.
+    """
+
+    tilt: tuple[float, float]
+    drag: tuple[float, float]
+
+
+def without_sliding(
+    run: xr.Dataset, segments: xr.Dataset, rests: Zeros | None, load: float
+) -> WithoutSliding:
+    """Return what the friction signal reads before any sliding, and in strokes without load.
+
+    Parameters
+    ----------
+    run, segments
+        The run and its segments, whose omitted stretches say where it rested or had no load.
+    rests
+        Zeros of the friction force from rests without load.
+    load
+        Usual normal force of the segments [N].
+    """
+    nothing = (float("nan"), float("nan"))
+    if "omitted" not in segments.dims or "normal_force" not in run or not load > 0:
+        return WithoutSliding(nothing, nothing)
+    return WithoutSliding(
+        nothing if rests is None else _before_sliding(run, segments, rests, load),
+        _without_load(run, segments),
+    )
+
+
+def _stretches(run: xr.Dataset, segments: xr.Dataset, reason: str) -> list[slice]:
+    time, chosen = run["time"].values, segments["omitted_reason"].values == reason
+    starts, stops = (segments[f"omitted_{end}"].values[chosen] for end in ("start", "stop"))
+    first, last = (np.searchsorted(time, ends) for ends in (starts, stops))
+    return [slice(int(a), int(b)) for a, b in zip(first, last, strict=True)]
+
+
+def _before_sliding(
+    run: xr.Dataset, segments: xr.Dataset, rests: Zeros, load: float
+) -> tuple[float, float]:
+    """Read the loaded rest before anything has slid: afterwards friction holds the sample."""
+    time, force = run["time"].values, run["friction_force"].values
+    normal = run["normal_force"].values
+    begins = float(segments["start"].values.min(initial=np.inf))
+    ramps = segments["omitted_reason"].values != "at rest"
+    begins = min(begins, float(segments["omitted_start"].values[ramps].min(initial=np.inf)))
+    for part in _stretches(run, segments, "at rest"):
+        inside = np.arange(part.start, part.stop)
+        inside = inside[(time[inside] < begins) & (normal[inside] > _LOADED * load)]
+        inside = inside[np.isfinite(force[inside])]
+        if inside.size >= _FEWEST:
+            zero, error = rests.at(time[inside[:1]])
+            own = float(np.std(force[inside])) / np.sqrt(inside.size)
+            reads = float(np.mean(force[inside])) - float(zero[0])
+            return reads, float(np.hypot(own, error[0]))
+    return float("nan"), float("nan")
+
+
+def _without_load(run: xr.Dataset, segments: xr.Dataset) -> tuple[float, float]:
+    """Return half the loop of strokes that move without load."""
+    if "sliding_velocity" not in run:
+        return float("nan"), float("nan")
+    means: dict[bool, list[tuple[float, float]]] = {True: [], False: []}
+    velocity, force = run["sliding_velocity"].values, run["friction_force"].values
+    for part in _stretches(run, segments, "no load"):
+        own = force[part][np.isfinite(force[part])]
+        speed = np.nanmean(velocity[part]) if own.size else 0.0
+        if own.size >= _FEWEST and speed:
+            error = float(np.std(own)) / np.sqrt(own.size)
+            means[bool(speed > 0)].append((float(np.mean(own)), error))
+    if not means[True] or not means[False]:
+        return float("nan"), float("nan")
+    ways = [np.array(means[way]) for way in (True, False)]
+    half = (ways[0][:, 0].mean() - ways[1][:, 0].mean()) / 2
+    error = np.sqrt(sum(float((w[:, 1] ** 2).mean()) / len(w) for w in ways)) / 2
+    return float(half), float(error)
+
+
+def of_loaded_and_idle(
+    readings: WithoutSliding, zero: ZeroReference, mean: np.ndarray, load: float
+) -> tuple[Doubt, ...]:
+    """Doubt friction that a loaded rest or strokes without load contradict.
+
+    Parameters
+    ----------
+    readings
+        From `without_sliding`.
+    zero
+        What the zero rests on; the half loop is free of a tilt, but not of drag.
+    mean
+        Mean friction force of each segment [N].
+    load
+        Usual normal force [N].
+    """
+    known = np.abs(mean - zero.value)[np.isfinite(mean)]
+    if not known.size:
+        return ()
+    friction, every = float(median(known)), np.arange(mean.size)
+    doubts = []
+    (tilt, tilt_error), (drag, drag_error) = readings
+    least = limits.LOADED_REST_SHARE.value * friction
+    if zero.method != "half loop" and abs(tilt) > max(_ERRORS * tilt_error, least):
+        text = (
+            f"the loaded rest before any sliding reads {tilt:+.3g} N ({abs(tilt) / friction:.1%} "
+            "of the friction), unloaded rests zero: a tilt of "
+            f"{np.degrees(np.arctan2(abs(tilt), load)):.2g} degrees, or cross-talk of the load. "
+            f"The friction coefficient is off by up to {abs(tilt) / load:.2g}"
+        )
+        cure = "Slide both ways, or level the force cell and state `tilt` in [uncertainty]."
+        doubts.append(doubt(text, cure, every))
+    if abs(drag) > max(_ERRORS * drag_error, limits.DRAG_SHARE.value * friction):
+        text = (
+            f"strokes without load show {abs(drag):.3g} N of drag ({abs(drag) / friction:.1%} of "
+            "the friction): the bearing or a seal rubs. It is part of the friction coefficient, "
+            f"which is {abs(drag) / load:.2g} smaller without it"
+        )
+        cure = "Free the bearing, or subtract the drag and state what is left in [uncertainty]."
+        doubts.append(doubt(text, cure, every))
+    return tuple(doubts)
