@@ -20,6 +20,9 @@ from tribolab.room import filled
 _BLOCK = 64  # samples whose noise is one: steps of a run may be as short
 _LOUDER = 1.6  # than the noise of a block, more than chance makes it of so few samples
 
+_HELD = 3  # samples of a reading that is held
+_LONGEST_HELD = 1 << 24  # samples: no channel that is refreshed slowly is recorded for longer
+
 
 def missing(values: np.ndarray) -> np.ndarray:
     """Flag what is not a number as missing, the rest as good.
@@ -214,6 +217,10 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
     ndarray
         suspect at saturated samples, good elsewhere.
     """
+    held = _held(values)
+    if held is not None:  # refreshed more slowly than it is recorded: each reading counts once
+        levels, number = held
+        return saturation(levels, excess, fewest)[number]
     known = sum(np.count_nonzero(values[a:b] == values[a:b]) for a, b in pieces(0, values.size))
     if known < 32 or np.nanmin(values) == np.nanmax(values):
         return uniform(values.size, NOT_EVALUATED)
@@ -230,6 +237,20 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
     for start, stop in pieces(0, values.size):
         flags[start:stop][np.isin(values[start:stop], bad)] = SUSPECT
     return flags
+
+
+def _held(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return the readings of a signal that holds each for several samples, and which is where.
+
+    None unless most readings are held: of a signal that is cut off, only those at the end are.
+    """
+    if values.size < 2 or values.size > _LONGEST_HELD:
+        return None
+    changes = np.concatenate([[True], values[1:] != values[:-1]])
+    lengths = np.diff(np.append(np.flatnonzero(changes), values.size))
+    if np.median(lengths) < _HELD:
+        return None
+    return values[changes], np.cumsum(changes) - 1
 
 
 def _at_end(values: np.ndarray, end: float, sign: float, step: float) -> tuple[int, int, bool]:

@@ -138,6 +138,9 @@ def check_words(name: str) -> str:
     return check.replace("_", " ") + (f" ({of.replace('_', ' ')})" if of else "")
 
 
+_CAUSE = "saturation"
+
+
 def why(run: Mapping[str, Any]) -> str:
     """Return why a run stands as it does: error, decision, or gravest objection of its checks.
 
@@ -156,7 +159,8 @@ def why(run: Mapping[str, Any]) -> str:
     grave = [row for row in run["checks"] if row["status"] in _GRAVE and not row.get("decision")]
     if not grave:
         return ""
-    first = min(grave, key=lambda row: _GRAVE.index(row["status"]))
+    # what a clipped signal does to other checks is not told before the clipping
+    first = min(grave, key=lambda row: (_GRAVE.index(row["status"]), row["check"] != _CAUSE))
     more = f" (and {len(grave) - 1} more)" if len(grave) > 1 else ""
     return f"{check_words(first['check'])}: {first['message']}{more}"
 

@@ -11,6 +11,7 @@ from tribolab.friction.oscillation.spectra import EvenRecord
 from tribolab.medians import median
 
 _SAMPLED = 130.0  # Hz; a record that is to show 50 and 60 Hz has to be sampled faster
+_PEAK = 0.25  # of a bin, by which noise moves a peak
 _GRID = 0.10  # Hz; mains keeps this close to 50 Hz nearly always
 _FUNDAMENTAL = {f"{base * k:g} Hz": base for base in (50.0, 60.0) for k in (1, 2, 3)}
 _MAINS_CHANCE = 3e-3  # that noise passes for a line of the mains
@@ -22,6 +23,16 @@ class Mains(NamedTuple):
     frequency: float
     amplitude: float
     name: str
+
+
+def _refined(frequency: np.ndarray, amplitude: np.ndarray, at: int) -> float:
+    """Return the frequency of a peak between its bins, by a parabola through three of them."""
+    if not 0 < at < frequency.size - 1:
+        return float(frequency[at])
+    left, top, right = np.log(np.maximum(amplitude[at - 1 : at + 2], 1e-300))
+    curve = left - 2 * top + right
+    shift = 0.5 * (left - right) / curve if curve < 0 else 0.0
+    return float(frequency[at] + np.clip(shift, -0.5, 0.5) * frequency[1])
 
 
 def find_mains(record: EvenRecord) -> tuple[Mains, ...]:
@@ -49,6 +60,11 @@ def find_mains(record: EvenRecord) -> tuple[Mains, ...]:
             continue
         at = near[np.argmax(amplitude[near])]
         usual = median(amplitude[around] ** 2) / np.log(2)
+        if (
+            abs(_refined(frequency, amplitude, at) - true)
+            > _GRID * true / 50 + _PEAK * frequency[1]
+        ):
+            continue  # of a short record a bin is wide: 57 Hz is no mains
         if near.size * np.exp(-(amplitude[at] ** 2) / max(usual, 1e-300)) < _MAINS_CHANCE:
             harmonics.append(Mains(float(frequency[at]), float(amplitude[at]), f"{true:g} Hz"))
     # among hundreds of segments noise passes for one or the other: a harmonic needs its fundamental

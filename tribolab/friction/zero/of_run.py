@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError, UnitError
+from tribolab.friction.zero.limits import LOADS_DIFFER
 from tribolab.friction.zero.offsets import pair_strokes
 from tribolab.friction.zero.part_folded import of_parts
 from tribolab.friction.zero.parts import KnownOfZero, StrokeMeans, ZeroReference
@@ -106,7 +107,7 @@ def zero_of_run(
     sign = np.where(direction != 0, direction, np.where(mean < 0, -1.0, 1.0))
     unfold = np.ones(mean.size)
     stated = _stated(run, name, settings.zero_uncertainty)
-    fold = _fold(run, segments, name, parts, mean, error, direction, rests, settings)
+    fold = _fold(run, segments, name, parts, mean, error, direction, load, rests, settings)
     if (direction > 0).any() and (direction < 0).any() and _lost(fold):
         unfold = sign * (1.0 if median_of_known(mean) >= 0 else -1.0)
     if fold.kind != "signed" and settings.offset != "zero load":
@@ -217,6 +218,7 @@ def _fold(
     mean: np.ndarray,
     error: np.ndarray,
     direction: np.ndarray,
+    load: np.ndarray,
     rests: Zeros | None,
     settings: Settings,
 ) -> Fold:
@@ -231,4 +233,7 @@ def _fold(
     normal = run["normal_force"].values if "normal_force" in run and parts else None
     pressed = Pressed(normal, parts, max(0.5, UNLOADED))
     force, speed = run[name].values, segments["sliding_speed"].values
+    ways = (direction > 0).any() and (direction < 0).any()
+    if not ways and load.max(initial=0.0) > LOADS_DIFFER.value * load.min(initial=np.inf):
+        return SIGNED  # steps of the load take the force to zero and back, too
     return folded(ForceTrace(force, pressed, parts, mean, error, direction, rest, speed=speed))

@@ -24,7 +24,7 @@ def _spacing(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     resampled = "resampled" in subject.scans.attrs
     if np.isnan(unevenness):
         unevenness = here
-    if not resampled and unevenness <= limits["even"]:
+    if unevenness <= limits["even"]:
         return [Result("pass", "x", "the points are evenly spaced", unevenness)]
     if not resampled:
         text = (
