@@ -60,10 +60,8 @@ def find_mains(record: EvenRecord) -> tuple[Mains, ...]:
             continue
         at = near[np.argmax(amplitude[near])]
         usual = median(amplitude[around] ** 2) / np.log(2)
-        if (
-            abs(_refined(frequency, amplitude, at) - true)
-            > _GRID * true / 50 + _PEAK * frequency[1]
-        ):
+        off = abs(_refined(frequency, amplitude, at) - true)
+        if off > _GRID * true / 50 + _PEAK * frequency[1]:
             continue  # of a short record a bin is wide: 57 Hz is no mains
         if near.size * np.exp(-(amplitude[at] ** 2) / max(usual, 1e-300)) < _MAINS_CHANCE:
             harmonics.append(Mains(float(frequency[at]), float(amplitude[at]), f"{true:g} Hz"))

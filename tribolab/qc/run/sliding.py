@@ -16,7 +16,10 @@ from tribolab.friction.oscillation.periods import AT_ODDS
 from tribolab.friction.oscillation.regularity import SLIP_KINDS
 from tribolab.friction.oscillation.survey import CHANCE
 from tribolab.friction.oscillation.waveform import CLASSES
+from tribolab.friction.points.strokes import run_means
 from tribolab.friction.segments.strokes import find_strokes
+from tribolab.friction.statistics import NORMAL
+from tribolab.friction.zero.of_run import PAIRED
 from tribolab.qc.flags import FAIL, GOOD
 from tribolab.qc.register import Check, Result, Skip
 from tribolab.qc.run.per_segment import by_segment, status_of
@@ -223,7 +226,39 @@ def _segments(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
         return [Result("suspect", "", why)]
     number = subject.segments.sizes["segment"]
     found = Result("pass", "", f"{Count(number):segment|segments} of constant speed")
-    return _lost_strokes(subject, limits) or [found]
+    objections = [*_lost_strokes(subject, limits), *_uncertain(subject, limits)]
+    return objections or [found]
+
+
+def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    """Report coefficients whose uncertainty is of their size, and larger than noise makes it."""
+    friction, name = subject.friction, "friction_coefficient"
+    if f"{name}_U95" not in friction:
+        return []
+    speed, mu = friction["sliding_speed"].values, friction[name].values
+    sem, wide = (friction[f"{name}_{end}"].values for end in ("sem", "U95"))
+    pairs = np.full(mu.size, -1.0)
+    if "pair" in friction and friction.attrs.get("offset") in PAIRED:
+        pairs = friction["pair"].values.astype(float)
+    means = run_means(np.where(speed > 0, speed, 1.0), mu, sem, wide, pairs)
+    white = friction[f"{name}_std"].values / np.sqrt(np.maximum(friction["samples"].values, 1))
+    bad = []
+    for mean in means:
+        by_noise = NORMAL * float(np.nanmean(white[mean.strokes]))
+        least = max(limits["uncertain"] * abs(mean.mean), limits["known_to"], by_noise)
+        if mean.u95 > least:
+            bad.append(mean)
+    if not bad:
+        return []
+    worst = max(bad, key=lambda mean: mean.u95 / max(abs(mean.mean), 1e-12))
+    share = worst.u95 / max(abs(worst.mean), 1e-12)
+    text = (
+        f"the uncertainty of the friction coefficient is {share:.0%} of its value "
+        f"({worst.mean:.3g} ± {worst.u95:.2g}, 95 % coverage) at {len(bad)} of "
+        f"{Count(len(means)):speed|speeds}: friction wanders too slowly for so short a record"
+    )
+    cure = "Slide longer, or repeat the strokes, until the mean settles."
+    return [Result("suspect", name, text, share, count=len(bad), cure=cure)]
 
 
 def _lost_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -369,6 +404,8 @@ SLIDING_CHECKS = (
         "(`segments.stroke_middle = 0.5` in its [[run]] takes half of it); see `drift` and "
         "`min_samples` under [segments].",
         {
+            "uncertain": Limit(0.3, "1", "a third of the value: no two surfaces are told apart"),
+            "known_to": Limit(0.003, "1", "friction of a full film, to half of it, is a result"),
             "lost_strokes": Limit(
                 0.05, "1", "share of the strokes; the first and the last may be cut, others not"
             ),
