@@ -177,6 +177,8 @@ def outcome_lines(outcome: Outcome) -> list[str]:
         if len(names) > _HANDFUL:
             file = from_here(outcome.folder / "tables" / "findings.csv")
             lines.append(f"checks {what}: and {len(names) - _HANDFUL} more: see {file}")
+    said = outcome.campaign.contradicting_viscosities()
+    lines += [f"medium {name}: {text}" for name, text in said.items()]
     lines += _told_of_runs(done, outcome)
     lines += _decisions(outcome)
     if known := [surface for surface in outcome.surfaces if surface.files]:

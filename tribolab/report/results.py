@@ -206,6 +206,10 @@ def _of_parts(
     """Return what is said of the campaign, and of its parts as a whole."""
     note = outcome.campaign.campaign.note
     findings = [Notice("note", "", "campaign", note)] if note else []
+    findings += [
+        Notice("suspect", "", f"medium {name}", text)
+        for name, text in outcome.campaign.contradicting_viscosities().items()
+    ]
     findings += [_failure(run) for run in outcome.runs if not run.done]
     findings += [Notice("fail", run.name, "run", run.kept) for run in outcome.runs if run.kept]
     findings += [Notice("fail", "", "decision", lost) for lost in outcome.lost_decisions]

@@ -114,11 +114,15 @@ def _examined(
     # late: starting stays quick
     from tribolab.friction.coefficient.coefficient import friction_coefficient
     from tribolab.friction.oscillation.stick_slip import stick_slip
+    from tribolab.friction.zero.of_run import StatedZeroError
     from tribolab.metrology.budget import known_uncertainties, with_uncertainty
     from tribolab.qc.run.checks import check_run
 
     let_go()
-    friction = friction_coefficient(_stated(run, signals), segments, **run.friction)
+    try:
+        friction = friction_coefficient(_stated(run, signals), segments, **run.friction)
+    except StatedZeroError as error:  # a mistake of the campaign file, not of the raw file
+        raise ConfigError(error.what, where=run.zero_uncertainty_at) from error
     if "friction_coefficient" in friction:
         friction = with_uncertainty(friction, known_uncertainties(friction))
     let_go()

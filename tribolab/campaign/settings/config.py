@@ -17,7 +17,11 @@ from tribolab.campaign.settings.measured import (
     RunEntry,
     Surface,
 )
-from tribolab.campaign.settings.media import MediumViscosity, medium_viscosity
+from tribolab.campaign.settings.media import (
+    MediumViscosity,
+    contradicting_viscosity,
+    medium_viscosity,
+)
 from tribolab.campaign.settings.table import Table
 from tribolab.campaign.settings.theory import Joint, Model, Rubber
 from tribolab.io.uncertainty import Uncertainty
@@ -115,6 +119,16 @@ class Campaign(Table):
             table.water_content,
             self.stated_errors(of_instruments or {}),
         )
+
+    def contradicting_viscosities(self) -> dict[str, str]:
+        """Return what contradicts the stated viscosity of a medium, by its name."""
+        said = {
+            name: contradicting_viscosity(
+                table.liquid or name, table.viscosity, table.temperature, table.water_content
+            )
+            for name, table in self.medium.items()
+        }
+        return {name: text for name, text in said.items() if text}
 
     @property
     def name(self) -> str:

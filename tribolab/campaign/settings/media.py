@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from tribolab.core.limit import Limit
+
 _95 = 1.959963984540054
 
 
@@ -25,6 +27,37 @@ class MediumViscosity(NamedTuple):
     value: float
     error: float
     bounds: tuple[float, float] | None
+
+
+VISCOSITY_DIFFERS = Limit(
+    0.2, "1", "ratio less 1 of a stated viscosity to that of the liquid at its temperature: two "
+    "degrees, or two per cent of water in glycerol", "Cheng (2008), doi:10.1021/ie071349z",
+)  # fmt: skip
+
+
+def contradicting_viscosity(
+    name: str, viscosity: float | None, temperature: float | None, water_content: float | None
+) -> str:
+    """Say that a stated viscosity is not that of the liquid as stated; "" if they agree.
+
+    Parameters
+    ----------
+    name, viscosity, temperature, water_content
+        As for `medium_viscosity`.
+    """
+    # late: starting stays quick
+    from tribolab.lubrication.viscosity import knows_liquid, liquid_viscosity
+
+    if viscosity is None or temperature is None or not knows_liquid(name):
+        return ""
+    known = liquid_viscosity(name, temperature, water_content or 0.0).value
+    if abs(math.log(viscosity / known)) <= math.log1p(VISCOSITY_DIFFERS.value):
+        return ""
+    water = f" with {100 * water_content:.3g} % water" if water_content else ""
+    return (
+        f"the stated viscosity is {viscosity:.3g} Pa s, but {name} at {temperature - 273.15:.4g} °C"
+        f"{water} has {known:.3g} Pa s. The stated one is used. Check temperature and water_content"
+    )
 
 
 def medium_viscosity(

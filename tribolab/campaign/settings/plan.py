@@ -17,6 +17,7 @@ from tribolab.campaign.settings.name_pattern import NamePattern
 from tribolab.campaign.settings.problems import SettingsProblem, message
 from tribolab.campaign.settings.review import review_beside
 from tribolab.campaign.settings.run_names import unique_names
+from tribolab.campaign.settings.toml_lines import line_of
 from tribolab.errors import ConfigError
 from tribolab.friction.decisions.decision import Decision
 from tribolab.io.zero_reading import parse_zero
@@ -42,6 +43,8 @@ class PlannedRun:
         The same relative to the campaign file, as reports show them.
     surface, medium, mount, specimen
         "" where the campaign file says nothing.
+    zero_uncertainty_at
+        File, line and number of the [[run]] that states it.
     normal_force, sliding_speed
         Set-points [N, m/s], if the campaign file gives them.
     clock_shift
@@ -86,6 +89,7 @@ class PlannedRun:
     uncertainty: Arguments = field(default_factory=dict)
     mount: str = ""
     specimen: str = ""
+    zero_uncertainty_at: str = ""
     config_sha256: str = ""
     reading_sha256: str = ""
     decisions: tuple[Decision, ...] = ()
@@ -124,6 +128,7 @@ def plan_runs(campaign: Campaign) -> Plan:
         return Plan((), problems)
     names = unique_names([files for _, files in groups])
     settings = {id(entry): _settings(campaign, entry) for entry in campaign.run}
+    places = {id(entry): _zero_stated_at(campaign, k) for k, entry in enumerate(campaign.run)}
     decisions = review_beside(campaign.file)
     reference = campaign.reference
     under = reference.files if reference.dead_weight is not None else None
@@ -137,6 +142,7 @@ def plan_runs(campaign: Campaign) -> Plan:
                     labels=tuple(label_of(campaign, file) for file in files),
                     mount=_label(entry, files[0], "mount"),
                     specimen=_label(entry, files[0], "specimen"),
+                    zero_uncertainty_at=places[id(entry)],
                     **settings[id(entry)],
                 ),
                 campaign,
@@ -147,6 +153,16 @@ def plan_runs(campaign: Campaign) -> Plan:
         for (entry, files), name in zip(groups, names, strict=True)
     )
     return Plan(runs, [])
+
+
+def _zero_stated_at(campaign: Campaign, number: int) -> str:
+    """Return where the file states the uncertainty of the zero of a [[run]], for its errors."""
+    if campaign.run[number].zero_uncertainty is None:
+        return ""
+    text = campaign.file.read_text(encoding="utf-8") if campaign.file.is_file() else ""
+    line = line_of(text, ["run", number, "zero_uncertainty"])
+    at = f", line {line}" if line else ""
+    return f"{campaign.file.name}{at}, [[run]] {number + 1}"
 
 
 def _label(entry: RunEntry, file: Path, key: Literal["mount", "specimen"]) -> str:

@@ -18,7 +18,7 @@ from tribolab.records.parts import Finding
 PartRecord = TypeVar("PartRecord", SurfaceRecord, ModelRecord)
 
 # The files were read, and the answer is about what is in them: it stands.
-VERDICTS = ("AnalysisError",)
+VERDICTS = ("AnalysisError", "ConfigError")
 GONE = "it is not there"
 
 

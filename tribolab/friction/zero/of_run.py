@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, UnitError
+from tribolab.errors import AnalysisError, UnitError, shown
 from tribolab.friction.zero.limits import LOADS_DIFFER
 from tribolab.friction.zero.offsets import pair_strokes
 from tribolab.friction.zero.part_folded import of_parts
@@ -27,6 +27,10 @@ _FROM_TORQUE = re.compile(r"\s*(?:\w+|\(\w+ - \w+\))\s*/\s*(?:(?P<arm>\w+)|'(?P<
 _WITHOUT_SIGN = "mean of both directions: recorded without sign"
 # offsets that are removed from both strokes of a pair, which are then one observation
 PAIRED = ("half loop", _WITHOUT_SIGN)
+
+
+class StatedZeroError(AnalysisError):
+    """The stated uncertainty of the zero does not fit the friction signal of the run."""
 
 
 @dataclass(frozen=True)
@@ -159,11 +163,12 @@ def _stated(run: xr.Dataset, name: str, given: str | float | None) -> float:
         return float(run.attrs.get(f"{name}_zero_uncertainty{ending}", np.nan))
     try:
         return abs(to_si(given, unit, name="zero_uncertainty"))
-    except UnitError:
+    except UnitError as error:
         torque = _torque(given)
-        if torque is None or unit != "N":
-            raise
-        return torque / _arm(run, name)
+        if torque is not None and unit == "N":
+            return torque / _arm(run, name)
+        want = 'dimensionless here, e.g. "1 %"' if unit == "1" else 'a force, e.g. "0.2 N"'
+        raise StatedZeroError(f"zero_uncertainty must be {want}, not '{shown(given)}'") from error
 
 
 def _torque(given: str | float) -> float | None:

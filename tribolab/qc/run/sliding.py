@@ -233,10 +233,10 @@ def _segments(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     """Report coefficients whose uncertainty is of their size, and larger than noise makes it."""
     friction, name = subject.friction, "friction_coefficient"
-    if f"{name}_U95" not in friction:
+    if f"{name}_beyond_U95" not in friction:
         return []
     speed, mu = friction["sliding_speed"].values, friction[name].values
-    sem, wide = (friction[f"{name}_{end}"].values for end in ("sem", "U95"))
+    sem, wide = (friction[f"{name}_beyond_{end}"].values for end in ("sem", "U95"))
     pairs = np.full(mu.size, -1.0)
     if "pair" in friction and friction.attrs.get("offset") in PAIRED:
         pairs = friction["pair"].values.astype(float)

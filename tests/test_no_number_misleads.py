@@ -1,0 +1,174 @@
+"""Numbers that looked right and were not are right now, or the run says that it is not sure."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import tribolab as tl
+from tribolab.campaign.settings.media import contradicting_viscosity
+from tribolab.draft.read import read
+from tribolab.friction.oscillation.mains import find_mains
+from tribolab.friction.oscillation.spectra import EvenRecord
+from tribolab.qc.signals import saturation
+from tribolab.stamping import stamp
+
+RATE = 20.0
+
+
+def sliding(parts, *, mu=0.4, load=31.0, seed=1, zero=0.0, tilt=0.0, drag=0.0, noise=0.002):
+    """Stretches of (duration [s], way, share of the load); `zero` drifts by so much [N]."""
+    rng = np.random.default_rng(seed)
+    way, press = (
+        np.concatenate([np.full(int(d * RATE), part[k]) for d, *part in parts]) for k in (0, 1)
+    )
+    time = np.arange(way.size) / RATE
+    friction, normal = way * mu * load * press + drag * way, load * press
+    force = friction * np.cos(tilt) + normal * np.sin(tilt) + zero * time / time[-1]
+    normal = normal * np.cos(tilt) - friction * np.sin(tilt)
+    scatter = noise * load * rng.standard_normal((2, time.size))
+    data = {
+        "friction_force": force + scatter[0],
+        "normal_force": normal + scatter[1],
+        "sliding_velocity": 1e-3 * way,
+    }
+    return stamp(xr.Dataset({k: ("time", v) for k, v in data.items()}, {"time": time}))
+
+
+def judged(run):
+    friction = tl.friction_coefficient(run, tl.find_segments(run))
+    found = tl.check(run)
+    said = {row["check"]: row["message"] for row in found.rows if row["status"] == "suspect"}
+    return friction, found.status, said
+
+
+STROKES = [(10.0, 1 - 2 * (k % 2), 1.0) for k in range(8)]
+REST = (5.0, 0, 0.0)
+
+
+@pytest.mark.parametrize("drift", [5.0, 10.0])
+@pytest.mark.parametrize("where", ["start", "end", "none"])
+def test_a_zero_that_drifts_after_one_rest_is_no_tilt(drift, where):
+    parts = {"start": [REST, *STROKES], "end": [*STROKES, REST], "none": STROKES}[where]
+    friction, _, _ = judged(sliding(parts, zero=drift))
+    off = friction.friction_coefficient.values - 0.4
+    assert np.abs(off).max() < 0.01 and abs(off.mean()) < 0.002
+
+
+def test_a_tilt_that_two_rests_show_is_still_taken_out():
+    friction, _, _ = judged(sliding([REST, *STROKES, REST], mu=1.4, tilt=np.radians(0.8)))
+    assert friction.friction_coefficient.values == pytest.approx(1.4, abs=0.01)
+
+
+@pytest.mark.parametrize("name", ["unsigned_force", "unsigned_cof"])
+def test_friction_without_sign_whose_turns_show_nothing_is_no_offset(name, shared_data):
+    friction, status, said = judged(read(shared_data / "cases" / f"{name}.csv"))
+    assert friction.friction_coefficient.values == pytest.approx(0.25, abs=0.02)
+    assert status == "suspect" and "rectified" in said
+
+
+def test_an_offset_larger_than_the_friction_that_is_left_is_never_passed():
+    rng = np.random.default_rng(5)
+    for offset in rng.uniform(0.1, 0.6, 12):
+        run = sliding(STROKES, seed=int(1e3 * offset))
+        force = np.abs(run.friction_force + offset * 0.4 * 31.0)
+        _, status, _ = judged(run.assign(friction_force=force))
+        assert status in ("suspect", "fail")
+
+
+def test_rests_that_keep_a_part_of_the_load_are_no_zero_of_it(shared_data):
+    friction, status, said = judged(read(shared_data / "cases" / "lifted_to_5_percent.csv"))
+    assert friction.friction_coefficient.values == pytest.approx(0.3, abs=0.002)
+    assert status == "suspect" and "contact was not quite lost" in said["zero_reference"]
+
+
+@pytest.mark.parametrize("share", [0.015, 0.03])
+def test_a_light_load_is_measured_and_not_dropped(share):
+    light = [(d, way, share) for d, way, _ in STROKES[:4]]
+    friction, _, _ = judged(sliding([REST, *STROKES[:4], *light, REST], noise=1e-3))
+    loads = friction.normal_force.values
+    assert (loads < 0.1 * 31).sum() == 4
+    assert friction.friction_coefficient.values == pytest.approx(0.4, abs=0.02)
+
+
+def test_a_loaded_rest_that_contradicts_the_unloaded_ones_is_reported(shared_data):
+    _, status, said = judged(read(shared_data / "cases" / "tilt_2deg.csv"))
+    assert status == "suspect"
+    assert "a tilt of 2 degrees, or cross-talk" in said["zero_reference"]
+    level = [REST, (5.0, 0, 1.0), (20.0, 1, 1.0), REST]
+    assert "zero_reference" not in judged(sliding(level))[2]
+
+
+def test_drag_of_strokes_without_load_is_reported(shared_data):
+    _, status, said = judged(read(shared_data / "cases" / "drag_in_air.csv"))
+    assert status == "suspect" and "0.301 N of drag" in said["zero_reference"]
+
+
+def test_a_load_that_drifts_or_drops_is_suspect_and_a_programme_is_not(shared_data):
+    _, status, said = judged(read(shared_data / "cases" / "load_cell_drifts_6_percent.csv"))
+    assert status == "suspect" and "the load changes by" in said["normal_force_error"]
+    drop = [(d, way, 1.0 if k < 4 else 0.75) for k, (d, way, _) in enumerate(STROKES)]
+    assert "normal_force_error" in judged(sliding(drop))[2]
+    programme = [(d, way, 1.0 if k < 4 else 0.5) for k, (d, way, _) in enumerate(STROKES)]
+    assert "normal_force_error" not in judged(sliding(programme))[2]
+    assert judged(sliding(STROKES))[1] == "pass"
+
+
+def test_a_coefficient_whose_error_is_of_its_size_is_suspect_and_a_full_film_is_not():
+    rng = np.random.default_rng(3)
+    time = np.arange(0, 40, 1 / RATE)
+    slow = np.cumsum(rng.standard_normal(time.size))
+    slow *= 0.15 / np.ptp(slow)
+
+    def run(mu):
+        data = {"friction_coefficient": mu, "sliding_velocity": np.full(time.size, 1e-3)}
+        signals = stamp(xr.Dataset({k: ("time", v) for k, v in data.items()}, {"time": time}))
+        return signals.assign_attrs(friction_coefficient_zero_uncertainty=1e-4)
+
+    assert "of its value" in judged(run(0.1 + slow - slow.mean()))[2]["segments"]
+    assert "segments" not in judged(run(0.003 + 1e-3 * rng.standard_normal(time.size)))[2]
+
+
+def test_a_load_that_is_refreshed_once_a_second_is_not_saturated(shared_data):
+    assert judged(read(shared_data / "cases" / "load_once_a_second_SOUND.csv"))[1] == "pass"
+    rng = np.random.default_rng(4)
+    held = np.repeat(10 + rng.standard_normal(40), 20)
+    assert not (saturation(held) > 2).any()
+    clipped = np.minimum(np.sin(np.arange(800) / 9) + 0.05 * rng.standard_normal(800), 0.7)
+    assert (saturation(clipped) > 2).sum() > 100
+
+
+@pytest.mark.parametrize(
+    ("frequency", "names"), [(60.0, ["60 Hz"]), (57.0, []), (50.05, ["50 Hz"])]
+)
+def test_a_line_is_of_the_mains_at_the_frequency_of_the_mains_only(frequency, names):
+    time = np.arange(400) / 1000.0
+    noise = 0.01 * np.random.default_rng(5).standard_normal(time.size)
+    values = 0.1 * np.sin(2 * np.pi * frequency * time) + noise
+    found = find_mains(EvenRecord(time, values, 1e-3, True))
+    assert [line.name for line in found] == names
+
+
+def test_a_stated_viscosity_that_contradicts_the_liquid_is_reported():
+    said = contradicting_viscosity("glycerol", 1.4, 298.15, 0.02)
+    assert "1.4 Pa s" in said and "with 2 % water has 0.6" in said
+    assert contradicting_viscosity("glycerol", 1.4, 293.15, 0.0) == ""
+    assert contradicting_viscosity("some oil", 1.4, 298.15, 0.0) == ""
+    assert contradicting_viscosity("glycerol", None, 298.15, 0.0) == ""
+
+
+def test_an_uncertainty_of_the_zero_in_the_wrong_unit_is_a_mistake_in_the_campaign_file(tmp_path):
+    time = np.arange(0, 40, 0.1)
+    rows = [f"{t:.1f},{0.3 + 0.001 * np.sin(9 * t):.5f},1.0" for t in time]
+    text = "Time [s],Friction coefficient,Velocity [mm/s]\n" + "\n".join(rows)
+    (tmp_path / "a.csv").write_text(text)
+    (tmp_path / "campaign.toml").write_text(
+        '[campaign]\nname = "a"\nraw = "."\n\n[[run]]\nfiles = "a.csv"\n'
+        'zero_uncertainty = "0.2 N"\ninstrument = "a.toml"\n'
+    )
+    from tribolab.draft.dialect.draft import draft_dialect
+
+    (tmp_path / "a.toml").write_text(draft_dialect(tmp_path / "a.csv").toml)
+    outcome = tl.run_campaign(tmp_path / "campaign.toml", jobs=1, figures="none")
+    (run,) = outcome.runs
+    assert run.reason.startswith("campaign.toml, line 7, [[run]] 1: zero_uncertainty must be")
+    assert "dimensionless here, e.g. \"1 %\", not '0.2 N'" in run.reason
