@@ -275,7 +275,9 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
         data |= _memory(forces) | {"force_trend": trend}
         return _table(data, told, zero, run, "")
 
-    both = reversal_of(zero, pair, held, middle, rests, run.attrs.get("uncertainty", {}))
+    ratio = (turn * means - signs.sign * zero.value) / held
+    stated = run.attrs.get("uncertainty", {})
+    both = reversal_of(zero, pair, held, middle, ratio, rests, stated)
     pointwise: list[_Pointwise] = []
 
     def records() -> Iterator[tuple[np.ndarray, ...]]:
@@ -420,8 +422,10 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr
         run, segments, "friction_coefficient", parts, means, own, alike, middle, None, settings
     )
     turn = signs.sign * signs.unfold
-    both = reversal_of(zero, pair, alike, middle, None, run.attrs.get("uncertainty", {}))
-    read = turn * means - signs.sign * (zero.value - both.tilted)
+    about = turn * means - signs.sign * zero.value
+    stated = run.attrs.get("uncertainty", {})
+    both = reversal_of(zero, pair, alike, middle, about, None, stated)
+    read = about + signs.sign * both.tilted
     mu, tilt = both.without_tilt(read, signs.sign, alike)
     data = {
         "friction_coefficient": mu,

@@ -90,6 +90,7 @@ def reversal_of(
     pair: np.ndarray,
     load: np.ndarray,
     time: np.ndarray,
+    ratio: np.ndarray,
     rests: Zeros | None,
     stated: Mapping[str, Mapping[str, Any]],
 ) -> Reversal:
@@ -99,8 +100,9 @@ def reversal_of(
     ----------
     zero
         What the zero rests on; nothing is told apart but with the half loop.
-    pair, load, time
-        Of each segment: number of its pair, mean normal force, middle [s].
+    pair, load, time, ratio
+        Of each segment: number of its pair, mean normal force, middle [s], and its friction over
+        the load, whatever its sign.
     rests
         Zeros from rests without load, where a tilt shows nothing.
     stated
@@ -123,7 +125,7 @@ def reversal_of(
         return Reversal(np.full(pair.size, -1), nothing, nothing, "")
     apart = zero.value - (rests.at(time)[0] if rests is not None else 0.0)
     most = np.nan_to_num(_of_pairs(apart, members))
-    if rests is not None and _is_tilt(apart, members, load, time, rests):
+    if rests is not None and _is_tilt(apart, members, load, time, ratio, rests):
         return Reversal(members, most, most, RESTS)
     if rests is not None:  # the zero moved since the rest, or the cell is askew by a little
         return Reversal(members, nothing, most, ZERO)
@@ -136,7 +138,12 @@ def reversal_of(
 
 
 def _is_tilt(
-    apart: np.ndarray, members: np.ndarray, load: np.ndarray, time: np.ndarray, rests: Zeros
+    apart: np.ndarray,
+    members: np.ndarray,
+    load: np.ndarray,
+    time: np.ndarray,
+    ratio: np.ndarray,
+    rests: Zeros,
 ) -> bool:
     """Whether what the middles differ from the rests is a tilt, and not a zero that drifts."""
     paired = (members >= 0) & np.isfinite(apart) & (load > 0)
@@ -146,7 +153,10 @@ def _is_tilt(
     several = load[paired].max() > limits.LOADS_DIFFER.value * load[paired].min()
     if not (between or several):
         return False
-    angle, at = apart[paired] / load[paired], time[paired]
+    # a cell that is askew by an angle t moves the middle by t (1 + mu^2) of the load
+    felt = _of_pairs(load, members) * (1 + _of_pairs(ratio, members) ** 2)
+    angle = (_of_pairs(apart, members) / felt)[paired]
+    at = _of_pairs(time, members)[paired]
     mean = float(np.mean(angle))
     moment = at - at.mean()
     slope = float(moment @ angle) / max(float(moment @ moment), 1e-300)
