@@ -117,7 +117,8 @@ def test_paper_on_paper_has_spikes_and_its_stick_slip_is_no_fault(shared_data, n
     assert known.pop("spikes") == "suspect"
     assert known.pop("zero_reference") == "suspect"  # one way, and a coefficient without its zero
     # a slow wander on which the softest one's forty swings ride is no period of theirs
-    assert known == {}
+    # one stroke whose friction wanders on: three of the four are known to a third or worse
+    assert known == ({} if name == "k168Nm_v1100" else {"segments": "suspect"})
     flagged = found.flagged.friction_coefficient_qc.values == 3
     values = run.friction_coefficient.values
     assert 20 < flagged.sum() < 0.01 * values.size
@@ -161,6 +162,7 @@ def test_the_second_header_of_cetr_is_a_step_and_not_a_gap(shared_data, number):
     )
     known = objections(found)
     assert known.pop("segment_speed") == "suspect"  # start and stop lie inside its steps
+    assert known.pop("segments") == "suspect"  # one pair of 86 samples each, known to a third
     assert set(known) <= {"spikes"}
 
 

@@ -405,7 +405,7 @@ SLIDING_CHECKS = (
         "`min_samples` under [segments].",
         {
             "uncertain": Limit(0.3, "1", "a third of the value: no two surfaces are told apart"),
-            "known_to": Limit(0.003, "1", "friction of a full film, to half of it, is a result"),
+            "known_to": Limit(0.005, "1", "a full film has 0.001 to 0.01: known to half of that"),
             "lost_strokes": Limit(
                 0.05, "1", "share of the strokes; the first and the last may be cut, others not"
             ),
