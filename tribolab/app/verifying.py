@@ -121,7 +121,7 @@ def _differing(there: Path, made: Path, name: str) -> list[str]:
     return [f"{name}: not what the raw files give, first at {at}"] if at else []
 
 
-def _unlike(one: Json, other: Json, at: str = "") -> Iterator[str]:
+def _unlike(one: object, other: object, at: str = "") -> Iterator[str]:
     """Name the entries in which two reports differ."""
     if isinstance(one, dict) and isinstance(other, dict):
         for key in sorted({*one, *other} - _PASSING):
