@@ -19,7 +19,6 @@ from tribolab.campaign.store.ledger import Ledger, repair
 from tribolab.deposit.contents import campaign_of
 from tribolab.deposit.pack import problems_of
 from tribolab.errors import ConfigError, OutputError, ReadError, brief
-from tribolab.untyped import Json
 from tribolab.version import __version__
 
 # what says when and where it was made, not what came out
