@@ -108,7 +108,7 @@ def test_what_changed_is_found(deposit, tmp_path, how, name, says):
     assert problems_of(deposit) == []
     target = changed(deposit, tmp_path / "b.zip", name, how)
     assert problems_of(target) == [f"{name} {says}"]
-    done = CliRunner().invoke(cli.app, ["pack", str(target)])
+    done = CliRunner().invoke(cli.app, ["verify", str(target)])
     assert done.exit_code == 3 and says in done.stderr
 
 
@@ -121,7 +121,7 @@ def test_without_raw_files_their_checksums_go_along(original, tmp_path):
         names = archive.namelist()
         assert not [name for name in names if name.startswith("raw/")]
         assert "published/tables/sources.csv" in names and "campaign.toml" in names
-    assert CliRunner().invoke(cli.app, ["pack", str(target)]).exit_code == 0
+    assert CliRunner().invoke(cli.app, ["verify", str(target)]).exit_code == 0
 
 
 def test_results_that_are_not_as_they_were_written_are_not_packed(original, tmp_path):

@@ -9,7 +9,7 @@ import typer
 from tribolab.app.commands.across import compare, history, plan, repeatability
 from tribolab.app.commands.campaign import demo, reproduce, run, simulate
 from tribolab.app.commands.files import check, dialect, info
-from tribolab.app.commands.packing import pack
+from tribolab.app.commands.packing import pack, verify
 from tribolab.app.streams import prepared, say
 
 app = typer.Typer(
@@ -50,7 +50,7 @@ def _options(
 for _command in (
     *(demo, reproduce, run, simulate),
     *(check, info, dialect),
-    *(compare, repeatability, history, plan, pack),
+    *(compare, repeatability, history, plan, pack, verify),
 ):
     app.command()(_command)
 

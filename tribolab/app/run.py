@@ -66,8 +66,8 @@ def run_campaign(
     pdf
         Whether figures are written as PDF, too.
     verify
-        Whether files are recognised by their checksums only, each read anew; by default by size,
-        time and inode first.
+        Whether raw files and results are recognised by their checksums only, each read anew; by
+        default raw files and large results by size, time and inode first.
 
     Returns
     -------
@@ -105,7 +105,10 @@ def run_campaign(
     if executor is not None and (jobs is not None or scheduler is not None):
         raise ConfigError("give either an executor, or jobs, or scheduler")
     options = {"figures": which, "pdf": pdf, "code": code_of_page()}
-    known = unchanged(campaign, runs, place, options, verify=verify)
+    ledger = Ledger.read(place)
+    intact = ledger.intact(whole=verify)
+    damaged = ledger.damaged(intact)
+    known = unchanged(campaign, runs, place, options, verify=verify, intact=intact)
     if known is not None:
         return known
     with staged(place) as folder:
@@ -125,6 +128,7 @@ def run_campaign(
                 previous=place,
                 progress=progress,
                 verify=verify,
+                intact=intact,
             )
             write_report(outcome, executor=pool, progress=progress, figures=which, pdf=pdf)
         if finish is not None:
@@ -132,7 +136,7 @@ def run_campaign(
         note(outcome, runs, options)
         outcome.store.close()
     foreign = tuple(Ledger.read(place).foreign())
-    return outcome.read_at(place, Catalogue.of(place), foreign)
+    return outcome.read_at(place, Catalogue.of(place), foreign, damaged)
 
 
 def _reached(campaign: Campaign, raw: Path, place: Path) -> bool:

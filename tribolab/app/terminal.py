@@ -288,13 +288,22 @@ def _doubts(surface: SurfaceOutcome) -> list[str]:
 
 
 def foreign_lines(outcome: Outcome) -> list[str]:
-    """Name the files in the results folder that are not ours."""
-    if not outcome.foreign:
-        return []
-    names = ", ".join(outcome.foreign[:_HANDFUL])
-    more = len(outcome.foreign) - _HANDFUL
-    names += f" and {more} more" if more > 0 else ""
-    return [f"not written by tribolab and left where they are: {names}"]
+    """Name the files of the results that were damaged, and those that are not ours."""
+    lines = []
+    if outcome.damaged:
+        lines.append(
+            f"not as tribolab wrote them, and made anew: {_handful(outcome.damaged)}; what "
+            "was changed is kept as *.changed-*"
+        )
+    if outcome.foreign:
+        foreign = _handful(outcome.foreign)
+        lines.append(f"not written by tribolab and left where they are: {foreign}")
+    return lines
+
+
+def _handful(names: Sequence[str]) -> str:
+    more = len(names) - _HANDFUL
+    return ", ".join(names[:_HANDFUL]) + (f" and {more} more" if more > 0 else "")
 
 
 def failure_lines(outcome: Outcome) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Container, Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path
@@ -37,6 +37,7 @@ def process(
     previous: Path | None = None,
     progress: Progress | None = None,
     verify: bool = False,
+    intact: Container[str] | None = None,
 ) -> OpenOutcome:
     """Process every run and surface, combine the repeats, and compute models beside them.
 
@@ -59,6 +60,8 @@ def process(
         Called as ``progress(stage, done, total)``.
     verify
         Whether files are recognised by their checksums only, each read anew.
+    intact
+        Which files of `previous` are as they were written; by default all are trusted.
 
     Returns
     -------
@@ -76,7 +79,7 @@ def process(
     """
     runs = planned_runs(campaign) if runs is None else runs
     (staging / "data").mkdir(parents=True, exist_ok=True)
-    store = Store(staging, previous, verify=verify)
+    store = Store(staging, previous, verify=verify, intact=intact)
 
     came = perform(Runs(runs, store), executor, progress)
     _refuse_if_all_died(came)

@@ -107,18 +107,15 @@ def items_of(results: Path, campaign: Campaign, *, raw: bool) -> list[Item]:
 
 def _of_results(results: Path, below: str) -> list[Item]:
     ledger = Ledger.read(results)
-    if not ledger.files:
-        raise ReadError(f"{results}: nothing lists what 'tribolab run' wrote here")
+    wrong = ledger.problems()
+    if wrong:
+        more = f" (and {len(wrong) - 1} more)" if len(wrong) > 1 else ""
+        raise ReadError(f"{results}: {wrong[0]}{more}")
     items = []
     for name in sorted(ledger.files):
         path = results / name
         if path.name in _OWN or path.is_dir():
             continue
-        if not ledger.is_ours(name):
-            raise ReadError(
-                f"{path}: not as it was written; run 'tribolab run' once more, which keeps your "
-                "version beside"
-            )
         items.append(Item(path, f"{below}/{name}", _described(name), _kind(path)))
     return items
 

@@ -108,7 +108,8 @@ def run(
     verify: Annotated[
         bool,
         typer.Option(
-            "--verify", help="Read every file to tell what changed, not its size and time only."
+            "--verify",
+            help="Read every raw file and result to tell what changed, not by size and time.",
         ),
     ] = False,
     quiet: Quiet = False,

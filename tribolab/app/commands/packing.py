@@ -1,4 +1,4 @@
-"""The command that packs results for others, and checks what was packed."""
+"""The commands that pack results for others, and check results and what was packed."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from typing import Annotated
 
 import typer
 
-from tribolab.app.reported import UNREADABLE, Debug, reported
+from tribolab.app.progress import progress_bars
+from tribolab.app.reported import UNREADABLE, Debug, Jobs, Quiet, reported
 from tribolab.app.streams import say
+from tribolab.errors import ConfigError
 
 
 def pack(
-    results: Annotated[
-        Path, typer.Argument(help="The results folder; or a packed file, which is checked.")
-    ],
+    results: Annotated[Path, typer.Argument(help="The results folder.")],
     output: Annotated[
         Path | None,
         typer.Option(
@@ -36,24 +36,19 @@ def pack(
     """Pack results for a repository: one file that others can read and run again.
 
     An RO-Crate with report, tables, data and settings, every file with description and SHA-256,
-    checked before it gets its name. Given a packed file, says what is not as it was packed.
+    checked before it gets its name. Results are verified first, all their bytes.
 
         tribolab pack results --raw --author "A. Person" --licence CC-BY-4.0
-
-        tribolab pack deposit.zip
     """
     with reported(debug):
         # late: starting stays quick
         from tribolab.deposit import pack as packing
 
         if results.is_file():
-            wrong = packing.problems_of(results)
-            for text in wrong:
-                say(f"tribolab: {results}: {text}", to_stderr=True)
-            if wrong:
-                raise typer.Exit(UNREADABLE)
-            say(f"{results}: as it was packed")
-            return
+            raise ConfigError(
+                f"{results}: a file, no results folder; 'tribolab verify {results}' checks a "
+                "packed file"
+            )
         made = packing.pack(
             results,
             output,
@@ -66,3 +61,62 @@ def pack(
         say(f"packed and checked: {made}")
         if not licence:
             say("no licence is stated: others may only ask; say --licence, e.g. CC-BY-4.0")
+
+
+def verify(
+    results: Annotated[Path, typer.Argument(help="The results folder, or a packed .zip file.")],
+    recompute: Annotated[
+        bool,
+        typer.Option(
+            "--recompute", help="Compute all numbers again from the raw files, and compare."
+        ),
+    ] = False,
+    repair: Annotated[
+        bool, typer.Option("--repair", help="Write the lost marker of a results folder anew.")
+    ] = False,
+    campaign: Annotated[
+        Path | None,
+        typer.Option(help="The campaign file.", show_default="beside the results"),
+    ] = None,
+    jobs: Jobs = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Check that results are as they were written, all their bytes.
+
+    Checksums tell damage: a flipped bit, a file cut short, one changed by hand. They have no key,
+    so whoever changes a table can write a matching checksum, too. Only --recompute tells that: it
+    computes the tables, report.json and the data files from the raw files and compares the numbers.
+
+        tribolab verify results
+
+        tribolab verify results --recompute
+
+        tribolab verify deposit.zip
+    """
+    with reported(debug):
+        # late: starting stays quick
+        from tribolab.app.verifying import mend, problems, recomputed
+
+        if results.is_file() and (recompute or repair):
+            raise ConfigError(
+                f"{results}: --recompute and --repair are for a results folder; unpack it first"
+            )
+        if repair:
+            mend(results)
+            say(
+                f"{results}: the marker is written anew; run 'tribolab run': it makes everything "
+                "anew and keeps tables and page as they are now beside"
+            )
+            return
+        wrong = problems(results)
+        if recompute:
+            with progress_bars(quiet) as progress:
+                wrong += recomputed(results, campaign, jobs=jobs, progress=progress)
+        for text in wrong:
+            say(f"tribolab: {results}: {text}", to_stderr=True)
+        if wrong:
+            raise typer.Exit(UNREADABLE)
+        told = "packed" if results.is_file() else "written"
+        same = ", and computed again from the raw files it is the same" if recompute else ""
+        say(f"{results}: as it was {told}{same}")

@@ -14,7 +14,7 @@ import os
 import sqlite3
 import time
 import zlib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Container, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any, Generic, NamedTuple, TypeVar
@@ -153,6 +153,9 @@ class Store(Catalogue):
         Folder of earlier results, if there is one.
     verify
         Whether files are recognised by their checksums only, each read anew.
+    intact
+        Which files of the earlier results are as they were written; no others are taken over. By
+        default all are trusted.
 
     Attributes
     ----------
@@ -160,10 +163,18 @@ class Store(Catalogue):
         What is known of the earlier results.
     """
 
-    def __init__(self, folder: Path, previous: Path | None = None, *, verify: bool = False) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        previous: Path | None = None,
+        *,
+        verify: bool = False,
+        intact: Container[str] | None = None,
+    ) -> None:
         self.folder = folder
-        self.previous = previous
-        self.before = Catalogue.of(previous)
+        self.previous = previous if intact is None or CATALOGUE in intact else None
+        self._intact = intact
+        self.before = Catalogue.of(self.previous)
         self._files = {} if verify else self.before.files()
         self._seen: dict[str, Identity] = {}
         path = folder / CATALOGUE
@@ -234,7 +245,7 @@ class Store(Catalogue):
 
     def intact(self, kind: str, name: str, file: str) -> Path | None:
         """Return the data file of an earlier part; None if it is not there as it was written."""
-        if self.previous is None:
+        if self.previous is None or (self._intact is not None and file not in self._intact):
             return None
         try:
             state = (self.previous / file).stat()
@@ -244,8 +255,8 @@ class Store(Catalogue):
         return self.previous / file if same else None
 
     def link_beside(self, old: str, new: str = "") -> bool:
-        """Have a file of the earlier results among the new ones; False if it is not there."""
-        if self.previous is None:
+        """Have a file of the earlier results among the new ones; False if it is not intact."""
+        if self.previous is None or (self._intact is not None and old not in self._intact):
             return False
         try:
             (self.folder / (new or old)).parent.mkdir(parents=True, exist_ok=True)

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import contextlib
 import datetime as dt
 import hashlib
 import json
 import os
+import re
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
+from tribolab.campaign.store.limits import ALWAYS_READ, SAMPLE, SAMPLES
+
 MARKER = ".tribolab-results"
+_LENGTH = 32  # digits of a checksum
 _ABOUT = (
     "Written by tribolab. The files listed here are replaced by the next run as a whole; whatever "
     "else lies in this folder is left where it is."
@@ -18,11 +25,44 @@ _ABOUT = (
 
 
 class LedgerEntry(NamedTuple):
-    """A file as it was written: size [bytes], time of its last change [ns], BLAKE2b of it."""
+    """A file as it was written.
+
+    Attributes
+    ----------
+    size, modified, inode
+        In bytes; time of its last change [ns]; 0 if it is not known (of earlier versions).
+    digest, sample
+        BLAKE2b of all bytes, and of samples of them; "" if it is small or not known.
+    """
 
     size: int
     modified: int
     digest: str
+    inode: int = 0
+    sample: str = ""
+
+    @classmethod
+    def of(cls, path: Path) -> LedgerEntry:
+        """Read a file."""
+        state = path.stat()
+        sample = _sample(path) if state.st_size > ALWAYS_READ.value else ""
+        return cls(state.st_size, state.st_mtime_ns, _digest(path), state.st_ino, sample)
+
+    def is_of(self, path: Path, *, whole: bool = False) -> bool:
+        """Whether a file is the one that was written; with `whole` told by all its bytes."""
+        if path.is_symlink() or not path.is_file():
+            return False
+        state = path.stat()
+        if state.st_size != self.size:
+            return False
+        if not whole and self.sample and self.is_state(state):
+            return _sample(path) == self.sample
+        return _digest(path) == self.digest
+
+    def is_state(self, state: os.stat_result) -> bool:
+        """Whether size, time and inode are those of the file as it was written."""
+        there = (state.st_size, state.st_mtime_ns, state.st_ino)
+        return there == (self.size, self.modified, self.inode)
 
 
 @dataclass(frozen=True)
@@ -37,76 +77,132 @@ class Ledger:
         Entries by path relative to the folder, with "/" between its parts.
     folders
         Folders that the run made and left empty, e.g. that of the data when every run failed.
+    sound
+        Whether the marker is there as it was written. Of a damaged one those files are listed
+        whose own checksum still stands in it.
     """
 
     folder: Path
     files: dict[str, LedgerEntry] = field(default_factory=dict)
     folders: frozenset[str] = frozenset()
+    sound: bool = False
 
     @classmethod
     def read(cls, folder: Path) -> Ledger:
-        """Read the marker of a folder; one that is missing or damaged lists nothing."""
+        """Read the marker of a folder; one that is missing lists nothing."""
         try:
-            listed = json.loads((folder / MARKER).read_text(encoding="utf-8"))
-            files = {str(name): LedgerEntry(*entry) for name, entry in listed["files"].items()}
-            folders = frozenset(map(str, listed.get("folders", ())))
-        except (OSError, ValueError, LookupError, TypeError, AttributeError):
-            return cls(folder)
-        return cls(folder, files, folders)
-
-    def is_ours(self, name: str) -> bool:
-        """Whether a file is the one that was written: a copied marker makes nothing ours."""
-        entry, path = self.files.get(name), self.folder / name
-        if entry is None or path.is_symlink() or not path.is_file():
-            return False
-        state = path.stat()
-        if state.st_size != entry.size:
-            return False
-        return state.st_mtime_ns == entry.modified or _digest(path) == entry.digest
-
-    @property
-    def is_whole(self) -> bool:
-        """Whether everything that was written is there, by size."""
-        try:
-            return bool(self.files) and all(
-                (self.folder / name).stat().st_size == entry.size
-                for name, entry in self.files.items()
-            )
+            text = (folder / MARKER).read_bytes()
         except OSError:
-            return False
+            return cls(folder)
+        with contextlib.suppress(ValueError, LookupError, TypeError, AttributeError):
+            listed = json.loads(text)
+            whole = "blake2b" not in listed or listed["blake2b"] == _checksum(listed)
+            inside = all(map(_is_inside, listed["files"]))
+            if whole and inside and set(listed) <= {"about", "blake2b", "files", "folders"}:
+                files = {name: LedgerEntry(*entry) for name, entry in listed["files"].items()}
+                return cls(folder, files, frozenset(listed.get("folders", ())), sound=True)
+        known = {digest.decode() for digest in re.findall(rb"[0-9a-f]{32}", text)}
+        found = {name: folder / name for name in walk(folder) if name != MARKER}
+        entries = {n: LedgerEntry.of(p) for n, p in found.items() if p.is_file()}
+        ours = {name: entry for name, entry in entries.items() if entry.digest in known}
+        return cls(folder, ours)
 
-    def foreign(self) -> list[str]:
+    def is_ours(self, name: str, *, whole: bool = False) -> bool:
+        """Whether a file is the one that was written: a copied marker makes nothing ours."""
+        entry = self.files.get(name)
+        return entry is not None and entry.is_of(self.folder / name, whole=whole)
+
+    def intact(self, *, whole: bool = False) -> frozenset[str]:
+        """Return the files that are as they were written.
+
+        Parameters
+        ----------
+        whole
+            Whether large files are checked by all their bytes, too; by default by size, time of
+            change, inode and samples.
+        """
+        names = list(self.files)
+        with ThreadPoolExecutor(4) as threads:  # hashing releases the interpreter's lock
+            good = list(threads.map(lambda name: self.is_ours(name, whole=whole), names))
+        return frozenset(name for name, same in zip(names, good, strict=True) if same)
+
+    def damaged(self, intact: frozenset[str]) -> tuple[str, ...]:
+        """Return what is not as it was written, the marker first; `intact` is what is."""
+        marker = () if self.sound or not self.files else (MARKER,)
+        return (*marker, *sorted(set(self.files) - intact))
+
+    def problems(self) -> list[str]:
+        """Say what is not as it was written, each file checked by all its bytes."""
+        if not self.files and not self.sound:
+            return [
+                f"{MARKER}: lost, or damaged beyond use; 'tribolab verify --repair {self.folder}' "
+                "writes it anew"
+            ]
+        cure = "'tribolab run' makes it anew from the raw files"
+        wrong = []
+        for name in self.damaged(self.intact(whole=True)):
+            if os.path.lexists(self.folder / name):
+                beside = "" if name == MARKER else ", and keeps this version beside"
+                wrong.append(f"{name}: not as it was written; {cure}{beside}")
+            else:
+                wrong.append(f"{name}: missing; {cure}")
+        return wrong
+
+    def foreign(self, intact: frozenset[str] | None = None) -> list[str]:
         """Return the paths of all files that are not ours, in the folder's order of names.
 
         Symbolic links are files here, wherever they lead; folders count if they are empty and the
         marker knows no file in them.
         """
+        intact = self.intact() if intact is None else intact
         folders = self.folders | {str(Path(name).parent) for name in self.files}
         names = []
         for name in walk(self.folder):
             path = self.folder / name
             if name == MARKER or (path.is_dir() and not path.is_symlink() and name in folders):
                 continue
-            if not self.is_ours(name):
+            if name not in intact:
                 names.append(name)
         return names
 
     def write(self, folder: Path) -> None:
-        """List everything in a new folder as ours; what was taken over is not read again."""
+        """List everything in a folder as ours; what was taken over is not read again."""
         files, folders = {}, []
         for name in walk(folder):
             path = folder / name
             if path.is_dir() and not path.is_symlink():
                 folders.append(name)
-            if path.is_symlink() or not path.is_file():
+            if name == MARKER or path.is_symlink() or not path.is_file():
                 continue
-            state, before = path.stat(), self.files.get(name)
-            same = before and (before.size, before.modified) == (state.st_size, state.st_mtime_ns)
-            digest = before.digest if before and same else _digest(path)
-            files[name] = LedgerEntry(state.st_size, state.st_mtime_ns, digest)
-        listed = {"about": _ABOUT, "files": files, "folders": folders}
-        text = json.dumps(listed, indent=0, ensure_ascii=True)
-        (folder / MARKER).write_text(text + "\n", encoding="utf-8")
+            before = self.files.get(name)
+            same = before is not None and before.is_state(path.stat())
+            files[name] = before if before and same else LedgerEntry.of(path)
+        _write(folder, files, folders)
+
+
+def _write(folder: Path, files: Mapping[str, LedgerEntry], folders: Sequence[str]) -> None:
+    listed: dict[str, object] = {"about": _ABOUT, "files": files, "folders": folders}
+    listed["blake2b"] = _checksum(listed)
+    text = json.dumps(listed, indent=0, ensure_ascii=True)
+    (folder / MARKER).write_text(text + "\n", encoding="utf-8")
+
+
+def repair(folder: Path) -> None:
+    """Write a lost marker anew, such that the next run makes everything anew and loses nothing.
+
+    Data, figures and report.json are listed as they are. A person may have changed tables and
+    page: they and the catalogue count as changed, so the next run keeps them beside its own.
+    """
+    files = {}
+    for name in walk(folder):
+        path, room = folder / name, name.split("/")[0]
+        if path.is_symlink() or not path.is_file() or ".changed-" in name:
+            continue
+        if room in ("data", "figures") or name == "report.json":
+            files[name] = LedgerEntry.of(path)
+        elif room == "tables" or name in ("report.html", "catalogue.sqlite"):
+            files[name] = LedgerEntry.of(path)._replace(digest="", sample="")
+    _write(folder, files, [])
 
 
 def walk(folder: Path) -> list[str]:
@@ -134,6 +230,26 @@ def other_name(name: str, modified: int) -> str:
     return path.with_name(f"{path.stem}.changed-{when}{path.suffix}").as_posix()
 
 
+def _checksum(listed: Mapping[str, object]) -> str:
+    text = json.dumps([listed["files"], listed.get("folders", [])], sort_keys=True)
+    return hashlib.blake2b(text.encode()).hexdigest()[:_LENGTH]
+
+
+def _is_inside(name: str) -> bool:
+    return not Path(name).is_absolute() and ".." not in Path(name).parts
+
+
+def _sample(path: Path) -> str:
+    """Return the checksum of evenly spread pieces of a file."""
+    size, count, length = path.stat().st_size, int(SAMPLES.value), int(SAMPLE.value)
+    checksum = hashlib.blake2b()
+    with path.open("rb") as file:
+        for k in range(count):
+            file.seek(k * max(size - length, 0) // (count - 1))
+            checksum.update(file.read(length))
+    return checksum.hexdigest()[:_LENGTH]
+
+
 def _digest(path: Path) -> str:
     with path.open("rb") as file:
-        return hashlib.file_digest(file, "blake2b").hexdigest()[:32]
+        return hashlib.file_digest(file, "blake2b").hexdigest()[:_LENGTH]

@@ -44,6 +44,8 @@ class Outcome:
         Files in the results folder that are not ours; they were left there.
     lost_decisions
         Which decisions in the review file are on a run that there is not.
+    damaged
+        Files of the earlier results that were not as they had been written.
     """
 
     campaign: Campaign
@@ -56,6 +58,7 @@ class Outcome:
     models: tuple[ModelOutcome, ...] = ()
     foreign: tuple[str, ...] = ()
     lost_decisions: tuple[str, ...] = ()
+    damaged: tuple[str, ...] = ()
 
     @property
     def kept(self) -> dict[str, str]:
@@ -85,7 +88,14 @@ class OpenOutcome(Outcome):
 
     store: Store
 
-    def read_at(self, folder: Path, store: Catalogue, foreign: tuple[str, ...]) -> Outcome:
+    def read_at(
+        self,
+        folder: Path,
+        store: Catalogue,
+        foreign: tuple[str, ...],
+        damaged: tuple[str, ...] = (),
+    ) -> Outcome:
         """Return what it came to, as it now lies in a folder for reading."""
         parts = {part.name: getattr(self, part.name) for part in fields(self)}
-        return Outcome(**parts | {"folder": folder, "store": store, "foreign": foreign})
+        now = {"folder": folder, "store": store, "foreign": foreign, "damaged": damaged}
+        return Outcome(**parts | now)

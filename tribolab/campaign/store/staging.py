@@ -22,6 +22,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
+from tribolab.campaign.store.catalogue import CATALOGUE
 from tribolab.campaign.store.ledger import MARKER, Ledger, other_name
 from tribolab.errors import ConfigError, OutputError
 
@@ -200,6 +201,11 @@ def _refuse_foreign(output: Path) -> None:
         return
     ledger = Ledger.read(output)
     if not any(ledger.is_ours(name) for name in ledger.files):
+        if (output / CATALOGUE).is_file():
+            raise ConfigError(
+                f"{output}: the marker {MARKER}, which lists what was written here, is lost; "
+                f"'tribolab verify --repair {output}' writes it anew"
+            )
         raise ConfigError(
             f"{output} holds something else than results ({', '.join(inside[:3])}"
             f"{', ...' if len(inside) > 3 else ''}); choose another folder with --output, or "
@@ -208,8 +214,16 @@ def _refuse_foreign(output: Path) -> None:
 
 
 def _take_along(ledger: Ledger, new: Path) -> None:
-    """Link what is not ours into the new folder; what of ours was changed, under another name."""
-    for name in ledger.foreign():
+    """Link what is not ours into the new folder; what of ours was changed, under another name.
+
+    Where the catalogue is damaged, nothing is known of runs whose raw files cannot be read now:
+    their data files stay, too.
+    """
+    intact = ledger.intact()
+    names = ledger.foreign(intact)
+    if CATALOGUE in ledger.files and CATALOGUE not in intact:
+        names += [n for n in intact if n.startswith("data/") and not (new / n).exists()]
+    for name in names:
         if not name.startswith(_prefix(ledger.folder)):
             _keep(ledger, name, new)
 

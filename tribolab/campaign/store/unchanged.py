@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TypeVar
 from tribolab.campaign.settings.files import instrument_of, label_of, scans_of, sha256_of_dialect
 from tribolab.campaign.settings.plan import PlannedRun
 from tribolab.campaign.settings.review import REVIEW_FILE, lost_decisions
-from tribolab.campaign.store.catalogue import Catalogue, Identity
+from tribolab.campaign.store.catalogue import CATALOGUE, Catalogue, Identity
 from tribolab.campaign.store.ledger import Ledger
 from tribolab.campaign.store.outcome import OpenOutcome, Outcome
 from tribolab.provenance import sha256_of, sha256_of_file
@@ -86,6 +86,7 @@ def unchanged(
     options: Mapping[str, object],
     *,
     verify: bool = False,
+    intact: frozenset[str] | None = None,
 ) -> Outcome | None:
     """Return what the results came to if nothing that they are made from has changed.
 
@@ -100,16 +101,21 @@ def unchanged(
     verify
         Whether every file is read to tell; by default those only whose size, time or inode is not
         what it was.
+    intact
+        Which files of the results are as they were written, if that is known.
     """
+    ledger = Ledger.read(place)
+    intact = ledger.intact(whole=verify) if intact is None else intact
+    if not ledger.sound or CATALOGUE not in intact or ledger.damaged(intact):
+        return None
     catalogue = Catalogue.of(place)
     made = catalogue.fact(_FACT)
     if not made or made != fingerprint(campaign, runs, options):
         return None
-    ledger = Ledger.read(place)
     sources: list[Source] = [(str(n), str(c), int(b)) for n, c, b in _listed(catalogue)]
     files = _inputs(campaign, runs)
     known = {} if verify else catalogue.files()
-    if not ledger.is_whole or not _are_same(files, known, {n: c for n, c, _ in sources}):
+    if not _are_same(files, known, {n: c for n, c, _ in sources}):
         return None
     return Outcome(
         campaign=campaign,
@@ -120,7 +126,7 @@ def unchanged(
         sources=tuple(sources),
         surfaces=_as_before(catalogue.outcomes("surface", SurfaceOutcome)),
         models=_as_before(catalogue.outcomes("model", ModelOutcome)),
-        foreign=tuple(ledger.foreign()),
+        foreign=tuple(ledger.foreign(intact)),
         lost_decisions=lost_decisions(campaign.file, [run.name for run in runs]),
     )
 

@@ -1,0 +1,144 @@
+"""Whether results are as they were written, and as the raw files give them."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Iterator
+from itertools import zip_longest
+from pathlib import Path
+
+import xarray as xr
+
+from tribolab.across.folder import open_folder
+from tribolab.app.run import run_campaign
+from tribolab.campaign.engine.stage import Progress
+from tribolab.campaign.store.catalogue import CATALOGUE
+from tribolab.campaign.store.data_files import digest
+from tribolab.campaign.store.ledger import Ledger, repair
+from tribolab.deposit.contents import campaign_of
+from tribolab.deposit.pack import problems_of
+from tribolab.errors import ConfigError, OutputError, ReadError, brief
+from tribolab.version import __version__
+
+# what says when and where it was made, not what came out
+_PASSING = frozenset({"made_at", "versions", "seconds", "history"})
+
+
+def problems(results: Path) -> list[str]:
+    """Say what of a results folder or a packed file is not as it was written."""
+    if results.is_file():
+        return problems_of(results)
+    if not results.is_dir():
+        raise ReadError(f"{results}: there is no such results folder or packed file")
+    return Ledger.read(results).problems()
+
+
+def mend(results: Path) -> None:
+    """Write the lost marker of a results folder anew.
+
+    Raises
+    ------
+    ConfigError
+        If it is no results folder, or nothing is lost.
+    """
+    if not (results / CATALOGUE).is_file():
+        raise ConfigError(f"{results}: no results folder: it has no {CATALOGUE}")
+    if Ledger.read(results).files:
+        raise ConfigError(
+            f"{results}: the marker is not lost; 'tribolab run' makes anew what is damaged"
+        )
+    try:
+        repair(results)
+    except OSError as error:
+        raise OutputError(f"{results}: cannot be written ({brief(error)})") from error
+
+
+def recomputed(
+    results: Path,
+    campaign: Path | None = None,
+    *,
+    jobs: int | None = None,
+    progress: Progress | None = None,
+) -> list[str]:
+    """Compute results again from the raw files, and say which numbers differ.
+
+    Parameters
+    ----------
+    results
+        The folder.
+    campaign
+        The campaign file, where it is not beside the results.
+    jobs, progress
+        As in `run_campaign`.
+
+    Raises
+    ------
+    ReadError
+        If the report cannot be read.
+    ConfigError
+        If the campaign file is not there, or has changed since; or if another version made them.
+    """
+    folder = open_folder(results)
+    version = folder.report["versions"].get("tribolab", "")
+    if version != __version__:
+        raise ConfigError(
+            f"{results}: made by tribolab {version}, this is {__version__}; the numbers of another "
+            "version may differ: compute them again with that one"
+        )
+    known = campaign_of(folder.path, folder.report, campaign)
+    with tempfile.TemporaryDirectory() as temporary:
+        again = Path(temporary) / "results"
+        run_campaign(known, output=again, jobs=jobs, progress=progress, figures="none")
+        wrong = []
+        for kind in ("tables/*.csv", "tables/*.parquet", "data/*.nc", "report.json"):
+            paths = {p.relative_to(place) for place in (results, again) for p in place.glob(kind)}
+            for path in sorted(paths):
+                name = path.as_posix()
+                if ".changed-" not in name:
+                    wrong += _differing(results / path, again / path, name)
+    return wrong
+
+
+def _differing(there: Path, made: Path, name: str) -> list[str]:
+    if not (there.is_file() and made.is_file()):
+        return [f"{name}: {'missing' if made.is_file() else 'the raw files give no such file'}"]
+    try:
+        if there.suffix == ".json":
+            pair = [json.loads(path.read_text("utf-8")) for path in (there, made)]
+            at = next(_unlike(pair[0], pair[1]), "")
+        elif there.suffix == ".csv":
+            lines = [path.read_text("utf-8").splitlines() for path in (there, made)]
+            rows = enumerate(zip_longest(*lines), 1)
+            at = next((f"line {number}" for number, (a, b) in rows if a != b), "")
+        elif there.suffix == ".nc":
+            at = _unlike_data(there, made)
+        else:
+            at = "" if there.read_bytes() == made.read_bytes() else "its numbers"
+    except (OSError, ValueError, LookupError) as error:
+        return [f"{name}: cannot be read ({brief(error)})"]
+    return [f"{name}: not what the raw files give, first at {at}"] if at else []
+
+
+def _unlike(one: object, other: object, at: str = "") -> Iterator[str]:
+    """Name the entries in which two reports differ."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        for key in sorted({*one, *other} - _PASSING):
+            yield from _unlike(one.get(key), other.get(key), f"{at}.{key}" if at else key)
+    elif isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
+        for place, pair in enumerate(zip(one, other, strict=True)):
+            yield from _unlike(*pair, f"{at}[{place}]")
+    elif one != other and not (one != one and other != other):
+        yield at
+
+
+def _unlike_data(there: Path, made: Path) -> str:
+    one, other = (xr.open_groups(path) for path in (there, made))
+    try:
+        if set(one) != set(other):
+            return "its groups"
+        unlike = (group for group in sorted(one) if digest(one[group]) != digest(other[group]))
+        return next((f"group {group}" for group in unlike), "")
+    finally:
+        for data in (*one.values(), *other.values()):
+            data.close()
