@@ -389,4 +389,5 @@ def test_sliding_before_and_after_a_slip_does_not_soften_the_spring(noise):
 
 def test_no_drop_exceeds_the_swing_of_a_clean_record():
     values, spacing = sliding_at_both_ends()
-    assert seen(values, spacing)["drop"].item() <= np.ptp(values)
+    # the mean of equal drops rounds in the last digit
+    assert seen(values, spacing)["drop"].item() <= np.ptp(values) * (1 + 1e-12)
