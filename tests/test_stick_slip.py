@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from slip_cases import a_run, whole
+from slip_cases import a_run, noisy, seen, whole
 
 from tests.real_runs import paper
 from tribolab.errors import AnalysisError
@@ -368,3 +368,26 @@ def test_paper_on_paper_a_vibration_upon_the_mains_is_not_decided(shared_data):
     assert "stands where the mains hums (50 Hz)" in found["remark"].item()
     assert "mains at 50 Hz" in found["instrument"].item()
     assert found["spike_share"].item() > 0.001
+
+
+def sliding_at_both_ends(periods=30, spacing=0.005, noise=0.0):
+    """Friction that a spring loads at 1/s while the sample sticks, and less near each slip."""
+    stick = np.arange(0.0, 1.0, spacing)
+    sliding = 0.9 * (np.exp(-stick / 0.05) + np.exp((stick - 1.0) / 0.05))
+    rise = np.cumsum(1.0 - sliding) * spacing
+    fall = np.linspace(rise[-1], 0.0, 12)
+    values = np.tile(np.concatenate([rise, fall]), periods)
+    return noisy(values, size=noise), spacing
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+def test_sliding_before_and_after_a_slip_does_not_soften_the_spring(noise):
+    values, spacing = sliding_at_both_ends(noise=noise)
+    found = seen(values, spacing)
+    assert found["loading_slope"].item() * 1e-6 == pytest.approx(1.0, rel=0.03)
+
+
+def test_no_drop_exceeds_the_swing_of_a_clean_record():
+    values, spacing = sliding_at_both_ends()
+    # the mean of equal drops rounds in the last digit
+    assert seen(values, spacing)["drop"].item() <= np.ptp(values) * (1 + 1e-12)

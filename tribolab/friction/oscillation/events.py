@@ -6,6 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.medians import medians_of_rows
+
+_INSIDE = (0.08, 0.92)  # of a stick, in which the loading is looked at
+_CELLS, _WINDOW = 48, 16  # cells of it, and cells in a window: shorter ones add noise
 _SPIKE = 6.0  # a single sample so many noise levels off its neighbours is no slip
 
 
@@ -158,3 +162,42 @@ def _half_way(
     middle = np.repeat(0.5 * (values[peak] + values[valley]), count)
     last = peak + np.add.reduceat((values[inside] > middle).astype(int), first) - 1
     return 0.5 * (time[last] + time[last + 1])
+
+
+def loading_rate(time: np.ndarray, values: np.ndarray, events: Events) -> float:
+    """Return how fast friction rises where the sample sticks best [unit/s]; NaN without events.
+
+    Parameters
+    ----------
+    time, values
+        In which the events were found.
+    events
+        From `find_events`.
+
+    Notes
+    -----
+    The spring loads at k (v - V). Near the critical stiffness the sample slides (V > 0) before and
+    after each slip, so the whole rise is less steep than the spring. Each stick is divided into
+    windows, and the median over the sticks is taken in each: the steepest window has the least
+    sliding.
+
+    Examples
+    --------
+    >>> t = np.arange(0, 10, 0.01)
+    >>> saw = t % 1.0
+    >>> round(loading_rate(t, saw, find_events(t, saw, 0.5)), 2)
+    1.0
+    """
+    if not events.drop.size:
+        return np.nan
+    # means over cells use all samples; the ends were picked where noise adds to them
+    edges = np.linspace(*_INSIDE, _CELLS + 1)
+    stick = (events.peak - events.start)[:, None]
+    steps = 0.5 * np.diff(time) * (values[1:] + values[:-1] - 2.0 * values[0])
+    integral = np.concatenate([[0.0], np.cumsum(steps)])
+    cells = np.diff(np.interp(events.start[:, None] + stick * edges, time, integral), axis=1)
+    cells /= np.maximum(stick * (edges[1] - edges[0]), 1e-300)
+    x = edges[:_WINDOW] - edges[:_WINDOW].mean()
+    rows = np.lib.stride_tricks.sliding_window_view(cells, _WINDOW, axis=1)[:, :: _WINDOW // 2]
+    slopes = rows @ x / float(x @ x) / np.maximum(stick, 1e-300)
+    return float(medians_of_rows(slopes.T).max())

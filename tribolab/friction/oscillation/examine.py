@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.friction.oscillation.components import Component, components
-from tribolab.friction.oscillation.events import Events, find_events, without_spikes
+from tribolab.friction.oscillation.events import Events, find_events, loading_rate, without_spikes
 from tribolab.friction.oscillation.few_periods import slow_wave
 from tribolab.friction.oscillation.mean_cycle import abrupt_drop, abrupt_rise, smooth_drop
 from tribolab.friction.oscillation.noise import noise_level, quantisation_step
@@ -63,6 +63,7 @@ class Examined(NamedTuple):
     hysteresis: float
     sample_noise: float
     spike_share: float
+    loading_rate: float
     force: bool = False
 
 
@@ -111,13 +112,16 @@ def examine_record(
     probability = class_probabilities(features(form, oscillation))
     if events.drop.size:
         excess = _excess(record, view, form, probability)
-        events = events._replace(drop=events.drop - excess, rise=events.rise - excess)
+        swing = np.ptp(record.values)  # a mean cycle's extrapolated edges may exceed it
+        drop, rise = (np.minimum(x - excess, swing) for x in (events.drop, events.rise))
+        events = events._replace(drop=drop, rise=rise)
     lines = components(surveyed)
     slow = slow_wave(record)
     seen = period_verdict(probability, oscillation, view.regularity, slow, lines, surveyed.duration)
     return Examined(
         oscillation, events, form, view.regularity, probability, seen, lines,
-        view.hysteresis, noise, spikes / n, force,
+        view.hysteresis, noise, spikes / n,
+        loading_rate(part.time, part.values, events), force,
     )  # fmt: skip
 
 

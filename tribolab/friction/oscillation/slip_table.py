@@ -12,7 +12,6 @@ from tribolab.friction.oscillation.examine import Examined
 from tribolab.friction.oscillation.regularity import scatter
 from tribolab.friction.oscillation.survey import PER_DECADE
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR, NOT_LOOKED_AT
-from tribolab.medians import median
 
 # what is said of a segment in which nothing oscillates
 _OF_NOISE = (
@@ -136,9 +135,7 @@ def _row(e: Examined, speed: float, load: float) -> SlipRow:
     stick, slip = events.peak - events.start, events.stop - events.peak
     period = e.regularity.periods
     frequency, error = e.verdict.frequency, e.verdict.frequency_error
-    slope = np.nan
-    if speed > 0 and stick.size:
-        slope = float(median(events.rise / np.maximum(stick, 1e-300))) / speed
+    slope = e.loading_rate / speed if speed > 0 else np.nan
     mains = max(o.mains, key=lambda line: line.amplitude, default=None)
     return SlipRow(
         dominant_frequency=frequency,
