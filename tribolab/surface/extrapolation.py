@@ -253,7 +253,7 @@ def _fit(
 def _crossing(law: PowerLaw, plateau: float) -> float:
     if not plateau > 0:
         return 0.0
-    return float(np.exp(law.centre + (np.log(plateau) - law.level) / law.slope))
+    return float(np.exp(np.clip(law.centre + (np.log(plateau) - law.level) / law.slope, -700, 700)))
 
 
 def _regress(

@@ -264,11 +264,18 @@ def _extrapolated(
     """
     limits = {key: options[key] for key in ("q_high", "fit_decade") if key in options}
     low = options.get("q_low", q_low)
+    first, last = (float(end) for end in measured.wavenumber.values[[0, -1]])
+    if low is not None and low >= last:
+        raise AnalysisError(
+            f"the scans tell of waves of {number(2e6 * np.pi / last)} to "
+            f"{number(2e6 * np.pi / first)} um, and the contact asks for those below "
+            f"{number(2e6 * np.pi / low)} um alone: none of them was measured; take finer scans",
+            function="extrapolate",
+        )
     try:
         return extrapolate(measured, q_low=low, **limits), []
     except AnalysisError as error:
-        last = float(measured.wavenumber[-1])
-        if limits or not (measured.psd_2d > 0).any() or (low is not None and low >= last):
+        if limits or not (measured.psd_2d > 0).any():
             raise
         text = (
             f"not extrapolated: {error.what}. Slope and contact are those of the measured waves "
