@@ -24,7 +24,7 @@ def spectrum(q, c, error=None):
 
 
 @settings(max_examples=25, deadline=None)
-@given(st.floats(0.3, 1.3), st.floats(5e3, 1.2e5))
+@given(st.floats(0.3, 1.24), st.floats(5e3, 1.2e5))
 def test_a_measured_band_of_a_rolled_off_surface_gives_the_whole(hurst, rolloff):
     whole = self_affine.SelfAffine(hurst, rolloff, 1e-21, 423.0, Q1)
     part = band(self_affine.tabulate(whole), 2e3, 2e6)
@@ -141,3 +141,16 @@ def test_the_measured_waves_alone_need_no_power_law():
     assert np.isnan(alone.attrs["hurst_exponent"]) and "not known" in alone.attrs["rolloff"]
     steep = extrapolate(spectrum(Q, Q**-12.0), q_high=float(Q[-1]))
     assert np.isnan(steep.attrs["hurst_exponent"])  # 5 is none of a rough surface
+
+
+@pytest.mark.parametrize(("hurst", "led"), [(-0.6, 0), (-0.05, 0), (0.1, 1), (1.2, 1), (1.4, 0)])
+def test_a_law_that_no_surface_has_is_not_led_on(hurst, led):
+    q = np.geomspace(1e4, 1e6, 41)
+    measured = spectrum(q, 1e-5 * q ** (-2 * (1 + hurst)), np.full(41, 0.05))
+    if led:
+        assert extrapolate(measured).attrs["hurst_exponent"] == pytest.approx(hurst)
+        return
+    with pytest.raises(AnalysisError, match=f"Hurst exponent of {hurst:.2g} ± "):
+        extrapolate(measured)
+    alone = extrapolate(measured, q_high=1e6)
+    assert np.isnan(alone.attrs["hurst_exponent"]) and alone.wavenumber[-1] == 1e6

@@ -7,6 +7,7 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.surface.abel import Annuli, PowerLaws
+from tribolab.surface.limits import MIN_INDEPENDENT_VALUES
 from tribolab.surface.moments import bin_integrals
 from tribolab.surface.self_affine import SelfAffine, psd_2d
 from tribolab.surface.smooth_law import FittedLaw, smooth
@@ -18,15 +19,20 @@ _PLATEAU = 3.0  # an annulus wider than this was joined
 
 
 def confidence_band(value: np.ndarray, independent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Band of a mean power: that of a chi-square variable with two degrees of freedom a value."""
+    """Band of a mean power: that of a chi-square variable with two degrees of freedom a value.
+
+    Below one value the quantiles run to zero, and so would the power that divides by them: the
+    logarithm of the band then widens with the standard error, from the band of one value on.
+    """
     # late: scipy takes long to load
     from scipy.special import chdtri
 
-    freedom = 2 * np.asarray(independent)
+    held = np.maximum(np.asarray(independent, dtype=float), MIN_INDEPENDENT_VALUES.value)
+    freedom, widened = 2 * np.maximum(held, 1.0), 1 / np.sqrt(np.minimum(held, 1.0))
     outside = 0.5 * (1 - _CONFIDENCE)
     return (
-        value * freedom / chdtri(freedom, outside),
-        value * freedom / chdtri(freedom, 1 - outside),
+        value * (freedom / chdtri(freedom, outside)) ** widened,
+        value * (freedom / chdtri(freedom, 1 - outside)) ** widened,
     )
 
 

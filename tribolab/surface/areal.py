@@ -20,6 +20,7 @@ from tribolab.surface.gaps import (
     still_worth,
 )
 from tribolab.surface.level import level_map, refuse_level
+from tribolab.surface.limits import MIN_WAVES_OF_MAP
 
 _FEWEST = 16
 
@@ -91,7 +92,16 @@ def psd_2d_of_map(
     ky, kx = (2 * np.pi * np.fft.fftfreq(n, d) for n, d in zip(size, steps, strict=True))
     q = np.hypot(ky[:, None], kx)
     spacing = max(2 * np.pi / (n * d) for n, d in zip(size, steps, strict=True))
-    bins = log_bins(int(min(np.pi / d for d in steps) / spacing), 3, bins_per_decade, 1)
+    waves = int(min(np.pi / d for d in steps) / spacing)
+    if waves < MIN_WAVES_OF_MAP.value:
+        across, along = (f"{1e6 * d:.3g} um" for d in steps)
+        raise AnalysisError(
+            f"the map's points are {along} apart along x and {across} along y, so both sides "
+            f"share {waves} wavenumbers, and {MIN_WAVES_OF_MAP.value:.0f} are the least; are the "
+            "units of x and y right?",
+            function="psd_2d",
+        )
+    bins = log_bins(waves, 3, bins_per_decade, 1)
     edges = bins.edges * spacing
     index = np.digitize(q.ravel(), edges) - 1
     inside = (index >= 0) & (index < bins.starts.size)

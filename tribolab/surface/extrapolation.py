@@ -10,13 +10,13 @@ import xarray as xr
 from tribolab.errors import AnalysisError, Cure
 from tribolab.provenance import history_line
 from tribolab.stamping import stamp
+from tribolab.surface.limits import MAX_FITTED_HURST, MAX_SURE_HURST, MIN_HURST
 from tribolab.surface.moments import at_wavenumber, spectrum_arrays
 from tribolab.units import to_si
 
 AS_MEASURED, TO_SMALL, TO_LARGE = 0, 1, 2
 _PER_DECADE = 20
 _ABOVE_ROLLOFF = 1.5  # the fit keeps so far above the roll-off
-_STEEPEST = 2.0  # Hurst exponent; smoothed surfaces reach 1.2, tips and filters 1.5
 _NORMAL = 1.959963984540054  # 95 % of a normal distribution
 
 
@@ -28,6 +28,16 @@ class PowerLaw(NamedTuple):
     centre: float
     level_error: float
     slope_error: float
+
+    @property
+    def hurst(self) -> float:
+        """Hurst exponent of ``C ~ q^(-2(1+H))``."""
+        return -0.5 * self.slope - 1
+
+    @property
+    def hurst_error(self) -> float:
+        """Its standard error."""
+        return 0.5 * self.slope_error
 
     def at(self, wavenumber: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return ln C and its standard error."""
@@ -89,8 +99,8 @@ def extrapolate(
     Raises
     ------
     AnalysisError
-        If q_low is not below q_high, the spectrum is none, it does not fall over the fitted
-        decade or falls as no rough surface's does, or that decade holds fewer than three points:
+        If q_low is not below q_high, the spectrum is none, it falls over the fitted decade slower
+        or faster than a rough surface's, or that decade holds fewer than three points:
         where it is extrapolated to large wavenumbers. Within the measured ones no power law is
         needed; what cannot be fitted is NaN.
 
@@ -124,7 +134,7 @@ def extrapolate(
             raise
         law, decade, rolloff = _UNKNOWN, (np.nan, np.nan), np.nan
     if high > q[-1]:
-        _refuse_steep(law, decade, str(psd.attrs.get("not_self_affine", "")))
+        _refuse_no_surface(law, decade, str(psd.attrs.get("not_self_affine", "")))
     measured = _Part(q, c, _relative_band(psd, c), AS_MEASURED)
     parts = [measured.between(low, high)]
     if low < q[0]:
@@ -154,12 +164,11 @@ def extrapolate(
     kept = {k: v for k, v in psd.attrs.items() if k != "origin"}
     kept["history"] = "\n".join(filter(None, [kept.get("history", ""), history_line(action)]))
     seen = rolloff > 1.05 * q[0]
-    hurst = -0.5 * law.slope - 1
-    rough = hurst <= _STEEPEST  # else no law of a rough surface: nothing was led on by it
+    rough = _is_of_a_surface(law)  # else nothing was led on by it
     attrs = {
         **kept,
-        "hurst_exponent": hurst if rough else float("nan"),
-        "hurst_exponent_standard_error": 0.5 * law.slope_error if rough else float("nan"),
+        "hurst_exponent": law.hurst if rough else float("nan"),
+        "hurst_exponent_standard_error": law.hurst_error if rough else float("nan"),
         "fit_low_1_m": decade[0],
         "fit_high_1_m": decade[1],
         "rolloff_wavenumber_1_m": rolloff,
@@ -173,16 +182,25 @@ def extrapolate(
     return stamp(data.assign_attrs(attrs))
 
 
-def _refuse_steep(law: PowerLaw, decade: tuple[float, float], why: str) -> None:
+def _is_of_a_surface(law: PowerLaw) -> bool:
+    """Whether a rough surface may have such an exponent, within its error."""
+    hurst, error = law.hurst, law.hurst_error
+    sure = hurst - _NORMAL * error
+    return bool(MIN_HURST.value <= hurst <= MAX_FITTED_HURST.value and sure <= MAX_SURE_HURST.value)
+
+
+def _refuse_no_surface(law: PowerLaw, decade: tuple[float, float], why: str) -> None:
     """Refuse a fall that no rough surface has."""
-    hurst = -0.5 * law.slope - 1
-    if hurst <= _STEEPEST:
+    if _is_of_a_surface(law):
         return
+    if law.hurst < MIN_HURST.value:
+        why = why or "noise, rounded heights, or waves of one length with nothing between them"
     why = why or "a gauge, a groove, or what a filter or the window left of a single wave"
     raise AnalysisError(
         f"C(q) falls between {decade[0]:.4g} and {decade[1]:.4g} 1/m as on a surface with a Hurst "
-        f"exponent of {hurst:.2g}; rough surfaces have 0 to {_STEEPEST:g}, so no power law leads "
-        f"on from there ({why})",
+        f"exponent of {law.hurst:.2g} ± {law.hurst_error:.2g}; self-affine surfaces have "
+        f"{MIN_HURST.value:g} to 1 and smooth ones up to {MAX_SURE_HURST.value:g}, so no power "
+        f"law leads on from there ({why})",
         cure=Cure(
             notebook="take the measured spectrum alone (q_high = its last wavenumber), or another "
             "fit_decade",
@@ -253,7 +271,7 @@ def _fit(
 def _crossing(law: PowerLaw, plateau: float) -> float:
     if not plateau > 0:
         return 0.0
-    return float(np.exp(law.centre + (np.log(plateau) - law.level) / law.slope))
+    return float(np.exp(np.clip(law.centre + (np.log(plateau) - law.level) / law.slope, -700, 700)))
 
 
 def _regress(

@@ -81,7 +81,10 @@ def fitted_law(wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarra
     growth = max(1.0, 2 * best.cost / max(level.size - 3, 1))  # where the surface is another
     rolloff, hurst = best.x
     jacobian = np.asarray(best.jac)
-    return FittedLaw(law(rolloff, hurst, plateau), growth * np.linalg.pinv(jacobian.T @ jacobian))
+    # what the spectrum leaves open is known within the bounds, as of a uniform distribution
+    known = np.diag(12 / np.diff(bounds, axis=0)[0] ** 2)
+    covariance = np.linalg.inv(jacobian.T @ jacobian / growth + known)
+    return FittedLaw(law(rolloff, hurst, plateau), covariance)
 
 
 def smooth(

@@ -19,6 +19,7 @@ from tribolab.records.roughness_words import DOUBTFUL_FORM
 from tribolab.surface.areal_roughness import areal_roughness
 from tribolab.surface.extrapolation import extrapolate
 from tribolab.surface.form import fill_dropouts, remove_form
+from tribolab.surface.limits import MAX_EXTRAPOLATED_SLOPE, MIN_SHARE_OF_HEIGHT
 from tribolab.surface.moments import band, rms_roughness, rms_slope
 from tribolab.surface.psd import psd_1d, psd_2d
 from tribolab.surface.roughness import primary_roughness, roughness_parameters, spectral_roughness
@@ -248,11 +249,51 @@ def spectra_of_scans(
     } | removed
     if psd.attrs["rolloff"].startswith("not reached"):
         findings.append(Finding("note", f"roll-off {psd.attrs['rolloff']}"))
+    findings += _what_is_lacking(iso, rms_roughness(part), seen)
     if share < 1 - _NOTED:
-        text = f"{100 * (1 - share):.0f} % of the mean square slope is extrapolated, not measured"
-        relied_on = asked and share < 1 - _SUSPECT
-        findings.append(Finding("suspect" if relied_on else "note", text))
+        findings.append(_extrapolated_slope(share, rms_slope(part), float(seen[-1]), asked))
+    hurst, error = (psd.attrs[f"hurst_exponent{end}"] for end in ("", "_standard_error"))
+    if hurst - 1.96 * error > 1 and psd.wavenumber.values[-1] > seen[-1]:
+        text = (
+            f"the spectrum falls with a Hurst exponent of {hurst:.3g} ± {error:.1g}; above 1 a "
+            "surface is smoother than a self-affine one, or a tip or filter took its short waves"
+        )
+        findings.append(Finding("note", text))
     return groups, findings
+
+
+def _what_is_lacking(iso: xr.Dataset, held: float, seen: np.ndarray) -> list[Finding]:
+    """Say which waves the rms height of the measured spectrum lacks."""
+    name, what = ("Sq", "map") if "Sq" in iso else ("Pq", "profile")
+    whole = float(iso[name].mean())
+    if held >= MIN_SHARE_OF_HEIGHT.value * whole:
+        return []
+    text = (
+        f"measured_rms_roughness {number(1e6 * held)} um holds the waves of "
+        f"{number(2e6 * np.pi / seen[-1])} to {number(2e6 * np.pi / seen[0])} um alone; the whole "
+        f"{what} without its form has {name} = {number(1e6 * whole)} um, most of the rest in "
+        f"longer waves. Take {name} for the height, and longer scans for the spectrum"
+    )
+    return [Finding("note", text)]
+
+
+def _extrapolated_slope(share: float, slope: float, last: float, asked: bool) -> Finding:
+    """Say what the extrapolation makes of the measured slope, and how to do without it."""
+    whole = slope / np.sqrt(share)
+    text = (
+        f"{100 * (1 - share):.0f} % of the mean square slope is extrapolated, not measured: the "
+        f"rms slope is {number(slope)} down to the shortest measured wave and {number(whole)} with "
+        f'the extrapolation. The measured waves alone: q_high = "{_rounded_down(last)} 1/m" in '
+        "[roughness]"
+    )
+    relied_on = (asked and share < 1 - _SUSPECT) or whole > MAX_EXTRAPOLATED_SLOPE.value
+    return Finding("suspect" if relied_on else "note", text)
+
+
+def _rounded_down(value: float) -> str:
+    """Return a number of four digits that is no larger."""
+    digit = 10.0 ** (np.floor(np.log10(value)) - 3)
+    return f"{np.floor(value / digit) * digit:.4g}"
 
 
 def _extrapolated(
@@ -264,11 +305,18 @@ def _extrapolated(
     """
     limits = {key: options[key] for key in ("q_high", "fit_decade") if key in options}
     low = options.get("q_low", q_low)
+    first, last = (float(end) for end in measured.wavenumber.values[[0, -1]])
+    if low is not None and low >= last:
+        raise AnalysisError(
+            f"the scans tell of waves of {number(2e6 * np.pi / last)} to "
+            f"{number(2e6 * np.pi / first)} um, and the contact asks for those below "
+            f"{number(2e6 * np.pi / low)} um alone: none of them was measured; take finer scans",
+            function="extrapolate",
+        )
     try:
         return extrapolate(measured, q_low=low, **limits), []
     except AnalysisError as error:
-        last = float(measured.wavenumber[-1])
-        if limits or not (measured.psd_2d > 0).any() or (low is not None and low >= last):
+        if limits or not (measured.psd_2d > 0).any():
             raise
         text = (
             f"not extrapolated: {error.what}. Slope and contact are those of the measured waves "

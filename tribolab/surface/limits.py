@@ -1,0 +1,48 @@
+"""Numbers that decide about spectra of surfaces, with their reasons."""
+
+from tribolab.core.limit import Limit
+
+MIN_INDEPENDENT_VALUES = Limit(
+    1e-3,
+    "1",
+    "a spectral value with fewer is known to within thirty powers of ten: a wider band is no band",
+    "judgement",
+)
+MIN_WAVES_OF_MAP = Limit(
+    4.0,
+    "1",
+    "form and window take the two longest waves; of fewer than four none is left for a spectrum",
+    "judgement",
+)
+MIN_HURST = Limit(
+    0.0,
+    "1",
+    "below it the waves beyond the measured ones hold more height than these, without end",
+    "self-affine surfaces have 0 to 1, doi:10.1016/j.apsadv.2021.100190",
+)
+MAX_SURE_HURST = Limit(
+    1.25,
+    "1",
+    "exponent that a surface may exceed within the error of the fit alone; worn, polished and "
+    "moulded surfaces fall faster than a self-affine one (1.09 to 1.19 in the study xu2026), and "
+    "add little slope where they are led on",
+    "judgement",
+)
+MAX_FITTED_HURST = Limit(
+    2.0,
+    "1",
+    "fits of tips and filters reach 1.5; a steeper one is none, whatever its error",
+    "judgement",
+)
+MIN_SHARE_OF_HEIGHT = Limit(
+    0.9,
+    "1",
+    "rms height of the measured waves over Pq: what lacks more than a tenth says what it lacks",
+    "judgement",
+)
+MAX_EXTRAPOLATED_SLOPE = Limit(
+    1.0,
+    "1",
+    "rms slope; theories of contact take small slopes, and surfaces are measured with 0.001 to 1",
+    "judgement",
+)
