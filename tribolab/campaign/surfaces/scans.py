@@ -252,10 +252,10 @@ def spectra_of_scans(
     findings += _what_is_lacking(iso, rms_roughness(part), seen)
     if share < 1 - _NOTED:
         findings.append(_extrapolated_slope(share, rms_slope(part), float(seen[-1]), asked))
-    hurst, error = (psd.attrs[f"hurst_exponent{end}"] for end in ("", "_standard_error"))
-    if hurst - 1.96 * error > 1 and psd.wavenumber.values[-1] > seen[-1]:
+    hurst, unsure = (psd.attrs[f"hurst_exponent{end}"] for end in ("", "_standard_error"))
+    if hurst - 1.96 * unsure > 1 and psd.wavenumber.values[-1] > seen[-1]:
         text = (
-            f"the spectrum falls with a Hurst exponent of {hurst:.3g} ± {error:.1g}; above 1 a "
+            f"the spectrum falls with a Hurst exponent of {hurst:.3g} ± {unsure:.1g}; above 1 a "
             "surface is smoother than a self-affine one, or a tip or filter took its short waves"
         )
         findings.append(Finding("note", text))

@@ -25,12 +25,14 @@ from tribolab.io.dialects.signature import File, is_results, peek
 from tribolab.io.patterns import is_pattern, matching
 from tribolab.io.scans.extent import measured_part, refuse_impossible
 from tribolab.io.scans.grid import even, gridded
+from tribolab.io.scans.isolated import take_isolated
 from tribolab.io.scans.passes import find_passes
 from tribolab.io.scans.undescribed import read_undescribed
 from tribolab.provenance import as_text, made, sha256_of_file
 from tribolab.stamping import stamp
 from tribolab.units import positive
 from tribolab.untyped import Json
+from tribolab.words import Count
 
 # where the scans of a surface differ, the one that shows least counts for all
 _WORST = {"tip_radius_m": max, "lambda_s_m": max, "lambda_c_m": min}
@@ -121,6 +123,7 @@ def _apart(scan: xr.Dataset) -> list[xr.Dataset]:
 
 def _finished(path: Path, scan: xr.Dataset, sha256: str) -> xr.Dataset:
     """Return a scan that was read, if it can be one, with what is known of it."""
+    scan = _without_isolated(scan)
     if not np.isfinite(scan.height.values).any():
         raise ReadError(f"{path}: not one height is a number")
     refuse_impossible(path, scan)
@@ -133,6 +136,22 @@ def _finished(path: Path, scan: xr.Dataset, sha256: str) -> xr.Dataset:
         pitch_m=float(x[-1] - x[0]) / (x.size - 1),
         length_m=float(x[-1] - x[0]),
     )
+
+
+def _without_isolated(scan: xr.Dataset) -> xr.Dataset:
+    """Take an exact height far from all others for missing, and say so."""
+    height = np.array(scan.height.values, dtype=float)
+    marks = take_isolated(height)
+    if not marks:
+        return scan
+    before = [scan.attrs["taken_for_missing"]] if "taken_for_missing" in scan.attrs else []
+    told = [
+        f"height: {1e6 * mark.number:.9g} um {Count(mark.rows):time|times}, far from all other "
+        "heights"
+        for mark in marks
+    ]
+    scan = scan.assign(height=scan.height.copy(data=height))
+    return scan.assign_attrs(taken_for_missing="; ".join([*before, *told]))
 
 
 def _recognised(path: Path) -> Dialect | None:
@@ -209,6 +228,8 @@ def _scans_of(
     path: Path, columns: Mapping[str, np.ndarray], attrs: Json, dialect: Dialect
 ) -> list[xr.Dataset]:
     """Return the scan that one table is; of a way to and fro one for each pass."""
+    bare = _without_isolated(xr.Dataset({"height": ("row", columns["height"])}, attrs=dict(attrs)))
+    columns, attrs = {**columns, "height": bare.height.values}, dict(bare.attrs)
     passes = None
     if "x" in columns and "y" not in columns:
         passes = find_passes(columns["x"], columns["height"])

@@ -255,7 +255,8 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     text = (
         f"the uncertainty of the friction coefficient is {share:.0%} of its value "
         f"({worst.mean:.3g} ± {worst.u95:.2g}, 95 % coverage) at {len(bad)} of "
-        f"{Count(len(means)):speed|speeds}: friction or its zero wanders too slowly for so short a record"
+        f"{Count(len(means)):speed|speeds}: friction or its zero wanders too slowly for so short a "
+        "record"
     )
     cure = "Slide longer, or repeat the strokes, until the mean settles."
     return [Result("suspect", name, text, share, count=len(bad), cure=cure)]

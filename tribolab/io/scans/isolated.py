@@ -1,0 +1,68 @@
+"""Heights that stand for no data though nothing says so: an exact number far from all others."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tribolab.io.content.missing_marks import Marked
+from tribolab.io.scans.limits import (
+    MAX_DIGITS_OF_MARK,
+    MAX_SHARE_OF_MARK,
+    MIN_DISTANCE_OF_MARK,
+    MIN_DISTANCE_OF_SINGLE_MARK,
+    MIN_OTHER_HEIGHTS,
+)
+
+
+def take_isolated(height: np.ndarray) -> list[Marked]:
+    """Put NaN where an exact height lies far outside all others.
+
+    Parameters
+    ----------
+    height
+        Heights [m], of any shape; changed in place.
+
+    Returns
+    -------
+    list of Marked
+        The number [m] and how often it stood there.
+
+    Notes
+    -----
+    A mark is the lowest or the highest height, or there is one at both ends. A single height is
+    one only if it is a round number: a grain of dust has digits.
+
+    Examples
+    --------
+    >>> height = np.append(np.linspace(437.13e-6, 457.29e-6, 50), -1e-6)
+    >>> [mark.rows for mark in take_isolated(height)], int(np.isnan(height).sum())
+    ([1], 1)
+    """
+    known = height[np.isfinite(height)]
+    if not known.size:
+        return []
+    low, high = float(known.min()), float(known.max())
+    for ends in ([low], [high], [low, high]):
+        counts = [int((known == end).sum()) for end in ends]
+        if sum(counts) > MAX_SHARE_OF_MARK.value * known.size:
+            continue
+        rest = known[~np.isin(known, ends)]
+        if np.unique(rest).size < MIN_OTHER_HEIGHTS.value:
+            continue
+        bottom, top = float(rest.min()), float(rest.max())
+        if all(
+            max(bottom - end, end - top) > _least(end, count) * (top - bottom)
+            for end, count in zip(ends, counts, strict=True)
+        ):
+            height[np.isin(height, ends)] = np.nan
+            return [Marked(end, count) for end, count in zip(ends, counts, strict=True)]
+    return []
+
+
+def _least(number: float, count: int) -> float:
+    """How many ranges away a number must lie that stands there so often."""
+    if count > 1:
+        return MIN_DISTANCE_OF_MARK.value
+    rounded = float(f"{number:.{int(MAX_DIGITS_OF_MARK.value)}g}")
+    is_round = abs(number - rounded) <= 1e-9 * abs(number)
+    return MIN_DISTANCE_OF_SINGLE_MARK.value if is_round else np.inf
