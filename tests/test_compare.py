@@ -21,7 +21,6 @@ from tribolab.metrology.differences import (
     EQUIVALENT,
     OPEN,
     differences_of_groups,
-    holm,
     verdicts,
 )
 from tribolab.metrology.resampling import by_rotation
@@ -45,10 +44,19 @@ def test_welchs_t_is_that_of_scipy():
     assert low == pytest.approx(bounds.low) and high == pytest.approx(bounds.high)
 
 
-def test_holms_rule_is_that_of_statsmodels_documentation():
-    # Wikipedia's and Holm's own example: 0.01, 0.04, 0.03, 0.005 at four tests
-    assert holm(np.array([0.01, 0.04, 0.03, 0.005])) == pytest.approx([0.03, 0.06, 0.06, 0.02])
-    assert np.isnan(holm(np.array([np.nan, 0.5]))[0])
+@pytest.mark.parametrize("count, gaps", [(5, False), (3, False), (3, True)])
+def test_what_differs_has_an_interval_without_zero(count, gaps):
+    rng = np.random.default_rng(7)
+    told = []
+    for _ in range(40):
+        groups = [(runs(rng, count, 4), runs(rng, count, 4, 0.02)) for _ in range(2)]
+        if gaps:
+            groups[0][0][0, 0] = np.nan
+        compared = differences_of_groups(groups)
+        outside = (compared.low > 0) | (compared.high < 0)
+        assert [word == DIFFERENT for word in verdicts(compared, None)] == outside.tolist()
+        told.append(outside.mean())
+    assert 0 < np.mean(told) < 1
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ from tribolab.across.run_values import (
 from tribolab.across.sides import Compared, Side, sides_of
 from tribolab.errors import AnalysisError
 from tribolab.metrology.differences import (
-    HOLM,
+    BONFERRONI,
     PERMUTATION,
     ROTATION,
     Differences,
@@ -299,7 +299,7 @@ _HOW = {
     "condition's points tells what chance can do",
     ROTATION: "the scatter of the runs, turned at random, tells what chance can do at the points "
     "of a condition together, supposing that runs are normally distributed",
-    HOLM: "Holm's rule, where runs are few and lack speeds",
+    BONFERRONI: "Bonferroni's rule, where runs are few and lack speeds",
 }
 
 

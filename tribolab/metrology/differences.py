@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import special
 
 from tribolab.aliases import Array
@@ -19,7 +20,7 @@ from tribolab.metrology.resampling import (
 
 PairedGroups = Sequence[tuple[Array, Array]]
 
-PERMUTATION, ROTATION, HOLM = "permutation", "rotation", "Holm"
+PERMUTATION, ROTATION, BONFERRONI = "permutation", "rotation", "Bonferroni"
 DIFFERENT, EQUIVALENT, OPEN = "different", "equivalent", "undecided"
 
 
@@ -41,7 +42,7 @@ class Differences:
         Standard errors to each side within which all differences lie together (point).
     methods
         How the points of each condition were taken together: ``"permutation"``, ``"rotation"`` or
-        ``"Holm"`` (condition).
+        ``"Bonferroni"`` (condition).
     """
 
     first: Array
@@ -67,6 +68,11 @@ class Differences:
     def high(self) -> Array:
         """Upper ends of the intervals that hold all differences together."""
         return self.difference + self.factor * self.standard_error
+
+    @property
+    def differs(self) -> NDArray[np.bool_]:
+        """Whether the interval of a point, of all that hold together, leaves out zero (point)."""
+        return (self.low > 0) | (self.high < 0)
 
 
 def interval(
@@ -116,10 +122,10 @@ def differences_of_groups(
     At each point Welch's t [1]_. The points of a condition are taken together by permutations of
     its runs (`by_permutation`) where there are four or more in each group, and enough permutations
     for so many conditions; else by rotations (`by_rotation`), which suppose that runs are normally
-    distributed. Where runs that are too few to be permuted lack points, Holm's rule adjusts the p
-    values of Student's distribution, and the intervals are Bonferroni's. Conditions are independent
-    of each other, and Sidak's step-down rule takes their number into account. No adjusted p is
-    below that of the point alone.
+    distributed. Where runs that are too few to be permuted lack points, Bonferroni's rule takes
+    Student's distribution. Conditions are independent of each other, and Sidak's rule takes their
+    number into account. P values and intervals come from the same statistic in one step. No
+    adjusted p is below that of the point alone, and no interval narrower.
 
     References
     ----------
@@ -148,12 +154,14 @@ def differences_of_groups(
         for pair, own, at in zip(groups, terms, points, strict=True)
     ]
     alone = [at.p_value for at in points]
-    adjusted = np.concatenate(_step_down([own for own, _, _ in told]))
+    freedom = np.concatenate([at.degrees_of_freedom for at in points])
+    of_each = special.stdtrit(freedom, 1 - alpha / 2)
+    adjusted = 1 - (1 - np.concatenate([own for own, _, _ in told])) ** len(groups)
     adjusted = np.where(np.isnan(np.concatenate(alone)), np.nan, adjusted)
     return Differences(
         **{name: np.concatenate([getattr(at, name) for at in points]) for name in _OF_POINTS},
         adjusted_p_value=np.fmax(adjusted, np.concatenate(alone)),
-        factor=np.concatenate([factor for _, factor, _ in told]),
+        factor=np.fmax(np.concatenate([factor for _, factor, _ in told]), of_each),
         methods=tuple(method for _, _, method in told),
     )
 
@@ -202,33 +210,7 @@ def _together(
         return own, factor, ROTATION
     count = max(1, int(known.sum()))
     factor = np.asarray(special.stdtrit(at.degrees_of_freedom, 1 - level / (2 * count)))
-    return holm(at.p_value), factor, HOLM
-
-
-def _step_down(own: Sequence[Array]) -> list[Array]:
-    """Return the p values of conditions adjusted for their number, by Sidak's step-down rule."""
-    least = [np.nanmin(part, initial=1.0) for part in own]
-    adjusted, bound = list(own), 0.0
-    for rank, place in enumerate(np.argsort(least, kind="stable").tolist()):
-        adjusted[place] = np.maximum(bound, 1 - (1 - own[place]) ** (len(own) - rank))
-        bound = float(np.nanmin(adjusted[place], initial=1.0))
-    return adjusted
-
-
-def holm(p_values: Array) -> Array:
-    """Return p values adjusted for their number by Holm's rule; NaN stay and do not count.
-
-    Examples
-    --------
-    >>> holm(np.array([0.01, 0.04, 0.03])).tolist()
-    [0.03, 0.06, 0.06]
-    """
-    adjusted = np.full(p_values.shape, np.nan)
-    known = np.flatnonzero(np.isfinite(p_values))
-    order = known[np.argsort(p_values[known], kind="stable")]
-    steps = p_values[order] * np.arange(order.size, 0, -1)
-    adjusted[order] = np.minimum(1.0, np.maximum.accumulate(steps))
-    return adjusted
+    return np.minimum(1.0, count * at.p_value), factor, BONFERRONI
 
 
 def verdicts(compared: Differences, margin: Array | None, alpha: float = 0.05) -> list[str]:
@@ -242,21 +224,19 @@ def verdicts(compared: Differences, margin: Array | None, alpha: float = 0.05) -
         The largest difference that does not matter (point); None if nobody stated one, and then
         nothing is equivalent.
     alpha
-        Of both tests: adjusted for all points where it is asked whether they differ; for each point
-        alone where it is asked whether they are equivalent, since the two curves are equivalent
-        only if all their points are.
+        Of the test whether each point alone is equivalent, since the two curves are equivalent only
+        if all their points are.
 
     Notes
     -----
-    Equivalent is what two one-sided tests say: the interval of level 1 - 2 alpha lies within the
-    margin (Schuirmann 1987, doi:10.1007/BF01068419). It comes first: a difference may be sure and
-    yet too small to matter.
+    Two differ where `Differences.differs`. Equivalent is what two one-sided tests say: the interval
+    of level 1 - 2 alpha lies within the margin (Schuirmann 1987, doi:10.1007/BF01068419). It comes
+    first: a difference may be sure and yet too small to matter.
     """
     low, high = compared.interval(1 - 2 * alpha)
     words = []
-    for place, chance in enumerate(compared.adjusted_p_value):
+    for place, differs in enumerate(compared.differs):
         within = margin is not None and max(-low[place], high[place]) <= margin[place]
-        differs = chance <= alpha
         words.append(EQUIVALENT if within else DIFFERENT if differs else OPEN)
     return words
 
