@@ -153,13 +153,17 @@ def _is_tilt(
     several = load[paired].max() > limits.LOADS_DIFFER.value * load[paired].min()
     if not (between or several):
         return False
-    # a cell that is askew by an angle t moves the middle by t (1 + mu^2) of the load
-    felt = _of_pairs(load, members) * (1 + _of_pairs(ratio, members) ** 2)
-    angle = (_of_pairs(apart, members) / felt)[paired]
+    # askew by an angle t, a cell moves the middle by t of the load; by t (1 + mu^2) of it where the
+    # strokes are weighted by loads that are read askew, too
+    ways = (np.zeros(ratio.size), ratio**2)
+    felt = [_of_pairs(load, members) * (1 + _of_pairs(way, members)) for way in ways]
     at = _of_pairs(time, members)[paired]
-    mean = float(np.mean(angle))
-    moment = at - at.mean()
+    return any(_is_an_angle((_of_pairs(apart, members) / own)[paired], at) for own in felt)
+
+
+def _is_an_angle(angle: np.ndarray, time: np.ndarray) -> bool:
+    """Whether angles of pairs are plausible and do not change with time."""
+    mean, moment = float(np.mean(angle)), time - time.mean()
     slope = float(moment @ angle) / max(float(moment @ moment), 1e-300)
-    changes = abs(slope) * float(np.ptp(at))
-    plausible = abs(mean) <= limits.MAX_SAMPLE_TILT.value
-    return plausible and changes <= limits.TILT_CHANGES.value * abs(mean)
+    steady = abs(slope) * float(np.ptp(time)) <= limits.TILT_CHANGES.value * abs(mean)
+    return steady and abs(mean) <= limits.MAX_SAMPLE_TILT.value

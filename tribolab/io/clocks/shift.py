@@ -164,10 +164,9 @@ def _estimated(
     uncertainty = fit.uncertainty(shift)
     sharp = _SHARP * float(np.ptp(motion_time)) / len(np.unique(classes))
     placed = chosen.unexplained < _PLACED
-    weak = significance < _LEAST_SIGNIFICANCE
-    vague = uncertainty > sharp and not placed
-    if vague and weak:
+    if uncertainty > sharp and not placed:
         return None
+    weak = significance < _LEAST_SIGNIFICANCE
     ways = {"classes": Told(shift, uncertainty)}
     # late by up to a rest, as the force stays on
     span = max(8.0 * coarse.half, 1.25 * float(median(np.diff(motion_time[changes(way)]))))
@@ -183,19 +182,12 @@ def _estimated(
     estimate = ShiftEstimate(shift, uncertainty, ratio)
     if told is not None:
         estimate = ShiftEstimate(told.shift, told.uncertainty, fit.ratio(told.shift), *told[2:])
-    starts, twice, odd = Told(estimate.shift, estimate.uncertainty), False, False
     if estimate.rate == 0.0:
         estimate = _sharpened(estimate, force_time, force, motion_time, motion.velocity, fit)
-        if wide and told is not None and estimate.shift != starts.shift:
-            odd = abs(estimate.shift - starts.shift) > _AGREE * starts.uncertainty
-            twice = not odd
-    if vague and not (twice or odd):
-        return None
     if estimate.uncertainty > _LOST * uncertainty:  # the starts were looked for at a wrong place
         anew = ShiftEstimate(shift, uncertainty, ratio)
         anew = _sharpened(anew, force_time, force, motion_time, motion.velocity, fit)
-        if anew.uncertainty < estimate.uncertainty:
-            estimate, twice, odd = anew, False, False
+        estimate = anew if anew.uncertainty < estimate.uncertainty else estimate
     if estimate.shift != shift:
         ways["starts"] = Told(estimate.shift, estimate.uncertainty)
     middle = 0.5 * (motion_time[0] + motion_time[-1])
@@ -217,13 +209,7 @@ def _estimated(
             return None
         stroke = joint.stroke
     sharp_fit = joint is not None and joint.uncertainty < _SHARP * stroke
-    if odd and sharp_fit and _agree(starts, ways["motion"]):
-        ways["starts"] = starts  # two methods contradict the onsets
-    if wide and "starts" in ways and ways["classes"].uncertainty < _SHARP * stroke:
-        twice = twice or _agree(ways["starts"], ways["classes"])
-    if twice and _contradicted(ways, stroke):
-        combined, part = ways["starts"], _PART
-    elif wide and {"starts", "motion"} <= set(ways) and _agree(ways["starts"], ways["motion"]):
+    if wide and {"starts", "motion"} <= set(ways) and _agree(ways["starts"], ways["motion"]):
         combined, part = ways["starts"], _LEAST_PART
         if abs(combined.shift - ways["motion"].shift) > ways["motion"].uncertainty:
             combined = _late(combined, ways["motion"])
@@ -271,20 +257,6 @@ def _agree(first: Told, second: Told) -> bool:
     """Whether two ways lie no further apart than their errors allow."""
     error = np.hypot(first.uncertainty, second.uncertainty)
     return bool(abs(first.shift - second.shift) <= _AGREE * error)
-
-
-def _contradicted(ways: dict[str, Told], stroke: float) -> bool:
-    """Whether starts, which two methods found alike, rule out the fit by the motion.
-
-    The strokes must differ so much in speed (`_wide`) that slack or a stick, which delays both
-    methods, makes the slow starts differ from the fast ones. Differences below `_SHARP` of a
-    stroke's duration [s] rule nothing out: the fit may be right.
-    """
-    starts, motion = ways["starts"], ways.get("motion")
-    if starts.uncertainty > _SHARP * stroke:
-        return False
-    apart = motion is not None and abs(motion.shift - starts.shift) > _SHARP * stroke
-    return motion is None or motion.uncertainty > _SHARP * stroke or apart
 
 
 def _confirmed(starts: Told, classes: Told, stroke: float) -> bool:
