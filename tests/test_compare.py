@@ -45,7 +45,7 @@ def test_welchs_t_is_that_of_scipy():
 
 
 @pytest.mark.parametrize("count, gaps", [(5, False), (3, False), (3, True)])
-def test_what_differs_has_an_interval_without_zero(count, gaps):
+def test_a_verdict_its_interval_and_its_p_value_agree(count, gaps):
     rng = np.random.default_rng(7)
     told = []
     for _ in range(40):
@@ -55,6 +55,7 @@ def test_what_differs_has_an_interval_without_zero(count, gaps):
         compared = differences_of_groups(groups)
         outside = (compared.low > 0) | (compared.high < 0)
         assert [word == DIFFERENT for word in verdicts(compared, None)] == outside.tolist()
+        assert outside.tolist() == (compared.adjusted_p_value <= 0.05).tolist()
         told.append(outside.mean())
     assert 0 < np.mean(told) < 1
 

@@ -60,9 +60,10 @@ def by_permutation(
     Notes
     -----
     Runs change their groups whole, so that what binds the points of a run stays in it; the largest
-    \|t\| of the points tells what is too large for chance [1]_. The intervals are made of the runs'
-    deviations from the means of their groups: a difference that there is must not widen them. So
-    are the p values where there are terms, each of which is drawn from a normal distribution.
+    \|t\| of the points tells what is too large for chance [1]_. P values and intervals come from the
+    same draws: of the runs' deviations from the means of their groups, since a difference that
+    exists must not widen the intervals. The runs as they are count among the draws. Each term is
+    drawn from a normal distribution.
 
     References
     ----------
@@ -72,13 +73,10 @@ def by_permutation(
     chosen = _choices(len(first), len(second), rng)
     about = np.concatenate([_about_mean(first), _about_mean(second)])
     drawn = _largest(*_means_and_squares(about, chosen), terms, rng)
-    if not terms.any():
-        values = np.concatenate([first, second])
-        own = _share_above(_largest(*_means_and_squares(values, chosen), terms, rng), scores)
-    else:
-        own = _share_above(drawn, scores)
-    factor = np.quantile(drawn[1:], 1 - level, method="higher")
-    return own, np.full(scores.shape, float(factor))
+    same = chosen == chosen[0]
+    drawn[same.all(axis=1) | ~same.any(axis=1)] = np.inf  # the groups as they are, or exchanged
+    factor = np.sort(drawn)[::-1][_most(level, drawn.size)]
+    return _share_above(drawn, scores), np.full(scores.shape, float(factor))
 
 
 def by_rotation(
@@ -104,9 +102,8 @@ def by_rotation(
     If all runs are drawn from one normal distribution, what is left of them beside their mean is as
     likely as any rotation of it in the space of the runs, whatever binds the points. The smallest p
     of the points (Welch's, of each point's own degrees of freedom) over random rotations tells what
-    chance can do: exact with any number of runs and points [1]_, where the groups scatter alike.
-    The intervals, and the p values where there are terms, are made of the deviations from the means
-    of the groups, as in `by_permutation`.
+    chance can do [1]_, where the groups scatter alike. P values and intervals come from the same
+    draws, as in `by_permutation`.
 
     References
     ----------
@@ -116,14 +113,15 @@ def by_rotation(
     turns = _rotations(sum(counts) - 1, _FEW_DRAWS if level >= _FEW_WILL_DO else _DRAWS, seed)
     about = np.concatenate([_about_mean(first), _about_mean(second)])
     drawn = _smallest(about, counts, terms, turns, seed)
-    if not terms.any():
-        values = np.concatenate([first, second])
-        own = _share_below(_smallest(values, counts, terms, turns, seed), p_values)
-    else:
-        own = _share_below(drawn, p_values)
-    bound = float(np.quantile(drawn[1:], level, method="lower"))
+    drawn[0] = 0.0  # the groups as they are
+    bound = float(np.sort(drawn)[_most(level, drawn.size)])
     factor = -special.stdtrit(np.minimum(degrees_of_freedom, 1e9), bound / 2)
-    return own, np.asarray(factor)
+    return _share_below(drawn, p_values), np.asarray(factor)
+
+
+def _most(level: float, draws: int) -> int:
+    """Return how many draws may be as far off as what is still called different."""
+    return math.floor(level * draws * (1 + _SAME))
 
 
 def _about_mean(values: Array) -> Array:
