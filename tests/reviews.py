@@ -49,7 +49,7 @@ def faulted(folder):
     head = next(n for n, line in enumerate(lines) if line.startswith("Time"))
     table = pd.read_csv(log, skiprows=head)
     slid = table["Time [s]"].between(*SLID)
-    table.loc[slid, "Fx [N]"] *= 0.8
+    table.loc[slid, "Fx [N]"] *= 0.5
     body = table.to_csv(index=False, lineterminator="\n")
     log.write_text("\n".join(lines[:head]) + "\n" + body, "utf-8")
     for path in (file.parent / "raw").rglob("*.csv"):

@@ -94,7 +94,7 @@ def test_friction_with_decisions_and_without_are_both_kept(original, reviewed):
     rows = rows_of(outcome.folder, SLIPPED)
     sound = float(rows.friction_coefficient.iloc[0])
     assert abs(rows.friction_coefficient.iloc[SLIP + 1] / sound - 1) < 0.05
-    assert abs(run[SLIP + 1] / sound - 1) > 0.08
+    assert abs(run[SLIP + 1] / sound - 1) > 0.2
     moved = now["findings"].query("where == @GLYCEROL").message.item()
     assert moved.startswith("decisions change µ by at most ") and "stribeck_as_found" in moved
 

@@ -150,7 +150,7 @@ def test_a_campaign_is_reviewed_by_keyboard_alone(browser, original, tmp_path):
     page_file = (results / "report.html").as_uri()
     with browser.page(page_file) as page:
         page.run(f"{UNKNOWN}; {SAVING}")
-        page.key("d", "d")  # the only run in doubt
+        page.key("d", "d")  # the first of two runs in doubt
         here = drawn(page, FROZEN)
         page.key("a", "a")
         page.wait("document.activeElement.name === 'author'")
@@ -176,16 +176,20 @@ def test_a_campaign_is_reviewed_by_keyboard_alone(browser, original, tmp_path):
         assert "4 decisions not yet downloaded" in page.run(BAR)
         page.key("u", "u")
         assert "3 decisions not yet downloaded" in page.run(BAR)
+        page.key("d", "d")  # the second: one stroke slipped, so its coefficients are not known
+        there = drawn(page, SLIPPED)
+        page.key("a", "a")
+        said_why(page, there, "the other strokes are sound")
         page.key("d", "d")
         page.wait(f"{BAR}.includes('No run is in doubt')")
         # closed and opened again, nothing is lost
         page.go(f"{page_file}?again#run-{NUMBERS[FROZEN]}")
         here = drawn(page, FROZEN)
-        assert "3 decisions not yet downloaded" in page.run(BAR)
+        assert "4 decisions not yet downloaded" in page.run(BAR)
         page.key("l", "l")
         text, review = downloaded(page, campaign)
         found = bounds_of(results, FROZEN, 0)
-        assert begin > found[0] and text.count("[[decision]]") == 3
+        assert begin > found[0] and text.count("[[decision]]") == 4
         plain = [replace(one, date=str(TODAY)) for one in review[FROZEN]]
         who = {"author": "B. Reader", "date": str(TODAY)}
         assert plain == [

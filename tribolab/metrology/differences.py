@@ -124,8 +124,9 @@ def differences_of_groups(
     for so many conditions; else by rotations (`by_rotation`), which suppose that runs are normally
     distributed. Where runs that are too few to be permuted lack points, Bonferroni's rule takes
     Student's distribution. Conditions are independent of each other, and Sidak's rule takes their
-    number into account. P values and intervals come from the same draws, so that an
-    interval leaves out zero where the adjusted p is at most alpha. No adjusted p is below that of the point alone, and no interval narrower.
+    number into account. P values and intervals come from the same draws, so that an interval leaves
+    out zero where the adjusted p is at most alpha. No adjusted p is below that of the point alone,
+    and no interval narrower.
 
     References
     ----------

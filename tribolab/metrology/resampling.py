@@ -60,8 +60,8 @@ def by_permutation(
     Notes
     -----
     Runs change their groups whole, so that what binds the points of a run stays in it; the largest
-    \|t\| of the points tells what is too large for chance [1]_. P values and intervals come from the
-    same draws: of the runs' deviations from the means of their groups, since a difference that
+    \|t\| of the points tells what is too large for chance [1]_. P values and intervals come from
+    the same draws: of the runs' deviations from the means of their groups, since a difference that
     exists must not widen the intervals. The runs as they are count among the draws. Each term is
     drawn from a normal distribution.
 

@@ -255,7 +255,10 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
     if normal_rests is None and (light := light_rest(run, segments, load, pressed)):
         zero = replace(zero, doubts=(*zero.doubts, of_light_rest(light, load, means.size)))
     if partial is not None and settings.offset != "none":
-        zero = replace(zero, doubts=(*zero.doubts, of_partial_contact(partial, load, means.size)))
+        n0_error = np.hypot(n0_error, partial.level / np.sqrt(3))  # one zero or the other: uniform
+        if partial.level > limits.DOUBTFUL_REST.value * load:
+            doubted = of_partial_contact(partial, load, means.size)
+            zero = replace(zero, doubts=(*zero.doubts, doubted))
     others = without_sliding(run, segments, rests, load)
     zero = replace(zero, doubts=(*zero.doubts, *of_loaded_and_idle(others, zero, means, load)))
     turn = signs.sign * signs.unfold

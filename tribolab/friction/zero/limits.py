@@ -18,6 +18,10 @@ UNLOADED_SHARE = Limit(
     3e-3, "1", "share of the load by which unloaded rests differ: creep and friction in the cell",
     "data sheets of strain-gauge cells: 0.02 to 0.3 %",
 )  # fmt: skip
+DOUBTFUL_REST = Limit(
+    0.01, "1", "share of the load by which a rest reads more than the unloaded one, from which on "
+    "the run is doubted: below it the error of the load holds both readings", "judgement",
+)  # fmt: skip
 DRIFT_IN_STROKES = Limit(
     0.5, "1", "share of the scatter of the strokes' load that may remain once the readings at rest "
     "are taken off, if these are a drift of the cell's zero",

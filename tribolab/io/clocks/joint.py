@@ -137,6 +137,8 @@ def fit_jointly(
     # the same samples for all, so that their residuals can be compared
     half = 0.5 * float(np.ptp(shifts)) + finest
     used = _samples(force_time, force, basis, 0.5 * float(shifts.min() + shifts.max()), half)
+    if not used.force.size:  # the models' shifts lie so far apart that no sample serves all
+        return []
     answers = []
     for name, table, (at, error) in models:
         prior = _BEFORE if name == "before" else (1.0 - _BEFORE) / (1 + len(SLACKS))
