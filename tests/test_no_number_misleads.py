@@ -81,6 +81,16 @@ def test_rests_that_keep_a_part_of_the_load_are_no_zero_of_it(shared_data):
     assert status == "suspect" and "contact was not quite lost" in said["zero_reference"]
 
 
+def test_a_small_excess_at_rest_widens_the_error_and_is_no_alarm():
+    held = (5.0, 0, 0.006)  # of the load: the cell's zero, or contact that was not quite lost
+    friction, status, _ = judged(sliding([REST, *STROKES, held], noise=0.0005))
+    apart = np.abs(friction.friction_coefficient - 0.4)
+    assert status == "pass" and (apart <= friction.friction_coefficient_U95).all()
+    assert (friction.friction_coefficient_U95 >= 0.006 * 0.4).all()
+    doubted = judged(sliding([REST, *STROKES, (5.0, 0, 0.02)], noise=0.0005))
+    assert "contact was not quite lost" in doubted[2]["zero_reference"]
+
+
 @pytest.mark.parametrize("share", [0.015, 0.03])
 def test_a_light_load_is_measured_and_not_dropped(share):
     light = [(d, way, share) for d, way, _ in STROKES[:4]]

@@ -100,6 +100,11 @@ def test_the_cure_of_a_lone_log_is_the_other_log_and_not_the_dialect(tmp_path, l
     assert row["check"] == "schema" and row["cure"].startswith(cure)
 
 
+def test_models_of_the_clocks_that_share_no_sample_give_no_answer_and_no_crash(tmp_path):
+    run = measured(tmp_path, "Sb-R", "dry", 31.0, rig=SHORT, seed=3, faults="one_way")
+    assert objections(check_run(run))["zero_reference"] == "suspect"
+
+
 # --- real files
 
 

@@ -1,4 +1,4 @@
-"""Damaged, forged and lost files of the results are noticed, named and made anew."""
+"""Damaged, forged and lost files of the results are noticed, named and computed again."""
 
 import json
 import os
@@ -109,7 +109,7 @@ def test_a_large_file_is_known_by_size_time_inode_and_samples(tmp_path, monkeypa
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", KINDS)
-def test_what_is_damaged_is_named_and_made_anew_from_the_raw_files(campaign, name):
+def test_what_is_damaged_is_named_and_computed_again_from_the_raw_files(campaign, name):
     results = campaign.parent / "results"
     tables = {p.name: p.read_text("utf-8") for p in (results / "tables").glob("*.csv")}
     content = bytearray((results / name).read_bytes())

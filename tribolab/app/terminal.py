@@ -292,7 +292,7 @@ def foreign_lines(outcome: Outcome) -> list[str]:
     lines = []
     if outcome.damaged:
         lines.append(
-            f"not as tribolab wrote them, and made anew: {_handful(outcome.damaged)}; what "
+            f"not as tribolab wrote them, and computed again: {_handful(outcome.damaged)}; what "
             "was changed is kept as *.changed-*"
         )
     if outcome.foreign:

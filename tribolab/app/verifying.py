@@ -35,7 +35,7 @@ def problems(results: Path) -> list[str]:
 
 
 def mend(results: Path) -> None:
-    """Write the lost marker of a results folder anew.
+    """Write the lost marker of a results folder again.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def mend(results: Path) -> None:
         raise ConfigError(f"{results}: no results folder: it has no {CATALOGUE}")
     if Ledger.read(results).files:
         raise ConfigError(
-            f"{results}: the marker is not lost; 'tribolab run' makes anew what is damaged"
+            f"{results}: the marker is not lost; 'tribolab run' computes what is damaged again"
         )
     try:
         repair(results)

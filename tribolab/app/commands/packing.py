@@ -72,7 +72,7 @@ def verify(
         ),
     ] = False,
     repair: Annotated[
-        bool, typer.Option("--repair", help="Write the lost marker of a results folder anew.")
+        bool, typer.Option("--repair", help="Write the lost marker of a results folder again.")
     ] = False,
     campaign: Annotated[
         Path | None,
@@ -105,8 +105,8 @@ def verify(
         if repair:
             mend(results)
             say(
-                f"{results}: the marker is written anew; run 'tribolab run': it makes everything "
-                "anew and keeps tables and page as they are now beside"
+                f"{results}: the marker is written again; run 'tribolab run': it computes "
+                "everything again and keeps copies of the present tables and page"
             )
             return
         wrong = problems(results)

@@ -136,9 +136,9 @@ class Ledger:
         if not self.files and not self.sound:
             return [
                 f"{MARKER}: lost, or damaged beyond use; 'tribolab verify --repair {self.folder}' "
-                "writes it anew"
+                "writes it again"
             ]
-        cure = "'tribolab run' makes it anew from the raw files"
+        cure = "'tribolab run' computes it again from the raw files"
         wrong = []
         for name in self.damaged(self.intact(whole=True)):
             if os.path.lexists(self.folder / name):
@@ -188,7 +188,7 @@ def _write(folder: Path, files: Mapping[str, LedgerEntry], folders: Sequence[str
 
 
 def repair(folder: Path) -> None:
-    """Write a lost marker anew, such that the next run makes everything anew and loses nothing.
+    """Write a lost marker again, so that the next run computes everything and loses nothing.
 
     Data, figures and report.json are listed as they are. A person may have changed tables and
     page: they and the catalogue count as changed, so the next run keeps them beside its own.

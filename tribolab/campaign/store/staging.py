@@ -204,7 +204,7 @@ def _refuse_foreign(output: Path) -> None:
         if (output / CATALOGUE).is_file():
             raise ConfigError(
                 f"{output}: the marker {MARKER}, which lists what was written here, is lost; "
-                f"'tribolab verify --repair {output}' writes it anew"
+                f"'tribolab verify --repair {output}' writes it again"
             )
         raise ConfigError(
             f"{output} holds something else than results ({', '.join(inside[:3])}"
