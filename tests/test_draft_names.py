@@ -11,9 +11,8 @@ import tribolab as tl
 from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.draft.dialect.questions import questions
 from tribolab.draft.dialect.show import print_draft
-from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS
-from tribolab.draft.words.words import squeezed
 from tribolab.qc.run.checks import check_run
+from tribolab.reading.lexicon.lexicon import known_words, normalise_label
 
 TABLES = {
     "French": "Temps (s);Force de frottement (N);Charge (N);Vitesse de glissement (mm/s);"
@@ -90,17 +89,17 @@ def test_a_force_that_may_be_another_is_a_guess(name, tmp_path):
 
 
 def test_the_vocabulary_is_written_as_names_are_compared_and_says_nothing_twice():
-    for words in (RUN_WORDS, SCAN_WORDS):
+    for words in (known_words("run"), known_words("scan")):
         for word in words:
             for text in (*word.symbols, *word.stems, *word.vague):
-                assert squeezed(text) == text
+                assert normalise_label(text) == text
             assert len(set(word.stems)) == len(word.stems)
 
 
 def test_marks_of_kana_stay_and_accents_go():
-    assert squeezed("すべり速度 [ｍｍ]") == "すべり速度mm"
-    assert squeezed("すへり速度") != squeezed("すべり速度")
-    assert squeezed("Coefficient d’attrito È") == "coefficientdattritoe"
+    assert normalise_label("すべり速度 [ｍｍ]") == "すべり速度mm"
+    assert normalise_label("すへり速度") != normalise_label("すべり速度")
+    assert normalise_label("Coefficient d’attrito È") == "coefficientdattritoe"
 
 
 @pytest.mark.parametrize(

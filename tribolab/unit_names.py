@@ -3,65 +3,29 @@
 from __future__ import annotations
 
 import re
+import tomllib
+from pathlib import Path
+from typing import NamedTuple
 
-_SAME = {
-    "s": "Sec SEC Secs Seconds Second sekunde sekunden Sekunde Sekunden sek Sek segundo segundos "
-    "seconde secondes secondo secondi с сек 秒 sn",
-    "ms": "millisekunden Millisekunden millisecondes milisegundos msek мс 毫秒",
-    "min": "Min minuten Minuten minutos minuti dk dak dakika perc хв мин 分 分钟 분",
-    "h": "Std std Stunden heures horas ore ч 小时 時間",
-    "day": "jours dias tage Tage giorni",
-    "N": "Newton Newtons newtons Н 牛 牛顿",
-    "kN": "KN кН 千牛",
-    "mN": "мН",
-    "force_kilogram": "kp Kgf kgF KGF кгс",
-    "force_gram": "grf pond гс",
-    "force_pound": "Lbf LBF lbF lbsf",
-    "m": "metre metres mètre mètres metro metros metri м 米",
-    "mm": "Millimeter millimetres millimètres milimetros millimetri MM мм 毫米",
-    "um": "UM Micron Microns MICRONS mikrometer Mikrometer micromètres micras mkm мкм 微米",
-    "nm": "нм 纳米",
-    "cm": "см 厘米",
-    "degC": "Celsius celsius oC DegC ℃ grdC degrC °c °С",
-    "degF": "℉ Fahrenheit fahrenheit",
-    "K": "Kelvin",
-    "psi": "PSI Psi",
-    "torr": "Torr",
-    "Pa": "Па 帕",
-    "kPa": "кПа 千帕",
-    "MPa": "МПа 兆帕",
-    "bar": "Bar",
-    "poise": "Poise",
-    "cP": "cp",
-    "V": "Volts В 伏",
-    "mV": "мВ",
-    "ohm": "Ohm OHM Ohms OHMS Ω Ω Ом 欧姆",
-    "kohm": "kOhm kOHM KOhm Kohm кОм",
-    "mohm": "mOhm мОм",
-    "Mohm": "MOhm MOHM МОм",
-    "uohm": "uOhm",
-    "Hz": "Гц 赫兹",
-    "rev": "об оборот vuelta vueltas dev devir ot otáček omdr omdrejninger kierr ford fordulat "
-    "转 轉 回転 Umdrehungen Umdr",
-    "rpm": "RPMs Rpm vpm",
-}
-_NAMES = {said: name for name, words in _SAME.items() for said in words.split()}
-# what is told by the unit as a whole, with its blanks and points
-_WHOLE = {
-    **dict.fromkeys(
-        ("deg C", "Deg C", "deg. C", "Deg. C", "grd C", "grados C", "degrees C"), "degC"
-    ),
-    **dict.fromkeys(("deg F", "Deg F", "deg. F", "F", "degrees F"), "degF"),
-    **dict.fromkeys(("none", "n/a", "unitless", "adim", "adim.", "sans unité", "ohne"), ""),
-    **{f"{p}Pas": f"{p}Pa*s" for p in ("", "m", "u")},
-    **{f"N{length}-2": f"N/{length}**2" for length in ("m", "cm", "mm")},
-    **dict.fromkeys(("mil", "mils"), "thou"),
-    **dict.fromkeys(("u-inch", "uinch", "uin", "micro inch", "micro-inch", "uin."), "microinch"),
-    **{"sec.": "s", "min.": "min", "mm.": "mm", "N.": "N", '"': "inch", "fpm": "ft/min"},
-    **{"ips": "in/s", "lb-f": "force_pound", "kg-f": "force_kilogram", "gram-force": "force_gram"},
-    **dict.fromkeys(("kg/cm2", "kg/cm²", "kg/cm^2"), "force_kilogram/cm**2"),
-    **dict.fromkeys(("kg/mm2", "kg/mm²", "kg/mm^2"), "force_kilogram/mm**2"),
-}
+
+class _Spellings(NamedTuple):
+    """Names of units by how they are spelt: in words, in signs, and as a whole."""
+
+    words: dict[str, str]
+    signs: dict[str, str]
+    whole: dict[str, str]
+
+
+def _load() -> _Spellings:
+    text = Path(__file__).with_name("unit_spellings.toml").read_text(encoding="utf-8")
+    result = _Spellings({}, {}, {})
+    for unit, forms in tomllib.loads(text).items():
+        for form, spellings in forms.items():
+            getattr(result, form).update(dict.fromkeys(spellings, unit))
+    return result
+
+
+_SPELT = _load()
 _PREFIXES = {"nano": "n", "micro": "u", "milli": "m", "kilo": "k"}
 _APART = re.compile(rf"(?i:(?P<prefix>{'|'.join(_PREFIXES)}))[\s-]+(?=(?:N|Pa|V|A|g|m|s)(?![a-z]))")
 _WRITTEN = re.compile(
@@ -72,16 +36,27 @@ _WRITTEN_AS = {"metre": "meter"} | dict.fromkeys(
     ("angström", "angstroem", "angstrøm", "ångström", "ångstrom"), "angstrom"
 )
 _NAME = re.compile(r"[°]?[^\W\d_]+|℃|℉")
-# a weight on an arm: pounds, ounces, grams and kilograms stand for their weight in a torque
-_WEIGHTS = {"kg": "force_kilogram", "g": "force_gram", "lb": "force_pound", "oz": "force_ounce"}
-_WEIGHTS |= {"lbf": "force_pound", "ozf": "force_ounce", "kgf": "force_kilogram"}
-_WEIGHTS |= {"gf": "force_gram", "kp": "force_kilogram", "lbs": "force_pound"}
+# pounds, ounces, grams and kilograms that stand for their weight: in forces, and on an arm
+WEIGHTS = {"g": "gf", "kg": "kgf", "lb": "lbf", "lbs": "lbf", "oz": "ozf"}
+_ON_ARM = WEIGHTS | {"lbf": "lbf", "ozf": "ozf", "kgf": "kgf", "gf": "gf", "kp": "kgf"}
 _ARM = r"(?P<arm>mm|cm|m|in|inch|ft)"
-_WEIGHT = rf"(?P<weight>{'|'.join(sorted(_WEIGHTS, key=len, reverse=True))})"
+_WEIGHT = rf"(?P<weight>{'|'.join(sorted(_ON_ARM, key=len, reverse=True))})"
 _TIMES = r"\s?[-·⋅・∙•.* ]?\s?"
 _TORQUES = tuple(
     re.compile(form) for form in (rf"{_WEIGHT}{_TIMES}{_ARM}", rf"{_ARM}{_TIMES}{_WEIGHT}")
 )
+
+
+def unit_in_words(text: str) -> str:
+    """Return the unit that a word or sign stands for; else the text as it is.
+
+    >>> unit_in_words("Sekunden"), unit_in_words("kN"), unit_in_words("MM/sec.")
+    ('s', 'kN', 'mm/sec.')
+    """
+    if known := _SPELT.signs.get(text) or _SPELT.words.get(text.lower()):
+        return known
+    over, slash, under = text.partition("/")
+    return f"{unit_in_words(over)}/{unit_in_words(under)}" if slash and over and under else text
 
 
 def plain_unit(unit: str) -> str:
@@ -90,20 +65,20 @@ def plain_unit(unit: str) -> str:
     Examples
     --------
     >>> plain_unit("kOhm"), plain_unit("deg C"), plain_unit("мм/с"), plain_unit("lb-in")
-    ('kohm', 'degC', 'mm/s', 'force_pound*in')
+    ('kohm', 'degC', 'mm/s', 'lbf*in')
     >>> plain_unit("mm/s"), plain_unit("Fx"), plain_unit("micro N.m")
     ('mm/s', 'Fx', 'uN.m')
     """
     text = unit.strip().replace("\u00b5", "u").replace("\u03bc", "u")
-    if text in _WHOLE:
-        return _WHOLE[text]
+    if text in _SPELT.whole:
+        return _SPELT.whole[text]
     if (apart := _APART.match(text)) is not None:
         text = _PREFIXES[apart["prefix"].lower()] + text[apart.end() :]
     for form in _TORQUES:
         if (torque := form.fullmatch(text)) and torque["arm"] + torque["weight"] != "mg":
-            return f"{_WEIGHTS[torque['weight']]}*{torque['arm']}"
+            return f"{_ON_ARM[torque['weight']]}*{torque['arm']}"
     text = re.sub("(?<=/)Nm$", "(N*m)", text)
-    return _NAME.sub(lambda name: _NAMES.get(name[0]) or _in_full(name[0]), text)
+    return _NAME.sub(lambda name: _in_full(unit_in_words(name[0])), text)
 
 
 def _in_full(name: str) -> str:

@@ -6,9 +6,9 @@ import math
 import re
 
 from tribolab.draft.file.header import converts, is_unit
-from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.errors import ReadError, TribolabError
 from tribolab.turns import reciprocal
+from tribolab.unit_names import WEIGHTS
 from tribolab.units import positive
 
 _COMMA = re.compile(r"^(\d+),(\d{1,2}|\d{4,})(?=\D)")  # no mark of thousands

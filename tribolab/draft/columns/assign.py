@@ -11,10 +11,10 @@ from tribolab.draft.columns.meant import ACROSS, meant
 from tribolab.draft.columns.turning import torque_of
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import UNKNOWN_NAME, WHICH_FORCE, DraftColumn, Kind
-from tribolab.draft.words.roles import Role, role_of
-from tribolab.draft.words.words import KNOWN_WORD, Match, is_count, squeezed
+from tribolab.draft.words.words import KNOWN_WORD, Match, is_count
 from tribolab.errors import shown
 from tribolab.quantities import QUANTITIES, quantity, unit_conversion
+from tribolab.reading.lexicon.lexicon import Role, normalise_label, role_of
 
 SIGNALS = {
     "friction_force",
@@ -148,7 +148,7 @@ def _contested(rivals: list[_Proposal], numbers: np.ndarray, bare: list[Bare]) -
         plain = not role_of(bare[rival.place][0])
         here = rival is not best and plain and rival.option.score >= KNOWN_WORD
         # across the motion a sensor shows some cross-talk: the larger force is along it
-        across = squeezed(bare[rival.place][0]) in ACROSS and size(rival) < size(best)
+        across = normalise_label(bare[rival.place][0]) in ACROSS and size(rival) < size(best)
         return here and not across and size(rival) > 0 and _apart(size(rival), size(best))
 
     if not size(best):

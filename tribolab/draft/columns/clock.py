@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from tribolab.draft.words.words import squeezed
 from tribolab.io.clocks.faults import find_faults, rows_at_fault
 from tribolab.io.content.newest_first import is_newest_first
 from tribolab.io.dialects.cells import split_name
 from tribolab.medians import median
 from tribolab.quantities import unit_conversion
+from tribolab.reading.lexicon.lexicon import normalise_label
 
 if TYPE_CHECKING:
     from tribolab.draft.file.layout import Layout
@@ -36,7 +36,7 @@ def summed(columns: list[DraftColumn], numbers: np.ndarray) -> bool:
         Their numbers (rows, columns); changed in place.
     """
     column = next((c for c in columns if c.used and c.quantity == "time" and not c.form), None)
-    if column is None or squeezed(split_name(column.label)[0]) not in _INTERVALS:
+    if column is None or normalise_label(split_name(column.label)[0]) not in _INTERVALS:
         return False
     passed = numbers[:, column.place - 1]
     if len(passed) < 2 or not (passed >= 0).all() or (np.diff(passed) > 0).all():
@@ -58,7 +58,7 @@ def find_clock(
         return "", False, columns
     time = numbers[:, column.place - 1] * unit_conversion(column.read_unit or "s", "time")[0]
     if len(layout.blocks) == 1 and is_newest_first(time):
-        counts_down = _REMAINING.search(squeezed(split_name(column.label)[0])) is not None
+        counts_down = _REMAINING.search(normalise_label(split_name(column.label)[0])) is not None
         told = "the newest row comes first, and the rows are turned round"
         column = column._replace(
             note="" if counts_down else told, guessed=(told,) if counts_down else column.guessed

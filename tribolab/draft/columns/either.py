@@ -14,10 +14,9 @@ from tribolab.draft.model import WHICH_FORCE, DraftColumn
 from tribolab.draft.stated.lengths import find_arm
 from tribolab.draft.stated.stated_load import find_load, stated_number
 from tribolab.draft.stated.values import DraftValue, find_values
-from tribolab.draft.words.roles import role_of
-from tribolab.draft.words.words import squeezed
 from tribolab.errors import shown
 from tribolab.quantities import unit_conversion
+from tribolab.reading.lexicon.lexicon import normalise_label, role_of
 
 _LOADED = 0.4  # of the largest reading
 _MOST = 0.98
@@ -92,7 +91,7 @@ def without_means(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftC
 
 
 def _name(column: DraftColumn) -> str:
-    return squeezed(bare_name(column)[0])
+    return normalise_label(bare_name(column)[0])
 
 
 def _guessed(column: DraftColumn, load: DraftValue, values: np.ndarray) -> DraftColumn:
@@ -113,7 +112,7 @@ def _guessed(column: DraftColumn, load: DraftValue, values: np.ndarray) -> Draft
         name, other = "friction_force", "normal_force"
         why = f"it is the friction force: '{load.text}' is the load"
     # what pulls a sled of a stated weight is its friction
-    sure = name == "friction_force" and _SLED.search(squeezed(load.text)) is not None
+    sure = name == "friction_force" and _SLED.search(normalise_label(load.text)) is not None
     return column._replace(
         quantity=name,
         used=True,

@@ -9,8 +9,9 @@ from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import NO_NUMBERS, DraftColumn
-from tribolab.draft.words.words import matches, squeezed
+from tribolab.draft.words.words import matches
 from tribolab.errors import shown
+from tribolab.reading.lexicon.lexicon import normalise_label
 
 _LONGEST = 300  # characters of a line that are looked at
 _AXIS = re.compile(r"(?:f|force|kraft|sila|forza)?(?:[xyz]|[1-3])")  # names of a sensor's axes
@@ -75,12 +76,12 @@ def left_aside(layout: Layout, columns: Sequence[DraftColumn], used: Collection[
     said = []
     for column in columns:
         name, unit, _ = bare_name(column)
-        short = squeezed(name)
+        short = normalise_label(name)
         if column.used or column.place in used or len(short) < _NAMED:
             continue
         if unit is None or not converts(unit, "N") or column.note.startswith(NO_NUMBERS):
             continue
-        line = next((line for line in lines if short in squeezed(line)), "")
+        line = next((line for line in lines if short in normalise_label(line)), "")
         if line:
             what = f"column {column.place} '{shown(name, 20)}' is not used, of which the text says "
             said.append(f"{what}'{shown(line.strip(), 60)}'")
@@ -89,7 +90,7 @@ def left_aside(layout: Layout, columns: Sequence[DraftColumn], used: Collection[
 
 def _is_force(column: DraftColumn) -> bool:
     name, unit, _ = bare_name(column)
-    return bool(_AXIS.fullmatch(squeezed(name))) and unit is not None and converts(unit, "N")
+    return bool(_AXIS.fullmatch(normalise_label(name))) and unit is not None and converts(unit, "N")
 
 
 def _explanation(column: DraftColumn, lines: Sequence[str]) -> str:
@@ -111,7 +112,7 @@ def _meant(about: str) -> str:
     >>> _meant("vertical (normal) force"), _meant("tangential"), _meant("radial"), _meant("left")
     ('normal_force', 'friction_force', 'across', '')
     """
-    words = squeezed(about)
+    words = normalise_label(about)
     kinds = [
         kind
         for kind, pattern in (

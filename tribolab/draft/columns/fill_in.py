@@ -8,10 +8,10 @@ import numpy as np
 
 from tribolab.draft.columns.epochs import DATES, counted_from
 from tribolab.draft.model import DraftColumn, Kind, other_units, time_unit
-from tribolab.draft.words.roles import role_of
-from tribolab.draft.words.words import KNOWN_WORD, Match, is_count, squeezed
+from tribolab.draft.words.words import KNOWN_WORD, Match, is_count
 from tribolab.errors import shown
 from tribolab.quantities import quantity
+from tribolab.reading.lexicon.lexicon import normalise_label, role_of
 
 Bare = tuple[str, str | None, bool]  # a name without its unit, the unit, whether it is to be said
 FORCES = {"friction_force", "normal_force", "friction_coefficient"}  # what a coefficient is made of
@@ -60,7 +60,7 @@ def filled_in(
         written = option.unit
         guessed.append(f"'{shown(unit)}' means {option.unit}")
     fill_in = unsaid = ""
-    dated = squeezed(bare[0]) in DATES
+    dated = normalise_label(bare[0]) in DATES
     counted = (
         counted_from(values, unit, dated=dated)
         if option.quantity == "time" and not column.counted

@@ -7,7 +7,8 @@ import re
 from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn, other_units
-from tribolab.draft.words.words import KNOWN_WORD, matches, squeezed
+from tribolab.draft.words.words import KNOWN_WORD, matches
+from tribolab.reading.lexicon.lexicon import normalise_label
 
 # of profiles side by side that are counted and nothing else
 _TRACES = re.compile(
@@ -61,7 +62,7 @@ def beside_x(columns: list[DraftColumn]) -> list[DraftColumn] | None:
     ]
     if not along or along[0].quantity != "x" or unit is None:
         return None
-    traces = all(_TRACES.search(squeezed(name)) for name in numberless)
+    traces = all(_TRACES.search(normalise_label(name)) for name in numberless)
     if not traces and not all(options and options[0].quantity == "height" for options in heights):
         return None
     if any(unit is None for _, unit, _ in bare):
@@ -115,7 +116,7 @@ def as_heights(column: DraftColumn, *, stated: bool, unit: str = "um") -> DraftC
     guess = "it is the height" + ("" if known else f" in {unit}")
     said = matches(name, own, scan=True)
     named = bool(said and said[0].quantity == "height" and said[0].score >= KNOWN_WORD)
-    named = bool(known and (named or _VALUES.search(squeezed(name))))
+    named = bool(known and (named or _VALUES.search(normalise_label(name))))
     guessed = () if named or (stated and column.unit) else (guess,)
     return column._replace(
         quantity="height",

@@ -11,15 +11,10 @@ from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.lvm import units_above
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.values import words_said
-from tribolab.draft.words.words import (
-    COUNTS,
-    is_count,
-    matches,
-    split_unit,
-    squeezed,
-    unit_in_words,
-)
+from tribolab.draft.words.words import COUNTS, is_count, matches, split_unit
 from tribolab.io.dialects.cells import split_name
+from tribolab.reading.lexicon.lexicon import normalise_label
+from tribolab.unit_names import unit_in_words
 
 _LONGEST = 300  # characters of a line that are looked at
 _PURE = ("1", "-")  # what stands for the unit of a pure number
@@ -115,7 +110,7 @@ def _named_above(layout: Layout) -> str:
     """
     for key, text in words_said(layout, bare=True):
         unit = _UNIT_IN.search(text)
-        if unit is None or not is_unit(unit[1]) or not _SIGNAL.search(squeezed(key)):
+        if unit is None or not is_unit(unit[1]) or not _SIGNAL.search(normalise_label(key)):
             continue
         name = text[: unit.start()].strip()
         if name and matches(name, unit[1]):

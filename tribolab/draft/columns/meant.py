@@ -7,9 +7,9 @@ import numpy as np
 from tribolab.draft.columns.fill_in import Bare
 from tribolab.draft.columns.turning import angle_of, torque_of
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.words.roles import role_of
 from tribolab.draft.words.strokes import is_frequency, lengths_beside_frequencies
-from tribolab.draft.words.words import KNOWN_WORD, Match, is_axis, squeezed
+from tribolab.draft.words.words import KNOWN_WORD, Match, is_axis
+from tribolab.reading.lexicon.lexicon import normalise_label, role_of
 
 ACROSS = {"fy"}  # names of a force across the motion
 _RADIAL = {"fr", "frad"}  # friction, but beside a torque what presses on the shaft
@@ -41,7 +41,7 @@ def _without_rows(
     """Take "n" for the number of the row where it goes on by one."""
     return [
         []
-        if squeezed(name) == "n" and unit is None and (np.diff(numbers[:, place]) == 1).all()
+        if normalise_label(name) == "n" and unit is None and (np.diff(numbers[:, place]) == 1).all()
         else options
         for place, ((name, unit, _), options) in enumerate(zip(bare, matched, strict=True))
     ]
@@ -73,7 +73,7 @@ def _without_weak(
     torque = torque_of(columns) is not None
     if torque:
         matched = [
-            [Match("normal_force", _PERHAPS, None)] if squeezed(name) in _RADIAL else options
+            [Match("normal_force", _PERHAPS, None)] if normalise_label(name) in _RADIAL else options
             for (name, _, _), options in zip(bare, matched, strict=True)
         ]
     surely = {o.quantity for options in matched for o in options[:1] if o.score >= KNOWN_WORD}
@@ -84,7 +84,9 @@ def _without_weak(
             return False
         role, of = role_of(name), options[0].quantity
         if of == "friction_force":
-            across = squeezed(name) in ACROSS and (torque or "friction_coefficient" in surely)
+            across = normalise_label(name) in ACROSS and (
+                torque or "friction_coefficient" in surely
+            )
             return across or (torque and role == "extreme")
         return forces and of == "friction_coefficient" and role in ("derived", "extreme")
 

@@ -10,14 +10,11 @@ import numpy as np
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.words.stated_words import is_radius
-from tribolab.draft.words.words import is_count, or_term, split_unit, squeezed
+from tribolab.draft.words.words import is_count, split_unit
 from tribolab.io.dialects.cells import split_name
+from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
 
-_TORQUE = or_term(
-    r"torque|drehmoment|reibmoment|moment|couple|coppia|momento|binario|koppel|扭矩|转矩|力矩|トルク"
-    r"|момент|tork|토크|parmotor|^(?:m|mr|mf|md|tq|par)$|^[mм](?:тр|кр|к|tr)$",
-    "torque",
-)
+_TORQUE = key_pattern("torque")
 _TORQUE_UNIT = re.compile(r"[cmkuµμ]?N\s?[·⋅・∙•*.]?\s?[cmuµμ]?m")  # and no J
 _ANGLE = re.compile(r"angle|winkel|angolo|angulo|角|phi|^(?:theta|rotation)$")
 # what turns, where its unit is one of angles
@@ -65,7 +62,7 @@ def unscaled_torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
         name, unit = _name_and_unit(column)
         bare = name.split(",")[0]
         other = unit and not (converts(unit, "V") or is_count(unit))
-        if not column.used and _TORQUE.search(squeezed(bare)) and not other:
+        if not column.used and _TORQUE.search(normalise_label(bare)) and not other:
             fitting.append(column)
     return fitting[0] if len(fitting) == 1 else None
 
@@ -97,7 +94,7 @@ def turns_of(columns: Sequence[DraftColumn], numbers: np.ndarray) -> DraftColumn
         name, unit = _name_and_unit(column)
         turns = numbers[:, column.place - 1]
         parts = np.isfinite(turns).all() and np.mean(turns == np.round(turns)) < _WHOLE
-        called = _TURNS.search(squeezed(name)) and unit in _UNITS_OF_TURNS
+        called = _TURNS.search(normalise_label(name)) and unit in _UNITS_OF_TURNS
         if called and parts and not column.used:
             fitting.append(column._replace(unit="turn"))
     return fitting[0] if len(fitting) == 1 else None
@@ -125,7 +122,7 @@ def _only_column(
     fitting = []
     for column in columns:
         name, unit = _name_and_unit(column)
-        if not column.used and is_named(squeezed(name)) and converts(unit, si_unit):
+        if not column.used and is_named(normalise_label(name)) and converts(unit, si_unit):
             said = column.unit is None and column.file_unit and column.name is not None
             own = None if said else unit
             fitting.append(column._replace(unit=own))

@@ -15,7 +15,7 @@ from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.stated_zero import find_zero, zero_in_doubt
 from tribolab.draft.stated.values import find_values
 from tribolab.draft.words.stated_words import NOT_TAKEN_OFF
-from tribolab.draft.words.words import unit_in_words
+from tribolab.unit_names import unit_in_words
 from tribolab.units import conversion
 
 _LONGEST = 300  # characters of a line that are looked at

@@ -21,10 +21,10 @@ from tribolab.draft.follows.model import Follows
 from tribolab.draft.model import NO_NUMBERS, DraftColumn, Understood
 from tribolab.draft.stated.stated_zero import STILL
 from tribolab.draft.stated.values import without_unit
-from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.draft.words.sentences import phrases
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
+from tribolab.unit_names import WEIGHTS
 
 COUNTED = "heights in counts, of which the file does not say how much one is"
 HEIGHTS = (

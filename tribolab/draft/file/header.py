@@ -8,9 +8,10 @@ import unicodedata
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from tribolab.draft.vocabulary import RUN_WORDS, WEIGHTS
 from tribolab.errors import TribolabError
+from tribolab.reading.lexicon.lexicon import known_words
 from tribolab.turns import Counted
+from tribolab.unit_names import WEIGHTS
 from tribolab.units import conversion
 
 if TYPE_CHECKING:
@@ -46,8 +47,8 @@ DIMENSIONS = (
     *("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Hz", "rad/s", "Pa s", "N/m"),
     *("m/s**2", "N m"),
 )
-_STEMS = frozenset(stem for word in RUN_WORDS for stem in word.stems)
-_SYMBOLS = frozenset(symbol for word in RUN_WORDS for symbol in word.symbols)
+_STEMS = frozenset(stem for word in known_words("run") for stem in word.stems)
+_SYMBOLS = frozenset(symbol for word in known_words("run") for symbol in word.symbols)
 # what else files hold and no quantity of ours is: areas, volumes, wear rates, power, charges
 _FURTHER = (
     *("ohm", "m**2", "m**3", "m**2/s", "m**3/s", "m**2/N", "W", "W/m**2", "A", "A s", "S"),
@@ -246,7 +247,7 @@ def names_any(cell: str, *quantities: str) -> bool:
     bare = text.rstrip("0123456789")  # the number of a table or a sensor
     return any(
         bare in word.symbols or any(stem in text for stem in (*word.stems, *word.vague))
-        for word in RUN_WORDS
+        for word in known_words("run")
         if word.quantity in quantities
     )
 

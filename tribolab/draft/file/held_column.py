@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.draft.file.header import names_any
-from tribolab.draft.vocabulary import RUN_WORDS
 from tribolab.errors import shown
+from tribolab.reading.lexicon.lexicon import known_words
 
 ROWS = 20_000  # rows looked at
 _TOLD = 4  # other tables that are named
@@ -50,7 +50,7 @@ def better_name(name: str, meaning: str) -> str:
     ('normal force', '')
     """
     words = re.split(r"[,;:(\[]|\s[-–—]\s", meaning)[0].strip()
-    quantities = [word.quantity for word in RUN_WORDS]
+    quantities = [word.quantity for word in known_words("run")]
     if not words or names_any(name, *quantities) or not names_any(words, *quantities):
         return ""
     return words

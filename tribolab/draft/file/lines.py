@@ -8,11 +8,10 @@ import re
 from collections import Counter
 from collections.abc import Sequence
 
-from tribolab.draft.terms import TERMS
-from tribolab.draft.vocabulary import EASTERN_WORDS
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.eastern import eastern_encoding
 from tribolab.io.dialects.signature import HEAD, wide_encoding
+from tribolab.reading.lexicon.lexicon import eastern_words, known_words
 
 _EASTERN = ("gb18030", "cp932", "big5", "cp949", "cp1251")
 _BLANKS = 1.02  # by how much blanks have to part the lines better than a mark
@@ -163,7 +162,7 @@ def _of_single_bytes(head: bytes) -> str:
 
 @functools.cache
 def _terms_with_own_letters() -> frozenset[str]:
-    every = (term.lower() for terms in TERMS.values() for term in terms)
+    every = (t.lower() for word in known_words() for terms in word.terms.values() for t in terms)
     return frozenset(term for term in every if not term.isascii() and len(term) > 2)
 
 
@@ -186,7 +185,7 @@ def _eastern(head: bytes) -> str:
         except UnicodeDecodeError:
             continue
         written = "".join(text.lower().split())  # as words are in the vocabulary
-        known[name] = sum(word in written for word in EASTERN_WORDS)
+        known[name] = sum(word in written for word in eastern_words())
     best = max(known, key=lambda name: known[name], default="")
     return best if best and known[best] else ""
 

@@ -17,8 +17,8 @@ from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.values import DraftValue
 from tribolab.draft.words.stated_words import ACROSS
-from tribolab.draft.words.words import squeezed
 from tribolab.errors import shown
+from tribolab.reading.lexicon.lexicon import normalise_label
 
 _LONGEST = 300  # characters of a line that are looked at
 _ON = (
@@ -127,7 +127,7 @@ def axial_force_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
         The columns as they are understood.
     """
     held = [c for c in columns if c.used and c.quantity == "normal_force" and not c.optional]
-    named = [c for c in held if not _OF_CONTACTS.search(squeezed(bare_name(c)[0]))]
+    named = [c for c in held if not _OF_CONTACTS.search(normalise_label(bare_name(c)[0]))]
     return named[0] if len(held) == len(named) == 1 else None
 
 

@@ -40,8 +40,8 @@ from tribolab.draft.stated.stated_load import find_load, lifted_on_return, state
 from tribolab.draft.stated.stated_zero import find_zero, reading_of, zero_in_doubt
 from tribolab.draft.stated.stroke_settings import as_stated
 from tribolab.draft.stated.values import DraftValue, find_values, words_said
-from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.quantities import unit_conversion
+from tribolab.unit_names import WEIGHTS
 
 _SAYS_SPEED = {"sliding_velocity", "position", "set_speed"}
 _PRESSED = 0.5  # of the largest load: what is less is no contact

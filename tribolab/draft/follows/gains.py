@@ -15,10 +15,11 @@ from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.counts import COUNT_WORD, zero_beside
 from tribolab.draft.stated.values import DraftValue
-from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.draft.words.sentences import pattern_behind
-from tribolab.draft.words.words import COUNTS, matches, squeezed, unit_in_words
+from tribolab.draft.words.words import COUNTS, matches
 from tribolab.io.dialects.cells import split_name
+from tribolab.reading.lexicon.lexicon import normalise_label
+from tribolab.unit_names import WEIGHTS, unit_in_words
 
 _LONGEST = 300  # characters of a line that are looked at
 _KNOWN = 0.3  # share of a name that a known word makes up: its factor says of what kind it is
@@ -145,7 +146,7 @@ def _texts(layout: Layout, column: DraftColumn, names: Sequence[str]) -> Iterato
                 yield _Said(line[told.end() : end.start() if end else None], line, told.end())
     for line in lines:  # "motor: 400 steps/mm" of a column "steps"
         for match in _SO_MANY.finditer(line):
-            if squeezed(match["raw"]) == squeezed(names[0]):
+            if normalise_label(match["raw"]) == normalise_label(names[0]):
                 yield _Said(line[match.start() :], line, match.start())
 
 
@@ -250,7 +251,7 @@ def _number(
         return f"'{match['number'].replace(',', '.')} {unit}'", ()
     pattern = pattern_behind(said.line[: said.place + match.start("number")])
     value = DraftValue(
-        name, pattern, unit, to, said.line.strip(), own_unit=unit, key=squeezed(name)
+        name, pattern, unit, to, said.line.strip(), own_unit=unit, key=normalise_label(name)
     )
     return name, (value,)
 

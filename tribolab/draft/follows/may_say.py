@@ -10,10 +10,9 @@ from tribolab.draft.follows.model import Follows
 from tribolab.draft.model import Agreed
 from tribolab.draft.stated.stated_load import stated_number
 from tribolab.draft.stated.values import DraftValue, find_values
-from tribolab.draft.vocabulary import WEIGHTS
-from tribolab.draft.words.stated_words import OTHER_RADIUS
-from tribolab.draft.words.strokes import STROKE
+from tribolab.draft.words.stated_words import OTHER_RADIUS, STROKE
 from tribolab.errors import shown
+from tribolab.unit_names import WEIGHTS
 
 _LACKS = {"the radius": "m", "the load": "N", "the sliding speed": "m/s"}
 _QUOTED = 3

@@ -17,8 +17,9 @@ from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.counts import stated_worth
 from tribolab.draft.stated.lengths import find_traverse_speed, pitch_of_clock, seconds_apart
-from tribolab.draft.words.words import KNOWN_WORD, length_unit, matches, squeezed
+from tribolab.draft.words.words import KNOWN_WORD, length_unit, matches
 from tribolab.errors import shown
+from tribolab.reading.lexicon.lexicon import normalise_label
 from tribolab.units import conversion
 
 _LONGEST = 300  # characters of a line that are looked at
@@ -175,7 +176,7 @@ def _way(
     for column in columns:
         name, unit, say = bare_name(column)
         values = numbers[:, column.place - 1]
-        if not _ALONG.search(squeezed(name)) or not np.nanmax(np.abs(np.diff(values))) > 0:
+        if not _ALONG.search(normalise_label(name)) or not np.nanmax(np.abs(np.diff(values))) > 0:
             continue
         if unit is not None and converts(unit, "m"):
             return column._replace(
@@ -185,7 +186,7 @@ def _way(
         own = [
             said
             for line in lines
-            if not _HEIGHT_LINE.search(line) or _ALONG.search(squeezed(line))
+            if not _HEIGHT_LINE.search(line) or _ALONG.search(normalise_label(line))
             if (said := stated_worth(line)) and converts(said, "m")
         ]
         if (unit is None or column.counted) and (own or worths):
@@ -201,7 +202,7 @@ def _height(
 ) -> _Height | None:
     """Return a column as one of heights, with the unit that it is read in."""
     name, unit, say = bare_name(column)
-    key = squeezed(name)
+    key = normalise_label(name)
     values = numbers[:, column.place - 1]
     present = values[np.isfinite(values)]
     if present.size < 3 or not np.ptp(present) > 0 or _WEAR.search(key):
@@ -255,7 +256,7 @@ def _worth_of_count(lines: Sequence[str]) -> str:
     """Return the length that a count of the height is worth, if just one line states it, or ""."""
     found = set()
     for line in lines:
-        if not _COUNT.search(line) or _ALONG.search(squeezed(line)):
+        if not _COUNT.search(line) or _ALONG.search(normalise_label(line)):
             continue
         if (said := stated_worth(line)) and converts(said, "m"):
             found.add(said)

@@ -16,9 +16,8 @@ from tribolab.draft.stated.slip import stated_ratio
 from tribolab.draft.stated.stated_zero import reading_of
 from tribolab.draft.stated.stroke_settings import strokes_of, strokes_of_turns, strokes_said
 from tribolab.draft.stated.values import DraftValue
-from tribolab.draft.words.stated_words import PER_MINUTE
-from tribolab.draft.words.strokes import STROKE
-from tribolab.draft.words.words import or_term, squeezed
+from tribolab.draft.words.stated_words import PER_MINUTE, STROKE
+from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
 
 _DRIVE = re.compile(
     r"drive|motion|waveform|profile|kinematic|antrieb|bewegung|entrainement|mouvement|movim(?:ento|iento)"
@@ -29,17 +28,9 @@ _SINE = re.compile(
 )
 _EVEN = re.compile(r"triang|constant|linear|konstant|dreieck")
 _MODE = re.compile(r"^(?:test|sliding)?mode$|^modus$|^betriebsart$|^modo$|模式$|モード$")
-_SPEED_OF_TURNS = or_term(
-    r"(?:speed|velocity|rotation|rpm|drehzahl|vitesse|giri|velocidad)$",
-    "rotation_speed",
-)
+_SPEED_OF_TURNS = key_pattern("rotation_speed")
 # what nothing else may be than how fast it slides or turns
-_ITS_SPEED = or_term(
-    r"^(?:test|set|nominal|sliding|gleit|linear|surface|crosshead|stage|track|rotary|rotation(?:al)?|spindle|dis[ck])?"
-    r"(?:speed|velocity|rpm|geschwindigkeit|drehzahl|rotation)$",
-    "sliding_velocity",
-    "rotation_speed",
-)
+_ITS_SPEED = key_pattern("own_speed")
 _ANOTHER_SPEED = re.compile(
     r"\b(?:max\w*|min(?:imum|imal)\w*|limit\w*|return\w*|approach\w*|feed\w*|rück\w*|retour\w*|idle\w*"
     r"|top)\b",
@@ -123,10 +114,10 @@ def with_speed(
         known = turning or "set_speed" in names
         return before if known else _with_set_speed(before, values, track)
     settings = of_strokes.settings
-    said = [text.lower() for key, text in words if _DRIVE.search(squeezed(key))]
-    modes = [text.lower() for key, text in words if _MODE.search(squeezed(key))]
+    said = [text.lower() for key, text in words if _DRIVE.search(normalise_label(key))]
+    modes = [text.lower() for key, text in words if _MODE.search(normalise_label(key))]
     # a constant load is a mode, too, and a stroke may be said to be a sine
-    lengths = [text.lower() for key, text in words if STROKE.search(squeezed(key))]
+    lengths = [text.lower() for key, text in words if STROKE.search(normalise_label(key))]
     said += [text for text in (*modes, *lengths) if _SINE.search(text)]
     said += [value.text.lower() for value in of_strokes.values if value.source == "file name"]
     drive, guess = understood.drive or "crank", ""
@@ -185,7 +176,7 @@ def with_difference(
 
 def _crank(words: Sequence[tuple[str, str]]) -> DraftValue | None:
     """Return what the text says of a crank that drives strokes, to be kept with the run."""
-    said = [text for key, text in words if _DRIVE.search(squeezed(key))]
+    said = [text for key, text in words if _DRIVE.search(normalise_label(key))]
     told = next((text for text in said if _SINE.search(text.lower())), None)
     if told is None:
         return None

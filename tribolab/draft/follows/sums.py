@@ -13,8 +13,9 @@ from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.stated_load import find_load, stated_number
 from tribolab.draft.stated.values import find_values
-from tribolab.draft.words.words import matches, squeezed
+from tribolab.draft.words.words import matches
 from tribolab.quantities import unit_conversion
+from tribolab.reading.lexicon.lexicon import normalise_label
 
 _LONGEST = 300  # characters of a line or name that are looked at
 ADDS = "one of several loads that add up"
@@ -115,7 +116,7 @@ def _is_load(column: DraftColumn) -> bool:
 
 def _are_sides(one: DraftColumn, other: DraftColumn) -> bool | None:
     """Whether two names differ by their sides alone, and surely mean them; None if they do not."""
-    names = [squeezed(bare_name(c)[0]) for c in (one, other)]
+    names = [normalise_label(bare_name(c)[0]) for c in (one, other)]
     for first, second, sure in _SIDES:
         for form in (r"^(?P<rest>.{{2,}}?)(?:{})$", r"^(?:{})(?P<rest>.{{2,}})$"):
             told = [

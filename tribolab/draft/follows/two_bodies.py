@@ -13,9 +13,9 @@ from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.values import DraftValue
-from tribolab.draft.words.roles import role_of
 from tribolab.draft.words.stated_words import ACROSS, RADIUS
-from tribolab.draft.words.words import matches, squeezed
+from tribolab.draft.words.words import matches
+from tribolab.reading.lexicon.lexicon import normalise_label, role_of
 from tribolab.turns import reciprocal
 from tribolab.unit_names import plain_unit
 
@@ -116,7 +116,7 @@ def _texts(layout: Layout) -> tuple[str, ...]:
 
 
 def _is(bodies: tuple[re.Pattern[str], re.Pattern[str]], a: DraftColumn, b: DraftColumn) -> bool:
-    names = [squeezed(bare_name(column)[0]) for column in (a, b)]
+    names = [normalise_label(bare_name(column)[0]) for column in (a, b)]
     own = [pattern.search(name) for pattern, name in zip(bodies, names, strict=True)]
     other = [pattern.search(name) for pattern, name in zip(bodies[::-1], names, strict=True)]
     return all(own) and not any(other)
@@ -244,7 +244,7 @@ def shaft_of_torque(layout: Layout, pair: Pair) -> int | None:
         From `pair_of`.
     """
     clauses = [
-        squeezed(clause)
+        normalise_label(clause)
         for line in layout.text_above()
         for clause in re.split(r"[,;.，；。:：]", line[:_LONGEST])
     ]

@@ -52,12 +52,13 @@ from tribolab.draft.stated.sampling import find_pace, find_sampling
 from tribolab.draft.stated.slip import of_both_surfaces
 from tribolab.draft.stated.told_by_settings import told_by_settings
 from tribolab.draft.stated.values import DraftValue
-from tribolab.draft.words.words import Match, matches, squeezed
+from tribolab.draft.words.words import Match, matches
 from tribolab.errors import ReadError, brief, shown
 from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.model import LARGEST
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.dates import seconds
+from tribolab.reading.lexicon.lexicon import normalise_label
 from tribolab.units import conversion, positive
 
 _RISES = 0.9  # share of the steps from row to row; a clock may start anew
@@ -350,7 +351,7 @@ def _timed(bare: list[Bare], run: list[list[Match]], numbers: np.ndarray) -> lis
     if any(options and options[0].quantity == "time" for options in run):
         return run
     for place, (name, unit, _) in enumerate(bare):
-        dated = squeezed(name) in DATES and not run[place]
+        dated = normalise_label(name) in DATES and not run[place]
         if dated and counted_from(numbers[:, place], unit, dated=True):
             named = [Match("time", 1.0, None)]
             return [named if index == place else options for index, options in enumerate(run)]

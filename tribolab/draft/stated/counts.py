@@ -13,11 +13,12 @@ from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.stated_load import find_load
 from tribolab.draft.stated.values import DraftValue, find_values
-from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.draft.words.stated_words import OFF_ALREADY, TAKEN_OFF, ZERO
-from tribolab.draft.words.words import matches, split_unit, squeezed
+from tribolab.draft.words.words import matches, split_unit
 from tribolab.errors import shown
 from tribolab.quantities import quantity
+from tribolab.reading.lexicon.lexicon import normalise_label
+from tribolab.unit_names import WEIGHTS
 from tribolab.units import conversion
 
 _LONGEST = 200  # characters of a line that are looked at
@@ -222,7 +223,7 @@ def _is_raw(column: DraftColumn, values: np.ndarray) -> bool:
     present = values[np.isfinite(values)]
     unit_free = column.file_unit is None and column.unit is None
     name = split_unit(column.label)[0] if column.label else ""
-    if not unit_free or not _RAW.search(squeezed(name)) or not present.size:
+    if not unit_free or not _RAW.search(normalise_label(name)) or not present.size:
         return False
     return bool((present == np.round(present)).all()) and bool(np.ptp(present) > 0)
 

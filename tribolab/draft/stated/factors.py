@@ -13,8 +13,8 @@ from tribolab.draft.stated.counts import WORTH
 from tribolab.draft.words.levers import weight_on_lever
 from tribolab.draft.words.sentences import phrases
 from tribolab.draft.words.stated_words import LOAD
-from tribolab.draft.words.words import squeezed
 from tribolab.errors import shown
+from tribolab.reading.lexicon.lexicon import normalise_label
 
 _LONGEST = 200  # characters of a line that are looked at
 _MOST_CONTACTS = 12
@@ -104,7 +104,9 @@ def missing_of_heights(
     for line in layout.text_above(bare=True):
         text = line[:_LONGEST].strip()
         plain = _PLAIN.match(text)
-        factor = plain and _OF_HEIGHTS.search(squeezed(plain["key"])) and _number(plain["number"])
+        factor = (
+            plain and _OF_HEIGHTS.search(normalise_label(plain["key"])) and _number(plain["number"])
+        )
         step = whole and _STEP_OF_GAUGE.search(text) and not _ONE_UNIT.search(text)
         worth = WORTH.search(text)
         if (worth or step) and weighed:
@@ -153,8 +155,8 @@ def _begins_a_word(pattern: re.Pattern[str], text: str) -> bool:
     starts, end = set(), 0
     for word in re.split(r"[\W_]+", text):
         starts.add(end)
-        end += len(squeezed(word))
-    return any(match.start() in starts for match in pattern.finditer(squeezed(text)))
+        end += len(normalise_label(word))
+    return any(match.start() in starts for match in pattern.finditer(normalise_label(text)))
 
 
 def _number(text: str) -> float:

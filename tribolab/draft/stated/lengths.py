@@ -36,8 +36,9 @@ from tribolab.draft.words.stated_words import (
     UNIT,
     VERTICAL,
 )
-from tribolab.draft.words.words import length_unit, matches, squeezed
+from tribolab.draft.words.words import length_unit, matches
 from tribolab.io.dialects.cells import split_name
+from tribolab.reading.lexicon.lexicon import normalise_label
 from tribolab.units import conversion
 
 _ENDS = (
@@ -118,7 +119,9 @@ def find_height_unit(layout: Layout) -> str:
     layout
         From `tribolab.draft.file.layout.find_layout`.
     """
-    said = [(squeezed(key), length_unit(text)) for key, text in words_said(layout, bare=True)]
+    said = [
+        (normalise_label(key), length_unit(text)) for key, text in words_said(layout, bare=True)
+    ]
     said = [(key, unit) for key, unit in said if unit]
     own = {unit for key, unit in said if HEIGHT_UNIT.search(key) or _names_heights(key)}
     own |= _in_sentences(layout)
@@ -132,7 +135,9 @@ def find_height_unit(layout: Layout) -> str:
 
 def _of_all(layout: Layout) -> str:
     """Return the unit of all lengths of a table of several columns: "Units: mm"; "" if none is."""
-    said = [(squeezed(key), length_unit(text)) for key, text in words_said(layout, bare=True)]
+    said = [
+        (normalise_label(key), length_unit(text)) for key, text in words_said(layout, bare=True)
+    ]
     units = {unit for key, unit in said if unit}
     stated = [unit for key, unit in said if unit and UNIT.search(key)]
     return stated[0] if layout.width > 1 and len(stated) == len(units) == 1 else ""
@@ -161,7 +166,9 @@ def find_unit_along(layout: Layout) -> str:
     layout
         From `tribolab.draft.file.layout.find_layout`.
     """
-    said = [(squeezed(key), length_unit(text)) for key, text in words_said(layout, bare=True)]
+    said = [
+        (normalise_label(key), length_unit(text)) for key, text in words_said(layout, bare=True)
+    ]
     units = {unit for key, unit in said if unit and ALONG.search(key)}
     if len(units) > 1:
         return ""
@@ -392,7 +399,7 @@ def is_at_arm(column: DraftColumn) -> bool:
     column
         Of a force.
     """
-    return AT_ARM.search(squeezed(split_name(column.label)[0])) is not None
+    return AT_ARM.search(normalise_label(split_name(column.label)[0])) is not None
 
 
 def sure_at_arm(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftColumn]:

@@ -13,8 +13,10 @@ from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.stated.values import DraftValue
 from tribolab.draft.words.stated_words import ACROSS, LOAD, PER_MINUTE, RADIUS
 from tribolab.draft.words.strokes import is_frequency, is_length
-from tribolab.draft.words.words import matches, split_unit, squeezed, unit_in_words
+from tribolab.draft.words.words import matches, split_unit
 from tribolab.io.dialects.cells import split_name, split_row
+from tribolab.reading.lexicon.lexicon import normalise_label
+from tribolab.unit_names import unit_in_words
 
 _LONGEST = 300  # characters of a line that are looked at
 _FEWEST = 2  # steps of a programme
@@ -81,7 +83,7 @@ def _values(line: str, names: list[str], delimiter: str) -> list[DraftValue]:
         turns = unit is not None and PER_MINUTE.fullmatch(unit)
         unit = "rpm" if turns else unit
         to = next((si for si in ("rad/s", "m/s", "N", "m") if unit and converts(unit, si)), None)
-        key = squeezed(name)
+        key = normalise_label(name)
         if unit is None or to is None or (to == "N" and not LOAD.search(key)):
             continue
         kind = _TO.get(to, "")

@@ -14,8 +14,8 @@ from tribolab.draft.file.lvm import interval_above
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.values import find_values
 from tribolab.draft.words.stated_words import INTERVAL, RATE
-from tribolab.draft.words.words import squeezed
 from tribolab.errors import shown
+from tribolab.reading.lexicon.lexicon import normalise_label
 
 # "# Cadence d'acquisition : 1000 pts/s", "Rate (kS/s) = 1"; "1000 samples per second" alone
 _GROUPS = r"[1-9]\d{0,2}(?:[ \u00a0\u202f']\d{3})+"  # 1 000
@@ -90,7 +90,7 @@ def _fewer_rows(layout: Layout) -> str:
     """Return the line that says that several samples are averaged or left out; "" if none does."""
     for line in layout.text_above():
         said = _SOME_SAMPLES.match(line.strip()[:_LONGEST])
-        if said and int(said["number"]) > 1 and _AVERAGES.fullmatch(squeezed(said["key"])):
+        if said and int(said["number"]) > 1 and _AVERAGES.fullmatch(normalise_label(said["key"])):
             return shown(line.strip(), 40)
     return ""
 
@@ -166,7 +166,7 @@ def _of_line(line: str, decimal: str) -> Sampling | None:
     key = said.groupdict().get("key") or ""
     bracket = _BRACKET.search(key)
     unit = (said["unit"] or "").strip() or (bracket[1].strip() if bracket else "")
-    name = squeezed(_BRACKET.sub("", key))
+    name = normalise_label(_BRACKET.sub("", key))
     digits = rf"({_GROUPS}|[-+\d.,]+(?:[eE][-+]?\d+)?)"
     pattern = r"^\s*" + escaped(said["before"].strip()) + rf"\s*{digits}"
     if not said["before"].strip():  # a number alone is found by what stands behind it
@@ -215,4 +215,4 @@ def squeezed_signs(text: str) -> str:
     >>> squeezed_signs("Échant./s")
     'echant./s'
     """
-    return "".join(squeezed(sign) or sign for sign in text.strip())
+    return "".join(normalise_label(sign) or sign for sign in text.strip())

@@ -9,9 +9,8 @@ from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.values import DraftValue, find_values
-from tribolab.draft.words.roles import role_of
-from tribolab.draft.words.words import squeezed
 from tribolab.io.dialects.cells import split_name
+from tribolab.reading.lexicon.lexicon import normalise_label, role_of
 
 _RATIO = re.compile(
     r"^(?:srr|slide(?:to)?roll(?:ing)?(?:ratio)?|sliperatio|slipratio|schlupf|gleitrollverhaeltnis"
@@ -63,9 +62,9 @@ def of_both_surfaces(layout: Layout, columns: Sequence[DraftColumn]) -> list[Dra
     if len(speeds) != 1 or not (in_column or stated_ratio(find_values(layout)) is not None):
         return list(columns)
     name = split_name(speeds[0].label)[0]
-    if role_of(name) == "set" or _OF_SLIDING.search(squeezed(name)):
+    if role_of(name) == "set" or _OF_SLIDING.search(normalise_label(name)):
         return list(columns)
-    sure = _MEAN.search(squeezed(name)) is not None
+    sure = _MEAN.search(normalise_label(name)) is not None
     mean = speeds[0]._replace(
         quantity="rolling_speed",
         guessed=() if sure else ("it is the mean speed of both surfaces, as a ratio is stated",),

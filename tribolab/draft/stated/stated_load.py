@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.stated.values import DraftValue
-from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.draft.words.stated_words import LOAD
 from tribolab.io.dialects.patterns import guarded
+from tribolab.unit_names import WEIGHTS
 from tribolab.units import conversion
 
 _ALIKE = 0.01  # relative difference of a weight and of the force of it, both rounded

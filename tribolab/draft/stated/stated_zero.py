@@ -11,6 +11,7 @@ from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.values import DraftValue
 from tribolab.draft.words.stated_words import NOT_TAKEN_OFF, OFF_ALREADY, TAKEN_OFF, ZERO
 from tribolab.draft.words.words import matches
+from tribolab.reading.lexicon.lexicon import part_pattern
 
 _LONGEST = 300  # characters of a line that are looked at
 STILL = "it is still in the signal"
@@ -105,6 +106,6 @@ def _is_zero(value: DraftValue, unit: str) -> bool:
         return False
     if not (value.own_unit and converts(value.own_unit, unit)):
         return False
-    bare = ZERO.sub("", value.key)
+    bare = part_pattern("zero").sub("", value.key)
     options = matches(bare, value.own_unit) if bare else []
     return not options or options[0].quantity not in _OTHER

@@ -11,19 +11,12 @@ import numpy as np
 from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn, Understood
 from tribolab.draft.stated.values import DraftValue
-from tribolab.draft.words.roles import role_of
-from tribolab.draft.words.stated_words import RATE
-from tribolab.draft.words.strokes import (
-    END_TO_END,
-    FREQUENCY,
-    HALF_STROKE,
-    STROKE,
-    is_frequency,
-    is_length,
-)
+from tribolab.draft.words.stated_words import FREQUENCY, HALF_STROKE, RATE, STROKE
+from tribolab.draft.words.strokes import END_TO_END, is_frequency, is_length
 from tribolab.draft.words.words import split_unit
 from tribolab.errors import shown
 from tribolab.io.dialects.cells import split_name
+from tribolab.reading.lexicon.lexicon import role_of
 
 _CYCLES = re.compile(
     r"^(?:(?:number|no|nr|nombre|nb|numero|anzahl|total|liczba|pocet|antal|aantal)(?:of|de|dei|di|der)?)?"

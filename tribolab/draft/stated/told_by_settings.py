@@ -11,7 +11,7 @@ from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.sampling import find_sampling
 from tribolab.draft.stated.values import find_values
-from tribolab.draft.words.strokes import STROKE
+from tribolab.draft.words.stated_words import STROKE
 from tribolab.errors import UnitError
 from tribolab.io.dialects.patterns import guarded
 from tribolab.io.dialects.time_rule import sampling_interval

@@ -11,26 +11,28 @@ from typing import NamedTuple
 from tribolab.draft.file.header import DIMENSIONS, converts, escaped, is_unit
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import STEP_WORD
-from tribolab.draft.vocabulary import WEIGHTS
 from tribolab.draft.words.levers import weight_on_lever
 from tribolab.draft.words.named_radius import radius_in_name
-from tribolab.draft.words.roles import role_of, without_role
 from tribolab.draft.words.sentences import Phrase, label_of, phrases
 from tribolab.draft.words.stated_words import (
     ACROSS,
     ARM,
     DIAMETER,
+    FREQUENCY,
+    HALF_STROKE,
     INTERVAL,
     LOAD,
     PITCH,
     PROFILE_LENGTH,
     RADIUS,
     RATE,
+    STROKE,
     TIP,
     TURNING,
 )
-from tribolab.draft.words.strokes import FREQUENCY, HALF_STROKE, STROKE
-from tribolab.draft.words.words import matches, or_term, split_unit, squeezed, unit_in_words
+from tribolab.draft.words.words import matches, split_unit
+from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, role_of, without_role
+from tribolab.unit_names import WEIGHTS, unit_in_words
 
 _MOST = 12  # a long preamble is not repeated in the dialect
 _MOST_OF_SCAN = 200  # settings of a profilometer, among which the few that count may come last
@@ -263,7 +265,9 @@ def _said(line: str) -> re.Match[str] | None:
 
 def _units_apart(layout: Layout, *, bare: bool) -> dict[str, str]:
     """Return units that stand in lines of their own, by whose they are: "Stroke unit: mm"."""
-    said = [(_UNIT_OF.match(squeezed(key)), text) for key, text in words_said(layout, bare=bare)]
+    said = [
+        (_UNIT_OF.match(normalise_label(key)), text) for key, text in words_said(layout, bare=bare)
+    ]
     return {match["key"] or match["behind"]: text.strip(" []()") for match, text in said if match}
 
 
@@ -272,7 +276,7 @@ def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:
     bracket = _BRACKETS.search(key)
     if unit is None and bracket and is_unit(bracket[1]):
         unit, key = bracket[1], key[: bracket.start()]
-    unit = unit or units.get(squeezed(key))
+    unit = unit or units.get(normalise_label(key))
     name, comma, behind = key.rpartition(",")
     if unit is None and comma and is_unit(behind.strip()):  # "Step, um: 0.5"
         key, unit = name, behind.strip()
@@ -285,7 +289,7 @@ def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:
     signs = r"(?:\+/?-|±)?\s*" if _EITHER_WAY.search(said.string[said.end("before") :][:4]) else ""
     pattern = r"^\s*" + before + rf"\s*{signs}({digits})"
     line = said.string.strip()
-    plain = squeezed(_BRACKETS.sub("", key))
+    plain = normalise_label(_BRACKETS.sub("", key))
     dimension = next((d for d in DIMENSIONS if unit and converts(unit, d)), None)
     if unit is None or dimension is None:
         return DraftValue(_name(key), pattern, None, None, line, own_unit=unit, key=plain)
@@ -295,7 +299,7 @@ def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:
     if options and options[0].score > 0.5:
         quantity = _SET.get(options[0].quantity, options[0].quantity)
         name = without_role(key) if role_of(key) == "set" else key
-        bare = squeezed(_BRACKETS.sub("", name))
+        bare = normalise_label(_BRACKETS.sub("", name))
         plain = bare if LOAD.search(bare) else plain
         other = quantity == "set_normal_force" and not LOAD.search(plain)  # a preload is none
         if quantity.startswith("set_") and not other:
@@ -359,29 +363,10 @@ def _one_force(phrase: Phrase) -> bool:
 
 _STEP_TITLE = re.compile(rf"\W*{STEP_WORD}\W*\d", re.IGNORECASE)
 _R = re.compile(r"^(?:r|d|ø|⌀|od)$|(?:ring|roller|wheel)od$")
-_SPEED = or_term(
-    r"^(?:sliding|test|belt|disc|set|linear)?(?:speed|velocity)$|geschwindigkeit$|^vitesse|^velocidad"
-    r"|^velocita|速度$|snelheid$",
-    "sliding_velocity",
-)
+_SPEED = key_pattern("sliding_speed")
 # how fast a machine pulls or drives, in any of its languages
-_FAST = (
-    r"(?:speed|velocity|geschwindigkeit|vitesse|velocidad|velocidade|velocita|snelheid|hastighe[dt]|nopeus"
-    r"|predkosc|rychlost|sebesseg|hizi|скорость|速度|속도)"
-)
-_MACHINE = (
-    r"(?:crosshead|cross|ram|grip|test|pull(?:ing)?|drive|machine|stage|table|carriage|sled|slider"
-    r"|traversen?|pruef|abzugs?|zug|schlitten|tisch|antriebs?|essai|traverse|chariot|platine|traction"
-    r"|ensayo|travesano|cruceta|mesa|carro|prova|traversa|slitta|tavola|ensaio|travessa|tren[oó]"
-    r"|test|trawers\w|stolik\w|pricnik\w|posuvu|traverssin|dragprov|提离|试验|横梁|十字头|拉伸|试验台|滑台"
-    r"|試験|クロスヘッド|引張|テーブル|ステージ|시험|크로스헤드|испытан\w*|траверс\w|ползун\w|каретк\w)"
-)
-_OF = r"(?:dela|del|de|di|do|da|des|du|d|der|des|van|of|ofthe|of)?"
-_MACHINE_SPEED = re.compile(rf"^{_MACHINE}{_FAST}$|^{_FAST}{_OF}(?:l)?{_MACHINE}$")
-_TURNS = or_term(
-    rf"(?:speed|velocity|rotation|rpm|drehzahl|vitesse|velocidad|velocita|giri|obroty|转速|回転数)$|^{STEP_WORD}\d*n?$",
-    "rotation_speed",
-)
+_MACHINE_SPEED = key_pattern("machine_speed")
+_TURNS = re.compile(rf"{key_pattern('rotation_speed').pattern}|^{STEP_WORD}\d*n?$")
 _WANTED = {
     "m": (
         *(RADIUS, DIAMETER, ACROSS, _R, TURNING, TIP),
@@ -397,5 +382,7 @@ _WANTED = {
 
 
 def _name(key: str) -> str:
-    words = [squeezed(word).encode("ascii", "ignore").decode() for word in re.split(r"\W+|_", key)]
+    words = [
+        normalise_label(word).encode("ascii", "ignore").decode() for word in re.split(r"\W+|_", key)
+    ]
     return "_".join(word for word in words if word) or "value"

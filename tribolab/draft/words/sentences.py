@@ -6,7 +6,7 @@ import re
 from typing import NamedTuple
 
 from tribolab.draft.file.header import escaped, is_unit
-from tribolab.draft.words.words import squeezed
+from tribolab.reading.lexicon.lexicon import normalise_label
 
 _LONGEST = 300  # characters of a line that are looked at
 _MOST = 8  # numbers of a line
@@ -88,7 +88,9 @@ def phrases(line: str) -> list[Phrase]:
         before = line[done : match.start()].rstrip(_ENDS)
         clauses = [clause for clause in _CUTS.split(before) if clause.strip()]
         words = clauses[-1] if clauses else ""
-        key = "".join(squeezed(w) for w in words.split() if squeezed(w) not in _LITTLE)
+        key = "".join(
+            normalise_label(w) for w in words.split() if normalise_label(w) not in _LITTLE
+        )
         if _SIZE.fullmatch(key):  # "Shaft: Ø 80 mm" is that of the shaft
             key = f"{label_of(line)}diameter" if label_of(line) else key
         if behind := _ACROSS_BEHIND.match(line[match.end() :][:20]):
@@ -106,7 +108,7 @@ def label_of(line: str) -> str:
     ('shaft', 'anneau', '')
     """
     label = _LABEL.match(line[:_LONGEST])
-    return squeezed(label["label"]) if label else ""
+    return normalise_label(label["label"]) if label else ""
 
 
 def points_per_length(line: str) -> tuple[float, str] | None:

@@ -4,29 +4,22 @@ from __future__ import annotations
 
 import functools
 import re
-import unicodedata
 from typing import NamedTuple
 
 from tribolab.draft.file.header import converts, is_unit
-from tribolab.draft.terms import TERMS
-from tribolab.draft.vocabulary import RUN_WORDS, SCAN_WORDS, WEIGHTS, Word
-from tribolab.draft.words.roles import role_of, without_role
 from tribolab.quantities import quantity
+from tribolab.reading.lexicon.lexicon import (
+    Word,
+    keys_of,
+    known_words,
+    names,
+    normalise_label,
+    part_pattern,
+    role_of,
+    without_role,
+)
+from tribolab.unit_names import WEIGHTS, unit_in_words
 
-_SPELT = {
-    "ä": "ae",
-    "ö": "oe",
-    "ü": "ue",
-    "ß": "ss",
-    "ø": "oe",
-    "ł": "l",
-    "ı": "i",
-    "µ": "mu",
-    "μ": "mu",
-}
-_SPELT |= {"τ": "tau", "ω": "omega", "η": "eta", "θ": "theta", "ϑ": "theta", "σ": "sigma"}
-_LETTERS = str.maketrans(_SPELT)
-_ACCENTS = re.compile("[\u0300-\u036f]")  # not the marks that make one kana of another
 _VAGUE = 0.6  # of the score of a word that names this quantity alone
 _OF_DEVICE = 0.98
 _TERM = 0.98  # a whole term of a language
@@ -47,39 +40,9 @@ _ACROSS = re.compile(r"(?:^|[\s_.\-])z(?:$|[\s_.\-])", re.IGNORECASE)
 _INSTEAD = {"position": "height_displacement"}
 _ANGLES = ("deg", "rad", "°")
 _LONGEST = 1000  # characters of a name that are looked at: searches take their square
-_AXIS = re.compile(r"stage|axis|achse|carriage|table|tisch|slider|schlitten|motor|gantry|platine")
 _WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［］【】]+)[）］】]$")
 # what a unit means for a quantity in this SI unit: weights for forces
 _MEANT = {"N": WEIGHTS}
-# units as words of languages that the library of units does not know
-_UNIT_WORDS = {
-    **dict.fromkeys(("sekunden", "sekunde", "sek", "secondes", "segundos", "secondi"), "s"),
-    **dict.fromkeys(("seconds", "second", "sekundy", "sekunder", "秒"), "s"),
-    **dict.fromkeys(
-        ("milliseconds", "millisecond", "msec", "millisecondi", "毫秒", "ミリ秒"), "ms"
-    ),
-    **dict.fromkeys(("newton", "newtons", "newtonů", "niuton", "niutony", "牛", "ニュートン"), "N"),
-    **dict.fromkeys(("gram-force", "gramforce", "grams-force", "pond", "克力", "グラム重"), "gf"),
-    **dict.fromkeys(("gramas-força", "gramas-forca", "grama-força", "gramos-fuerza"), "gf"),
-    **dict.fromkeys(("grammes-force", "gramme-force", "grammi-forza"), "gf"),
-    **dict.fromkeys(("millisekunden", "millisecondes", "milisegundos"), "ms"),
-    **dict.fromkeys(("minuten", "minutos", "minuti"), "min"),
-    **dict.fromkeys(("mikrometer", "micromètres", "micras"), "um"),
-    **{"с": "s", "сек": "s", "мс": "ms", "мин": "min", "об/мин": "rpm"},
-    **{"мм": "mm", "мкм": "um", "м": "m", "мм/с": "mm/s", "мкм/с": "um/s", "м/с": "m/s"},
-    **{"н": "N", "мн": "mN", "кн": "kN", "нм": "nm", "мк": "um"},
-    **{"кгс": "kgf", "гс": "gf", "сн": "cN", "в": "V", "мв": "mV", "гц": "Hz", "см": "cm"},
-    **dict.fromkeys(("mikrometri", "mikrometria", "mikrometriä", "mikron", "mikrony"), "um"),
-    **dict.fromkeys(("mikrometry", "mikrometrů", "mikrometr", "mikrometrów", "mikrons"), "um"),
-    **dict.fromkeys(("micrometri", "micrómetros", "micrômetros", "micra", "micron"), "um"),
-    **dict.fromkeys(("微米", "マイクロメートル", "ミクロン", "마이크로미터"), "um"),
-    **dict.fromkeys(("nanometri", "nanometria", "nanometriä", "nanometry", "nanometrů"), "nm"),
-    **dict.fromkeys(("nanomètres", "nanómetros", "纳米", "奈米", "ナノメートル"), "nm"),
-    **dict.fromkeys(("millimetri", "millimetriä", "milimetry", "milímetros", "millimètres"), "mm"),
-    **dict.fromkeys(("毫米", "ミリメートル", "millimeter", "millimetre", "millimeters"), "mm"),
-    **dict.fromkeys(("nanometer", "nanometre", "nanometers", "nanometres"), "nm"),
-    **dict.fromkeys(("micrometer", "micrometre", "micrometers", "micrometres", "microns"), "um"),
-}
 COUNTS = "counts"
 # columns of time that are called by their unit, as the clocks of microcontrollers are
 _CLOCKS = {"millis": "ms", "msec": "ms", "msecs": "ms", "ms": "ms", "micros": "us", "usec": "us"}
@@ -91,18 +54,13 @@ _TURNS = re.compile(
 _RPM = re.compile(r"(?<![^\W_])rpm(?![^\W_])", re.IGNORECASE)  # a name that is its unit: "rpm_set"
 _GLUED = re.compile(r"(?P<name>[^\W\d_]*[a-z]{2})(?P<unit>[A-Z]{1,2})")  # "tempC", "forceN"
 _NUMBERED = re.compile(r"#?\s*(?:N[°ºr]|No|№)\.?", re.IGNORECASE)  # rows, and not how fast it turns
-_COUNTS = frozenset(
-    "count counts cts digit digits lsb bit bits raw adc increments "
-    "pulses pulse pulser puls impulse impulser impulsi impulsos impulsions pulsos imp. pulssit "
-    "div div. divs divs. divisions skt skt. skalenteile teilstriche tlstr div/skala "
-    "graduations divisiones divisioni "
-    "dzialki dz. dílky dílek дел дел. деление делений 格 目盛".split()
-)
 # a speed that was set is not how fast it slid
 _AS_SET = {"sliding_velocity": "set_speed", "normal_force": "set_normal_force"}
 
 
-_SYMBOLS = frozenset(symbol for word in (*RUN_WORDS, *SCAN_WORDS) for symbol in word.symbols)
+_SYMBOLS = frozenset(
+    symbol for word in (*known_words("run"), *known_words("scan")) for symbol in word.symbols
+)
 
 
 class Match(NamedTuple):
@@ -111,17 +69,6 @@ class Match(NamedTuple):
     quantity: str
     score: float
     unit: str | None  # if it has to be read otherwise than it is written: g as gf
-
-
-def squeezed(name: str) -> str:
-    """Return a name without blanks, signs, capitals, umlauts and accents, of its beginning.
-
-    >>> squeezed("# Höhe_1"), squeezed("Déplacement (x)"), squeezed("摩擦係数 ①")
-    ('hoehe1', 'deplacementx', '摩擦係数1')
-    """
-    text = unicodedata.normalize("NFKC", name[:_LONGEST]).lower().translate(_LETTERS)
-    text = _ACCENTS.sub("", unicodedata.normalize("NFD", text))
-    return "".join(filter(str.isalnum, unicodedata.normalize("NFC", text)))
 
 
 def device_of(name: str) -> tuple[str, str]:
@@ -146,16 +93,7 @@ def is_axis(name: str) -> bool:
     (True, False)
     """
     device, own = device_of(name)
-    return bool(_AXIS.search(squeezed(device or own)))
-
-
-def unit_in_words(text: str) -> str:
-    """Return the unit that a word or sign of another language is; else the text as it is.
-
-    >>> unit_in_words("мкм"), unit_in_words("Sekunden"), unit_in_words("kN")
-    ('um', 's', 'kN')
-    """
-    return _UNIT_WORDS.get(text.lower(), text)
+    return bool(part_pattern("machine_axis").search(normalise_label(device or own)))
 
 
 _ABOUT_UNIT = re.compile(r"(?<=\w)\s{0,3}\([^()]{1,30}\)\s*$")  # "uin (microinch)"
@@ -171,7 +109,7 @@ def length_unit(text: str) -> str:
     """
     text = _ABOUT_UNIT.sub("", text)
     bare = text.strip(" \t[](){}.,;\"'")
-    unit = _UNIT_WORDS.get(bare.lower(), bare)
+    unit = unit_in_words(bare)
     for spelt in (unit, unit.lower()) if unit != "Mm" else ("mm",):
         if converts(spelt, "m"):
             return spelt
@@ -203,16 +141,16 @@ def split_unit(label: str) -> tuple[str, str | None]:
     wide = _WIDE_BRACKETS.match(label.strip())
     if wide and is_unit(wide["unit"].strip()):
         return wide["name"], wide["unit"].strip()
-    if squeezed(label) in _CLOCKS:
-        return "time", _CLOCKS[squeezed(label)]
+    if normalise_label(label) in _CLOCKS:
+        return "time", _CLOCKS[normalise_label(label)]
     if _RPM.fullmatch(label.strip()):
         return label, "rpm"
-    if squeezed(label) in _SYMBOLS or _is_ratio(label):
+    if normalise_label(label) in _SYMBOLS or _is_ratio(label):
         return _symbol_and_unit(label) or (label, None)
     for gap in re.finditer(r"\s+(?:in|en|em|i|w|v|в)\s+|[\s_/,]+", label.strip()):
         name, unit = label.strip()[: gap.start()], label.strip()[gap.end() :]
         unit = _PER.sub("/", unit)
-        unit = _UNIT_WORDS.get(unit.lower(), unit)
+        unit = unit_in_words(unit)
         for text in (unit, unit.lower() if len(unit) > 3 else unit):
             # what has no dimension is part of the name: the N/N of F_N/N
             unitless = converts(text, "1") and text != "%"
@@ -247,7 +185,7 @@ def _symbol_and_unit(label: str) -> tuple[str, str] | None:
     if name and is_unit(unit) and not converts(unit, "1"):
         return name, unit
     name, _, unit = label.strip().rpartition("_")
-    meant = [word.quantity for word in RUN_WORDS if squeezed(name) in word.symbols]
+    meant = [word.quantity for word in known_words("run") if normalise_label(name) in word.symbols]
     fits = any(converts(unit, quantity(q).unit) for q in meant if quantity(q).unit != "1")
     return (name, unit) if fits else None
 
@@ -258,7 +196,7 @@ def is_count(unit: str) -> bool:
     >>> is_count("Counts"), is_count("N")
     (True, False)
     """
-    return unit.lower() in _COUNTS
+    return unit.lower() in keys_of("count")
 
 
 def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
@@ -279,9 +217,9 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     >>> matches("Reibkraft", "N")[0].quantity, matches("T", "degC")[0].quantity
     ('friction_force', 'temperature')
     """
-    text = "mu" if _is_ratio(name) else squeezed(name)
+    text = "mu" if _is_ratio(name) else normalise_label(name)
     device, of_device = device_of(name)
-    own = squeezed(of_device) if device else ""
+    own = normalise_label(of_device) if device else ""
     if not text or _NUMBERED.fullmatch(name.strip()):
         return []
     options = []
@@ -289,8 +227,8 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     alone = unit is not None and not scan and not counted and _kinds(unit) == 1
     turns = unit is not None and not scan and converts(unit, "Hz")
     role = "" if scan else role_of(name)
-    plain = squeezed(without_role(name)) if role in ("set", "measured") else ""
-    for word in SCAN_WORDS if scan else RUN_WORDS:
+    plain = normalise_label(without_role(name)) if role in ("set", "measured") else ""
+    for word in known_words("scan") if scan else known_words("run"):
         score = max(_score(text, word), _OF_DEVICE * _score(own, word) if own else 0.0)
         score = max(score, _score(plain, word) if plain else 0.0)
         known = quantity(word.quantity)
@@ -318,46 +256,22 @@ def _is_ratio(name: str) -> bool:
     >>> _is_ratio("F_R/F_N"), _is_ratio("F / W"), _is_ratio("v/s")
     (True, True, False)
     """
-    force, _, load = (squeezed(part) for part in name.partition("/"))
-    over = {word.quantity: word.symbols for word in RUN_WORDS}
+    force, _, load = (normalise_label(part) for part in name.partition("/"))
+    over = {word.quantity: word.symbols for word in known_words("run")}
     return force in (*over["friction_force"], "f") and load in (*over["normal_force"], "n")
 
 
 @functools.lru_cache(maxsize=256)
 def _kinds(unit: str) -> int:
     """Return the number of quantities of a run that are measured in a unit."""
-    known = [quantity(word.quantity) for word in RUN_WORDS]
+    known = [quantity(word.quantity) for word in known_words("run")]
     return sum(converts(unit, kind.unit, kind.bare) for kind in known)
-
-
-def or_term(pattern: str, *concepts: str) -> re.Pattern[str]:
-    """Return a pattern for squeezed names that knows the terms of some concepts, too.
-
-    Parameters
-    ----------
-    pattern
-        For `re.search`.
-    *concepts
-        Of `tribolab.draft.terms.TERMS`.
-
-    Examples
-    --------
-    >>> bool(or_term("^hub$", "stroke").search(squeezed("Slaglängd")))
-    True
-    """
-    terms = sorted({re.escape(term) for concept in concepts for term in _terms(concept)})
-    return re.compile(f"{pattern}|^(?:{'|'.join(terms)})$")
-
-
-@functools.cache
-def _terms(concept: str) -> frozenset[str]:
-    return frozenset(squeezed(term) for term in TERMS.get(concept, ()))
 
 
 def _score(text: str, word: Word) -> float:
     if text in word.symbols:
         return 1.0 - min(0.01 * word.symbols.index(text), _LATE)
-    if text in _terms(word.quantity):
+    if text in names(word.quantity):
         return _TERM
     return max(_share(text, word.stems), _VAGUE * _share(text, word.vague))
 

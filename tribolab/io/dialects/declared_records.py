@@ -9,7 +9,7 @@ import numpy as np
 
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.dialects.explained import is_unit, without_unit
-from tribolab.io.key_words import UNIT_KEYS
+from tribolab.reading.lexicon.lexicon import keys_of
 
 _LONGEST = 1 << 16  # bytes of a header
 _MARK = ";"
@@ -36,7 +36,7 @@ _TYPES = {
     **dict.fromkeys(("float64", "f8", "double", "real64", "r8", "f64"), "f8"),
 }
 _PAIR = re.compile(r"(?P<key>[^\W\d]\w*)\s*=\s*(?P<value>[^\s,;(]+)")
-_UNIT, _SCALE = UNIT_KEYS, ("scale", "gain", "factor", "slope", "mult", "multiplier")
+_UNIT, _SCALE = keys_of("unit"), ("scale", "gain", "factor", "slope", "mult", "multiplier")
 _BIAS = ("bias", "offset", "intercept")
 _FORMULA = re.compile(r"\(\s*\w+\s*(?P<sign>[-+])\s*(?:offset|bias|intercept)\s*\)\s*[*x×]", re.I)
 _TURN = re.compile(

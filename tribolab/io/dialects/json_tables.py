@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from tribolab.io.dialects.explained import is_unit, without_unit
-from tribolab.io.key_words import NAME_KEYS, UNIT_KEYS, VALUE_KEYS
+from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.untyped import Json
 
 _JSON = re.compile(r"\ufeff?\s*(?:\{\s*\"[^\"]*\"\s*:|\[\s*[\[{])")
@@ -154,8 +154,8 @@ def _named(one: object) -> tuple[str, str]:
     if not isinstance(one, dict):
         return "", ""
     told = {k.lower(): v for k, v in one.items() if isinstance(v, str)}
-    name = next((told[k] for k in NAME_KEYS if k in told), "")
-    return name, next((told[k] for k in UNIT_KEYS if k in told), "")
+    name = next((told[k] for k in keys_of("name") if k in told), "")
+    return name, next((told[k] for k in keys_of("unit") if k in told), "")
 
 
 def _values_of(one: Json) -> list[float] | None:
@@ -212,8 +212,8 @@ def _simple(part: Json, key: str) -> list[str]:
 def _setting(name: str, value: object) -> str | None:
     if isinstance(value, dict):
         told = {k.lower(): v for k, v in value.items()}
-        number = next((told[k] for k in VALUE_KEYS if k in told), None)
-        unit = next((told[k] for k in UNIT_KEYS if k in told), "")
+        number = next((told[k] for k in keys_of("value") if k in told), None)
+        unit = next((told[k] for k in keys_of("unit") if k in told), "")
         if number is None or isinstance(number, dict | list):
             return None
         return f"{_clean(name)}: {_clean(str(number))} {_clean(str(unit))}".rstrip()
@@ -228,7 +228,7 @@ def _units(part: object, names: set[str], key: str, depth: int) -> Iterator[tupl
     if depth > _DEEPEST or not isinstance(part, dict):
         return
     own = {k: v for k, v in part.items() if k in names and isinstance(v, str)}
-    told = len(own) > 1 or key.lower() in UNIT_KEYS
+    told = len(own) > 1 or key.lower() in keys_of("unit")
     if told and all(is_unit(unit) for unit in own.values() if unit):
         yield from own.items()
     for name, inner in part.items():

@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tribolab.errors import ReadError
-from tribolab.io.key_words import UNIT_KEYS
 from tribolab.io.tables.settings_text import plain, setting_lines, text_of
+from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.opening import damage_told, isolated
 
 _OF_LIBRARIES = (b"pandas", b"ARROW:schema", b"PANDAS_ATTRS")
@@ -114,7 +114,7 @@ def _arrow_columns(path: Path, form: str) -> _ArrowColumns:
 def _unit_of_field(field: Any) -> str | None:
     """Return the unit that a column's own metadata says."""
     said = {str(plain(k)).lower(): str(plain(v)) for k, v in (field.metadata or {}).items()}
-    return next((said[key] for key in UNIT_KEYS if said.get(key, "").strip()), None)
+    return next((said[key] for key in keys_of("unit") if said.get(key, "").strip()), None)
 
 
 def _parquet(path: Path, layout: ColumnLayout) -> NamedColumns:

@@ -12,20 +12,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribolab.io.key_words import UNIT_KEYS
 from tribolab.io.tables.settings_text import plain, setting_lines
+from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.hdf5_safety import check_self_contained
 from tribolab.reading.raw.opening import damage_told, isolated
 
 _OF_HDF5 = {
-    *UNIT_KEYS,
+    *keys_of("unit"),
     *("CLASS", "NAME", "TITLE", "VERSION", "DIMENSION_LIST", "_FillValue"),
     *("MATLAB_class", "MATLAB_fields", "MATLAB_int_decode", "MATLAB_empty", "REFERENCE_LIST"),
     *("_Netcdf4Dimid", "_NCProperties", "long_name", "description", "columns", "column_names"),
 }
 _OF_LIBRARY = ("#refs#", "#subsystem#")
 _NAMES = ("columns", "column_names", "names", "labels", "channels", "fields")
-_UNITS = (*UNIT_KEYS, "column_units", "Units", "Unit")
+_UNITS = (*keys_of("unit"), "column_units", "Units", "Unit")
 _MEANINGS = ("long_name", "description", "standard_name", "label", "title")
 _MOST_ELEMENTS = 500  # of a structure array
 

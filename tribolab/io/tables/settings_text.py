@@ -13,7 +13,7 @@ from pathlib import PurePath
 
 import numpy as np
 
-from tribolab.io.key_words import UNIT_KEYS, VALUE_KEYS
+from tribolab.reading.lexicon.lexicon import keys_of
 
 MOST_LINES = 200
 _SHORT = 200  # characters of a setting
@@ -63,11 +63,11 @@ def setting_lines(key: str, value: object, depth: int = 0) -> list[str]:
 
 
 def _of_object(key: str, value: Mapping[str, object], depth: int) -> list[str]:
-    units = next((value[name] for name in UNIT_KEYS if name in value), None)
-    rest = {name: each for name, each in value.items() if name not in UNIT_KEYS}
+    units = next((value[name] for name in keys_of("unit") if name in value), None)
+    rest = {name: each for name, each in value.items() if name not in keys_of("unit")}
     numbers = [n for n, each in rest.items() if isinstance(each, int | float)]
     if isinstance(units, str) and len(numbers) == 1 and key:  # {"value": 18, "unit": "mm"}
-        name = "" if numbers[0].lower() in VALUE_KEYS else f" {numbers[0]}"
+        name = "" if numbers[0].lower() in keys_of("value") else f" {numbers[0]}"
         return [f"{key}{name}: {rest.pop(numbers[0])} {units}"[:_SHORT]]
     lines = []
     if isinstance(units, Mapping):  # units of what stands beside them, by name

@@ -8,14 +8,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribolab.io.key_words import UNIT_KEYS
 from tribolab.io.tables.settings_text import setting_lines, text_of
+from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.opening import damage_told, isolated
 
 Settings = dict[str, int | float | str]
 # how the text of a TDMS file says the time from row to row
 INCREMENT_PATTERN = r"^wf_increment: (\S+)"
-_UNITS = ("unit_string", "NI_UnitDescription", "Unit", *UNIT_KEYS)
+_UNITS = ("unit_string", "NI_UnitDescription", "Unit", *keys_of("unit"))
 _WHOLE = 1e-3  # of an interval, how far the ratio of two may be from a whole number
 
 
