@@ -8,8 +8,11 @@ from contact_cases import properties
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
+from typer.testing import CliRunner
 
+from tribolab import cli
 from tribolab.errors import AnalysisError, ReadError
+from tribolab.reading.moduli import read_modulus_table
 from tribolab.rubber.modulus import (
     PDMS_STAND_IN,
     FractionalZener,
@@ -156,7 +159,7 @@ def test_a_spreadsheet_without_its_reader_says_what_to_install(shared_data, with
     [
         ("f,E_stor\nHz,MPa\n1,2\n", "columns for frequency, storage and loss.*it has f, E_stor"),
         ("f,E',E''\nHz,MPa,furlong\n1,2,3\n2,3,4\n", "column 'E'''.*furlong"),
-        ("f,E',E''\n1,2,3\n2,3,4\n", "units are read from the row below the names"),
+        ("f,E',E''\n1,2,3\n2,3,4\n", "units are read from .*the row below the names"),
     ],
 )
 def test_a_file_that_is_no_dma_table_is_refused_with_the_column(tmp_path, text, words):
@@ -190,6 +193,98 @@ def test_units_and_order_of_the_rows_do_not_matter(tmp_path):
     np.testing.assert_allclose(table.angular_frequency, [10, 20])
     np.testing.assert_allclose(table.storage, [1e9, 2e9])
     np.testing.assert_allclose(table.loss, [4e3, 5e3])
+
+
+def test_a_frequency_sweep_of_a_rheometer_is_read_from_utf16_and_from_its_workbook(shared_data):
+    folder = shared_data / "anton_paar_rheology_MIT"
+    text = read_modulus_table(folder / "freqsweep.csv")
+    book = read_modulus_table(folder / "freqsweep_excel_format.xlsx")
+    assert text.angular_frequency.size == 11 and text.angular_frequency[-1] == 50
+    # of shear: E = 3 G
+    assert text.storage[-1] == pytest.approx(3 * 6.2589e-5) and text.loss[-1] == 3 * 1.2518
+    for mine, other in zip(text[:3], book[:3], strict=True):
+        np.testing.assert_allclose(mine, other)
+    assert "multiplied by 3" in text.remarks[0]
+
+
+def test_columns_that_are_aligned_with_blanks_are_read(shared_data):
+    table = read_modulus_table(shared_data / "dma_eplexor_text_MIT/T15.txt")
+    assert table.angular_frequency[0] == pytest.approx(0.2 * np.pi, rel=1e-6)
+    assert table.storage[0] == pytest.approx(2817.27e6) and table.loss[0] == pytest.approx(38.359e6)
+    assert table.temperature == pytest.approx(13, abs=1) and not table.remarks
+
+
+def test_a_unit_that_the_file_does_not_state_is_asked_for_and_taken(shared_data):
+    path = shared_data / "dma_names_MIT/Testdata_Einf.xlsx"
+    with pytest.raises(ReadError, match="'Storage-Modulus' is not stated.*unit='MPa'"):
+        read_modulus(path)
+    table = read_modulus(path, unit="MPa")
+    assert table.storage[0] == pytest.approx(78.3864e6) and table.angular_frequency.size == 21
+    assert "'Frequency' has no unit and is taken for Hz" in table.remarks[0]
+
+
+OMEGA, STORAGE, LOSS = [1.0, 10.0, 100.0], [1e6, 1.5e6, 2.5e6], [1e5, 3e5, 5e5]
+FACTOR = [b / a for a, b in zip(STORAGE, LOSS, strict=True)]
+LAYOUTS = {  # name: head, rows (omega, storage, loss, factor) and how many Pa one is
+    "TRIOS": (
+        "[step]\nFrequency sweep - 1\nAngular frequency\tStep time\tStorage modulus\tLoss modulus\t"
+        "Tan(delta)\nrad/s\ts\tMPa\tMPa\t\n",
+        lambda w, s, b, d: f"{w}\t1\t{s / 1e6}\t{b / 1e6}\t{d}",
+        1,
+    ),
+    "RheoWin": (
+        "Pos;t in [s];f in [Hz];G' in [Pa];G\" in [Pa];tan(\u03b4) in [-]\n",
+        lambda w, s, b, d: f"1;2;{w / 2 / np.pi};{s};{b};{d}".replace(".", ","),
+        3,
+    ),
+    "w, Gp, Gpp": (
+        "w [rad/s], Gp [kPa], Gpp [kPa]\n",
+        lambda w, s, b, d: f"{w}, {s / 1e3}, {b / 1e3}",
+        3,
+    ),
+    "loss factor": (
+        "Frequenz;Speichermodul;Verlustfaktor\nHz;MPa;1\n",
+        lambda w, s, b, d: f"{w / 2 / np.pi};{s / 1e6};{d}",
+        1,
+    ),
+    "complex modulus": (
+        "Ang. frequency (rad/s)\t|E*| (Pa)\tPhase angle (deg)\n",
+        lambda w, s, b, d: f"{w}\t{np.hypot(s, b)}\t{np.degrees(np.arctan2(b, s))}",
+        1,
+    ),
+    "falling": (
+        "Angular Frequency  E'  E''\n[rad/s]  [Pa]  [Pa]\n",
+        lambda w, s, b, d: f"{w}  {s}  {b}",
+        1,
+    ),
+}
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "utf-8-sig"])
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_what_rheometers_export_is_read(layout, encoding, tmp_path):
+    head, row, times = LAYOUTS[layout]
+    rows = [row(*values) for values in zip(OMEGA, STORAGE, LOSS, FACTOR, strict=True)]
+    rows = rows[::-1] if layout == "falling" else rows
+    path = tmp_path / "sweep.txt"
+    path.write_text(head + "\n".join(rows) + "\n", encoding)
+    table = read_modulus(path)
+    np.testing.assert_allclose(table.angular_frequency, OMEGA, rtol=1e-9)
+    np.testing.assert_allclose(table.storage, times * np.array(STORAGE), rtol=1e-9)
+    np.testing.assert_allclose(table.loss, times * np.array(LOSS), rtol=1e-9)
+
+
+def test_a_sweep_is_named_by_its_temperature(shared_data):
+    path = shared_data / "dma_pyvisco_BSD3/freq_user_raw.csv"
+    assert read_modulus(path, "100 C").storage[-1] == pytest.approx(585.8391184e6)
+    with pytest.raises(ReadError, match="no sweep at 300 C"):
+        read_modulus(path, "300 C")
+
+
+def test_info_says_that_a_modulus_is_one(shared_data):
+    done = CliRunner().invoke(cli.app, ["info", str(shared_data / "dma_eplexor_text_MIT/T15.txt")])
+    assert done.exit_code == 0 and "modulus_file" in done.stdout
+    assert "tribolab check" not in done.stdout
 
 
 def test_a_missing_file_is_named(tmp_path):

@@ -24,6 +24,7 @@ from tribolab.io.kinds import kind_of
 from tribolab.io.missing import missing_of
 from tribolab.io.runs import read_log as known_log
 from tribolab.quantities import quantity
+from tribolab.reading.moduli import holds_modulus, read_modulus_table
 from tribolab.reversals import reversals
 from tribolab.words import Count, explain
 
@@ -49,6 +50,8 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
         If there is no such instrument.
     """
     kind = kind_of(path, instrument)
+    if kind == "unknown" and holds_modulus(path):
+        return _modulus_lines(path)
     drafted = kind == "unknown" and holds_run(path)
     if drafted or kind == "run":
         log = read_log(path, instrument)
@@ -58,6 +61,24 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
     with importing():
         plain_arrays_only()
     return _results_lines(path) if kind == "results" else _scan_lines(path, instrument)
+
+
+def _modulus_lines(path: Path) -> list[str]:
+    """Describe a table of storage and loss modulus, and say where its name goes."""
+    name = f'name it as modulus_file = "{shown(path.name)}" in [contact] of a campaign file'
+    try:
+        table = read_modulus_table(path)
+    except ReadError as error:
+        raise ReadError(f"a modulus over frequency: {error.what}", cure=error.cure) from error
+    omega = table.angular_frequency
+    warm = f" at {table.temperature:.3g} C" if table.temperature == table.temperature else ""
+    said = [
+        f"{path}: storage and loss modulus over frequency",
+        f"  {omega.size} rows, {range_of(f'{omega[0]:.3g}', f'{omega[-1]:.3g}')} rad/s{warm}",
+        f"  storage  {range_of(f'{table.storage.min():.3g}', f'{table.storage.max():.3g}')} Pa",
+        f"  loss     {range_of(f'{table.loss.min():.3g}', f'{table.loss.max():.3g}')} Pa",
+    ]
+    return [*said, *(f"  {remark}" for remark in table.remarks), f"  {name}"]
 
 
 @dataclass(frozen=True)

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-import csv
-import re
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 import numpy as np
-import pandas as pd
 from numpy.typing import ArrayLike
 
-from tribolab.errors import AnalysisError, Cure, ReadError, UnitError, shown
-from tribolab.quantities import unit_conversion
-from tribolab.reading.raw.opening import damage_told, isolated
-from tribolab.turns import reciprocal
-from tribolab.units import conversion, positive
+from tribolab.errors import AnalysisError
+from tribolab.reading.moduli import read_modulus_table
+from tribolab.units import positive
 
 
 class Modulus(Protocol):
@@ -100,11 +95,14 @@ class TabulatedModulus:
         [rad/s], strictly increasing, positive (n).
     storage, loss
         E' and E'' [Pa] (n).
+    remarks
+        What was taken for granted when it was read.
     """
 
     angular_frequency: np.ndarray = field(repr=False)
     storage: np.ndarray = field(repr=False)
     loss: np.ndarray = field(repr=False)
+    remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Check the table and keep copies nobody can change."""
@@ -171,35 +169,27 @@ class _Continued:
 
 _DECADE = np.log(10.0)
 _GLASS = 3e9  # Pa, no polymer is stiffer
-_LARGEST = 32 << 20  # bytes of a table in text
-_COLUMNS = {
-    "frequency": re.compile(r"f|freq(uency)?|omega|ω|w", re.IGNORECASE),
-    "storage": re.compile(r"E'|E_?stor(age)?|storage[ _]modulus", re.IGNORECASE),
-    "loss": re.compile(r"E''|E\"|E_?loss|loss[ _]modulus", re.IGNORECASE),
-}
 
 
 def read_modulus(
-    path: str | Path, sweep: int | None = None, sheet: str | None = None
+    path: str | Path,
+    sweep: int | str | None = None,
+    sheet: str | None = None,
+    unit: str | None = None,
 ) -> TabulatedModulus:
-    r"""Read storage and loss modulus from a DMA file, a master curve or one sweep of a raw file.
+    r"""Read storage and loss modulus over frequency from the file of a rheometer or DMA.
 
     Parameters
     ----------
-    path
-        Delimited text (a BOM does no harm) or a spreadsheet (.xls needs python-calamine): a row of
-        names, a row of units, then numbers. Names known are f, freq, omega; E', E_stor, storage
-        modulus; E'', E_loss, loss modulus.
-    sweep
-        Number of the sweep, from 0, where frequencies start anew (a raw file, one sweep for each
-        temperature). Not for a master curve.
-    sheet
-        Name of the spreadsheet's sheet; if not given, the one that has the three columns.
+    path, sweep, sheet, unit
+        As for `tribolab.reading.moduli.read_modulus_table`: text or workbook, which of several
+        sweeps (its number from 0, or its temperature), which sheet, and the unit of moduli that
+        the file does not state.
 
     Returns
     -------
     TabulatedModulus
-        Sorted by frequency, in rad/s and Pa.
+        Sorted by frequency, in rad/s and Pa; a shear modulus is multiplied by 3.
 
     Raises
     ------
@@ -215,103 +205,5 @@ def read_modulus(
     ...     read_modulus(file).storage
     array([1500000., 1800000.])
     """
-    path = Path(path)
-    table = _find_table(path, sheet)
-    columns = {}
-    for role, pattern in _COLUMNS.items():
-        name = next(n for n in table.columns if pattern.fullmatch(n))
-        unit = str(table[name].iloc[0]).strip()
-        try:
-            scale = _to_angular(name, unit) if role == "frequency" else conversion(unit, "Pa")[0]
-        except UnitError as error:
-            raise ReadError(
-                f"{path.name}: column '{shown(name)}': {error}; units are read from the row "
-                "below the names"
-            ) from error
-        numbers = pd.to_numeric(table[name].iloc[1:], errors="coerce").to_numpy(dtype=float)
-        columns[role] = numbers * scale
-    data = np.stack(list(columns.values()))
-    data = data[:, np.isfinite(data).all(axis=0)]
-    if np.unique(data[0]).size < data.shape[1] or sweep is not None:
-        data = _one_sweep(data, sweep, path.name)
-    return TabulatedModulus(*data[:, np.argsort(data[0])])
-
-
-def _to_angular(name: str, unit: str) -> float:
-    """Scale to rad/s; a name that says omega and a unit that does not say radians contradict."""
-    angular = name.lower() in ("omega", "ω", "w")
-    scale, _ = unit_conversion(unit, "angular_frequency" if angular else "frequency")
-    if not angular:
-        return 2 * np.pi * scale
-    known = reciprocal(unit)
-    if known is not None and known.counts == "cycles":
-        raise UnitError(
-            f"the name says radians, the unit '{shown(unit)}' cycles, a factor of 2 pi apart; "
-            f"write 'rad/s' as the unit, or 'f' as the name"
-        )
-    return scale
-
-
-def _one_sweep(data: np.ndarray, sweep: int | None, name: str) -> np.ndarray:
-    """Return the sweep asked for; a new one begins where the frequency falls back."""
-    sweeps = np.split(data, np.flatnonzero(np.diff(data[0]) <= 0) + 1, axis=1)
-    if sweep is None or not 0 <= sweep < len(sweeps):
-        raise ReadError(
-            f"frequencies repeat, {len(sweeps)} sweeps are in it",
-            where=name,
-            cure=Cure(
-                notebook=f"name one with sweep=0 to {len(sweeps) - 1}, or give a master curve",
-                terminal="give a master curve",
-                campaign="give a master curve as modulus_file of [contact]",
-            ),
-        )
-    return sweeps[sweep]
-
-
-def _find_table(path: Path, sheet: str | None) -> pd.DataFrame:
-    """Return the table that has the three columns, its row of units first."""
-    if not path.is_file():
-        raise ReadError(f"{path}: there is no such file")
-    if path.suffix.lower() in (".xls", ".xlsx", ".ods"):
-        tables = [pd.DataFrame(t.cells, columns=t.names) for t in _workbook_tables(path, sheet)]
-    else:
-        tables = [_text_table(path)]
-    for table in tables:
-        table = table.rename(columns=lambda name: str(name).strip())
-        if all(any(map(p.fullmatch, table.columns)) for p in _COLUMNS.values()):
-            return table
-    names = [str(name).strip() for name in tables[0].columns]
-    # what a file that is no such table holds is not told: it may be anything
-    known = any(pattern.fullmatch(name) for name in names for pattern in _COLUMNS.values())
-    seen = shown(", ".join(names), 200) if known else "none of them"
-    raise ReadError(
-        f"{path.name}: columns for frequency, storage and loss modulus are wanted, e.g. f, E', "
-        f"E''; it has {seen}"
-    )
-
-
-class _Cells(NamedTuple):
-    """A sheet: the names of its columns, and the cells below them (row, column)."""
-
-    names: list[str]
-    cells: np.ndarray
-
-
-@isolated("pandas", "python_calamine")
-def _workbook_tables(path: Path, sheet: str | None) -> list[_Cells]:
-    wanted = None if sheet is None else [sheet]
-    with damage_told(path, "workbook"):
-        sheets = pd.read_excel(path, sheet_name=wanted, dtype=object, engine="calamine")
-    return [_Cells(list(map(str, s.columns)), s.to_numpy(dtype=object)) for s in sheets.values()]
-
-
-def _text_table(path: Path) -> pd.DataFrame:
-    if path.stat().st_size > _LARGEST:
-        raise ReadError(f"{path.name}: {path.stat().st_size >> 20} MB are no table of a modulus")
-    try:
-        return pd.read_csv(path, sep=None, engine="python", dtype=str, encoding="utf-8-sig")
-    except (ValueError, csv.Error) as error:  # not UTF-8, empty, or rows of different lengths
-        raise ReadError(
-            f"{path.name}: this is no table in text (UTF-8): one row of names, one of units, then "
-            "numbers are wanted, with as many cells in each"
-        ) from error
+    table = read_modulus_table(path, sweep, sheet, unit)
+    return TabulatedModulus(*table[:3], remarks=table.remarks)

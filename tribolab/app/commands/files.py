@@ -91,6 +91,7 @@ def info(
             # late: starting stays quick
             from tribolab.app.file_info import Descriptions
             from tribolab.campaign.engine.stage import perform
+            from tribolab.reading.moduli import holds_modulus
 
         with progress_bars(quiet) as progress, _pool(jobs, files) as pool:
             described = perform(Descriptions(files, instrument), pool, progress)
@@ -99,7 +100,8 @@ def info(
                 say(f"tribolab: {description.error}", to_stderr=True)
             else:
                 say("\n".join(description.lines))
-        if len(described) == 1 and not described[0].error:
+        modulus = len(described) == 1 and holds_modulus(described[0].file)
+        if len(described) == 1 and not described[0].error and not modulus:
             file = shlex.quote(str(described[0].file))
             file += f" --instrument {shlex.quote(instrument)}" if instrument else ""
             say(f"next: tribolab check {file} (is it usable?), tribolab run {file} (its results)")

@@ -49,7 +49,11 @@ class Contact(Table):
     normal_forces: tuple[Annotated[float, PositiveSi("N", "31 N")], ...] = ()
     """Normal forces at which contact and adhesion are computed, beside those of the runs."""
     modulus_file: SomeText | None = None
-    """Storage and loss modulus over frequency (DMA), relative to the raw folder."""
+    """Storage and loss modulus over frequency (DMA, rheometer), relative to the raw folder."""
+    sweep: int | SomeText | None = None
+    """Which sweep of `modulus_file`, if it holds several: its number from 0, or "25 C"."""
+    modulus_unit: SomeText | None = None
+    """Unit of the moduli in `modulus_file`, if the file does not state it."""
 
     def line(self) -> dict[str, float | None]:
         """Return the arguments of `LineContact`, as far as they are known."""

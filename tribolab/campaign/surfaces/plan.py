@@ -54,6 +54,8 @@ class PlannedSurface:
         Media whose work of adhesion is known.
     modulus_file
         File of the viscoelastic modulus, and its label; None if there is none.
+    modulus_read
+        Which of its sweeps, and the unit that it does not state.
     rubber
         The table [rubber].
     rubber_work
@@ -77,6 +79,7 @@ class PlannedSurface:
     lowest_force: float | None
     media: tuple[PlannedMedium, ...]
     modulus_file: tuple[Path, str] | None = None
+    modulus_read: tuple[int | str | None, str | None] = (None, None)
     rubber: Arguments = field(default_factory=dict)
     rubber_work: float | None = None
     area: AreaTheory = "persson"
@@ -111,6 +114,7 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
     files = distinct(f"surface_{safe_name(surface.name)}" for surface in campaign.surface)
     modulus = campaign.contact.modulus_file
     path = None if modulus is None else campaign.raw / modulus
+    read_as = (campaign.contact.sweep, campaign.contact.modulus_unit)
     sticky = campaign.rubber.adhesion
     planned = []
     for surface, file in zip(campaign.surface, files, strict=True):
@@ -137,12 +141,14 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
             "instrument": surface.instrument,
             "dialect": instrument and sha256_of_dialect(instrument),
             "modulus": path and sha256_of_file(path),
+            "modulus_read": read_as,
         }
         planned.append(
             PlannedSurface(
                 files=tuple(scans),
                 labels=tuple(label_of(campaign, scan) for scan in scans),
                 modulus_file=None if path is None else (path, label_of(campaign, path)),
+                modulus_read=read_as,
                 config_sha256=sha256_of(shaping),
                 **facts,
             )

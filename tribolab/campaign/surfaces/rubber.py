@@ -103,7 +103,9 @@ def _modulus(surface: PlannedSurface, findings: list[Finding]) -> _Rubber:
     stiffness = surface.contact["youngs_modulus"]
     if surface.modulus_file is not None:
         path, label = surface.modulus_file
-        table = read_modulus(path)
+        sweep, unit = surface.modulus_read
+        table = read_modulus(path, sweep, unit=unit)
+        findings.extend(Finding("note", f"{label}: {said}") for said in table.remarks)
         omega = table.angular_frequency
         findings.extend(_far_from(stiffness, float(table(omega[0]).real), omega[0], label))
         return _Rubber(table, label, omega)

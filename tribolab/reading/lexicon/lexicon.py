@@ -34,7 +34,7 @@ class Word(NamedTuple):
     """
 
     quantity: str
-    of: Literal["run", "scan", "setting"]
+    of: Literal["run", "scan", "setting", "modulus"]
     symbols: tuple[str, ...]
     stems: tuple[str, ...]
     vague: tuple[str, ...]
