@@ -21,6 +21,7 @@ from tribolab.draft.columns.heights import (
 )
 from tribolab.draft.columns.labels import bare_name, labelled
 from tribolab.draft.columns.plain_numbers import plain_numbers
+from tribolab.draft.columns.proven import proven, with_proofs, with_proven_units
 from tribolab.draft.columns.ratio import disagreement, force_or_ratio
 from tribolab.draft.columns.results_table import are_points
 from tribolab.draft.columns.turning import angle_of, torque_of
@@ -58,6 +59,7 @@ from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.model import LARGEST
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.dates import seconds
+from tribolab.reading.interpret.physics import Proof
 from tribolab.reading.lexicon.lexicon import normalise_label
 from tribolab.units import conversion, positive
 
@@ -78,6 +80,8 @@ def understand(layout: Layout) -> Understood:
     numbers, text, missing = _numbers(layout)
     unit = find_height_unit(layout)
     columns = in_stated_unit(labelled(layout), unit, find_unit_along(layout))
+    proofs = proven(columns, numbers)
+    columns = with_proven_units(columns, proofs)
     pitch = find_pitch(layout)
     density = "" if pitch is not None else find_point_density(layout)
     length = None if pitch is not None or density else find_profile_length(layout)
@@ -99,7 +103,7 @@ def understand(layout: Layout) -> Understood:
         kind, columns, density, lacks = "scan", sensed.columns, sensed.pitch, sensed.lacks
         apart = bool(density or lacks)
     elif _say_something(columns):
-        kind, columns = _by_name(columns, numbers, placed=apart)
+        kind, columns = _by_name(columns, numbers, proofs, placed=apart)
     else:
         # late: starting stays quick
         from tribolab.draft.columns.behaviour import by_behaviour
@@ -330,12 +334,16 @@ def _say_something(columns: list[DraftColumn]) -> bool:
 
 
 def _by_name(
-    columns: list[DraftColumn], numbers: np.ndarray, *, placed: bool = False
+    columns: list[DraftColumn],
+    numbers: np.ndarray,
+    proofs: dict[int, Proof],
+    *,
+    placed: bool = False,
 ) -> tuple[Kind, list[DraftColumn]]:
     bare = [bare_name(column) for column in columns]
     run = [matches(name, unit) for name, unit, _ in bare]
     scan = [matches(name, unit, scan=True) for name, unit, _ in bare]
-    run = _timed(bare, run, numbers)
+    run = with_proofs(_timed(bare, run, numbers), proofs, numbers)
     best = {options[0].quantity for options in run if options}
     profile = {options[0].quantity for options in scan if options}
     if not best & {"time", "friction_force", "normal_force", "sliding_velocity"} and (

@@ -1,0 +1,1 @@
+"""From columns and settings to what they mean: evidence, rules of physics, one decision."""

@@ -1,0 +1,19 @@
+"""What decides whether columns of a file prove each other."""
+
+from __future__ import annotations
+
+from tribolab.core.limit import Limit
+
+AGREEMENT = Limit(
+    0.01,
+    "1",
+    "columns that a rule of physics joins agree to within the digits they are written with",
+    "te67_pin_on_disc_MIT: speed = rotation x radius to 0.4 % over 1800 rows",
+)
+SPREAD = Limit(
+    0.05,
+    "1",
+    "the ratio that a rule makes is constant over the rows, from the 10th to the 90th percentile",
+    "te67_pin_on_disc_MIT: 0.9 % for its distance, which is written in whole turns",
+)
+ROWS = Limit(10, "rows", "so many rows that are not zero tell a ratio", "judgement")

@@ -1,0 +1,220 @@
+"""Columns that prove each other: rules of physics tell what they hold, and in which units.
+
+The rules are data (physics.toml). A rule whose members may all be columns of a file is tested on
+the rows; where the ratio that it makes is constant, and some units make it one, the file has proven
+what those columns are.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import math
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tribolab.quantities import QUANTITIES, unit_conversion
+from tribolab.reading.interpret.limits import AGREEMENT, ROWS, SPREAD
+from tribolab.units import conversion
+
+Units = dict[int, str]
+
+
+class Rule(NamedTuple):
+    """``gives = factor * product of needs``, in SI units; with `rate`, of the changes in time."""
+
+    gives: str
+    needs: tuple[str, ...]
+    factor: float = 1.0
+    rate: bool = False
+
+    @property
+    def members(self) -> tuple[str, ...]:
+        """Quantities of the columns that it joins."""
+        return (self.gives, *self.needs, *(("time",) if self.rate else ()))
+
+    def __str__(self) -> str:
+        """As it is said: "sliding velocity = rotation speed x track radius"."""
+        product = " x ".join(name.replace("_", " ") for name in self.needs)
+        return f"{self.gives.replace('_', ' ')} = {product}{' x time' if self.rate else ''}"
+
+
+class Candidate(NamedTuple):
+    """A column: what it may hold by its name, and its unit, None where the file says none."""
+
+    quantities: frozenset[str]
+    unit: str | None
+
+
+class Proof(NamedTuple):
+    """What a column holds, in which unit, and the rules that its numbers obey."""
+
+    quantity: str
+    unit: str
+    rules: tuple[Rule, ...]
+
+
+class _Fit(NamedTuple):
+    rule: Rule
+    places: tuple[int, ...]  # of what it gives, and needs
+    spread: float
+    units: list[tuple[str, ...]]
+
+    @property
+    def roles(self) -> dict[int, str]:
+        return dict(zip(self.places, self.rule.members, strict=True))
+
+
+def prove(candidates: Sequence[Candidate], numbers: np.ndarray) -> dict[int, Proof]:
+    """Return what columns hold and in which units, as far as their own numbers prove it.
+
+    Parameters
+    ----------
+    candidates
+        The columns.
+    numbers
+        Their numbers (rows, columns) as written.
+
+    Returns
+    -------
+    dict
+        By place from 0; a column whose unit is not the only possible one is left out.
+    """
+    roles: dict[int, str] = {}
+    fits: list[_Fit] = []
+    found = (
+        fit
+        for rule in rules()
+        for places in _members(rule, candidates)
+        if (fit := _fit(rule, places, candidates, numbers)) is not None
+    )
+    for fit in sorted(found, key=lambda fit: fit.spread):
+        if all(roles.get(place, role) == role for place, role in fit.roles.items()):
+            roles |= fit.roles
+            fits.append(fit)
+    return {
+        place: Proof(roles[place], unit, tuple(fit.rule for fit in fits if place in fit.places))
+        for place, unit in _only_units(fits).items()
+    }
+
+
+@functools.cache
+def rules() -> tuple[Rule, ...]:
+    """Return the rules of physics.toml."""
+    return tuple(
+        Rule(r["gives"], tuple(r["needs"]), r.get("factor", 1.0), r.get("rate", False))
+        for r in _toml()["rule"]
+    )
+
+
+def known_quantities() -> frozenset[str]:
+    """Return what the rules are about."""
+    return frozenset(name for rule in rules() for name in rule.members)
+
+
+@functools.cache
+def to_si(quantity: str, unit: str) -> float:
+    """Return the factor from a unit to the SI unit in which the rules hold."""
+    if quantity in QUANTITIES:
+        return unit_conversion(unit, quantity)[0]
+    return conversion(unit, _SI[quantity])[0]
+
+
+_SI = {"track_radius": "m", "distance": "m", "turns": "rad", "mass": "kg", "torque": "N m"}
+
+
+def _members(rule: Rule, candidates: Sequence[Candidate]) -> Iterator[tuple[int, ...]]:
+    """Yield the columns that may be the members of a rule, each of them once."""
+    options = [
+        [place for place, candidate in enumerate(candidates) if name in candidate.quantities]
+        for name in rule.members
+    ]
+    for places in itertools.product(*options):
+        if len(set(places)) == len(places):
+            yield places
+
+
+def _fit(
+    rule: Rule,
+    places: tuple[int, ...],
+    candidates: Sequence[Candidate],
+    numbers: np.ndarray,
+) -> _Fit | None:
+    """Return in which units columns obey a rule; None if they do in none."""
+    left = numbers[:, places[0]]
+    right = np.prod(numbers[:, places[1 : 1 + len(rule.needs)]], axis=1)
+    if rule.rate:
+        # what is summed must grow as its rate says, over tenths of the record
+        edges = np.linspace(0, len(left) - 1, min(11, len(left))).astype(int)
+        steps = 0.5 * (right[1:] + right[:-1]) * np.diff(numbers[:, places[-1]])
+        sums = np.concatenate([[0.0], np.cumsum(np.where(np.isfinite(steps), steps, 0.0))])
+        left, right = np.diff(left[edges]), np.diff(sums[edges])
+    told = np.isfinite(left) & np.isfinite(right) & (right != 0)
+    told &= np.abs(left) > 0.05 * np.nanmax(np.abs(left), initial=0.0)  # digits are few near zero
+    if told.sum() < (5 if rule.rate else ROWS.value):
+        return None
+    low, ratio, high = np.quantile(left[told] / right[told], [0.1, 0.5, 0.9])
+    spread = (high - low) / abs(ratio) if ratio else math.inf
+    if not ratio > 0 or not spread < SPREAD.value:
+        return None
+    units = [
+        units
+        for units in itertools.product(*_units(rule, places, candidates, numbers))
+        if abs(ratio / _expected(rule, units) - 1) < AGREEMENT.value
+    ]
+    return _Fit(rule, places, spread, units) if units else None
+
+
+def _expected(rule: Rule, units: tuple[str, ...]) -> float:
+    """Return the ratio that a rule makes of numbers in some units."""
+    scales = [to_si(n, u) for n, u in zip(rule.members, units, strict=True)]
+    return rule.factor * math.prod(scales[1:]) / scales[0]
+
+
+def _units(
+    rule: Rule,
+    places: tuple[int, ...],
+    candidates: Sequence[Candidate],
+    numbers: np.ndarray,
+) -> Iterator[list[str]]:
+    """Yield the units in which each member of a rule is of a plausible size."""
+    for name, place in zip(rule.members, places, strict=True):
+        own = candidates[place].unit
+        options = [own] if own is not None else _toml()["unit"][name]
+        values = np.abs(numbers[:, place])
+        size = float(np.nanmax(values, initial=0.0))
+        least, most = _toml()["size"][name]
+        yield [unit for unit in options if least <= size * to_si(name, unit) <= most]
+
+
+def _only_units(fits: Sequence[_Fit]) -> Units:
+    """Return the units of columns that all rules together leave no choice of."""
+    options = [list(fit.units) for fit in fits]
+    domains: dict[int, set[str]] = {}
+    changed = True
+    while changed:
+        changed, domains = False, {}
+        for fit, units in zip(fits, options, strict=True):
+            for n, place in enumerate(fit.places):
+                here = {choice[n] for choice in units}
+                domains[place] = domains[place] & here if place in domains else here
+        for k, fit in enumerate(fits):
+            kept = [
+                choice
+                for choice in options[k]
+                if all(unit in domains[p] for p, unit in zip(fit.places, choice, strict=True))
+            ]
+            changed |= len(kept) < len(options[k])
+            options[k] = kept
+    return (
+        {place: min(units) for place, units in domains.items() if len(units) == 1} if fits else {}
+    )
+
+
+@functools.cache
+def _toml() -> Mapping[str, Any]:
+    return tomllib.loads(Path(__file__).with_name("physics.toml").read_text(encoding="utf-8"))
