@@ -22,6 +22,9 @@ from tribolab.rubber.modulus import read_modulus
 RIGHT, WRONG, NOT_READ = "right", "WRONG", "not read"
 _TAKE: Mapping[str, Callable[[np.ndarray], float]] = {
     "mean": lambda values: float(np.nanmean(values)),
+    "trimmed mean": lambda values: float(
+        np.nanmean(values[len(values) // 10 : -len(values) // 10])
+    ),
     "sd": lambda values: float(np.nanstd(values, ddof=1)),
     "median": lambda values: float(np.nanmedian(values)),
     "first": lambda values: float(values[0]),
