@@ -8,6 +8,7 @@ import pytest
 import tribolab as tl
 from tribolab.app.file_info import file_lines
 from tribolab.draft.dialect.draft import draft_dialect, save_draft
+from tribolab.draft.dialect.questions import GuessedError
 from tribolab.errors import TribolabError
 
 TIME = np.arange(600) / 10
@@ -175,3 +176,35 @@ def test_channels_with_numbers_for_names_are_what_the_text_says_of_them(tmp_path
         run.sliding_velocity, turns * 2 * np.pi / 60 * 0.0325, rtol=1e-9, atol=1e-12
     )
     assert any("drafted from the file" in line for line in file_lines(file))
+
+
+@pytest.mark.parametrize("name", ["averaging_10", "reduction_10", "factor_in_text"])
+def test_text_that_changes_numbers_is_asked_about(name, shared_data):
+    with pytest.raises(GuessedError, match="as they stand|every sample is taken"):
+        tl.read(shared_data / f"cases/{name}.csv")
+
+
+def test_a_gain_that_is_stated_before_the_name_is_used(shared_data):
+    run = tl.read(shared_data / "cases/gain_in_text_SOUND.csv")
+    found = tl.friction_coefficient(run, tl.find_segments(run))
+    np.testing.assert_allclose(found.friction_coefficient, 0.3, rtol=0.01)
+
+
+@pytest.mark.parametrize(
+    "said", ["Kraft mit 1,25 multiplizieren", "forces: divide by 2.5", "Load scaled with 3"]
+)
+def test_a_sentence_that_multiplies_is_asked_about(said, tmp_path):
+    rows = "\n".join(f"{0.1 * n:.1f},0.3,1,2" for n in range(50))
+    head = f"{said}\nTime [s],Friction force [N],Normal force [N],Velocity [mm/s]\n"
+    (tmp_path / "run.csv").write_text(head + rows + "\n", "utf-8")
+    with pytest.raises(GuessedError, match="not as the file says"):
+        tl.read(tmp_path / "run.csv")
+
+
+@pytest.mark.parametrize(("name", "start"), [("a_zero_no_offset", 0.0), ("c_epoch_offset", 1.7e9)])
+def test_declared_records_are_read_to_their_last_digit(name, start, shared_data):
+    run = tl.read(shared_data / f"cases/{name}.bin")
+    assert run.sizes["time"] == 20000 and run.attrs["time_origin_s"] == start
+    np.testing.assert_allclose(np.diff(run.time), 1e-3, atol=3e-7)
+    found = tl.friction_coefficient(run, tl.find_segments(run))
+    assert float(abs(found.friction_coefficient).mean()) == pytest.approx(0.25, abs=0.06)

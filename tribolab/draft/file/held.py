@@ -78,7 +78,7 @@ def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
     text = io.BytesIO()
     labels = "\t".join(_label(column) for column in columns)
     table = np.column_stack([np.asarray(c.values[:rows], dtype=float) for c in columns])
-    np.savetxt(text, table, "%.9g", "\t", header=labels, comments="", encoding="utf-8")
+    np.savetxt(text, table, "%.17g", "\t", header=labels, comments="", encoding="utf-8")
     beside = f"{held.text}\n\n" if held.text else ""
     layout = _laid_out(file, beside.encode() + text.getvalue(), columns)
     guesses = (f"the longest of several alike is meant, not {held.others}",) if held.others else ()

@@ -140,7 +140,7 @@ def lines_of(found: HeldSteps, labels: Sequence[str], most: int) -> str:
     parts = [found.text]
     for table in found.steps:
         columns = [np.asarray(values[:most], dtype=float) for values in table.arrays]
-        rows = ("\t".join(f"{x:.9g}" for x in row) for row in zip(*columns, strict=True))
+        rows = ("\t".join(f"{x:.17g}" for x in row) for row in zip(*columns, strict=True))
         parts.append("\n".join(filter(None, [table.text, "\t".join(labels), *rows])) + "\n")
     return "\n".join(filter(None, parts))
 

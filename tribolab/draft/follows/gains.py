@@ -47,6 +47,10 @@ _SO_MANY = re.compile(
 # a bridge: what it gives at its rated load, of each volt that feeds it
 _OUTPUT = re.compile(rf"{_NUMBER}\s?mV\s?/\s?V(?![\w/])")
 _RATED = re.compile(rf"{_NUMBER}\s?(?P<unit>[kmM]?N|k?gf?|kp|lbf?)(?![\w/])")
+_FACTOR_OF = (
+    r"(?i:(?:gain|factor|sensitivity|scale|calibration(?: factor)?|faktor|verst[äa]rkung"
+    r"|empfindlichkeit|kalibrier\w*)\s(?:of\s|for\s|von\s|f[üu]r\s)?)?"
+)
 _ENDS = re.compile(r";|\s{3,}")
 _FED = re.compile(rf"{_NUMBER}\s?V(?![\w/])")
 
@@ -139,7 +143,10 @@ def _texts(layout: Layout, column: DraftColumn, names: Sequence[str]) -> Iterato
         words = [re.escape(word) for word in re.split(r"[\s_]+", name) if word]
         if not words:
             continue
-        named = re.compile(rf"(?:^[^\w]*|[;,|]\s*|\s{{2,}}){r'[ _]*'.join(words)}(?![^\W_])")
+        # "Fx: 10 N/V", "Gain Fx: 10 N/V", "load, sensitivity: 10 N/V"
+        named = re.compile(
+            rf"(?:^[^\w]*|[;,|]\s*|\s{{2,}}){_FACTOR_OF}{r'[ _]*'.join(words)}(?![^\W_])"
+        )
         for line in lines:
             if told := named.search(line):
                 end = _ENDS.search(line, told.end())

@@ -32,6 +32,12 @@ _RATIO = re.compile(
 _GEAR = re.compile(r"reduc|gear|getriebe|untersetz|uebersetz|riduz|reduktor|przeloz|减速|減速")
 _NUMBER = r"\d+(?:[.,]\d+)?"
 _ONE_TO = re.compile(rf"(?<![\d:.,])(?P<one>{_NUMBER})\s?:\s?(?P<other>{_NUMBER})(?![\d:])")
+# "Multiply friction force by 1.25", "Kraft mit 2,5 multiplizieren"
+_TIMES = re.compile(
+    rf"(?:multipl|divid|scal)\w*\b[^\d.;]{{0,60}}?\b(?:by|with|mit|durch|par|por|per)\s?(?P<number>{_NUMBER})"
+    rf"|\b(?:mit|durch)\s?(?P<before>{_NUMBER})\s\w{{0,12}}\s?(?:zu\s)?(?:multiplizier|dividier)",
+    re.IGNORECASE,
+)
 _PLAIN = re.compile(
     rf"\W*(?P<key>[^\W\d][^:=\t;,\d]{{0,60}}?)\s*[:=\t;, ]\s*[x×]?\s?(?P<number>{_NUMBER}"
     r"(?:[eE][-+]?\d+)?)\s?[x×]?\W*(?:[(（].{0,80})?$",
@@ -119,6 +125,9 @@ def missing_of_heights(
 def _missing(line: str) -> str:
     """Say what a line states that the signals may not hold yet; "" if nothing.
 
+    >>> _missing("Multiply friction force by 1.25")
+    "signals are read as they stand, and not as the file says: 'Multiply friction force by 1.25'"
+
     >>> _missing("Lever 1:5"), _missing("Gain: 1"), _missing("Time 1:05")
     ("signals are read as they stand, not times 'Lever 1:5'", '', '')
     >>> _missing("Number of contacts: 2")
@@ -136,6 +145,9 @@ def _missing(line: str) -> str:
             return ""  # what the lever makes of a weight is said behind it
         if named and _number(ratio["one"]) != _number(ratio["other"]):
             return f"signals are read as they stand, not times '{shown(line, 40)}'"
+    times = _TIMES.search(line)
+    if times and _number(times["number"] or times["before"]) != 1:
+        return f"signals are read as they stand, and not as the file says: '{shown(line, 60)}'"
     plain = _PLAIN.match(line)
     if plain is None or _number(plain["number"]) == 1:
         return ""

@@ -115,7 +115,7 @@ def _in_units(raw: np.ndarray, channel: _Channel) -> list[str]:
     if channel.turn and channel.wrap:
         values = np.unwrap(values, period=channel.wrap)
     values = values / channel.turn if channel.turn else values * channel.scale + channel.bias
-    return ["" if not np.isfinite(value) else f"{value:.10g}" for value in values.tolist()]
+    return ["" if not np.isfinite(value) else repr(value) for value in values.tolist()]
 
 
 def _declared(head: bytes) -> _Records | None:
@@ -127,7 +127,7 @@ def _declared(head: bytes) -> _Records | None:
             settings.setdefault(said["key"].strip().lower(), said["value"])
     kind = _kind(settings)
     end = _END.search(text)
-    offset = _whole(_first(settings, _OFFSET)) or (_behind(text, end.end()) if end else 0)
+    offset = _whole(_first(settings, _OFFSET)) or (_behind(text, end) if end else 0)
     if kind is None or not offset or offset > len(head):
         return None
     above = text[: min(offset, end.start() if end else offset)]
@@ -139,8 +139,9 @@ def _declared(head: bytes) -> _Records | None:
     return _Records(_said(above), offset, kind, channels, not _APART.search(how))
 
 
-def _behind(text: str, place: int) -> int:
-    end = text.find("\n", place)
+def _behind(text: str, mark: re.Match[str]) -> int:
+    """Return where the line of the mark ends: the numbers behind it may begin with a NUL."""
+    end = text.find("\n", mark.start() + len(mark[0].rstrip()))
     return end + 1 if end >= 0 else 0
 
 

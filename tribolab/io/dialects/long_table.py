@@ -223,7 +223,7 @@ def _number(cell: str, comma: bool) -> float:
 def _text(value: float, comma: bool) -> str:
     if not np.isfinite(value):
         return ""
-    text = f"{value:.12g}"
+    text = f"{value:.17g}"
     return text.replace(".", ",") if comma else text
 
 

@@ -347,5 +347,5 @@ def _value(cell: str, comma: bool) -> float:
 
 
 def _text(value: float, comma: bool) -> str:
-    text = f"{value:.12g}" if np.isfinite(value) else ""
+    text = f"{value:.17g}" if np.isfinite(value) else ""
     return text.replace(".", ",") if comma else text
