@@ -86,7 +86,9 @@ def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int)
     """
     above: list[int] = []
     for index in range(start - 1, max(start - _ABOVE, 0) - 1, -1):
-        if grammar.width(lines[index]):
+        if numbers := grammar.width(lines[index]):
+            if index == start - 1 and numbers == width - 1 > 1:
+                continue  # the first row lacks its last cell, and is left out
             break
         told = lines[index][:_LONGEST_MARK]
         if width == 1 and (_MARK.fullmatch(told) or _SAYS.search(told)):

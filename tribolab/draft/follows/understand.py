@@ -216,34 +216,36 @@ def _dated(
     from tribolab.draft.columns.dates import find_form
 
     rows = [split_row(line, layout.delimiter) for line in layout.rows()]
+    found = []
     for column in columns:
         index = column.place - 1
-        if not text[index]:
-            continue
-        cells = [row[index] if index < len(row) else "" for row in rows]
+        cells = [row[index] if index < len(row) else "" for row in rows] if text[index] else []
         form, other = find_form(cells)
-        if not form:
-            continue
-        numbers[:, index] = seconds(cells, form)
-        dated = column._replace(
-            quantity="time",
-            unit=None,
-            form=form,
-            used=True,
-            guessed=(f"dates are written {form}",) if other else (),
-            options=(other,) if other else (),
-            note="",
-            fill_in="",
-        )
-        return [
-            dated
-            if c is column
-            else c._replace(quantity=None, used=False)
-            if c.quantity == "time"
-            else c
-            for c in columns
-        ]
-    return columns
+        if form:
+            found.append((column, seconds(cells, form), form, other))
+    if not found:
+        return columns
+    # a date beside a time of day stays the same for the whole day
+    column, moments, form, other = next((one for one in found if np.ptp(one[1]) > 0), found[0])
+    numbers[:, column.place - 1] = moments
+    dated = column._replace(
+        quantity="time",
+        unit=None,
+        form=form,
+        used=True,
+        guessed=(f"dates are written {form}",) if other else (),
+        options=(other,) if other else (),
+        note="",
+        fill_in="",
+    )
+    return [
+        dated
+        if c is column
+        else c._replace(quantity=None, used=False)
+        if c.quantity == "time"
+        else c
+        for c in columns
+    ]
 
 
 def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:

@@ -62,7 +62,7 @@ def read_header(
     if header.units == "row":
         for _ in range(header.units_line):
             line, here = line_at(file, content, here, dialect)
-        if not line.strip() and line:  # a row of delimiters between names and units
+        while not line.strip() and here < len(content):  # nothing but delimiters, or nothing
             line, here = line_at(file, content, here, dialect)
         row = [unit.strip("[]() ") or None for unit in split_row(line, delimiter)]
         units = tuple((row + [None] * len(names))[: len(names)])

@@ -13,6 +13,7 @@ from tribolab.io import cures
 from tribolab.io.dialects.arranged import holds_names
 from tribolab.io.dialects.declared_records import declares_records
 from tribolab.io.patterns import why_missing
+from tribolab.io.tables.xml_workbook import is_xml_workbook
 from tribolab.io.unpacked import ZIP, holds_arrays, is_workbook, unpacked
 from tribolab.reading.raw.hdf5_safety import refuse_outside
 
@@ -156,7 +157,7 @@ def _format(path: Path, head: bytes, *, binary: bool) -> str:
     for magic, name in _MAGIC.items():
         if head.startswith(magic):
             return name
-    if head.startswith(ZIP) and is_workbook(path):
+    if (head.startswith(ZIP) and is_workbook(path)) or is_xml_workbook(head):
         return "excel"
     if head.startswith(ZIP) and holds_arrays(path):
         return "npz"

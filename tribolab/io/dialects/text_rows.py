@@ -15,6 +15,7 @@ from tribolab.io.dialects.text_tables import RawText, TextTable
 from tribolab.untyped import Arguments
 
 _ONE_PIECE = 1 << 20  # arrow's own block: its intermediate results stay in the cache
+_BLANK = ["", " ", "  ", "   "]  # arrow takes no blanks off
 _NO_VALUE = ["", "nan", "NaN", "NAN", "-nan", "null", "NULL", "N/A", "n/a", "NA", "--"]
 
 
@@ -39,7 +40,7 @@ class RowParser:
         )
         self._convert: Arguments = {
             "include_columns": list(dict.fromkeys(self._wanted)),
-            "null_values": ["", *dialect.text.missing],
+            "null_values": [*_BLANK, *dialect.text.missing],
             "decimal_point": dialect.text.table_decimal,
             "check_utf8": False,
         }

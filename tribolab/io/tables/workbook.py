@@ -5,15 +5,17 @@ from __future__ import annotations
 import datetime as dt
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from tribolab.errors import ReadError, shown
+from tribolab.io.tables.xml_workbook import XmlWorkbook, is_xml_workbook
 from tribolab.reading.raw.opening import damage_told, isolated
 
 _MOST_CELLS = 50_000_000  # of a sheet
 _MOST_ROWS, _MOST_WIDE = 100, 12  # of settings that stand in cells
+_HEAD = 4096  # bytes that tell a workbook in XML
 _SHORT = 200  # characters of a setting
 Cells = Sequence[Sequence[object]]
 
@@ -43,12 +45,9 @@ def sheets_of(path: Path, rows: int | None = None) -> dict[str, Cells]:
     ReadError
         If it is damaged, or a sheet is larger than a table of numbers.
     """
-    # late: python_calamine takes long to load
-    from python_calamine import CalamineWorkbook
-
     cells: dict[str, Cells] = {}
     with damage_told(path, "workbook"):
-        book = CalamineWorkbook.from_path(path)
+        book = _book(path)
         for name in book.sheet_names:
             page = book.get_sheet_by_name(name)
             if rows is None:
@@ -60,11 +59,8 @@ def sheets_of(path: Path, rows: int | None = None) -> dict[str, Cells]:
 @isolated("python_calamine")
 def _sheet_and_settings(path: Path, sheet: str | None) -> tuple[str, Cells, list[Cells]]:
     """Return a sheet's name and cells, and the cells of small other sheets."""
-    # late: python_calamine takes long to load
-    from python_calamine import CalamineWorkbook
-
     with damage_told(path, "workbook"):
-        book = CalamineWorkbook.from_path(path)
+        book = _book(path)
         sheet = sheet or book.sheet_names[0]
         if sheet not in book.sheet_names:
             there = ", ".join(map(shown, book.sheet_names[:8]))
@@ -77,6 +73,17 @@ def _sheet_and_settings(path: Path, sheet: str | None) -> tuple[str, Cells, list
             page.to_python(skip_empty_area=False) for page in others if is_small(page)
         ]
     return sheet, rows, few
+
+
+def _book(path: Path) -> Any:
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+    if is_xml_workbook(head):
+        return XmlWorkbook(path)
+    # late: python_calamine takes long to load
+    from python_calamine import CalamineWorkbook
+
+    return CalamineWorkbook.from_path(path)
 
 
 def read_sheet(
