@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from functools import cached_property
 from itertools import chain
 
 import numpy as np
@@ -32,11 +33,11 @@ class Basis:
     """Functions of the motion that make up the force, on the motion log's clock."""
 
     def __init__(self, time: Array, motion: Motion):
-        self.time, self.averaged = time, motion.averaged
+        self.time, self.averaged, self._motion = time, motion.averaged, motion
         way = motion.way
         change = np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way) - 1]])
-        path = _path(time, motion.velocity)
-        strokes = np.abs(np.diff(path[change]))
+        self._path = _path(time, motion.velocity)
+        strokes = np.abs(np.diff(self._path[change]))
         self.longest = float(strokes.max())
         self.shortest = float(strokes[strokes > 0.01 * self.longest].min())
         # a slow start tells the moment badly, and its friction is another
@@ -53,13 +54,17 @@ class Basis:
         self.around = np.stack([halfway[:-1], halfway[1:]], axis=1)[seen]
         self._kept = _kept(len(time), self.events)
         self.rows = time[self._kept]
-        self.models: list[tuple[str, Array]] = []  # (column, row)
-        table = Play(path)
+
+    @cached_property
+    def models(self) -> list[tuple[str, Array]]:
+        """Name and table (column, row) of each model of how the force follows the motion."""
+        table, models = Play(self._path), []
         for slack in (0.0, *SLACKS):
             driven = table.followed(0.5 * min(slack * self.longest, _LARGEST_SLACK))
-            velocity = np.gradient(driven, time) if slack else motion.velocity
-            self.models.append((f"slack {slack:g}", self._after(velocity, driven)))
-        self.models.append(("before", self._before(motion.velocity, way, path)))
+            velocity = np.gradient(driven, self.time) if slack else self._motion.velocity
+            models.append((f"slack {slack:g}", self._after(velocity, driven)))
+        models.append(("before", self._before(*self._motion[:2], self._path)))
+        return models
 
     def _after(self, velocity: Array, path: Array) -> Array:
         """List what happens to the force once the table has moved."""

@@ -21,7 +21,7 @@ from tribolab.aliases import Array
 from tribolab.medians import median
 
 _PART = 0.05  # of a stroke's length is looked at, and as long before it
-_DISTANCES = 1e-6 * 4.0 ** np.arange(9)  # d, in lengths of the stroke
+_DISTANCES = 1e-6 * 2.0 ** np.arange(17)  # d, in lengths of the stroke
 _REACH = 0.3  # of a fast stroke's (or rest's) duration, within which the shift is sought
 _NOISE = 1e-3  # of the longest stroke's way: less is noise of a table at rest
 _FAST = 0.1  # strokes at less than this part of the highest speed are too slow to tell the moment

@@ -29,7 +29,13 @@ from tribolab.io.clocks.joint import told_by_motion
 from tribolab.io.clocks.motion import Motion, clean_motion
 from tribolab.io.clocks.onset import refine_by_onsets
 from tribolab.io.clocks.rivals import APART, Candidate, candidates, likeliest
-from tribolab.io.clocks.starts import QUARTZ, Logs, changes, shift_from_starts
+from tribolab.io.clocks.starts import (
+    QUARTZ,
+    Logs,
+    ToldByStarts,
+    changes,
+    shift_from_starts,
+)
 from tribolab.medians import median
 from tribolab.threads import one_thread
 
@@ -164,9 +170,10 @@ def _estimated(
     uncertainty = fit.uncertainty(shift)
     sharp = _SHARP * float(np.ptp(motion_time)) / len(np.unique(classes))
     placed = chosen.unexplained < _PLACED
-    if uncertainty > sharp and not placed:
-        return None
     weak = significance < _LEAST_SIGNIFICANCE
+    vague = uncertainty > sharp and not placed
+    if vague and (weak or not wide):
+        return None
     ways = {"classes": Told(shift, uncertainty)}
     # late by up to a rest, as the force stays on
     span = max(8.0 * coarse.half, 1.25 * float(median(np.diff(motion_time[changes(way)]))))
@@ -182,9 +189,20 @@ def _estimated(
     estimate = ShiftEstimate(shift, uncertainty, ratio)
     if told is not None:
         estimate = ShiftEstimate(told.shift, told.uncertainty, fit.ratio(told.shift), *told[2:])
+    starts, onsets, agree = estimate, estimate, True
     if estimate.rate == 0.0:
-        estimate = _sharpened(estimate, force_time, force, motion_time, motion.velocity, fit)
-    if estimate.uncertainty > _LOST * uncertainty:  # the starts were looked for at a wrong place
+        onsets = _sharpened(estimate, force_time, force, motion_time, motion.velocity, fit)
+        # of two methods that agree, the sharper one is kept
+        agree = abs(onsets.shift - starts.shift) <= _AGREE * starts.uncertainty
+        vaguer = agree and onsets.uncertainty > starts.uncertainty
+        estimate = starts if told is not None and vaguer else onsets
+    # slack or a stick would delay the slow starts, which only the first of them sees, by more
+    twice = wide and not weak and told is not None and onsets is not starts
+    twice = twice and _alike(starts, onsets, basis.stroke)
+    if vague and not twice:
+        return None
+    # starts that know so little were looked for at a wrong place
+    if not twice and estimate.uncertainty > _LOST * uncertainty:
         anew = ShiftEstimate(shift, uncertainty, ratio)
         anew = _sharpened(anew, force_time, force, motion_time, motion.velocity, fit)
         estimate = anew if anew.uncertainty < estimate.uncertainty else estimate
@@ -209,12 +227,17 @@ def _estimated(
             return None
         stroke = joint.stroke
     sharp_fit = joint is not None and joint.uncertainty < _SHARP * stroke
-    if wide and {"starts", "motion"} <= set(ways) and _agree(ways["starts"], ways["motion"]):
+    if sharp_fit and told is not None and not agree and _agree(told, ways["motion"]):
+        estimate, ways["starts"] = starts, Told(*starts[:2])  # two methods contradict the onsets
+    known = "starts" in ways and estimate.uncertainty < _SHARP * stroke
+    if twice and _contradicted(ways, stroke):
+        other = onsets if estimate is starts else starts
+        combined, part = _late(ways["starts"], Told(*other[:2])), _LEAST_PART
+    elif wide and known and "motion" in ways and _agree(ways["starts"], ways["motion"]):
         combined, part = ways["starts"], _LEAST_PART
         if abs(combined.shift - ways["motion"].shift) > ways["motion"].uncertainty:
             combined = _late(combined, ways["motion"])
     elif sharp_fit:
-        known = "starts" in ways and estimate.uncertainty < _SHARP * stroke
         first = ways["classes"]
         if known:
             vague = ways["motion"].uncertainty > _VAGUE * ways["starts"].uncertainty
@@ -227,7 +250,7 @@ def _estimated(
     error = float(np.hypot(combined.uncertainty, part * stroke))
     estimate = estimate._replace(shift=combined.shift, uncertainty=error, ways=ways)
     estimate = estimate._replace(explained=fit.ratio(combined.shift))
-    if wide and abs(estimate.shift - shift) > _MOVED * stroke:
+    if wide and not twice and abs(estimate.shift - shift) > _MOVED * stroke:
         may = candidates(force_time, force, basis, np.array([estimate.shift, *coarse.rivals]))
         return estimate._replace(refused=_doubt_of_moved(may, stroke))
     rivals = [rival for rival in may if rival is not chosen]
@@ -253,7 +276,26 @@ def _wide(motion: Motion, way: NDArray[np.int64]) -> bool:
     return bool(fastest.max() > _WIDE * fastest.min())
 
 
-def _agree(first: Told, second: Told) -> bool:
+def _alike(starts: ShiftEstimate, onsets: ShiftEstimate, stroke: float) -> bool:
+    """Whether starts at all speeds and those of fast strokes of a duration [s] tell the same."""
+    sharp = max(starts.uncertainty, onsets.uncertainty) < _SHARP * stroke
+    apart = abs(starts.shift - onsets.shift)
+    return sharp and apart < max(_AGREE * starts.uncertainty, _LATE * stroke)
+
+
+def _contradicted(ways: dict[str, Told], stroke: float) -> bool:
+    """Whether starts, which two methods found alike, rule out the fit by the motion.
+
+    It is ruled out if it lies further away than errors of either allow, and than is left open by
+    strokes of a duration [s]: what is nearer may be right.
+    """
+    starts, motion = ways["starts"], ways.get("motion")
+    if motion is None or motion.uncertainty > _SHARP * stroke:
+        return True
+    return abs(motion.shift - starts.shift) > _SHARP * stroke and not _agree(starts, motion)
+
+
+def _agree(first: Told | ToldByStarts, second: Told) -> bool:
     """Whether two ways lie no further apart than their errors allow."""
     error = np.hypot(first.uncertainty, second.uncertainty)
     return bool(abs(first.shift - second.shift) <= _AGREE * error)
