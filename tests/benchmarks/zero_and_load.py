@@ -222,7 +222,7 @@ def judge(run: xr.Dataset) -> Judged:
     )
     pair = friction["pair"].values
     independent = max(len({p if p >= 0 else -2 - i for i, p in enumerate(pair)}), 1)
-    bound = float(norm.isf(CHANCE / independent) / norm.isf(0.025)) if independent > 1 else 1.0
+    bound = float(norm.isf(CHANCE / independent) / norm.isf(0.025))
     off, u95 = np.abs(mu - truth) / truth, friction["friction_coefficient_U95"].values / truth
     said = "; ".join(
         f"{row['check']} {row['status']}: {row['message']}"

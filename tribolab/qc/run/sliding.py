@@ -16,7 +16,7 @@ from tribolab.friction.oscillation.periods import AT_ODDS
 from tribolab.friction.oscillation.regularity import SLIP_KINDS
 from tribolab.friction.oscillation.survey import CHANCE
 from tribolab.friction.oscillation.waveform import CLASSES
-from tribolab.friction.points.strokes import run_means
+from tribolab.friction.points.strokes import run_means, shared_error
 from tribolab.friction.segments.strokes import find_strokes
 from tribolab.friction.statistics import NORMAL
 from tribolab.friction.zero.of_run import PAIRED
@@ -240,7 +240,8 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     pairs = np.full(mu.size, -1.0)
     if "pair" in friction and friction.attrs.get("offset") in PAIRED:
         pairs = friction["pair"].values.astype(float)
-    means = run_means(np.where(speed > 0, speed, 1.0), mu, sem, wide, pairs)
+    moving = np.where(speed > 0, speed, 1.0)
+    means = run_means(moving, mu, sem, wide, pairs, shared=shared_error(friction))
     white = friction[f"{name}_std"].values / np.sqrt(np.maximum(friction["samples"].values, 1))
     bad = []
     for mean in means:

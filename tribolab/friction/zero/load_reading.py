@@ -1,0 +1,184 @@
+"""How far the reading of the load may be off: retained load, friction in the reading, creep."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.friction.zero import limits
+from tribolab.friction.zero.parts import Doubt, ZeroReference
+from tribolab.friction.zero.without_sliding import stretches_of
+from tribolab.friction.zero.words import of_leak, of_retained_load
+from tribolab.medians import median
+
+UNIFORM = np.sqrt(3)  # a difference that is an error or none: the half width of a uniform one
+_FEWEST = 20  # samples of a rest
+_ALIKE = (0.8, 1.25)  # load at rest over that of sliding: the same load
+_LET_GO = 0.25  # share of friction that a rest must have lost to show what friction does
+_ERRORS = 4.0  # standard errors beyond which two readings differ
+_BLOCKS = 5  # of a tenth of a segment: their scatter includes slow waves of the load
+
+
+class LoadReading(NamedTuple):
+    """Standard uncertainty of the load of each segment [N] (segment), and what is in doubt."""
+
+    error: np.ndarray
+    doubts: tuple[Doubt, ...]
+
+
+def load_reading(
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    parts: list[slice],
+    pressed: np.ndarray,
+    offset: np.ndarray,
+    friction: np.ndarray,
+    zero: ZeroReference,
+) -> LoadReading:
+    """Return how far the load of each segment may be off by what the run itself shows.
+
+    Parameters
+    ----------
+    run, segments, parts
+        The run, its segments, and the samples of each.
+    pressed, offset
+        Load without the zero of the cell, and that zero [N] (segment).
+    friction
+        Mean of the friction signal [N] (segment).
+    zero
+        Zero of the friction signal.
+
+    Notes
+    -----
+    Each difference d between two readings of one load may be an error of the reading or real. It
+    counts as uniform within +-d, with the standard uncertainty d/sqrt(3). The zero of the cell that
+    rests show may be a load that was retained there, if it is positive. Friction that leaks into
+    the load by a share k changes the reading by k F where sliding starts; the half loop is free of
+    it. A creep of the reading counts from the end of the run that is further away.
+    """
+    nothing = LoadReading(np.zeros(pressed.size), ())
+    known = pressed[np.isfinite(pressed) & (pressed > 0)]
+    if not known.size:
+        return nothing
+    stated = "normal_zero" in dict(run.attrs.get("uncertainty", {}))
+    retained = nothing if stated else _retained(offset, float(median(known)))
+    found = [retained, LoadReading(_creep(run, segments, parts, pressed), ())]
+    if zero.method != "half loop":
+        found.append(_leak(run, segments, pressed + offset, pressed, friction, zero))
+    error = np.sqrt(sum(one.error**2 for one in found))
+    return LoadReading(error, tuple(said for one in found for said in one.doubts))
+
+
+def _retained(offset: np.ndarray, load: float) -> LoadReading:
+    """Return what the zero of the cell adds if some load was left at the rests that show it."""
+    level = np.where(offset > limits.UNLOADED_SHARE.value * load, offset, 0.0)
+    usual = float(np.mean(level))
+    doubts = ()
+    if usual > limits.DOUBTFUL_REST.value * load:
+        doubts = (of_retained_load(usual, load, offset.size),)
+    return LoadReading(level / UNIFORM, doubts)
+
+
+def _leak(
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    reads: np.ndarray,
+    pressed: np.ndarray,
+    friction: np.ndarray,
+    zero: ZeroReference,
+) -> LoadReading:
+    """Compare the load that is read while sliding with that of the nearest loaded rest."""
+    rests = _loaded_rests(run, segments)
+    leak = np.zeros(pressed.size)
+    for i in range(pressed.size):
+        force = friction[i] - zero.value[i]
+        if not (pressed[i] > 0 and abs(force) > 0):
+            continue
+        at = float(segments["trimmed_start"][i])
+        useful = []
+        for rest in rests:
+            let_go = 1 - (rest.force - zero.value[i]) / force
+            alike = _ALIKE[0] < rest.normal / reads[i] < _ALIKE[1]
+            if alike and let_go > _LET_GO:
+                useful.append((abs(rest.time - at), (reads[i] - rest.normal) / let_go, rest, let_go))
+        if not useful:
+            continue
+        _, found, rest, let_go = min(useful, key=lambda one: one[0])
+        if abs(found) > _ERRORS * rest.error / let_go:
+            leak[i] = found
+    share = np.abs(leak) / np.where(pressed > 0, pressed, np.inf)
+    doubts = ()
+    if share.max(initial=0.0) > limits.LOAD_AT_REST.value:
+        worst = int(share.argmax())
+        which = np.flatnonzero(share > limits.LOAD_AT_REST.value)
+        doubts = (of_leak(float(leak[worst]), float(pressed[worst]), which),)
+    return LoadReading(np.abs(leak) / UNIFORM, doubts)
+
+
+class _Rest(NamedTuple):
+    """A rest: its middle [s], the readings of load and friction, the load's standard error [N]."""
+
+    time: float
+    normal: float
+    force: float
+    error: float
+
+
+def _loaded_rests(run: xr.Dataset, segments: xr.Dataset) -> list[_Rest]:
+    if "omitted" not in segments.dims:
+        return []
+    time, normal, force = (run[k].values for k in ("time", "normal_force", "friction_force"))
+    rests = []
+    for part in stretches_of(run, segments, "at rest"):
+        inside = np.arange(part.start, part.stop)
+        inside = inside[np.isfinite(normal[inside]) & np.isfinite(force[inside])]
+        if inside.size < _FEWEST:
+            continue
+        # loading and unloading belong to the same rest: only its upper level counts
+        level = float(np.quantile(normal[inside], 0.75))
+        inside = inside[normal[inside] > _ALIKE[0] * level]
+        if inside.size < _FEWEST:
+            continue
+        own, pulls = float(median(normal[inside])), float(median(force[inside]))
+        error = float(np.std(normal[inside])) / np.sqrt(inside.size)
+        rests.append(_Rest(float(time[inside].mean()), own, pulls, error))
+    return rests
+
+
+def _creep(
+    run: xr.Dataset, segments: xr.Dataset, parts: list[slice], pressed: np.ndarray
+) -> np.ndarray:
+    """Return what a creep of the load reading adds to the error of each segment [N] (segment)."""
+    full = np.array([part.stop - part.start >= 10 * _BLOCKS for part in parts], bool)
+    full &= np.isfinite(pressed) & (pressed > 0)
+    if not full.any():
+        return np.zeros(pressed.size)
+    if pressed[full].max() > limits.LOADS_DIFFER.value * pressed[full].min():
+        return np.zeros(pressed.size)
+    way = segments["direction"].values
+    first = int(np.flatnonzero(full)[0])
+    last = int(np.flatnonzero(full & (way == way[first]))[-1])
+    normal, time = run["normal_force"].values, run["time"].values
+    begins = _tenth(normal[parts[first]], slice(None, None))
+    ends = _tenth(normal[parts[last]], slice(None, None, -1))
+    change = ends[0] - begins[0]
+    if not abs(change) > _ERRORS * np.hypot(begins[1], ends[1]):
+        return np.zeros(pressed.size)
+    lasted = _middle_of_tenth(time[parts[last]], -1) - _middle_of_tenth(time[parts[first]], 1)
+    loaded = np.flatnonzero(normal > 0.5 * float(median(normal[parts[first]])))[[0, -1]]
+    middle = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
+    away = np.maximum(middle - time[loaded[0]], time[loaded[1]] - middle)
+    return abs(change / lasted) * away / UNIFORM
+
+
+def _middle_of_tenth(time: np.ndarray, way: int) -> float:
+    return float(np.mean(time[::way][: time.size // 10]))
+
+
+def _tenth(values: np.ndarray, order: slice) -> tuple[float, float]:
+    """Return the mean of the first tenth in an order, and its standard error."""
+    own = values[order][: values.size // 10]
+    means = [float(np.nanmean(block)) for block in np.array_split(own, _BLOCKS)]
+    return float(np.mean(means)), float(np.std(means, ddof=1)) / np.sqrt(_BLOCKS)
