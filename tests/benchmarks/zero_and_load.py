@@ -197,6 +197,14 @@ def sound_programme(rng: np.random.Generator) -> xr.Dataset:
     return record(rng, both_ways(rng, shares), exponent=-rng.uniform(0, 1 / 3))
 
 
+@kind
+def sound_load_steps(rng: np.random.Generator) -> xr.Dataset:
+    """The same loads, put on while it slides one way."""
+    slides = [(rng.uniform(20, 60), 1, share) for share in rng.permutation([0.2, 0.4, 1.0])]
+    legs = [(rng.uniform(6, 15), 0, 0.0), (4.0, 0, slides[0][2]), *slides, (3.0, 0, slides[-1][2])]
+    return record(rng, [*legs, (rng.uniform(6, 15), 0, 0.0)], exponent=-rng.uniform(0, 1 / 3))
+
+
 class Judged(NamedTuple):
     """How a run came out: largest deviation and median U95 over the coefficient, findings."""
 

@@ -18,7 +18,7 @@ _FEWEST = 20  # samples of a rest
 _ALIKE = (0.8, 1.25)  # load at rest over that of sliding: the same load
 _LET_GO = 0.25  # share of friction that a rest must have lost to show what friction does
 _ERRORS = 4.0  # standard errors beyond which two readings differ
-_BLOCKS = 5  # of a tenth of a segment: their scatter includes slow waves of the load
+_BLOCKS = 5  # of a reading: their scatter includes slow waves and ramps of the load
 
 
 class LoadReading(NamedTuple):
@@ -75,7 +75,7 @@ def _retained(offset: np.ndarray, load: float) -> LoadReading:
     """Return what the zero of the cell adds if some load was left at the rests that show it."""
     level = np.where(offset > limits.UNLOADED_SHARE.value * load, offset, 0.0)
     usual = float(np.mean(level))
-    doubts = ()
+    doubts: tuple[Doubt, ...] = ()
     if usual > limits.DOUBTFUL_REST.value * load:
         doubts = (of_retained_load(usual, load, offset.size),)
     return LoadReading(level / UNIFORM, doubts)
@@ -90,29 +90,28 @@ def _leak(
     zero: ZeroReference,
 ) -> LoadReading:
     """Compare the load that is read while sliding with that of the nearest loaded rest."""
-    rests = _loaded_rests(run, segments)
+    rests = stretches_of(run, segments, "at rest") if "omitted" in segments.dims else []
+    starts = segments["trimmed_start"].values
     leak = np.zeros(pressed.size)
     for i in range(pressed.size):
         force = friction[i] - zero.value[i]
         if not (pressed[i] > 0 and abs(force) > 0):
             continue
-        at = float(segments["trimmed_start"][i])
         useful = []
-        for rest in rests:
-            let_go = 1 - (rest.force - zero.value[i]) / force
-            alike = _ALIKE[0] < rest.normal / reads[i] < _ALIKE[1]
-            if alike and let_go > _LET_GO:
-                useful.append((abs(rest.time - at), (reads[i] - rest.normal) / let_go, rest, let_go))
-        if not useful:
-            continue
-        _, found, rest, let_go = min(useful, key=lambda one: one[0])
-        if abs(found) > _ERRORS * rest.error / let_go:
-            leak[i] = found
+        for part in rests:
+            rest = _loaded_rest(run, part, float(starts[i]), float(reads[i]))
+            let_go = 0.0 if rest is None else 1 - (rest.force - zero.value[i]) / force
+            if rest is not None and let_go > _LET_GO:
+                found = (reads[i] - rest.normal) / let_go
+                useful.append((abs(rest.time - starts[i]), found, rest.error / let_go))
+        if useful:
+            _, found, error = min(useful)
+            leak[i] = found if abs(found) > _ERRORS * error else 0.0
     share = np.abs(leak) / np.where(pressed > 0, pressed, np.inf)
-    doubts = ()
-    if share.max(initial=0.0) > limits.LOAD_AT_REST.value:
+    which = np.flatnonzero(share > limits.LOAD_AT_REST.value)
+    doubts: tuple[Doubt, ...] = ()
+    if which.size:
         worst = int(share.argmax())
-        which = np.flatnonzero(share > limits.LOAD_AT_REST.value)
         doubts = (of_leak(float(leak[worst]), float(pressed[worst]), which),)
     return LoadReading(np.abs(leak) / UNIFORM, doubts)
 
@@ -126,25 +125,19 @@ class _Rest(NamedTuple):
     error: float
 
 
-def _loaded_rests(run: xr.Dataset, segments: xr.Dataset) -> list[_Rest]:
-    if "omitted" not in segments.dims:
-        return []
-    time, normal, force = (run[k].values for k in ("time", "normal_force", "friction_force"))
-    rests = []
-    for part in stretches_of(run, segments, "at rest"):
-        inside = np.arange(part.start, part.stop)
-        inside = inside[np.isfinite(normal[inside]) & np.isfinite(force[inside])]
-        if inside.size < _FEWEST:
-            continue
-        # loading and unloading belong to the same rest: only its upper level counts
-        level = float(np.quantile(normal[inside], 0.75))
-        inside = inside[normal[inside] > _ALIKE[0] * level]
-        if inside.size < _FEWEST:
-            continue
-        own, pulls = float(median(normal[inside])), float(median(force[inside]))
-        error = float(np.std(normal[inside])) / np.sqrt(inside.size)
-        rests.append(_Rest(float(time[inside].mean()), own, pulls, error))
-    return rests
+def _loaded_rest(run: xr.Dataset, part: slice, at: float, load: float) -> _Rest | None:
+    """Read the half of a rest that is nearer to a segment, if it is under the segment's load."""
+    half = (part.stop - part.start) // 2
+    before = float(run["time"][part.start]) < at
+    near = slice(part.start + half, part.stop) if before else slice(part.start, part.start + half)
+    time, normal, force = (
+        run[k].values[near] for k in ("time", "normal_force", "friction_force")
+    )
+    good = np.isfinite(force) & (normal > _ALIKE[0] * load) & (normal < _ALIKE[1] * load)
+    if good.sum() < _FEWEST:
+        return None
+    mean, error = _mean_of_blocks(normal[good])
+    return _Rest(float(time[good].mean()), mean, float(median(force[good])), error)
 
 
 def _creep(
@@ -179,6 +172,10 @@ def _middle_of_tenth(time: np.ndarray, way: int) -> float:
 
 def _tenth(values: np.ndarray, order: slice) -> tuple[float, float]:
     """Return the mean of the first tenth in an order, and its standard error."""
-    own = values[order][: values.size // 10]
-    means = [float(np.nanmean(block)) for block in np.array_split(own, _BLOCKS)]
+    return _mean_of_blocks(values[order][: values.size // 10])
+
+
+def _mean_of_blocks(values: np.ndarray) -> tuple[float, float]:
+    """Return a mean and its standard error, with slow waves and ramps in it."""
+    means = [float(np.nanmean(block)) for block in np.array_split(values, _BLOCKS)]
     return float(np.mean(means)), float(np.std(means, ddof=1)) / np.sqrt(_BLOCKS)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
+import xarray as xr
 
 from tribolab.core.limit import Limit
 from tribolab.errors import AnalysisError
@@ -19,6 +20,7 @@ from tribolab.friction.oscillation.waveform import CLASSES
 from tribolab.friction.points.strokes import run_means, shared_error
 from tribolab.friction.segments.strokes import find_strokes
 from tribolab.friction.statistics import NORMAL
+from tribolab.friction.zero.limits import LOADS_DIFFER
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.qc.flags import FAIL, GOOD
 from tribolab.qc.register import Check, Result, Skip
@@ -240,8 +242,12 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     pairs = np.full(mu.size, -1.0)
     if "pair" in friction and friction.attrs.get("offset") in PAIRED:
         pairs = friction["pair"].values.astype(float)
-    moving = np.where(speed > 0, speed, 1.0)
-    means = run_means(moving, mu, sem, wide, pairs, shared=shared_error(friction))
+    moving, shared = np.where(speed > 0, speed, 1.0), shared_error(friction)
+    means = []
+    for own in _loads_apart(friction):  # friction under several loads differs, and that is no error
+        known = [part[own] for part in (moving, mu, sem, wide, pairs)]
+        found = run_means(*known, shared=None if shared is None else shared[own])
+        means += [mean._replace(strokes=own[mean.strokes]) for mean in found]
     white = friction[f"{name}_std"].values / np.sqrt(np.maximum(friction["samples"].values, 1))
     bad = []
     for mean in means:
@@ -261,6 +267,17 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     )
     cure = "Slide longer, or repeat the strokes, until the mean settles."
     return [Result("suspect", name, text, share, count=len(bad), cure=cure)]
+
+
+def _loads_apart(friction: xr.Dataset) -> list[np.ndarray]:
+    """Return the segments under each load, in their order."""
+    every = np.arange(friction.sizes["segment"])
+    if "normal_force" not in friction:
+        return [every]
+    load = friction["normal_force"].values
+    order = np.argsort(load)
+    steps = load[order][1:] > LOADS_DIFFER.value * load[order][:-1]
+    return [np.sort(part) for part in np.split(every[order], np.flatnonzero(steps) + 1)]
 
 
 def _lost_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
