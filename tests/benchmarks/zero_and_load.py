@@ -68,7 +68,9 @@ def record(
     time = np.arange(int(ends[-1] * rate)) / rate
     knots = np.column_stack([ends - [d for d, _, _ in legs], ends])
     knots[:, 0] += ramp
-    way, share = (np.interp(time, knots.ravel(), np.repeat([g[k] for g in legs], 2)) for k in (1, 2))
+    way, share = (
+        np.interp(time, knots.ravel(), np.repeat([g[k] for g in legs], 2)) for k in (1, 2)
+    )
     moving = np.abs(way) > 0.5
     last = np.maximum.accumulate(np.where(moving, np.arange(time.size), -1))
     held = np.where(last < 0, 0.0, np.sign(way[last.clip(0)]) * kept)
@@ -192,7 +194,7 @@ def sound_idle(rng: np.random.Generator) -> xr.Dataset:
 
 @kind
 def sound_programme(rng: np.random.Generator) -> xr.Dataset:
-    """Loads of 0.2, 0.4 and 1 of the nominal one, with the coefficient of plain or Hertz contact."""
+    """Loads of 0.2, 0.4 and 1 of the nominal one; friction of a plain or a Hertz contact."""
     shares = rng.permutation([0.2, 0.4, 1.0])
     return record(rng, both_ways(rng, shares), exponent=-rng.uniform(0, 1 / 3))
 
@@ -239,7 +241,9 @@ def judge(run: xr.Dataset) -> Judged:
     )
     wrong = bool((off > bound * u95 + 1e-9).any()) or not mu.size
     outcome = "unsure" if said else "wrong" if wrong else "right"
-    return Judged(outcome, float(off.max(initial=0.0)), float(np.median(u95)) if mu.size else 0, said)
+    return Judged(
+        outcome, float(off.max(initial=0.0)), float(np.median(u95)) if mu.size else 0, said
+    )
 
 
 def main() -> int:
@@ -247,7 +251,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seeds", default="0:20", help="FIRST:LAST+1")
     parser.add_argument("--kinds", default="", help="names, separated by commas")
-    parser.add_argument("--verbose", action="store_true", help="list wrong runs and unsure sound ones")
+    parser.add_argument(
+        "--verbose", action="store_true", help="list wrong runs and unsure sound ones"
+    )
     options = parser.parse_args()
     warnings.simplefilter("ignore")
     seeds = range(*map(int, options.seeds.split(":")))

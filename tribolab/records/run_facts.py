@@ -292,9 +292,7 @@ def _highlights(strokes: _Strokes) -> list[Highlight]:
     speed, known = strokes.speed, np.isfinite(strokes.value)
     if not (known & (speed > 0)).any():  # one group of all that there is
         speed = np.ones(speed.size)
-    means = run_means(
-        speed, strokes.value, strokes.sem, u95, strokes.pairs, shared=strokes.shared
-    )
+    means = run_means(speed, strokes.value, strokes.sem, u95, strokes.pairs, shared=strokes.shared)
     if not means:
         return []
     chosen = {0: "slowest", len(means) - 1: "fastest"}

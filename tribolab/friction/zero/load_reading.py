@@ -130,9 +130,7 @@ def _loaded_rest(run: xr.Dataset, part: slice, at: float, load: float) -> _Rest 
     half = (part.stop - part.start) // 2
     before = float(run["time"][part.start]) < at
     near = slice(part.start + half, part.stop) if before else slice(part.start, part.start + half)
-    time, normal, force = (
-        run[k].values[near] for k in ("time", "normal_force", "friction_force")
-    )
+    time, normal, force = (run[k].values[near] for k in ("time", "normal_force", "friction_force"))
     good = np.isfinite(force) & (normal > _ALIKE[0] * load) & (normal < _ALIKE[1] * load)
     if good.sum() < _FEWEST:
         return None

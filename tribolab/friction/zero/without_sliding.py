@@ -83,13 +83,11 @@ def _before_sliding(
 def _without_load(
     run: xr.Dataset, segments: xr.Dataset, rests: Zeros | None
 ) -> tuple[float, float]:
-    """Return half the loop of strokes that move without load; of one way, what rests do not read."""
+    """Return half the loop of strokes without load; of one way, what rests do not read."""
     if "sliding_velocity" not in run:
         return float("nan"), float("nan")
     found: list[tuple[float, float, float, float]] = []  # direction, mean, its error, middle
-    time, velocity, force = (
-        run[k].values for k in ("time", "sliding_velocity", "friction_force")
-    )
+    time, velocity, force = (run[k].values for k in ("time", "sliding_velocity", "friction_force"))
     for part in stretches_of(run, segments, "no load"):
         own = force[part][np.isfinite(force[part])]
         speed = np.nanmean(velocity[part]) if own.size else 0.0

@@ -245,8 +245,8 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     moving, shared = np.where(speed > 0, speed, 1.0), shared_error(friction)
     means = []
     for own in _loads_apart(friction):  # friction under several loads differs, and that is no error
-        known = [part[own] for part in (moving, mu, sem, wide, pairs)]
-        found = run_means(*known, shared=None if shared is None else shared[own])
+        common = None if shared is None else shared[own]
+        found = run_means(moving[own], mu[own], sem[own], wide[own], pairs[own], shared=common)
         means += [mean._replace(strokes=own[mean.strokes]) for mean in found]
     white = friction[f"{name}_std"].values / np.sqrt(np.maximum(friction["samples"].values, 1))
     bad = []
