@@ -201,8 +201,9 @@ def sound_programme(rng: np.random.Generator) -> xr.Dataset:
 
 @kind
 def sound_load_steps(rng: np.random.Generator) -> xr.Dataset:
-    """The same loads, put on while it slides one way."""
-    slides = [(rng.uniform(20, 60), 1, share) for share in rng.permutation([0.2, 0.4, 1.0])]
+    """The same loads, put on again and again while it slides one way."""
+    shares = np.tile(rng.permutation([0.2, 0.4, 1.0]), rng.integers(1, 7))
+    slides = [(rng.uniform(20, 60), 1, share) for share in shares]
     legs = [(rng.uniform(6, 15), 0, 0.0), (4.0, 0, slides[0][2]), *slides, (3.0, 0, slides[-1][2])]
     return record(rng, [*legs, (rng.uniform(6, 15), 0, 0.0)], exponent=-rng.uniform(0, 1 / 3))
 

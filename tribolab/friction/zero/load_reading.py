@@ -66,7 +66,7 @@ def load_reading(
     retained = nothing if stated else _retained(offset, float(median(known)))
     found = [retained, LoadReading(_creep(run, segments, parts, pressed), ())]
     if zero.method != "half loop":
-        found.append(_leak(run, segments, pressed + offset, pressed, friction, zero))
+        found.append(_leak(run, segments, parts, pressed, offset, friction, zero))
     error = np.sqrt(sum(one.error**2 for one in found))
     return LoadReading(error, tuple(said for one in found for said in one.doubts))
 
@@ -84,26 +84,31 @@ def _retained(offset: np.ndarray, load: float) -> LoadReading:
 def _leak(
     run: xr.Dataset,
     segments: xr.Dataset,
-    reads: np.ndarray,
+    parts: list[slice],
     pressed: np.ndarray,
+    offset: np.ndarray,
     friction: np.ndarray,
     zero: ZeroReference,
 ) -> LoadReading:
     """Compare the load that is read while sliding with that of the nearest loaded rest."""
     rests = stretches_of(run, segments, "at rest") if "omitted" in segments.dims else []
-    starts = segments["trimmed_start"].values
+    starts, reads = segments["trimmed_start"].values, pressed + offset
+    normal = run["normal_force"].values
     leak = np.zeros(pressed.size)
     for i in range(pressed.size):
         force = friction[i] - zero.value[i]
-        if not (pressed[i] > 0 and abs(force) > 0):
+        if not (pressed[i] > 0 and abs(force) > 0 and parts[i].stop - parts[i].start > _BLOCKS):
             continue
+        # a load that wanders while sliding does so between rest and sliding as well
+        wanders = _mean_of_blocks(normal[parts[i]])[1] * np.sqrt(_BLOCKS)
         useful = []
         for part in rests:
             rest = _loaded_rest(run, part, float(starts[i]), float(reads[i]))
             let_go = 0.0 if rest is None else 1 - (rest.force - zero.value[i]) / force
             if rest is not None and let_go > _LET_GO:
                 found = (reads[i] - rest.normal) / let_go
-                useful.append((abs(rest.time - starts[i]), found, rest.error / let_go))
+                error = float(np.hypot(rest.error, wanders)) / let_go
+                useful.append((abs(rest.time - starts[i]), found, error))
         if useful:
             _, found, error = min(useful)
             leak[i] = found if abs(found) > _ERRORS * error else 0.0

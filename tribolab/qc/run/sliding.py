@@ -82,6 +82,7 @@ def _sense(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     kind = subject.slip["waveform"].values
     # what varies along a track may fall slowly, too, but not again and again alike
     reversed_ = (kind == CLASSES[3]) & (subject.slip["regularity"].values == SLIP_KINDS[0])
+    reversed_ &= ~_follows_load(subject)
     if not reversed_.sum() > 0.5 * np.isin(kind, CLASSES[1:]).sum():
         return []
     first = int(np.flatnonzero(reversed_)[0])
@@ -91,6 +92,21 @@ def _sense(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
         "stick-slip does behind a sensor whose sign is turned"
     )
     return [Result("suspect", _signal(subject), text, where=where, count=count)]
+
+
+def _follows_load(subject: RunSubject) -> np.ndarray:
+    """Return where friction varies because the load does (segment)."""
+    name = _signal(subject)
+    if "normal_force" not in subject.signals or name != "friction_force":
+        return np.zeros(len(subject.slices), bool)
+    of_load, of_friction = (
+        subject.segment_stds(own) / np.abs(subject.segment_means(own))
+        for own in ("normal_force", name)
+    )
+    return of_load > _OF_LOAD * of_friction
+
+
+_OF_LOAD = 0.5  # share of the relative scatter of friction: cross-talk of stick-slip is far less
 
 
 def _sign(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
