@@ -122,7 +122,7 @@ def test_friction_that_leaks_into_the_load_one_way_is_in_the_error_or_reported(s
     run["normal_force"] = run.normal_force + share * run.friction_force
     friction, found, said = judged(stamp(run))
     off = np.abs(friction.friction_coefficient - 0.4)
-    assert found == status and (off > 0.005).all()
+    assert found == status and (off > 0.003).all()
     assert (off <= friction.friction_coefficient_U95).all()
     assert ("while sliding compared with the loaded rest" in said.get("zero_reference", "")) == (
         status == "suspect"
@@ -154,7 +154,8 @@ def test_drag_of_strokes_without_load_counts_one_way_as_well(drag, status):
 def test_a_tilt_and_a_creep_below_their_limits_are_in_the_error():
     run = sliding(ONE_WAY)
     tilted = run.assign(friction_force=run.friction_force + 0.006 * run.normal_force)
-    crept = run.assign(normal_force=run.normal_force * (1 + 0.025 * run.time / run.time[-1]))
+    passed = ((run.time - 5) / 56).clip(0, 1)  # under load
+    crept = run.assign(normal_force=run.normal_force * (1 + 0.025 * passed))
     for wrong in (stamp(tilted), stamp(crept)):
         friction, status, _ = judged(wrong)
         off = np.abs(friction.friction_coefficient - 0.4)
