@@ -100,11 +100,12 @@ def rate_falls(rng) -> Trial:
 
 @tricky("13")
 def fine_speeds(rng) -> Trial:
-    """Some 98 speeds in fine steps over four decades, both ways."""
+    """Some 98 speeds in fine steps over four decades, both ways, from the position."""
     lab = draw_lab(rng, speed=(1e-6, 1e-5), mu=(0.05, 1.0))
     speeds = lab.speed * np.geomspace(1, 1e4, int(rng.integers(90, 106)))
     legs = [rest(5.0, 0.0), rest(3.0), *strokes(speeds, rng.uniform(4, 8)), rest(5.0, 0.0)]
-    return _trial(record(rng, lab, legs, draw_law(rng, lab), rate=25.0, offset=0.1))
+    made = record(rng, lab, legs, draw_law(rng, lab), rate=25.0, offset=0.1)
+    return _trial(made, *FORCES, "position")
 
 
 @tricky("7")
