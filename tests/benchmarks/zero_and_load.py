@@ -73,9 +73,11 @@ def record(
     )
     moving = np.abs(way) > 0.5
     last = np.maximum.accumulate(np.where(moving, np.arange(time.size), -1))
-    held = np.where(last < 0, 0.0, np.sign(way[last.clip(0)]) * np.maximum(kept, np.abs(way)))
+    before = np.where(last < 0, 0.0, np.sign(way[last.clip(0)]))
     leg = np.searchsorted(ends, time, side="right").clip(max=len(legs) - 1)
-    friction_share = np.where(np.array([d for _, d, _ in legs])[leg] == 0, held, way)
+    turns = np.array([d for _, d, _ in legs])[leg] * before < 0
+    held = before * np.maximum(kept, np.abs(way))
+    friction_share = np.where(turns | (last < 0), way, held)
     truth = mu * np.maximum(share, 1e-3) ** exponent
     normal = load * share
     friction = truth * normal * friction_share

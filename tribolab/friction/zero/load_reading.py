@@ -12,11 +12,11 @@ from tribolab.friction.zero.parts import Doubt, ZeroReference
 from tribolab.friction.zero.without_sliding import stretches_of
 from tribolab.friction.zero.words import of_leak, of_retained_load
 from tribolab.medians import median
+from tribolab.pieces import pieces
 
 UNIFORM = np.sqrt(3)  # a difference that is an error or none: the half width of a uniform one
 _FEWEST = 20  # samples of a rest
-_ALIKE = (0.8, 1.25)  # load at rest over that of sliding: the same load
-_LET_GO = 0.25  # share of friction that a rest must have lost to show what friction does
+_NEAREST = 4  # rests that are compared with a segment
 _ERRORS = 4.0  # standard errors beyond which two readings differ
 _BLOCKS = 5  # of a reading: their scatter includes slow waves and ramps of the load
 
@@ -95,6 +95,8 @@ def _leak(
     starts, reads = segments["trimmed_start"].values, pressed + offset
     normal = run["normal_force"].values
     leak = np.zeros(pressed.size)
+    time = run["time"].values
+    middles = np.array([time[part].mean() for part in rests])
     for i in range(pressed.size):
         force = friction[i] - zero.value[i]
         if not (pressed[i] > 0 and abs(force) > 0 and parts[i].stop - parts[i].start > _BLOCKS):
@@ -102,10 +104,10 @@ def _leak(
         # a load that wanders while sliding does so between rest and sliding as well
         wanders = _mean_of_blocks(normal[parts[i]])[1] * np.sqrt(_BLOCKS)
         useful = []
-        for part in rests:
-            rest = _loaded_rest(run, part, float(starts[i]), float(reads[i]))
+        for k in np.argsort(np.abs(middles - starts[i]), kind="stable")[:_NEAREST]:
+            rest = _loaded_rest(run, rests[k], bool(middles[k] < starts[i]), float(reads[i]))
             let_go = 0.0 if rest is None else 1 - (rest.force - zero.value[i]) / force
-            if rest is not None and let_go > _LET_GO:
+            if rest is not None and let_go > limits.FRICTION_RELEASED.value:
                 found = (reads[i] - rest.normal) / let_go
                 error = float(np.hypot(rest.error, wanders)) / let_go
                 useful.append((abs(rest.time - starts[i]), found, error))
@@ -130,13 +132,13 @@ class _Rest(NamedTuple):
     error: float
 
 
-def _loaded_rest(run: xr.Dataset, part: slice, at: float, load: float) -> _Rest | None:
+def _loaded_rest(run: xr.Dataset, part: slice, before: bool, load: float) -> _Rest | None:
     """Read the half of a rest that is nearer to a segment, if it is under the segment's load."""
     half = (part.stop - part.start) // 2
-    before = float(run["time"][part.start]) < at
     near = slice(part.start + half, part.stop) if before else slice(part.start, part.start + half)
     time, normal, force = (run[k].values[near] for k in ("time", "normal_force", "friction_force"))
-    good = np.isfinite(force) & (normal > _ALIKE[0] * load) & (normal < _ALIKE[1] * load)
+    alike = limits.SAME_LOAD.value
+    good = np.isfinite(force) & (normal > load / alike) & (normal < load * alike)
     if good.sum() < _FEWEST:
         return None
     mean, error = _mean_of_blocks(normal[good])
@@ -163,10 +165,19 @@ def _creep(
     if not abs(change) > _ERRORS * np.hypot(begins[1], ends[1]):
         return np.zeros(pressed.size)
     lasted = _middle_of_tenth(time[parts[last]], -1) - _middle_of_tenth(time[parts[first]], 1)
-    loaded = np.flatnonzero(normal > 0.5 * float(median(normal[parts[first]])))[[0, -1]]
+    begin, end = _under_load(normal, 0.5 * float(np.nanmean(normal[parts[first]])))
     middle = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
-    away = np.maximum(middle - time[loaded[0]], time[loaded[1]] - middle)
+    away = np.maximum(middle - time[begin], time[end] - middle)
     return abs(change / lasted) * away / UNIFORM
+
+
+def _under_load(normal: np.ndarray, least: float) -> tuple[int, int]:
+    """Return the first and the last sample under load."""
+    found: list[int] = []
+    for a, b in pieces(0, normal.size):
+        own = np.flatnonzero(normal[a:b] > least)
+        found += [a + int(i) for i in own[[0, -1]]] if own.size else []
+    return found[0], found[-1]
 
 
 def _middle_of_tenth(time: np.ndarray, way: int) -> float:

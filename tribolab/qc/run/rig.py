@@ -102,7 +102,7 @@ def _steps_without_friction(
     fine = (loads > 0) & (force > 0)
     with np.errstate(divide="ignore", invalid="ignore"):
         of_load, of_force = (np.diff(np.log(own)) for own in (loads, force))
-    alike = np.abs(np.diff(speed)) <= _SAME_SPEED * speed[1:]
+    alike = np.abs(np.diff(speed)) <= limits["same_speed"] * speed[1:]
     steps = fine[1:] & fine[:-1] & alike & (np.abs(of_load) > np.log1p(limits["fail"]))
     if not steps.any():
         return []
@@ -120,7 +120,6 @@ def _steps_without_friction(
     return [Result("suspect", "normal_force", text, change, where=where, cure=_READING_STEPS)]
 
 
-_SAME_SPEED = 0.1  # share of the speed within which friction is comparable
 _READING_STEPS = (
     "See that the load cell and its amplifier kept their range, or state the load of each step "
     "(set_normal_force)."
@@ -257,6 +256,7 @@ RIG_CHECKS = (
             "fail": Limit(0.15, "1", "half the step to the next load that is usually chosen"),
             "change": Limit(0.03, "1", "change along the run; cells creep by 0.1 % and less"),
             "programme": Limit(1.4, "1", "larger ratios of loads are meant, as of a programme"),
+            "same_speed": Limit(0.1, "1", "friction changes by a few per cent within it"),
             "follows": Limit(
                 0.3,
                 "1",

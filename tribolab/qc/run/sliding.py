@@ -82,7 +82,7 @@ def _sense(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     kind = subject.slip["waveform"].values
     # what varies along a track may fall slowly, too, but not again and again alike
     reversed_ = (kind == CLASSES[3]) & (subject.slip["regularity"].values == SLIP_KINDS[0])
-    reversed_ &= ~_follows_load(subject)
+    reversed_ &= ~_follows_load(subject, limits["of_load"])
     if not reversed_.sum() > 0.5 * np.isin(kind, CLASSES[1:]).sum():
         return []
     first = int(np.flatnonzero(reversed_)[0])
@@ -94,7 +94,7 @@ def _sense(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     return [Result("suspect", _signal(subject), text, where=where, count=count)]
 
 
-def _follows_load(subject: RunSubject) -> np.ndarray:
+def _follows_load(subject: RunSubject, least: float) -> np.ndarray:
     """Return where friction varies because the load does (segment)."""
     name = _signal(subject)
     if "normal_force" not in subject.signals or name != "friction_force":
@@ -103,10 +103,7 @@ def _follows_load(subject: RunSubject) -> np.ndarray:
         subject.segment_stds(own) / np.abs(subject.segment_means(own))
         for own in ("normal_force", name)
     )
-    return of_load > _OF_LOAD * of_friction
-
-
-_OF_LOAD = 0.5  # share of the relative scatter of friction: cross-talk of stick-slip is far less
+    return of_load > least * of_friction
 
 
 def _sign(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -475,6 +472,12 @@ SLIDING_CHECKS = (
         {
             "errors": Limit(3.0, "1", "friction that is zero within its error has no sign"),
             "share": Limit(0.01, "1", "nor has what is below 1 % of the run's typical friction"),
+            "of_load": Limit(
+                0.5,
+                "1",
+                "relative scatter of the load over that of friction, from which on the "
+                "load makes it: cross-talk of stick-slip into the load is far smaller",
+            ),  # fmt: skip
         },
         _sign,
     ),
