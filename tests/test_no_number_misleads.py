@@ -113,6 +113,72 @@ def test_drag_of_strokes_without_load_is_reported(shared_data):
     assert status == "suspect" and "0.301 N of drag" in said["zero_reference"]
 
 
+ONE_WAY = [REST, (8.0, 0, 1.0), (40.0, 1, 1.0), (8.0, 0, 1.0), REST]
+
+
+@pytest.mark.parametrize(("share", "status"), [(0.02, "pass"), (0.1, "suspect")])
+def test_friction_that_leaks_into_the_load_one_way_is_in_the_error_or_reported(share, status):
+    run = sliding(ONE_WAY)
+    run["normal_force"] = run.normal_force + share * run.friction_force
+    friction, found, said = judged(stamp(run))
+    off = np.abs(friction.friction_coefficient - 0.4)
+    assert found == status and (off > 0.003).all()
+    assert (off <= friction.friction_coefficient_U95).all()
+    assert ("while sliding compared with the loaded rest" in said.get("zero_reference", "")) == (
+        status == "suspect"
+    )
+
+
+@pytest.mark.parametrize("kept", [0.01, 0.05, 0.09])
+def test_load_that_all_rests_retain_is_in_the_error_which_strokes_do_not_average_out(kept):
+    retained = (5.0, 0, kept)
+    run = sliding([retained, *STROKES, retained])
+    friction, _, _ = judged(run)
+    assert (np.abs(friction.friction_coefficient - 0.4) <= friction.friction_coefficient_U95).all()
+    curve = tl.measured_stribeck_curve([friction])
+    assert abs(curve.friction_coefficient.item() - 0.4) <= curve.friction_coefficient_U95.item()
+    stated = {"normal_zero": {"standard": 1e-3}}
+    friction, _, _ = judged(run.assign_attrs(uncertainty=stated))
+    assert (friction.friction_coefficient_U95 < 0.005).all()
+
+
+@pytest.mark.parametrize(("drag", "status"), [(0.1, "pass"), (0.6, "suspect")])
+def test_drag_of_strokes_without_load_counts_one_way_as_well(drag, status):
+    parts = [REST, (10.0, 1, 0.0), REST, (40.0, 1, 1.0), REST]
+    friction, found, said = judged(sliding(parts, drag=drag, noise=1e-3))
+    off = np.abs(friction.friction_coefficient - 0.4)
+    assert found == status and (off <= friction.friction_coefficient_U95).all()
+    assert ("of drag" in said.get("zero_reference", "")) == (status == "suspect")
+
+
+def test_a_tilt_and_a_creep_below_their_limits_are_in_the_error():
+    run = sliding(ONE_WAY)
+    tilted = run.assign(friction_force=run.friction_force + 0.006 * run.normal_force)
+    passed = ((run.time - 5) / 56).clip(0, 1)  # under load
+    crept = run.assign(normal_force=run.normal_force * (1 + 0.025 * passed))
+    for wrong in (stamp(tilted), stamp(crept)):
+        friction, status, _ = judged(wrong)
+        off = np.abs(friction.friction_coefficient - 0.4)
+        assert status == "pass" and (off > 0.003).all()
+        assert (off <= friction.friction_coefficient_U95).all()
+
+
+def test_a_load_that_steps_without_friction_is_no_programme():
+    halves = [(d, way, 1.0) for d, way, _ in STROKES]
+    run = sliding([REST, *halves, REST])
+    late = run.time > run.time.mean()
+    reads = stamp(run.assign(normal_force=run.normal_force * np.where(late, 0.67, 1.0)))
+    assert "the friction force at the same speed" in judged(reads)[2]["normal_force_error"]
+    true = [(d, way, 1.0 if k < 4 else 0.67) for k, (d, way, _) in enumerate(STROKES)]
+    assert "normal_force_error" not in judged(sliding([REST, *true, REST]))[2]
+
+
+def test_loads_that_come_again_and_again_while_sliding_are_no_stick_slip():
+    loads = [(12.0, 1, share) for _ in range(6) for share in (0.2, 0.4, 1.0)]
+    friction, status, _ = judged(sliding([REST, (5.0, 0, 0.2), *loads, REST]))
+    assert status == "pass" and friction.sizes["segment"] == 18
+
+
 def test_a_load_that_drifts_or_drops_is_suspect_and_a_programme_is_not(shared_data):
     _, status, said = judged(read(shared_data / "cases" / "load_cell_drifts_6_percent.csv"))
     assert status == "suspect" and "the load changes by" in said["normal_force_error"]

@@ -222,3 +222,16 @@ def test_the_roughness_of_surfaces_stands_above_the_cards():
     row = {"Rq_m": 0.68e-6, "Rq_sem_m": None, "Rq_gap_error_m": None, "lambda_c_m": 4e-4}
     one["surfaces"] = [{"name": "Sb-R", "roughness": row}, {"name": "no scan", "roughness": None}]
     assert in_short(one)[-1] == "Rq (cut-off 0.4 mm): Sb-R 0.68 µm"
+
+
+def test_a_point_of_a_run_has_the_wider_error_and_what_all_strokes_share():
+    one = {"sliding_speed_m_s": 1e-3, "friction_coefficient": 0.2, "effective_samples": 9.0}
+    one |= {"friction_coefficient_sem": 0.001, "friction_coefficient_U95": 0.002}
+    beyond = {f"friction_coefficient_beyond_{end}": v for end, v in (("sem", 0.01), ("U95", 0.02))}
+    (point,) = run_points("r", [one | beyond])
+    assert point.within == 0.02
+    shared = one | {"friction_coefficient_shared_sem": 0.0009}
+    (alone,) = run_points("r", [one] * 16)
+    (common,) = run_points("r", [shared] * 16)
+    assert alone.within < 0.0006
+    assert 1.9 * 0.0009 < common.within < 2.2 * 0.0009

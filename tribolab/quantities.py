@@ -81,6 +81,12 @@ _ROWS = [
         "1",
         "friction coefficient as an estimate for the surface beyond the path",
     ),
+    (
+        "friction_coefficient_shared",
+        "\\mu",
+        "1",
+        "part of the friction coefficient that all segments of a run share",
+    ),
     ("effective_samples", "n_eff", "1", "effective number of independent samples"),
     ("autocorrelation_time", "\\tau_int", "s", "integrated autocorrelation time"),
     ("trend", "d\\mu/dt", "1/s", "linear trend of the friction coefficient", "nothing"),

@@ -140,8 +140,9 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
         speed,
         value,
         std,
-        values_of(friction, f"{of}_sem", value.size),
-        values_of(friction, f"{of}_U95", value.size),
+        wider_error(friction, of, "sem"),
+        wider_error(friction, of, "U95"),
+        values_of(friction, f"{of}_shared_sem", value.size),
         pairs_of(friction),
     )
     middle = friction.attrs.get("stroke_middle")
@@ -259,6 +260,13 @@ def values_of(data: xr.Dataset, name: str, size: int) -> np.ndarray:
     return np.asarray(data[name], float) if name in data else np.full(size, np.nan)
 
 
+def wider_error(friction: xr.Dataset, name: str, ending: str) -> np.ndarray:
+    """Return the error of each segment over the path or beyond it, whichever is wider (segment)."""
+    size = friction.sizes["segment"]
+    own, beyond = (values_of(friction, f"{name}{end}_{ending}", size) for end in ("", "_beyond"))
+    return np.fmax(own, beyond)
+
+
 def pairs_of(friction: xr.Dataset) -> np.ndarray:
     """Return the number of the pair that each segment is one observation with; -1 for none."""
     if "pair" not in friction or friction.attrs.get("offset") not in PAIRED:
@@ -274,6 +282,7 @@ class _Strokes(NamedTuple):
     std: np.ndarray
     sem: np.ndarray
     u95: np.ndarray
+    shared: np.ndarray
     pairs: np.ndarray
 
 
@@ -283,7 +292,7 @@ def _highlights(strokes: _Strokes) -> list[Highlight]:
     speed, known = strokes.speed, np.isfinite(strokes.value)
     if not (known & (speed > 0)).any():  # one group of all that there is
         speed = np.ones(speed.size)
-    means = run_means(speed, strokes.value, strokes.sem, u95, strokes.pairs)
+    means = run_means(speed, strokes.value, strokes.sem, u95, strokes.pairs, shared=strokes.shared)
     if not means:
         return []
     chosen = {0: "slowest", len(means) - 1: "fastest"}

@@ -5,6 +5,7 @@ from tricky import (  # noqa: F401 - the kinds register themselves
     kinds_oscillation,
     kinds_reading,
     kinds_segments,
+    kinds_small,
     kinds_sound,
     kinds_zero,
 )

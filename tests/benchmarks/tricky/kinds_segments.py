@@ -14,7 +14,7 @@ from tricky.trial import Trial, Truth, tricky
 def _nothing(made, **more) -> Trial:
     """A run that never slides at constant speed."""
     empty = np.array([])
-    truth = Truth(empty, empty, empty, made.truth.time, made.truth.mu)
+    truth = Truth(empty, empty, empty, made.truth.time, made.truth.mu, made.motion.velocity)
     return Trial(made.dataset(), truth, **more)
 
 

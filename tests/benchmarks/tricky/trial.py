@@ -16,18 +16,30 @@ from tricky.motion import Motion
 
 @dataclass(frozen=True)
 class Truth:
-    """Plateaus (start, stop [s], signed speed [m/s]) and the kinetic coefficient over time."""
+    """Plateaus (start, stop [s], signed speed [m/s]) and the kinetic coefficient over time.
+
+    `velocity` [m/s] over time, of motions without a plateau.
+    """
 
     start: np.ndarray
     stop: np.ndarray
     speed: np.ndarray
     time: np.ndarray
     mu: np.ndarray
+    velocity: np.ndarray | None = None
 
     def mean(self, start: float, stop: float) -> float:
         """Time mean of the kinetic coefficient."""
         first, last = np.searchsorted(self.time, [start, stop])
         return float(self.mu[first : max(last, first + 1)].mean())
+
+    def mean_speed(self, start: float, stop: float) -> float:
+        """Mean speed [m/s] of motion that goes one way all the time, NaN of other motion."""
+        if self.velocity is None:
+            return float("nan")
+        own = self.velocity[slice(*np.searchsorted(self.time, [start, stop]))]
+        one_way = own.size > 0 and ((own > 0).all() or (own < 0).all())
+        return float(abs(own.mean())) if one_way else float("nan")
 
 
 def truth_of(motion: Motion, slid: Slid) -> Truth:

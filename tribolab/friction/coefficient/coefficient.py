@@ -23,6 +23,7 @@ from tribolab.friction.statistics import (
     with_freedom,
 )
 from tribolab.friction.zero import limits
+from tribolab.friction.zero.load_reading import UNIFORM, load_reading
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import ZeroReference
 from tribolab.friction.zero.rests import light_rest, unloaded_rests
@@ -90,6 +91,8 @@ def friction_coefficient(
         coverage, t_0.975(dof) sem) of this mean over the path,
         ``friction_coefficient_beyond_sem``, ``_dof`` and ``_U95`` of the same number as an estimate
         for the surface beyond the path (a course along the path may go on),
+        ``friction_coefficient_shared_sem`` (the part of these errors that all segments share:
+        zero and reading of the load, tilt, drag),
         ``friction_coefficient_level`` (without the unfinished period of an oscillation),
         ``effective_samples``, ``autocorrelation_time`` [s], ``trend`` [1/s], ``trend_change``,
         ``trend_p_value``, ``steady`` (1; 0 not steady, 2 undecided); ``friction_force``,
@@ -254,18 +257,24 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
     )
     if normal_rests is None and (light := light_rest(run, segments, load, pressed)):
         zero = replace(zero, doubts=(*zero.doubts, of_light_rest(light, load, means.size)))
+    shared = np.zeros(means.size)  # errors of the load that all segments have in common
+    if loads and "normal_force" in run:
+        reading = load_reading(run, segments, parts, pressed, n0, means, zero)
+        shared = reading.error
+        zero = replace(zero, doubts=(*zero.doubts, *reading.doubts))
     if partial is not None and settings.offset != "none":
-        n0_error = np.hypot(n0_error, partial.level / np.sqrt(3))  # one zero or the other: uniform
+        shared = np.hypot(shared, partial.level / UNIFORM)  # one zero or the other
         if partial.level > limits.DOUBTFUL_REST.value * load:
             doubted = of_partial_contact(partial, load, means.size)
             zero = replace(zero, doubts=(*zero.doubts, doubted))
     others = without_sliding(run, segments, rests, load)
-    zero = replace(zero, doubts=(*zero.doubts, *of_loaded_and_idle(others, zero, means, load)))
+    idle = of_loaded_and_idle(others, zero, means, load)
+    zero = replace(zero, doubts=(*zero.doubts, *idle.doubts))
     turn = signs.sign * signs.unfold
     data = {
         "friction_force": turn * means - signs.sign * zero.value,
         "friction_force_std": _column(forces, "std"),
-        "friction_force_sem": zero.error(own_errors),
+        "friction_force_sem": np.hypot(zero.error(own_errors), idle.error),
         "friction_force_offset": zero.value,
         "half_loop": zero.half_loop,
         "pair": pair,
@@ -298,6 +307,9 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
     remarks = [said.remark(ratio) for said, ratio in zip(pointwise, ratios, strict=True)]
     mu, tilt = both.without_tilt(_column(ratios, "mean"), signs.sign, held)
 
+    with np.errstate(divide="ignore", invalid="ignore"):
+        in_common = np.hypot(mu * shared, idle.error) / pressed
+
     def whole(scatter: np.ndarray) -> np.ndarray:
         # the load's fluctuations move friction and load together and leave the ratio alone: its
         # own scatter, not the force's, says how well friction is known
@@ -305,16 +317,17 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
         errors_by_ratio = zero.error(np.where(known, scatter * held, own_errors))
         with np.errstate(divide="ignore", invalid="ignore"):
             error = np.where(known, errors_by_ratio / pressed, np.nan)
-            return np.hypot(error, mu * n0_error / pressed)
+            return np.sqrt(error**2 + (mu * n0_error / pressed) ** 2 + in_common**2)
 
     data |= {
         "friction_coefficient": mu,
         "friction_coefficient_std": _column(ratios, "std"),
         **_errors(ratios, whole),
+        "friction_coefficient_shared_sem": in_common,
         "friction_coefficient_level": mu + _column(ratios, "level") - _column(ratios, "mean"),
         "normal_force": pressed,
         "normal_force_std": _column(loads, "std"),
-        "normal_force_sem": np.hypot(_column(loads, "sem"), n0_error),
+        "normal_force_sem": np.sqrt(_column(loads, "sem") ** 2 + n0_error**2 + shared**2),
         "normal_force_offset": n0,
         "tilt_found": tilt,
         **_memory(ratios),

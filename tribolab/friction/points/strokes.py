@@ -22,8 +22,9 @@ _MANY = 24  # strokes of one speed whose order tells how long friction remembers
 class Observations(NamedTuple):
     """Independent observations, one entry each: pairs of strokes, and strokes without a partner.
 
-    `sem` and `u95` are of a mean that is to hold beyond the stroke; `order` is the place in the
-    run; `variance` is the mean square of the scatter within the strokes.
+    `sem` and `u95` are of a mean that is to hold beyond the stroke; `shared` is the part of `sem`
+    that all strokes of the run have in common; `order` is the place in the run; `variance` is the
+    mean square of the scatter within the strokes.
     """
 
     run: np.ndarray
@@ -33,6 +34,7 @@ class Observations(NamedTuple):
     mean: np.ndarray
     sem: np.ndarray
     u95: np.ndarray
+    shared: np.ndarray
     variance: np.ndarray
     strokes: np.ndarray
 
@@ -73,8 +75,9 @@ def _of_run(friction: xr.Dataset, run: int) -> Observations:
     if "pair" in friction and friction.attrs.get("offset") in PAIRED:
         pairs = friction["pair"].values.astype(float)
     known = np.isfinite(value) & (speed > 0)
+    shared = column(f"{name}_shared_sem")
     return grouped_strokes(
-        run, speed, wanted, value, sem, wide, column(f"{name}_std") ** 2, pairs, known
+        run, speed, wanted, value, sem, wide, shared, column(f"{name}_std") ** 2, pairs, known
     )
 
 
@@ -85,6 +88,7 @@ def grouped_strokes(
     value: np.ndarray,
     sem: np.ndarray,
     u95: np.ndarray,
+    shared: np.ndarray,
     variance: np.ndarray,
     pairs: np.ndarray,
     known: np.ndarray,
@@ -95,7 +99,7 @@ def grouped_strokes(
     ----------
     run
         Its number.
-    speed, set_speed, value, sem, u95, variance
+    speed, set_speed, value, sem, u95, shared, variance
         Of each stroke; in the unit of the value, speeds in m/s.
     pairs
         The same number for the strokes of a pair, below 0 for one without a partner.
@@ -119,6 +123,7 @@ def grouped_strokes(
         mean(value),
         mean(sem),
         mean(u95),
+        np.nan_to_num(mean(shared)),
         mean(variance),
         count,
     )
@@ -171,7 +176,7 @@ def means_of_run(seen: Observations, members: Sequence[np.ndarray]) -> list[Mean
     -----
     The scatter of a few strokes is known better from the strokes at all other speeds. Of many
     strokes at one speed those that follow each other need not be independent: their mean has the
-    error of a series.
+    error of a series. An error that all strokes share does not become smaller in their mean.
     """
     values = [seen.mean[part] for part in members]
     means = []
@@ -179,11 +184,16 @@ def means_of_run(seen: Observations, members: Sequence[np.ndarray]) -> list[Mean
         own = values[number]
         if own.size == 1:
             means.append(Mean(float(own[0]), float(seen.sem[part[0]]), float(seen.u95[part[0]])))
-        elif own.size < _MANY:
+            continue
+        shared = float(np.sqrt(np.mean(seen.shared[part] ** 2)))
+        errors = np.sqrt(np.maximum(seen.sem[part] ** 2 - seen.shared[part] ** 2, 0.0))
+        if own.size < _MANY:
             others = pooled_scatter(values[:number] + values[number + 1 :])
-            means.append(mean_of_repeats(own, seen.sem[part], others))
+            mean = mean_of_repeats(own, errors, others)
         else:
-            means.append(_of_series(own, seen.sem[part]))
+            mean = _of_series(own, errors)
+        sem, u95 = np.hypot((mean.sem, mean.u95), (shared, _NORMAL * shared))
+        means.append(Mean(mean.mean, float(sem), float(u95)))
     return means
 
 
@@ -196,6 +206,12 @@ def _of_series(values: np.ndarray, errors: np.ndarray) -> Mean:
     if _NORMAL * own > wide:  # strokes that agree better than each of them is known
         return Mean(float(values.mean()), own, _NORMAL * own)
     return Mean(float(values.mean()), sem, wide)
+
+
+def shared_error(friction: xr.Dataset) -> np.ndarray | None:
+    """Return the error that all segments of a run share (segment), if it is known."""
+    name = "friction_coefficient_shared_sem"
+    return friction[name].values.astype(float) if name in friction else None
 
 
 class RunMean(NamedTuple):
@@ -215,6 +231,7 @@ def run_means(
     u95: np.ndarray,
     pairs: np.ndarray,
     tolerance: float = limits.SPEED_TOLERANCE.value,
+    shared: np.ndarray | None = None,
 ) -> list[RunMean]:
     """Return the mean of a run at each of its speeds, as the points of a curve have it.
 
@@ -226,6 +243,8 @@ def run_means(
         The same number for the two strokes of a pair, below 0 for one without a partner (stroke).
     tolerance
         Largest relative difference of the speeds of one point.
+    shared
+        Part of `sem` that all strokes have in common (stroke); none if not given.
 
     Examples
     --------
@@ -236,7 +255,8 @@ def run_means(
     """
     known = np.isfinite(value) & (speed > 0)
     blank = np.full(value.size, np.nan)
-    seen = grouped_strokes(0, speed, blank, value, sem, u95, blank, pairs, known)
+    common = blank if shared is None else shared
+    seen = grouped_strokes(0, speed, blank, value, sem, u95, common, blank, pairs, known)
     members = grouped_by_speed(seen, tolerance).members
     place = np.flatnonzero(known)
     key = np.where(pairs >= 0, pairs, -1.0 - np.arange(value.size))[place]

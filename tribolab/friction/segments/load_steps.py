@@ -7,12 +7,12 @@ import numpy as np
 from tribolab.friction.segments.stretches import Stretch
 from tribolab.medians import median
 
-_BINS = 200  # in a stretch
+_BINS = 600  # in a stretch
 _FEWEST = 10  # samples of a bin
 _STEP = 0.15  # share of the larger level: smaller steps are a load that wanders
 _LEVEL = 0.05  # share of a level within which it stays there
 _SHORTEST = 5  # bins of a level
-_MOST = 12  # levels: a load with more is not a programme
+_MOST = 12  # different levels: a load with more is not a programme, which may repeat them
 _HELD = 0.8  # share of the stretch that lies at one of its levels
 _CHANGES = "load changes"
 
@@ -47,7 +47,10 @@ def at_levels(
     mean = np.add.reduceat(part, at[:-1] - first) / np.diff(at)
     levels = _levels(mean, 0, bins)
     kept = [_held(mean, a, b) for a, b in levels]
-    if len(levels) < 2 or len(levels) > _MOST or any(b - a < _SHORTEST for a, b in kept):
+    if len(levels) < 2 or any(b - a < _SHORTEST for a, b in kept):
+        return [stretch]
+    loads = np.sort([abs(float(median(mean[a:b]))) for a, b in kept])
+    if 1 + np.count_nonzero(loads[1:] > (1 + _LEVEL) * loads[:-1]) > _MOST:
         return [stretch]
     if sum(b - a for a, b in kept) < _HELD * bins:
         return [stretch]

@@ -45,7 +45,9 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], limits: ConstancyLimits) -
     time, force = run["time"].values, np.asarray(run["normal_force"].values, float)
     middles = {k: _median(time, force, stretches, k) for k in ("constant", "at rest")}
     sliding = middles["constant"]
-    usual = float(median(sliding[sliding > 0])) if (sliding > 0).any() else 0.0
+    # of the loads that press: more strokes without load than with it are no usual load
+    pressing = sliding[(sliding > 0) & (sliding > _UNLOADED * sliding.max(initial=0.0))]
+    usual = float(median(pressing)) if pressing.size else 0.0
     if not usual > 0:
         return stretches
     rests = middles["at rest"]

@@ -35,3 +35,15 @@ NOISE_PASSES = Limit(
     0.1, "1", "chance that the noise of all readings at a turn passes for one on its way from one "
     "level to the other",
 )  # fmt: skip
+LOAD_AT_REST = Limit(
+    0.03, "1", "share of the load by which the reading may change between rest and sliding: above "
+    "it friction leaks into the reading, or the load is not controlled; below it the error of the "
+    "load includes the change", "as for the change of a load along a run",
+)  # fmt: skip
+SAME_LOAD = Limit(
+    1.25, "1", "ratio of the loads at rest and while sliding that were meant to be one"
+)
+FRICTION_RELEASED = Limit(
+    0.25, "1", "share of the friction that a loaded rest must have lost to show whether friction "
+    "leaks into the load reading: with less the noise of the reading is amplified too much",
+)  # fmt: skip

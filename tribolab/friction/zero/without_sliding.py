@@ -47,11 +47,12 @@ def without_sliding(
         return WithoutSliding(nothing, nothing)
     return WithoutSliding(
         nothing if rests is None else _before_sliding(run, segments, rests, load),
-        _without_load(run, segments),
+        _without_load(run, segments, rests),
     )
 
 
-def _stretches(run: xr.Dataset, segments: xr.Dataset, reason: str) -> list[slice]:
+def stretches_of(run: xr.Dataset, segments: xr.Dataset, reason: str) -> list[slice]:
+    """Return the samples of the stretches that were omitted for a reason."""
     time, chosen = run["time"].values, segments["omitted_reason"].values == reason
     starts, stops = (segments[f"omitted_{end}"].values[chosen] for end in ("start", "stop"))
     first, last = (np.searchsorted(time, ends) for ends in (starts, stops))
@@ -67,7 +68,7 @@ def _before_sliding(
     begins = float(segments["start"].values.min(initial=np.inf))
     ramps = segments["omitted_reason"].values != "at rest"
     begins = min(begins, float(segments["omitted_start"].values[ramps].min(initial=np.inf)))
-    for part in _stretches(run, segments, "at rest"):
+    for part in stretches_of(run, segments, "at rest"):
         inside = np.arange(part.start, part.stop)
         inside = inside[(time[inside] < begins) & (normal[inside] > _LOADED * load)]
         inside = inside[np.isfinite(force[inside])]
@@ -79,30 +80,47 @@ def _before_sliding(
     return float("nan"), float("nan")
 
 
-def _without_load(run: xr.Dataset, segments: xr.Dataset) -> tuple[float, float]:
-    """Return half the loop of strokes that move without load."""
+def _without_load(
+    run: xr.Dataset, segments: xr.Dataset, rests: Zeros | None
+) -> tuple[float, float]:
+    """Return half the loop of strokes without load; of one way, what rests do not read."""
     if "sliding_velocity" not in run:
         return float("nan"), float("nan")
-    means: dict[bool, list[tuple[float, float]]] = {True: [], False: []}
-    velocity, force = run["sliding_velocity"].values, run["friction_force"].values
-    for part in _stretches(run, segments, "no load"):
+    found: list[tuple[float, float, float, float]] = []  # direction, mean, its error, middle
+    time, velocity, force = (run[k].values for k in ("time", "sliding_velocity", "friction_force"))
+    for part in stretches_of(run, segments, "no load"):
         own = force[part][np.isfinite(force[part])]
         speed = np.nanmean(velocity[part]) if own.size else 0.0
         if own.size >= _FEWEST and speed:
             error = float(np.std(own)) / np.sqrt(own.size)
-            means[bool(speed > 0)].append((float(np.mean(own)), error))
-    if not means[True] or not means[False]:
+            found.append((float(np.sign(speed)), float(np.mean(own)), error, time[part].mean()))
+    if not found:
         return float("nan"), float("nan")
-    ways = [np.array(means[way]) for way in (True, False)]
-    half = (ways[0][:, 0].mean() - ways[1][:, 0].mean()) / 2
-    error = np.sqrt(sum(float((w[:, 1] ** 2).mean()) / len(w) for w in ways)) / 2
-    return float(half), float(error)
+    way, mean, error, at = np.array(found).T
+    ways = np.unique(way)
+    if ways.size == 1 and rests is None:
+        return float("nan"), float("nan")
+    if ways.size == 1 and rests is not None:
+        zero, unsure = rests.at(at)
+        mean, error = mean - zero, np.hypot(error, unsure)
+    half = np.mean([w * mean[way == w].mean() for w in ways])
+    own = [float((error[way == w] ** 2).mean()) / np.count_nonzero(way == w) for w in ways]
+    return float(half), float(np.sqrt(sum(own)) / ways.size)
+
+
+class LoadedAndIdle(NamedTuple):
+    """What a tilt and drag below their limits add to the error of friction [N], and doubts."""
+
+    error: float
+    doubts: tuple[Doubt, ...]
 
 
 def of_loaded_and_idle(
     readings: WithoutSliding, zero: ZeroReference, mean: np.ndarray, load: float
-) -> tuple[Doubt, ...]:
+) -> LoadedAndIdle:
     """Doubt friction that a loaded rest or strokes without load contradict.
+
+    Below the limits the readings count as uniform errors of either sign.
 
     Parameters
     ----------
@@ -117,12 +135,14 @@ def of_loaded_and_idle(
     """
     known = np.abs(mean - zero.value)[np.isfinite(mean)]
     if not known.size:
-        return ()
+        return LoadedAndIdle(0.0, ())
     friction, every = float(median(known)), np.arange(mean.size)
-    doubts = []
+    doubts, carried = [], []
     (tilt, tilt_error), (drag, drag_error) = readings
-    least = limits.LOADED_REST_SHARE.value * friction
-    if zero.method != "half loop" and abs(tilt) > max(_ERRORS * tilt_error, least):
+    seen = zero.method != "half loop" and abs(tilt) > _ERRORS * tilt_error
+    if seen:
+        carried.append(tilt)
+    if seen and abs(tilt) > limits.LOADED_REST_SHARE.value * friction:
         text = (
             f"the loaded rest before any sliding reads {tilt:+.3g} N ({abs(tilt) / friction:.1%} "
             "of the friction), unloaded rests zero: a tilt of "
@@ -131,7 +151,10 @@ def of_loaded_and_idle(
         )
         cure = "Slide both ways, or level the force cell and state `tilt` in [uncertainty]."
         doubts.append(doubt(text, cure, every))
-    if abs(drag) > max(_ERRORS * drag_error, limits.DRAG_SHARE.value * friction):
+    seen = abs(drag) > _ERRORS * drag_error
+    if seen:
+        carried.append(drag)
+    if seen and abs(drag) > limits.DRAG_SHARE.value * friction:
         text = (
             f"strokes without load show {abs(drag):.3g} N of drag ({abs(drag) / friction:.1%} of "
             "the friction): the bearing or a seal rubs. It is part of the friction coefficient, "
@@ -139,4 +162,4 @@ def of_loaded_and_idle(
         )
         cure = "Free the bearing, or subtract the drag and state what is left in [uncertainty]."
         doubts.append(doubt(text, cure, every))
-    return tuple(doubts)
+    return LoadedAndIdle(float(np.hypot.reduce(carried, initial=0.0)) / np.sqrt(3), tuple(doubts))

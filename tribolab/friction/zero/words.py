@@ -98,6 +98,34 @@ def of_partial_contact(partial: PartialContact, load: float, segments: int) -> D
     return doubt(text, cure, np.arange(segments))
 
 
+def of_retained_load(level: float, load: float, segments: int) -> Doubt:
+    """Note a zero of the load cell that may be a load retained at the rests that show it."""
+    text = (
+        f"the load cell reads {level:.3g} N ({level / load:.1%} of the load) in the rests without "
+        "load. This was taken for its zero. It may also be load that the rests retain: the "
+        "uncertainty of the friction coefficient includes both"
+    )
+    cure = (
+        "Tare the load cell, lift the sample clear at the rests, or state `normal_zero` in "
+        "[uncertainty]."
+    )
+    return doubt(text, cure, np.arange(segments), "pass")
+
+
+def of_leak(leak: float, load: float, which: np.ndarray) -> Doubt:
+    """Doubt a load whose reading changes between a loaded rest and sliding."""
+    text = (
+        f"the load reads {leak:+.3g} N ({leak / load:+.1%}) while sliding compared with the loaded "
+        "rest: friction leaks into the load reading, or the load itself changes. If it leaks, the "
+        f"friction coefficient is off by {abs(leak) / load:.1%}"
+    )
+    cure = (
+        "Slide both ways at one speed, or calibrate the cross-talk of the load cell and correct "
+        "the load."
+    )
+    return doubt(text, cure, which)
+
+
 def of_light_rest(rest: LightRest, load: float, segments: int) -> Doubt:
     """Doubt a load whose zero a rest may show."""
     share = rest.level / load

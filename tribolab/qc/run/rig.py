@@ -8,7 +8,7 @@ import numpy as np
 
 from tribolab.core.limit import Limit
 from tribolab.friction.segments.slopes import digit, position_noise
-from tribolab.medians import median
+from tribolab.medians import median, median_of_known
 from tribolab.pieces import one_by_one
 from tribolab.qc.register import Check, Result, Skip
 from tribolab.qc.run.per_segment import by_segment, status_of
@@ -64,8 +64,10 @@ def _load_moves(
         return []
     parts = [part for part in subject.slices if part.stop > part.start]
     known = loads[np.isfinite(loads) & (loads > 0)]
-    if not known.size or known.max() > limits["programme"] * known.min():
-        return []  # several loads that were meant
+    if not known.size:
+        return []
+    if known.max() > limits["programme"] * known.min():
+        return _steps_without_friction(subject, loads, limits)  # several loads that were meant
     signal = subject.signals["normal_force"]
     first, last = parts[0], parts[-1]
     tenth = max((last.stop - last.start) // 10, 1), max((first.stop - first.start) // 10, 1)
@@ -87,6 +89,41 @@ def _load_moves(
     return [Result("suspect", "normal_force", text, change)]
 
 
+def _steps_without_friction(
+    subject: RunSubject, loads: np.ndarray, limits: Mapping[str, float]
+) -> list[Result]:
+    """Object to steps of the load that friction at the same speed does not follow."""
+    if "friction_force" not in subject.friction or np.isfinite(subject.target_normal_force).any():
+        return []
+    # the half loop of a pair whose load steps shares its friction out by the load
+    zero = float(median_of_known(subject.friction["friction_force_offset"].values))
+    force = np.abs(subject.segment_means("friction_force") - zero)
+    speed = np.nan_to_num(subject.friction["sliding_speed"].values)
+    fine = (loads > 0) & (force > 0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        of_load, of_force = (np.diff(np.log(own)) for own in (loads, force))
+    alike = np.abs(np.diff(speed)) <= limits["same_speed"] * speed[1:]
+    steps = fine[1:] & fine[:-1] & alike & (np.abs(of_load) > np.log1p(limits["fail"]))
+    if not steps.any():
+        return []
+    follows = float(median(of_force[steps] / of_load[steps]))
+    if follows >= limits["follows"]:
+        return []
+    worst = int(np.argmax(np.where(steps, np.abs(of_load), 0.0)))
+    change, own = (float(np.expm1(part[worst])) for part in (of_load, of_force))
+    where = subject.segment_label(worst + 1)
+    text = (
+        f"the load reading changes by {change:+.0%} to {where}, the friction force at the same "
+        f"speed by {own:+.1%} only. If the true load did not change, the friction coefficient is "
+        "off by as much as the reading"
+    )
+    return [Result("suspect", "normal_force", text, change, where=where, cure=_READING_STEPS)]
+
+
+_READING_STEPS = (
+    "See that the load cell and its amplifier kept their range, or state the load of each step "
+    "(set_normal_force)."
+)
 _CLEAR = 5.0  # standard errors of a change of the load
 
 
@@ -219,6 +256,13 @@ RIG_CHECKS = (
             "fail": Limit(0.15, "1", "half the step to the next load that is usually chosen"),
             "change": Limit(0.03, "1", "change along the run; cells creep by 0.1 % and less"),
             "programme": Limit(1.4, "1", "larger ratios of loads are meant, as of a programme"),
+            "same_speed": Limit(0.1, "1", "friction changes by a few per cent within it"),
+            "follows": Limit(
+                0.3,
+                "1",
+                "least exponent of the load in the friction force: 1 by Amontons, 2/3 of a Hertz "
+                "contact of constant shear stress",
+            ),
         },
         _normal_force_error,
     ),

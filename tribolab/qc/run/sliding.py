@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
+import xarray as xr
 
 from tribolab.core.limit import Limit
 from tribolab.errors import AnalysisError
@@ -16,9 +17,10 @@ from tribolab.friction.oscillation.periods import AT_ODDS
 from tribolab.friction.oscillation.regularity import SLIP_KINDS
 from tribolab.friction.oscillation.survey import CHANCE
 from tribolab.friction.oscillation.waveform import CLASSES
-from tribolab.friction.points.strokes import run_means
+from tribolab.friction.points.strokes import run_means, shared_error
 from tribolab.friction.segments.strokes import find_strokes
 from tribolab.friction.statistics import NORMAL
+from tribolab.friction.zero.limits import LOADS_DIFFER
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.qc.flags import FAIL, GOOD
 from tribolab.qc.register import Check, Result, Skip
@@ -80,6 +82,7 @@ def _sense(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     kind = subject.slip["waveform"].values
     # what varies along a track may fall slowly, too, but not again and again alike
     reversed_ = (kind == CLASSES[3]) & (subject.slip["regularity"].values == SLIP_KINDS[0])
+    reversed_ &= ~_follows_load(subject, limits["of_load"])
     if not reversed_.sum() > 0.5 * np.isin(kind, CLASSES[1:]).sum():
         return []
     first = int(np.flatnonzero(reversed_)[0])
@@ -89,6 +92,18 @@ def _sense(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
         "stick-slip does behind a sensor whose sign is turned"
     )
     return [Result("suspect", _signal(subject), text, where=where, count=count)]
+
+
+def _follows_load(subject: RunSubject, least: float) -> np.ndarray:
+    """Return where friction varies because the load does (segment)."""
+    name = _signal(subject)
+    if "normal_force" not in subject.signals or name != "friction_force":
+        return np.zeros(len(subject.slices), bool)
+    of_load, of_friction = (
+        subject.segment_stds(own) / np.abs(subject.segment_means(own))
+        for own in ("normal_force", name)
+    )
+    return of_load > least * of_friction
 
 
 def _sign(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -240,7 +255,12 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     pairs = np.full(mu.size, -1.0)
     if "pair" in friction and friction.attrs.get("offset") in PAIRED:
         pairs = friction["pair"].values.astype(float)
-    means = run_means(np.where(speed > 0, speed, 1.0), mu, sem, wide, pairs)
+    moving, shared = np.where(speed > 0, speed, 1.0), shared_error(friction)
+    means = []
+    for own in _loads_apart(friction):  # friction under several loads differs, and that is no error
+        common = None if shared is None else shared[own]
+        found = run_means(moving[own], mu[own], sem[own], wide[own], pairs[own], shared=common)
+        means += [mean._replace(strokes=own[mean.strokes]) for mean in found]
     white = friction[f"{name}_std"].values / np.sqrt(np.maximum(friction["samples"].values, 1))
     bad = []
     for mean in means:
@@ -260,6 +280,17 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     )
     cure = "Slide longer, or repeat the strokes, until the mean settles."
     return [Result("suspect", name, text, share, count=len(bad), cure=cure)]
+
+
+def _loads_apart(friction: xr.Dataset) -> list[np.ndarray]:
+    """Return the segments under each load, in their order."""
+    every = np.arange(friction.sizes["segment"])
+    if "normal_force" not in friction:
+        return [every]
+    load = friction["normal_force"].values
+    order = np.argsort(load)
+    steps = load[order][1:] > LOADS_DIFFER.value * load[order][:-1]
+    return [np.sort(part) for part in np.split(every[order], np.flatnonzero(steps) + 1)]
 
 
 def _lost_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -441,6 +472,12 @@ SLIDING_CHECKS = (
         {
             "errors": Limit(3.0, "1", "friction that is zero within its error has no sign"),
             "share": Limit(0.01, "1", "nor has what is below 1 % of the run's typical friction"),
+            "of_load": Limit(
+                0.5,
+                "1",
+                "relative scatter of the load over that of friction, from which on the "
+                "load makes it: cross-talk of stick-slip into the load is far smaller",
+            ),  # fmt: skip
         },
         _sign,
     ),

@@ -86,11 +86,22 @@ def run_points(
         return np.array([number_of(row, key) for row in rows], float)
 
     name_of = "friction_coefficient"
-    sem, wide = column(f"{name_of}_sem"), column(f"{name_of}_U95")
+    # a course along the path may go on: the wider of the errors over the path and beyond it
+    sem, wide = (
+        np.fmax(column(f"{name_of}_{end}"), column(f"{name_of}_beyond_{end}"))
+        for end in ("sem", "U95")
+    )
     wide = np.where(np.isfinite(wide), wide, NORMAL * sem)
     pairs = column("pair") if offset in PAIRED else np.full(len(rows), -1.0)
     samples = np.nan_to_num(column("effective_samples"))
-    means = run_means(column("sliding_speed_m_s"), column(name_of), sem, wide, pairs)
+    means = run_means(
+        column("sliding_speed_m_s"),
+        column(name_of),
+        sem,
+        wide,
+        pairs,
+        shared=column(f"{name_of}_shared_sem"),
+    )
     return [
         RunPoint(
             name,

@@ -1,0 +1,195 @@
+"""How far the reading of the load may be off: retained load, friction in the reading, creep."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.friction.zero import limits
+from tribolab.friction.zero.parts import Doubt, ZeroReference
+from tribolab.friction.zero.without_sliding import stretches_of
+from tribolab.friction.zero.words import of_leak, of_retained_load
+from tribolab.medians import median
+from tribolab.pieces import pieces
+
+UNIFORM = np.sqrt(3)  # a difference that is an error or none: the half width of a uniform one
+_FEWEST = 20  # samples of a rest
+_NEAREST = 4  # rests that are compared with a segment
+_ERRORS = 4.0  # standard errors beyond which two readings differ
+_BLOCKS = 5  # of a reading: their scatter includes slow waves and ramps of the load
+
+
+class LoadReading(NamedTuple):
+    """Standard uncertainty of the load of each segment [N] (segment), and what is in doubt."""
+
+    error: np.ndarray
+    doubts: tuple[Doubt, ...]
+
+
+def load_reading(
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    parts: list[slice],
+    pressed: np.ndarray,
+    offset: np.ndarray,
+    friction: np.ndarray,
+    zero: ZeroReference,
+) -> LoadReading:
+    """Return how far the load of each segment may be off by what the run itself shows.
+
+    Parameters
+    ----------
+    run, segments, parts
+        The run, its segments, and the samples of each.
+    pressed, offset
+        Load without the zero of the cell, and that zero [N] (segment).
+    friction
+        Mean of the friction signal [N] (segment).
+    zero
+        Zero of the friction signal.
+
+    Notes
+    -----
+    Each difference d between two readings of one load may be an error of the reading or real. It
+    counts as uniform within +-d, with the standard uncertainty d/sqrt(3). The zero of the cell that
+    rests show may be a load that was retained there, if it is positive. Friction that leaks into
+    the load by a share k changes the reading by k F where sliding starts; the half loop is free of
+    it. A creep of the reading counts from the end of the run that is further away.
+    """
+    nothing = LoadReading(np.zeros(pressed.size), ())
+    known = pressed[np.isfinite(pressed) & (pressed > 0)]
+    if not known.size:
+        return nothing
+    stated = "normal_zero" in dict(run.attrs.get("uncertainty", {}))
+    retained = nothing if stated else _retained(offset, float(median(known)))
+    found = [retained, LoadReading(_creep(run, segments, parts, pressed), ())]
+    if zero.method != "half loop":
+        found.append(_leak(run, segments, parts, pressed, offset, friction, zero))
+    error = np.sqrt(sum(one.error**2 for one in found))
+    return LoadReading(error, tuple(said for one in found for said in one.doubts))
+
+
+def _retained(offset: np.ndarray, load: float) -> LoadReading:
+    """Return what the zero of the cell adds if some load was left at the rests that show it."""
+    level = np.where(offset > limits.UNLOADED_SHARE.value * load, offset, 0.0)
+    usual = float(np.mean(level))
+    doubts: tuple[Doubt, ...] = ()
+    if usual > limits.DOUBTFUL_REST.value * load:
+        doubts = (of_retained_load(usual, load, offset.size),)
+    return LoadReading(level / UNIFORM, doubts)
+
+
+def _leak(
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    parts: list[slice],
+    pressed: np.ndarray,
+    offset: np.ndarray,
+    friction: np.ndarray,
+    zero: ZeroReference,
+) -> LoadReading:
+    """Compare the load that is read while sliding with that of the nearest loaded rest."""
+    rests = stretches_of(run, segments, "at rest") if "omitted" in segments.dims else []
+    starts, reads = segments["trimmed_start"].values, pressed + offset
+    normal = run["normal_force"].values
+    leak = np.zeros(pressed.size)
+    time = run["time"].values
+    middles = np.array([time[part].mean() for part in rests])
+    for i in range(pressed.size):
+        force = friction[i] - zero.value[i]
+        if not (pressed[i] > 0 and abs(force) > 0 and parts[i].stop - parts[i].start > _BLOCKS):
+            continue
+        # a load that wanders while sliding does so between rest and sliding as well
+        wanders = _mean_of_blocks(normal[parts[i]])[1] * np.sqrt(_BLOCKS)
+        useful = []
+        for k in np.argsort(np.abs(middles - starts[i]), kind="stable")[:_NEAREST]:
+            rest = _loaded_rest(run, rests[k], bool(middles[k] < starts[i]), float(reads[i]))
+            let_go = 0.0 if rest is None else 1 - (rest.force - zero.value[i]) / force
+            if rest is not None and let_go > limits.FRICTION_RELEASED.value:
+                found = (reads[i] - rest.normal) / let_go
+                error = float(np.hypot(rest.error, wanders)) / let_go
+                useful.append((abs(rest.time - starts[i]), found, error))
+        if useful:
+            _, found, error = min(useful)
+            leak[i] = found if abs(found) > _ERRORS * error else 0.0
+    share = np.abs(leak) / np.where(pressed > 0, pressed, np.inf)
+    which = np.flatnonzero(share > limits.LOAD_AT_REST.value)
+    doubts: tuple[Doubt, ...] = ()
+    if which.size:
+        worst = int(share.argmax())
+        doubts = (of_leak(float(leak[worst]), float(pressed[worst]), which),)
+    return LoadReading(np.abs(leak) / UNIFORM, doubts)
+
+
+class _Rest(NamedTuple):
+    """A rest: its middle [s], the readings of load and friction, the load's standard error [N]."""
+
+    time: float
+    normal: float
+    force: float
+    error: float
+
+
+def _loaded_rest(run: xr.Dataset, part: slice, before: bool, load: float) -> _Rest | None:
+    """Read the half of a rest that is nearer to a segment, if it is under the segment's load."""
+    half = (part.stop - part.start) // 2
+    near = slice(part.start + half, part.stop) if before else slice(part.start, part.start + half)
+    time, normal, force = (run[k].values[near] for k in ("time", "normal_force", "friction_force"))
+    alike = limits.SAME_LOAD.value
+    good = np.isfinite(force) & (normal > load / alike) & (normal < load * alike)
+    if good.sum() < _FEWEST:
+        return None
+    mean, error = _mean_of_blocks(normal[good])
+    return _Rest(float(time[good].mean()), mean, float(median(force[good])), error)
+
+
+def _creep(
+    run: xr.Dataset, segments: xr.Dataset, parts: list[slice], pressed: np.ndarray
+) -> np.ndarray:
+    """Return what a creep of the load reading adds to the error of each segment [N] (segment)."""
+    full = np.array([part.stop - part.start >= 10 * _BLOCKS for part in parts], bool)
+    full &= np.isfinite(pressed) & (pressed > 0)
+    if not full.any():
+        return np.zeros(pressed.size)
+    if pressed[full].max() > limits.LOADS_DIFFER.value * pressed[full].min():
+        return np.zeros(pressed.size)
+    way = segments["direction"].values
+    first = int(np.flatnonzero(full)[0])
+    last = int(np.flatnonzero(full & (way == way[first]))[-1])
+    normal, time = run["normal_force"].values, run["time"].values
+    begins = _tenth(normal[parts[first]], slice(None, None))
+    ends = _tenth(normal[parts[last]], slice(None, None, -1))
+    change = ends[0] - begins[0]
+    if not abs(change) > _ERRORS * np.hypot(begins[1], ends[1]):
+        return np.zeros(pressed.size)
+    lasted = _middle_of_tenth(time[parts[last]], -1) - _middle_of_tenth(time[parts[first]], 1)
+    begin, end = _under_load(normal, 0.5 * float(np.nanmean(normal[parts[first]])))
+    middle = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
+    away = np.maximum(middle - time[begin], time[end] - middle)
+    return abs(change / lasted) * away / UNIFORM
+
+
+def _under_load(normal: np.ndarray, least: float) -> tuple[int, int]:
+    """Return the first and the last sample under load."""
+    found: list[int] = []
+    for a, b in pieces(0, normal.size):
+        own = np.flatnonzero(normal[a:b] > least)
+        found += [a + int(i) for i in own[[0, -1]]] if own.size else []
+    return found[0], found[-1]
+
+
+def _middle_of_tenth(time: np.ndarray, way: int) -> float:
+    return float(np.mean(time[::way][: time.size // 10]))
+
+
+def _tenth(values: np.ndarray, order: slice) -> tuple[float, float]:
+    """Return the mean of the first tenth in an order, and its standard error."""
+    return _mean_of_blocks(values[order][: values.size // 10])
+
+
+def _mean_of_blocks(values: np.ndarray) -> tuple[float, float]:
+    """Return a mean and its standard error, with slow waves and ramps in it."""
+    means = [float(np.nanmean(block)) for block in np.array_split(values, _BLOCKS)]
+    return float(np.mean(means)), float(np.std(means, ddof=1)) / np.sqrt(_BLOCKS)
