@@ -222,3 +222,14 @@ def test_the_roughness_of_surfaces_stands_above_the_cards():
     row = {"Rq_m": 0.68e-6, "Rq_sem_m": None, "Rq_gap_error_m": None, "lambda_c_m": 4e-4}
     one["surfaces"] = [{"name": "Sb-R", "roughness": row}, {"name": "no scan", "roughness": None}]
     assert in_short(one)[-1] == "Rq (cut-off 0.4 mm): Sb-R 0.68 µm"
+
+
+def test_a_large_trend_that_is_not_decided_stands_above_the_cards():
+    one = report([])
+    row = {"friction_coefficient": 0.8, "trend_p_value": 0.36, "effective_samples": 2.8}
+    short = [row | {"trend_change": change} for change in (-0.16, 0.0, 0.1)]
+    one["runs"] = [run("a", 10.0) | {"segments": short, "quantity": "friction_coefficient"}]
+    (said,) = [text for text in in_short(one) if text.startswith("Trend undecided")]
+    assert said.startswith("Trend undecided in 2 of 3 segments, at most −20 % along one (run a)")
+    one["runs"][0]["segments"] = [row | {"trend_change": 0.01}]
+    assert not any(text.startswith("Trend undecided") for text in in_short(one))
