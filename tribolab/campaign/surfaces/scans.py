@@ -255,8 +255,9 @@ def spectra_of_scans(
     hurst, unsure = (psd.attrs[f"hurst_exponent{end}"] for end in ("", "_standard_error"))
     if hurst - 1.96 * unsure > 1 and psd.wavenumber.values[-1] > seen[-1]:
         text = (
-            f"the spectrum falls with a Hurst exponent of {hurst:.3g} ± {unsure:.1g}; above 1 a "
-            "surface is smoother than a self-affine one, or a tip or filter took its short waves"
+            f"the spectrum falls with a Hurst exponent of {hurst:.3g} ± {1.96 * unsure:.1g} (U95); "
+            "above 1 a surface is smoother than a self-affine one, or a tip or filter took its short "
+            "waves"
         )
         findings.append(Finding("note", text))
     return groups, findings
