@@ -256,8 +256,8 @@ def spectra_of_scans(
     if hurst - 1.96 * unsure > 1 and psd.wavenumber.values[-1] > seen[-1]:
         text = (
             f"the spectrum falls with a Hurst exponent of {hurst:.3g} ± {1.96 * unsure:.1g} (U95); "
-            "above 1 a surface is smoother than a self-affine one, or a tip or filter took its short "
-            "waves"
+            "above 1 a surface is smoother than a self-affine one, or a tip or filter took its "
+            "short waves"
         )
         findings.append(Finding("note", text))
     return groups, findings
