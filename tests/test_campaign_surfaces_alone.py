@@ -15,6 +15,8 @@ from tribolab import rig
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.cli import app
 from tribolab.errors import ConfigError
+from tribolab.surface.self_affine import SelfAffine
+from tribolab.surface.synthesis import synthesise_map
 
 
 @pytest.mark.slow
@@ -113,3 +115,30 @@ def test_the_page_shows_profiles_one_above_another_without_their_form(tmp_path):
             np.ptp(waves), rel=0.02
         )  # without the form, with the peak
     assert max(lower["y"]) < min(upper["y"])
+
+
+def test_the_key_that_the_message_names_leaves_the_measured_slope_alone(tmp_path):
+    law = SelfAffine(hurst=0.3, rolloff=2e5, plateau=2e-28, low=5e4, high=4e6)
+    rough = 1e6 * synthesise_map(law, points=128, pitch=1e-6, rng=3).height.values
+    rows = "\n".join(",".join(f"{z:.9f}" for z in row) for row in rough)
+    head = "Pixel Size X: 1 um\nPixel Size Y: 1 um\nZ unit: um\n"
+    (tmp_path / "map.txt").write_text(head + rows + "\n")
+    text = '[campaign]\nname = "map"\nraw = "."\n[[surface]]\nname = "m"\nscans = "map.txt"\n'
+
+    def analysed(more=""):
+        (tmp_path / "campaign.toml").write_text(text + more)
+        done = CliRunner().invoke(app, ["run", str(tmp_path / "campaign.toml")])
+        assert done.exit_code == 0, done.output
+        tables = tmp_path / "results" / "tables"
+        messages = pd.read_csv(tables / "findings.csv").message
+        [said] = messages[messages.str.contains("multiplies the")].tolist() or [""]
+        return pd.read_csv(tables / "roughness.csv").iloc[0], said
+
+    rough, said = analysed()
+    assert rough.rms_slope > 10 * rough.measured_rms_slope
+    factor = float(said.split("slope by ")[1].split(":")[0])
+    assert factor == pytest.approx(rough.rms_slope / rough.measured_rms_slope, rel=0.01)
+    [key] = [part for part in said.split("set ") if part.startswith("q_high")]
+    alone, said = analysed(f"[roughness]\n{key.split(' in ')[0]}\n")
+    assert not said
+    assert alone.rms_slope == pytest.approx(rough.measured_rms_slope, rel=1e-9)

@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 import tribolab as tl
 from tribolab import cli
 from tribolab.across.history import history_of
+from tribolab.across.history_page import history_verdict, write_history
 from tribolab.across.watched import GAIN, REFERENCE, Observation, observations_of
 from tribolab.metrology.control_charts import (
     CUSUM,
@@ -171,6 +172,16 @@ def test_a_speed_that_scatters_between_campaigns_is_one_quantity():
         f"{REFERENCE} at 100 µm/s",
         f"{REFERENCE} at 2.15 mm/s",
     ]
+
+
+def test_a_history_that_judges_nothing_is_no_success(tmp_path):
+    told = history_of(months(np.random.default_rng(4), 1))
+    text = history_verdict(told)
+    assert "no signal" not in text and "Add at least 9 more campaigns" in text
+    page = write_history(told, tmp_path / "one").read_text("utf-8")
+    assert 'class="banner incomplete"' in page
+    enough = history_of(months(np.random.default_rng(4), 10))
+    assert any(chart.chart is not None for chart in enough.charts)
 
 
 def test_too_few_points_are_told_and_rules_are_known():

@@ -9,6 +9,8 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
+from tribolab.across.planning import plan_text
+from tribolab.across.planning_page import write_plan
 from tribolab.metrology.planning import (
     Pilot,
     cheapest_sliding_time,
@@ -98,6 +100,18 @@ def test_a_plan_that_is_followed_reaches_its_precision():
     assert np.median(reached["runs"]) == pytest.approx(0.002, rel=0.1)
     sure = np.mean(np.array(reached["assured_runs"]) <= 0.002)
     assert sure == pytest.approx(0.8, abs=3 * math.sqrt(0.16 / 200))
+
+
+def test_a_goal_out_of_reach_is_no_success_and_a_goal_in_reach_is_named(tmp_path):
+    table = pilot_table(np.random.default_rng(3), 4, 0.01)
+    plan = tl.measuring_plan(table, standard_error=1e-5)
+    text = plan_text(plan)
+    assert text.startswith("standard error of 1e-05: out of reach at 1 of 1 point")
+    within = float(text.split("10 runs reach ")[1].split(". ")[0])
+    assert tl.measuring_plan(table, standard_error=1.1 * within).table.runs.max() <= 20
+    assert 'class="banner incomplete"' in write_plan(plan, "p", tmp_path).read_text("utf-8")
+    reached = tl.measuring_plan(table, standard_error=0.01)
+    assert 'class="banner complete"' in write_plan(reached, "p", tmp_path).read_text("utf-8")
 
 
 def test_a_plan_asks_for_one_precision_and_for_two_runs(tmp_path):

@@ -235,3 +235,14 @@ def test_a_point_of_a_run_has_the_wider_error_and_what_all_strokes_share():
     (common,) = run_points("r", [shared] * 16)
     assert alone.within < 0.0006
     assert 1.9 * 0.0009 < common.within < 2.2 * 0.0009
+
+
+def test_a_large_trend_that_is_not_decided_stands_above_the_cards():
+    one = report([])
+    row = {"friction_coefficient": 0.8, "trend_p_value": 0.36, "effective_samples": 2.8}
+    short = [row | {"trend_change": change} for change in (-0.16, 0.0, 0.1)]
+    one["runs"] = [run("a", 10.0) | {"segments": short, "quantity": "friction_coefficient"}]
+    (said,) = [text for text in in_short(one) if text.startswith("Trend undecided")]
+    assert said.startswith("Trend undecided in 2 of 3 segments, at most −20 % along one (run a)")
+    one["runs"][0]["segments"] = [row | {"trend_change": 0.01}]
+    assert not any(text.startswith("Trend undecided") for text in in_short(one))

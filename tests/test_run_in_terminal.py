@@ -61,7 +61,7 @@ def test_raw_files_need_no_campaign_file(tmp_path, monkeypatch):
     files = ["raw/disc 7.csv", "raw/roller.txt"]
     done = CliRunner().invoke(cli.app, ["run", *files])
     assert done.exit_code == 0, done.output
-    assert "campaign.toml is written" in done.output and "Rq ± standard error (" in done.output
+    assert "campaign.toml is written" in done.output and "Rq ± U95 (" in done.output
     assert any(line.split()[:1] == ["20"] and "0.200" in line for line in done.output.splitlines())
     said = tomllib.loads((tmp_path / "campaign.toml").read_text("utf-8"))
     assert said["campaign"]["raw"] == "raw" and said["run"] == [{"files": ["disc 7.csv"]}]

@@ -188,11 +188,60 @@ def test_each_stacked_scan_keeps_its_own_stated_length(tmp_path):
     assert row.status == "fail" and "12.5 mm" in row.message
 
 
-def test_roughness_of_less_than_two_digits_is_quantisation():
-    coarse = made(1e-6 * np.round(rough() / 1e-6))
+def test_roughness_of_few_digits_is_quantisation_also_where_it_was_levelled_after():
+    slope = 3.7e-8 * np.arange(4096)
+    for coarse in (1e-7 * np.round(rough() / 1e-7), 1e-7 * np.round(rough() / 1e-7) - slope):
+        assert status(check_scans(made(coarse)), "rounding") == "suspect"
     fine = made(1e-9 * np.round(rough() / 1e-9))
-    assert status(check_scans(coarse), "form") == "suspect"
-    assert status(check_scans(fine), "form") == "pass"
+    assert status(check_scans(fine), "rounding") == "pass"
+
+
+def test_rq_is_given_with_and_without_a_grain_and_a_sound_profile_has_none(clean):
+    height = clean.height.values[0].copy()
+    sound = clean.isel(scan=[0])
+    assert status(check_scans(sound), "outliers") == "pass"
+    x = clean.x.values - clean.x.values.mean()
+    struck = height + np.maximum(0.0, 4e-4 - np.abs(x) * 40)
+    row = check_scans(sound.assign(height=(("scan", "x"), struck[None]))).table.query(
+        "check == 'outliers'"
+    )
+    rq = float(sound.attrs["instrument_Rq_m"].split("; ")[0])
+    told = [float(part.split(" um")[0].split()[-1]) for part in row.message.item().split("; ")[1:2]]
+    without = float(row.message.item().split(" um without")[0].split()[-1])
+    assert row.status.item() == "suspect"
+    assert told[0] > 1.05e6 * rq
+    assert without == pytest.approx(1e6 * rq, rel=0.05)
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-8])
+def test_a_stuck_stylus_is_found_where_it_is_and_a_bridged_gap_is_none(clean, noise):
+    height = clean.height.values[:1].copy()
+    stuck = slice(2000, 2000 + height.shape[1] // 5)
+    rng = np.random.default_rng(0)
+    height[0, stuck] = height[0, 2000] + noise * rng.standard_normal(stuck.stop - stuck.start)
+    struck = clean.isel(scan=[0]).assign(height=(("scan", "x"), height))
+    found = check_scans(struck)
+    assert status(found, "stuck_stylus") == "suspect"
+    bit = 1 << SCAN_CHECKS["stuck_stylus"].bit
+    flagged = np.flatnonzero(found.flagged.height_qc_tests.values[0] & bit)
+    assert abs(flagged[0] - stuck.start) < 20 and abs(flagged[-1] - stuck.stop) < 20
+    height[0, stuck] = np.nan
+    gap = clean.isel(scan=[0]).assign(height=(("scan", "x"), height))
+    assert status(check_scans(gap), "stuck_stylus") == "pass"
+
+
+def test_a_stop_is_found_under_the_noise_of_the_gauge(clean):
+    rng = np.random.default_rng(0)
+    height = clean.height.values[:1]
+    stopped = np.minimum(height, np.quantile(height, 0.95)) + 2e-8 * rng.standard_normal(
+        height.shape
+    )
+    struck = clean.isel(scan=[0]).assign(height=(("scan", "x"), stopped))
+    assert status(check_scans(struck), "clipping") == "fail"
+    noisy = clean.isel(scan=[0]).assign(
+        height=(("scan", "x"), height + 2e-8 * rng.standard_normal(height.shape))
+    )
+    assert status(check_scans(noisy), "clipping") == "pass"
 
 
 @pytest.mark.parametrize(

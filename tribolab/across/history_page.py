@@ -8,6 +8,7 @@ from pathlib import Path
 from tribolab import plot
 from tribolab.across.history import History, Watched, expectations
 from tribolab.across.page import Part, Picture, Sheet, cells, write_parts
+from tribolab.metrology.control_charts import FEWEST_OF_BASELINE
 from tribolab.metrology.run_length import signal_probability
 from tribolab.report import tables
 from tribolab.words import many
@@ -16,8 +17,20 @@ from tribolab.words import many
 def history_verdict(told: History) -> str:
     """Return what came of it in one sentence."""
     charts = many(len(told.charts), "chart")
+    judged = [chart for chart in told.charts if chart.chart is not None]
+    if not judged:
+        most = max((chart.values.size for chart in told.charts), default=0)
+        missing = 2 * FEWEST_OF_BASELINE - most
+        return (
+            f"nothing judged yet: the longest of {charts} has {many(most, 'point')}, and a control "
+            f"chart needs {2 * FEWEST_OF_BASELINE}. Add at least {missing} more campaigns of the "
+            "same instrument"
+            if missing > 0
+            else f"nothing judged yet: the remarks say why no chart of {charts} can be judged"
+        )
     if not told.signalling:
-        return f"{charts}: no signal"
+        others = len(told.charts) - len(judged)
+        return f"{charts}: no signal" + (f", {others} not judged yet" if others else "")
     named = ", ".join(_name(chart, told) for chart in told.signalling[:4])
     more = len(told.signalling) - 4
     signal = "signal" if len(told.signalling) > 1 else "signals"
@@ -44,7 +57,7 @@ def write_history(told: History, folder: Path) -> Path:
         kind="History of instruments",
         heading=", ".join(name or "instrument not named" for name in instruments),
         verdict=history_verdict(told),
-        fine=not told.signalling,
+        fine=not told.signalling and any(chart.chart is not None for chart in told.charts),
         parts=[_summary(told), *(_chart(chart, told) for chart in _ordered(told))],
     )
     return page

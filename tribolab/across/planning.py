@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from scipy import special
 
 from tribolab.across.folder import open_folder
 from tribolab.across.run_values import (
@@ -20,6 +21,7 @@ from tribolab.across.run_values import (
 )
 from tribolab.errors import AnalysisError
 from tribolab.metrology.planning import (
+    MOST_RUNS,
     Pilot,
     cheapest_sliding_time,
     run_variance,
@@ -27,9 +29,10 @@ from tribolab.metrology.planning import (
     runs_for_standard_error,
 )
 from tribolab.report.read_results import Results
-from tribolab.words import many
+from tribolab.words import many, number, speed_text
 
 _ASSURANCE = 0.8
+_TEN = 10  # runs, of which it is said what precision they reach
 LONGEST_STROKE = 20  # times the pilot's sliding time, what is thought of as the longest stroke
 
 
@@ -52,12 +55,15 @@ class MeasuringPlan:
         With which chance the assured runs reach it.
     setup_time
         Of each run, beside sliding [s].
+    is_interval
+        Whether the goal is half a 95 % interval, else a standard error.
     """
 
     table: pd.DataFrame
     goal: str
     assurance: float
     setup_time: float
+    is_interval: bool = False
 
 
 def measuring_plan(
@@ -142,7 +148,9 @@ def measuring_plan(
             "no condition and speed has two runs: nothing tells what runs differ by"
         )
     words = "standard error" if standard_error is not None else "half 95 % interval"
-    return MeasuringPlan(pd.DataFrame(rows), f"{words} of {goal:g}", assurance, setup_time)
+    return MeasuringPlan(
+        pd.DataFrame(rows), f"{words} of {goal:g}", assurance, setup_time, half_interval is not None
+    )
 
 
 def _pilots(
@@ -207,12 +215,42 @@ def plan_text(plan: MeasuringPlan) -> str:
     table = plan.table
     beyond = int(table["runs"].isna().sum())
     if beyond:
-        return f"{plan.goal}: out of reach at {many(beyond, 'point')}"
+        return (
+            f"{plan.goal}: out of reach at {beyond} of {many(len(table), 'point')}, where more "
+            f"than {MOST_RUNS} runs are needed. {_missing(plan)}"
+        )
     sure = f"{100 * plan.assurance:.0f} %"
     return (
         f"{plan.goal}: {_span(table['runs'])} as long as the pilot's are as likely as not to "
         f"reach it, {_span(table['assured_runs'])} do so with a chance of {sure}; of the cheapest "
         f"sliding times {_span(table['cheapest_runs'])} and {_span(table['cheapest_assured_runs'])}"
+    )
+
+
+def _missing(plan: MeasuringPlan) -> str:
+    """Return what the worst point lacks, and the precision that ten runs reach there."""
+    rows = plan.table[plan.table["runs"].isna()].to_dict("records")
+    scatter, worst = max(
+        (
+            math.sqrt(
+                run_variance(
+                    Pilot(
+                        row["within_std"], row["autocorrelation_time_s"], row["between_runs_std"]
+                    ),
+                    row["sliding_time_s"],
+                )
+            ),
+            index,
+        )
+        for index, row in enumerate(rows)
+    )
+    row = rows[worst]
+    factor = float(special.stdtrit(_TEN - 1, 0.975)) if plan.is_interval else 1.0
+    place = ", ".join(filter(None, (row["condition"], speed_text(row[SPEED_COLUMN]))))
+    return (
+        f"Worst: {place}, one run scatters by {number(scatter)} (standard deviation); {_TEN} runs "
+        f"reach {number(factor * scatter / math.sqrt(_TEN))}. Ask for that, or first find why runs "
+        "differ"
     )
 
 

@@ -62,7 +62,7 @@ def roughness_lines(scan: xr.Dataset) -> list[str]:
     # late: starting stays quick
     import numpy as np
 
-    from tribolab.records.roughness_words import hardly_bends
+    from tribolab.records.roughness_words import hardly_bends, roughness_u95
     from tribolab.records.wording import with_error
     from tribolab.surface.form import remove_form
     from tribolab.surface.roughness import (
@@ -89,8 +89,9 @@ def roughness_lines(scan: xr.Dataset) -> list[str]:
         filtered += f" (a fifth of the scan, which is short of {5e3 * STANDARD_CUTOFF:.3g} mm)"
     for name in told:
         if (error := f"{name}_sem") in iso:
-            value, known = (1e6 * float(iso[each].mean()) for each in (name, error))
-            told[name] = f"{with_error(value, known)} um"
+            value, sem = (1e6 * float(iso[each].mean()) for each in (name, error))
+            row = {f"{name}_sem_m": sem, "sampling_lengths": iso.attrs["sampling_lengths"]}
+            told[name] = f"{with_error(value, roughness_u95(row, name))} um"
     radius = flat.attrs.get("form_radius_m", math.inf)
     is_map = scan.sizes.get("y", 1) > 1
     form = "polynomial of degree 2" if is_map else "form"

@@ -180,6 +180,7 @@ def outcome_lines(outcome: Outcome) -> list[str]:
     said = outcome.campaign.contradicting_viscosities()
     lines += [f"medium {name}: {text}" for name, text in said.items()]
     lines += _told_of_runs(done, outcome)
+    lines += _undecided(done, outcome)
     lines += _decisions(outcome)
     if known := [surface for surface in outcome.surfaces if surface.files]:
         computed = sum(surface.done for surface in known)
@@ -215,6 +216,17 @@ def _told_of_runs(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
         for notice in entry.record.notices
         if notice.message.startswith((*TRENDS, OUTSIDE, TEXT))
     ]
+
+
+def _undecided(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
+    """Return in a line how many segments may have a large trend or none."""
+    # late: starting stays quick
+    from tribolab.records.judgement import undecided_trends
+
+    entries = [(run.name, outcome.store.get("run", run.name, RunRecord)) for run in done]
+    facts = [(name, entry.record.facts) for name, entry in entries if entry is not None]
+    text = undecided_trends((name, each.segments, each.quantity or "") for name, each in facts)
+    return [text] if text else []
 
 
 def _is_uncalibrated(outcome: Outcome) -> bool:

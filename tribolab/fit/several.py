@@ -67,14 +67,15 @@ class ShearStressFits(Conditions[ShearStressFit]):
     def _repr_html_(self) -> str:
         """Shear stress, error and fit of each condition in a row; all numbers folded away."""
         rows = "".join(
-            f"<tr><th>{labels_text(labels)}</th><td>{1e-6 * fit.shear_stress:.3g} ± "
-            f"{1e-6 * fit.total_error:.2g} MPa</td><td>{fit.chi_square:.3g} of "
+            f"<tr><th>{labels_text(labels)}</th><td>{1e-6 * fit.shear_stress:.3g} MPa</td>"
+            f"<td>{1e-6 * fit.total_error:.2g} MPa</td><td>{fit.chi_square:.3g} of "
             f"{fit.degrees_of_freedom}</td><td>{fit.chi_square_p_value:.2g}</td></tr>"
             for labels, fit in self
         )
         table = self.to_dataframe().to_html(float_format=lambda number: f"{number:.4g}")
         return (
-            "<table><thead><tr><th></th><th>shear stress, standard error</th><th>chi-square of "
+            "<table><thead><tr><th></th><th>shear stress</th><th>standard error</th>"
+            "<th>chi-square of "
             f"degrees of freedom</th><th>probability</th></tr></thead><tbody>{rows}</tbody></table>"
             f"<details><summary>all numbers in SI</summary>{table}</details>"
         )

@@ -206,7 +206,7 @@ class ShearStressFit:
             ends = f"95 % interval {low:.3g} to {high:.3g} MPa; {self.interval_says}"
         table = self.to_dataframe().to_html(float_format=lambda number: f"{number:.4g}")
         return (
-            f"<p><b>shear stress {stress:.3g} ± {error:.2g} MPa</b> (standard error{without})<br>"
+            f"<p><b>shear stress {stress:.3g} MPa</b> (standard error {error:.2g} MPa{without})<br>"
             f"{ends}<br>chi-square {self.chi_square:.3g} of {self.degrees_of_freedom} degrees of "
             f"freedom (probability {self.chi_square_p_value:.2g})</p>"
             f"<details><summary>all numbers in SI</summary>{table}</details>"

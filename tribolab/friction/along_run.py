@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from scipy import special
 
 _BLOCKS = 10  # of neighbouring strokes, whose means are as good as independent
 FEWEST = 2 * _BLOCKS  # strokes
@@ -73,13 +74,13 @@ def line_along(time: np.ndarray, values: np.ndarray) -> Line | None:
 class RunIn(NamedTuple):
     """Friction of the first tenth of a run's strokes, and of the half at which it settles.
 
-    `error` is that of their difference, `settled_error` that of the latter.
+    `error` is that of their difference, `settled_u95` the expanded uncertainty of the latter.
     """
 
     first: float
     settled: float
     error: float
-    settled_error: float
+    settled_u95: float
 
 
 def run_in(values: np.ndarray) -> RunIn | None:
@@ -111,7 +112,7 @@ def run_in(values: np.ndarray) -> RunIn | None:
     off = abs(float(blocks[0]) - settled)
     if off <= _SURE_OF_START * error or off <= _START_MATTERS * abs(settled):
         return None
-    own = float(late.std(ddof=1) / np.sqrt(late.size))
+    own = float(special.stdtrit(late.size - 1, 0.975) * late.std(ddof=1) / np.sqrt(late.size))
     return RunIn(float(blocks[0]), settled, error, own)
 
 

@@ -39,7 +39,6 @@ from tribolab.friction.time_weights import on_grid, sample_weights
 
 MOST_STRETCHES = int(limits.BLOCKS.value)
 NORMAL = float(special.ndtri(0.975))  # standard errors in a 95 % interval, many degrees of freedom
-_WANDERS = 2.0  # times the error by the scatter, from which it is worth a remark
 _FEWEST_TO_TURN = 40  # stretches in which waves of a turning rig are looked for
 _GRID = 1024  # frequencies of a spectrum beside which a wave of a turning rig stands out
 # degrees of freedom over the width of their 95 % interval
@@ -332,17 +331,22 @@ def undetermined_remark(estimate: Estimate) -> str:
 
 
 def wander_remark(estimate: Estimate) -> str:
-    """Say that an error is larger than the scatter makes it, because of a slow wander.
+    """Return a remark on slow drift if it widens U95 and matters for the mean, else "".
 
     Examples
     --------
-    >>> calm = Estimate(0.3, 0.01, 0.001, 1000, 100.0, 0.5, 0.0, 0.0, 1.0, u95=0.002)
+    >>> calm = Estimate(0.3, 0.01, 0.001, 1000, 100.0, 0.5, 0.0, 0.01, 1.0, u95=0.002)
     >>> wander_remark(calm), wander_remark(calm._replace(u95=0.0082))
     ('', 'U95 includes slow drift that this record is too short to resolve (4.2 times the value \
 by scatter)')
+    >>> wander_remark(calm._replace(u95=0.0082, mean=3.0))
+    ''
     """
     scatter = NORMAL * estimate.sem
-    if not scatter > 0 or not estimate.u95 > _WANDERS * scatter:
+    if not scatter > 0 or not estimate.u95 > limits.MIN_DRIFT_WIDENING.value * scatter:
+        return ""
+    moved = abs(estimate.trend_change) > limits.MIN_DRIFT_CHANGE.value * estimate.sem
+    if not (moved and estimate.u95 > limits.MIN_DRIFT_U95.value * abs(estimate.mean)):
         return ""
     return (
         "U95 includes slow drift that this record is too short to resolve "

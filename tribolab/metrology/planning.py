@@ -12,8 +12,8 @@ from scipy import optimize, special
 
 from tribolab.errors import AnalysisError
 
-_MOST_RUNS = 1000
-_RUNS = np.arange(2, _MOST_RUNS + 1)
+MOST_RUNS = 1000
+_RUNS = np.arange(2, MOST_RUNS + 1)
 
 
 @dataclass(frozen=True)

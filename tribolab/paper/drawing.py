@@ -10,7 +10,6 @@ import xarray as xr
 
 from tribolab import plot
 from tribolab.paper.data import ROUGH, SURFACES, PaperData
-from tribolab.records.wording import with_error
 from tribolab.studies.tables import MEDIA, modulus_table
 from tribolab.surface.moments import rms_roughness, rms_slope
 from tribolab.words import force_text, number, span, speed_text, speeds
@@ -158,7 +157,7 @@ def _traces(data: PaperData, wanted: list[tuple[str, str, float]]) -> FigureAndT
             continue
         stroke = trace.friction.isel(segment=trace.segment)
         mean, spread = (float(stroke[f"friction_coefficient{end}"]) for end in ("", "_std"))
-        said.append(f"{trace.label}: µ = {with_error(mean, spread)} (standard deviation)")
+        said.append(f"{trace.label}: µ = {number(mean)} (standard deviation {number(spread, 2)})")
     ends = [
         float((row.trimmed_stop - row.trimmed_start) * row.sliding_speed)
         for row in (trace.segments.isel(segment=trace.segment) for trace in traces)

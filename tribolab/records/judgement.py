@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 from tribolab.friction.coefficient.steadiness import undecided
 from tribolab.qc.run.checks import RUN_CHECKS
 from tribolab.records.parts import BAD
-from tribolab.words import percent
+from tribolab.words import many, percent
 
 
 @dataclass(frozen=True)
@@ -72,6 +72,52 @@ def trend_texts(rows: Sequence[Mapping[str, Any]], quantity: str) -> list[tuple[
     >>> [text for _, text in trend_texts(rows, "friction_coefficient")]
     ['−20 %, not decided (p = 0.36)', '+0.1 %, significant']
     """
+    trends = _trends(rows, quantity)
+    if trends is None:
+        return [(0.0, "–") for _ in rows]
+    return [_trend_text(*trend) for trend in zip(*trends, strict=True)]
+
+
+def undecided_trends(runs: Iterable[tuple[str, Sequence[Mapping[str, Any]], str]]) -> str:
+    """Return in how many segments a large trend is undecided, and the largest, or "".
+
+    Parameters
+    ----------
+    runs
+        Name, segments and quantity of each run, as for `trend_texts`.
+
+    Examples
+    --------
+    >>> row = {"friction_coefficient": 0.8, "trend_p_value": 0.36, "effective_samples": 2.8}
+    >>> short = [row | {"trend_change": change} for change in (-0.16, 0.0)]
+    >>> undecided_trends([("a", short, "friction_coefficient")])
+    'Trend undecided in 1 of 2 segments, at most −20 % along one (run a): too short a record to \
+tell drift from noise'
+    """
+    number = total = 0
+    largest, where = 0.0, ""
+    for name, rows, quantity in runs:
+        total += len(rows)
+        if (trends := _trends(rows, quantity)) is None or not trends[2].any():
+            continue
+        change = trends[0][trends[2]]
+        number += change.size
+        worst = float(change[np.argmax(np.abs(change))])
+        if abs(worst) > abs(largest):
+            largest, where = worst, name
+    if not number:
+        return ""
+    size = f"{'+' if largest > 0 else ''}{percent(largest)}"
+    return (
+        f"Trend undecided in {number} of {many(total, 'segment')}, at most {size} along one "
+        f"(run {where}): too short a record to tell drift from noise"
+    )
+
+
+def _trends(
+    rows: Sequence[Mapping[str, Any]], quantity: str
+) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+    """Return change of the typical friction, p value, and where the trend is undecided."""
 
     def column(name: str) -> np.ndarray:
         return np.array([np.nan if (v := row.get(name)) is None else v for row in rows], float)
@@ -83,10 +129,9 @@ def trend_texts(rows: Sequence[Mapping[str, Any]], quantity: str) -> list[tuple[
     value = np.abs(column(key))
     typical = value[np.isfinite(value)]
     if not (typical > 0).any():
-        return [(0.0, "–") for _ in rows]
+        return None
     change, chance = change / typical.mean(), column("trend_p_value")
-    open_ = not_decided(change, chance, column("effective_samples"))
-    return [_trend_text(*trend) for trend in zip(change, chance, open_, strict=True)]
+    return change, chance, not_decided(change, chance, column("effective_samples"))
 
 
 def _trend_text(change: float, chance: float, is_open: bool) -> tuple[float, str]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tribolab.records.wording import NORMAL
 from tribolab.words import aligned, number, percent, speed_text
 
 if TYPE_CHECKING:
@@ -40,6 +41,25 @@ def stress_interval(low: float | None, high: float | None) -> str:
     if low <= 0:
         return f"up to {aligned(1e-6 * high)}: it may be zero"
     return f"{aligned(1e-6 * low)} to {aligned(1e-6 * high)}"
+
+
+def shear_stress_u95(fit: Mapping[str, Any], error: float) -> float:
+    """Return U95 [Pa] of a shear stress, or of what is computed from it, with a standard error.
+
+    The coverage factor is that of the fitted stress: half its 95 % interval, at the wider side,
+    over its standard error; 1.96 if there is no interval.
+
+    Examples
+    --------
+    >>> fit = {"shear_stress_Pa": 5.0, "shear_stress_total_error_Pa": 1.0}
+    >>> shear_stress_u95(fit | {"shear_stress_low_Pa": 2.5, "shear_stress_high_Pa": 8.0}, 2.0)
+    6.0
+    """
+    low, high = fit.get("shear_stress_low_Pa"), fit.get("shear_stress_high_Pa")
+    own, stress = fit["shear_stress_total_error_Pa"], fit["shear_stress_Pa"]
+    if low is None or high is None or not own:
+        return NORMAL * error
+    return max(high - stress, stress - low) / own * error
 
 
 def is_described(words: str) -> bool:

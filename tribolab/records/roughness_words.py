@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 
 from tribolab.records.parts import Row, number_of
-from tribolab.records.wording import with_error
+from tribolab.records.wording import NORMAL, with_error
 from tribolab.words import Count, number
 
 _BEND = 0.1  # of Pq, by which a circle is none to speak of
@@ -67,8 +67,8 @@ def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
     ['Rq (no cut-off): fine 0.1 µm, rough 2 µm (Ra 1.6 µm)']
     >>> roll = {"Rq_m": 1e-7, "Rq_sem_m": 2e-9, "lambda_c_m": 8e-4, "form_removed": "circle"}
     >>> roughness_in_words([("roll", roll | {"sampling_lengths": 4})])
-    ['Rq ± standard error (circle taken off, cut-off 0.8 mm, 4 sampling lengths): roll 0.100 ± \
-0.002 µm']
+    ['Rq ± U95 (circle taken off, cut-off 0.8 mm, 4 sampling lengths): roll 0.100 ± \
+0.006 µm']
     >>> roughness_in_words([("map", {"Sq_m": 1e-6, "Rq_m": 9e-7, "form_removed": "polynomial"})])
     ['Sq (polynomial of degree 2 taken off): map 1 µm']
     """
@@ -80,7 +80,7 @@ def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
             said = _with_mean_deviation(row, "Sq", "Sa")
         elif number_of(row, "Rq_m") is not None:
             said = _with_mean_deviation(row, "Rq", "Ra")
-            heading = f"Rq{' ± standard error' if '±' in said else ''} ({_evaluated(row)})"
+            heading = f"Rq{' ± U95' if '±' in said else ''} ({_evaluated(row)})"
         else:
             continue
         told.setdefault(heading, []).append(f"{name} {said}")
@@ -89,6 +89,27 @@ def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
         + (f" and {len(names) - _MOST} more" if len(names) > _MOST else "")
         for what, names in told.items()
     ]
+
+
+def roughness_u95(row: Row, name: str) -> float:
+    """Return U95 [m] of a roughness parameter; 0 if nothing is known of its error.
+
+    Student's t of the scans; of a single profile, of its sampling lengths. What missing heights
+    bring counts where it is larger.
+
+    Examples
+    --------
+    >>> round(roughness_u95({"scans": 3, "Ra_sem_m": 1e-9}, "Ra") * 1e9, 2)
+    4.3
+    """
+    # late: starting stays quick
+    from scipy import special
+
+    scatter, gaps = (number_of(row, f"{name}_{what}_m") or 0.0 for what in ("sem", "gap_error"))
+    scans = number_of(row, "scans") or 1.0
+    parts = scans if scans > 1 else number_of(row, "sampling_lengths") or 2.0
+    freedom = max(parts - 1.0, 1.0)
+    return max(float(special.stdtrit(freedom, 0.975)) * scatter, NORMAL * gaps)
 
 
 def _evaluated(row: Row) -> str:
@@ -104,8 +125,7 @@ def _evaluated(row: Row) -> str:
 def _with_mean_deviation(row: Row, quadratic: str, mean: str) -> str:
     """Return the root mean square roughness with its error, and the mean deviation behind it."""
     value, behind = (number_of(row, f"{name}_m") for name in (quadratic, mean))
-    errors = (number_of(row, f"{quadratic}_{what}_m") for what in ("sem", "gap_error"))
-    error = max(each or 0.0 for each in errors)
+    error = roughness_u95(row, quadratic)
     scaled = 1e6 * (value or 0.0)
     said = with_error(scaled, 1e6 * error) if error else f"{scaled:.3g}"
     return f"{said} µm" + (f" ({mean} {1e6 * behind:.3g} µm)" if behind is not None else "")

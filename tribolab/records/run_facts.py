@@ -186,9 +186,10 @@ def inertia_said(attrs: Mapping[str, Any]) -> str:
     if "moving_mass_kg" not in attrs:
         return ""
     error = attrs.get("moving_mass_sem_kg")
-    mass = f"{attrs['moving_mass_kg']:.4g}" + (f" ± {error:.2g}" if error is not None else "")
+    sure = f"; the mass has a standard error of {error:.2g} kg" if error is not None else ""
     largest = f"{attrs['inertial_force_largest_N']:.3g}"
-    return f"that of {mass} kg ({attrs['moving_mass_source']}) is taken out: up to {largest} N"
+    mass = f"{attrs['moving_mass_kg']:.4g} kg ({attrs['moving_mass_source']})"
+    return f"that of {mass} is taken out: up to {largest} N{sure}"
 
 
 def stick_slip_of(slip: xr.Dataset) -> Waveform:

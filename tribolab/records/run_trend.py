@@ -31,8 +31,8 @@ class RunTrend(NamedTuple):
         How many there are, and the time from the first to the last [s].
     settles
         Whether it is that of the run-in, and `last` the mean of the last half.
-    settled_error
-        Standard error of that mean.
+    settled_u95
+        Expanded uncertainty (95 % coverage) of that mean.
     """
 
     speed: float
@@ -42,7 +42,7 @@ class RunTrend(NamedTuple):
     segments: int
     lasted: float
     settles: bool = False
-    settled_error: float | None = None
+    settled_u95: float | None = None
 
     @property
     def text(self) -> str:
@@ -50,7 +50,7 @@ class RunTrend(NamedTuple):
         verb = "rises" if abs(self.last) > abs(self.first) else "falls"
         share = percent(abs(self.last - self.first) / abs(self.first))
         if self.settles:
-            settled = with_error(self.last, self.settled_error)
+            settled = with_error(self.last, self.settled_u95)
             return (
                 f"friction {verb} along the run as it begins, from {number(self.first)} in its "
                 f"first tenth to {settled} in its last half, by {share}, over "
@@ -94,9 +94,9 @@ def _trend(
         early = run_in(values[part])
         if early is None:
             return None
-        usual, own = float(np.median(speed[part])), early.settled_error
+        usual, own = float(np.median(speed[part])), early.settled_u95
         told = usual, early.first, early.settled, early.error, part.size, lasted
-        return RunTrend(*told, settles=True, settled_error=own)
+        return RunTrend(*told, settles=True, settled_u95=own)
     tenth = max(part.size // 10, 1)  # what ends of a line would exceed where the change levels off
     first, last = (float(values[end].mean()) for end in (part[:tenth], part[-tenth:]))
     return RunTrend(

@@ -198,7 +198,8 @@ def _refuse_no_surface(law: PowerLaw, decade: tuple[float, float], why: str) -> 
     why = why or "a gauge, a groove, or what a filter or the window left of a single wave"
     raise AnalysisError(
         f"C(q) falls between {decade[0]:.4g} and {decade[1]:.4g} 1/m as on a surface with a Hurst "
-        f"exponent of {law.hurst:.2g} ± {law.hurst_error:.2g}; self-affine surfaces have "
+        f"exponent of {law.hurst:.2g} ± {_NORMAL * law.hurst_error:.2g} (U95); "
+        "self-affine surfaces have "
         f"{MIN_HURST.value:g} to 1 and smooth ones up to {MAX_SURE_HURST.value:g}, so no power "
         f"law leads on from there ({why})",
         cure=Cure(

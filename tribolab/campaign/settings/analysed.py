@@ -63,8 +63,9 @@ class Roughness(Table):
     or a fifth of a shorter scan."""
     q_low: Annotated[float, PositiveSi("1/m", "423 1/m")] | None = None
     """Smallest wavenumber; by default pi over the Hertz width at the lowest load."""
-    q_high: Annotated[float, PositiveSi("1/m", "3.14e9 1/m")] | None = None
-    """Largest wavenumber; by default pi / 1 nm."""
+    q_high: Annotated[float, PositiveSi("1/m", "3.14e9 1/m")] | Literal["measured"] | None = None
+    """Largest wavenumber; by default pi / 1 nm. "measured": nothing is extrapolated to shorter
+    waves than each surface's scans show."""
     fit_decade: (
         tuple[
             Annotated[float, PositiveSi("1/m", "1e5 1/m")],

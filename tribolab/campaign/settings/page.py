@@ -145,6 +145,9 @@ def _kind(field: Mapping[str, Any]) -> tuple[str, str]:
     if len(kinds) > 1 and kinds[0]["type"] == "number":
         number, text = kinds
         return f"number{_bounds(number)}; or text", f'`"{text["examples"][0]}"`'
+    if len(kinds) > 1 and "const" in kinds[1]:
+        quantity, word = kinds
+        return f'{quantity["unit"]}, or `"{word["const"]}"`', f'`"{quantity["examples"][0]}"`'
     if len(kinds) > 1:  # a text or a list of them
         return "text, or a list of texts", ""
     [kind] = kinds

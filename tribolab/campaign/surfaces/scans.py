@@ -255,8 +255,9 @@ def spectra_of_scans(
     hurst, unsure = (psd.attrs[f"hurst_exponent{end}"] for end in ("", "_standard_error"))
     if hurst - 1.96 * unsure > 1 and psd.wavenumber.values[-1] > seen[-1]:
         text = (
-            f"the spectrum falls with a Hurst exponent of {hurst:.3g} ± {unsure:.1g}; above 1 a "
-            "surface is smoother than a self-affine one, or a tip or filter took its short waves"
+            f"the spectrum falls with a Hurst exponent of {hurst:.3g} ± {1.96 * unsure:.1g} (U95); "
+            "above 1 a surface is smoother than a self-affine one, or a tip or filter took its "
+            "short waves"
         )
         findings.append(Finding("note", text))
     return groups, findings
@@ -278,22 +279,17 @@ def _what_is_lacking(iso: xr.Dataset, held: float, seen: np.ndarray) -> list[Fin
 
 
 def _extrapolated_slope(share: float, slope: float, last: float, asked: bool) -> Finding:
-    """Say what the extrapolation makes of the measured slope, and how to do without it."""
+    """Say by what the extrapolation multiplies the measured slope, and how to do without it."""
     whole = slope / np.sqrt(share)
     text = (
-        f"{100 * (1 - share):.0f} % of the mean square slope is extrapolated, not measured: the "
-        f"rms slope is {number(slope)} down to the shortest measured wave and {number(whole)} with "
-        f'the extrapolation. The measured waves alone: q_high = "{_rounded_down(last)} 1/m" in '
-        "[roughness]"
+        f"the extrapolation multiplies the measured rms slope by {number(whole / slope)}: it is "
+        f"{number(slope)} down to the shortest measured wave ({number(2e6 * np.pi / last)} um) and "
+        f"{number(whole)} with shorter ones, {100 * (1 - share):.0f} % of the mean square slope is "
+        "extrapolated, not measured; contact and adhesion follow from it. To use the measured "
+        'waves alone, set q_high = "measured" in [roughness]'
     )
     relied_on = (asked and share < 1 - _SUSPECT) or whole > MAX_EXTRAPOLATED_SLOPE.value
     return Finding("suspect" if relied_on else "note", text)
-
-
-def _rounded_down(value: float) -> str:
-    """Return a number of four digits that is no larger."""
-    digit = 10.0 ** (np.floor(np.log10(value)) - 3)
-    return f"{np.floor(value / digit) * digit:.4g}"
 
 
 def _extrapolated(
@@ -306,6 +302,8 @@ def _extrapolated(
     limits = {key: options[key] for key in ("q_high", "fit_decade") if key in options}
     low = options.get("q_low", q_low)
     first, last = (float(end) for end in measured.wavenumber.values[[0, -1]])
+    if limits.get("q_high") == "measured":
+        limits["q_high"] = last
     if low is not None and low >= last:
         raise AnalysisError(
             f"the scans tell of waves of {number(2e6 * np.pi / last)} to "

@@ -31,3 +31,20 @@ HUMP = Limit(
     4.0, "1", "peak of the spectrum over its lowest frequencies: the wander below the peak counts",
     _TABLE,
 )  # fmt: skip
+MIN_DRIFT_WIDENING = Limit(
+    2.0, "1", "U95 over that by the scatter alone, from which slow drift widens it", "judgement"
+)
+MIN_DRIFT_CHANGE = Limit(
+    2.0,
+    "1",
+    "change along a segment in standard errors of its mean, from which drift is worth a remark: a "
+    "mean lies half of the change away from either end, so one standard error here",
+    "judgement",
+)
+MIN_DRIFT_U95 = Limit(
+    0.01,
+    "1",
+    "U95 over the mean, from which drift is worth a remark: repeats scatter by 2 to 5 %, and less "
+    "than half of that changes no comparison; without it 277 of 780 segments of the demo had one",
+    "tribolab demo, results/tables/friction.csv",
+)

@@ -117,7 +117,9 @@ def examine_record(
         events = events._replace(drop=drop, rise=rise)
     lines = components(surveyed)
     slow = slow_wave(record)
-    seen = period_verdict(probability, oscillation, view.regularity, slow, lines, surveyed.duration)
+    seen = period_verdict(
+        probability, oscillation, view.regularity, slow, lines, surveyed.duration, form
+    )
     return Examined(
         oscillation, events, form, view.regularity, probability, seen, lines,
         view.hysteresis, noise, spikes / n,

@@ -11,7 +11,12 @@ from tribolab.friction.oscillation.few_periods import SlowWave
 from tribolab.friction.oscillation.oscillation import CYCLES, Oscillation
 from tribolab.friction.oscillation.regularity import IRREGULAR, SLIP_KINDS, Regularity, scatter
 from tribolab.friction.oscillation.survey import CHANCE
-from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR, most_probable
+from tribolab.friction.oscillation.waveform import (
+    CLASSES,
+    NOT_CLEAR,
+    WaveformFeatures,
+    most_probable,
+)
 
 AT_ODDS = "the spectrum tells a period"  # begins the remark that drops tell another one
 ALIKE = 0.12  # a scatter of periods above which cycles may have been missed or split
@@ -24,6 +29,10 @@ _MAINS = 0.03  # relative; an oscillation so near to a line of the mains is not 
 _UNLIKELY = 0.03  # probability of smooth sliding, below which something is there
 _FASTER = 5.0  # than a slow wave: no harmonic of it
 _FEWEST = 4  # periods that tell how they scatter
+_SKEW = 0.15  # of a cycle, by which its fall is shorter or longer than half, of no sine ...
+_SURE_SKEW = 0.01  # ... where the sign test over the cycles is as sure
+_SHARPER, _HARMONICS = -0.5, 0.6  # skewness of the derivative with such harmonics: it drops
+_SLOWER, _ALIKE_SWING = 0.7, 0.6  # of frequency and swing: a slower line that counts as much
 
 
 class PeriodVerdict(NamedTuple):
@@ -74,6 +83,7 @@ def period_verdict(
     slow: SlowWave | None,
     lines: tuple[Component, ...],
     duration: float,
+    form: WaveformFeatures,
 ) -> PeriodVerdict:
     """Say what is claimed, by the class's probabilities and where drops and spectrum agree.
 
@@ -89,6 +99,8 @@ def period_verdict(
         All significant oscillations.
     duration
         Of the record [s].
+    form
+        Of the cycles.
     """
     kind = most_probable(probability)
     periods = seen.periods
@@ -128,6 +140,8 @@ def period_verdict(
         return _withheld(
             f"{AT_ODDS} of {1 / frequency:.3g} s, the drops are {periods.mean():.3g} s apart"
         )
+    if kind == CLASSES[2] and (mixed := _mixed(oscillation, lines, form)):
+        return _withheld(mixed)
     if count < CYCLES:
         # a wander has a "period" as well; it counts where one wave is nearly all there is
         known = count if slow is not None else np.nan
@@ -137,6 +151,33 @@ def period_verdict(
     if not seen.kind or (irregular and periods.size < _FEWEST):
         return _withheld("too few drops repeat to tell the period")
     return PeriodVerdict(kind, frequency, error, count)
+
+
+def _mixed(oscillation: Oscillation, lines: tuple[Component, ...], form: WaveformFeatures) -> str:
+    """Say why an oscillation is no sine, or not the only one of its size; "" if it may be.
+
+    A sine on a larger sawtooth rounds it off, and its line may be the stronger: half of the swing
+    of a sawtooth is in its first harmonic.
+    """
+    uneven = form.asymmetry_p_value < _SURE_SKEW and abs(0.5 - form.fall_share) > _SKEW
+    sharp = form.derivative_skewness < _SHARPER and oscillation.harmonic_content > _HARMONICS
+    if uneven or sharp:
+        return (
+            f"like a sine, but friction falls in {form.fall_share:.0%} of each cycle: stick-slip "
+            "with another oscillation on it is as likely"
+        )
+    slower = [
+        line
+        for line in lines
+        if line.frequency < _SLOWER * oscillation.frequency
+        and line.swing > _ALIKE_SWING * oscillation.swing
+    ]
+    if slower:
+        return (
+            f"a slower oscillation at {slower[0].frequency:.4g} Hz is as large as that at "
+            f"{oscillation.frequency:.4g} Hz: which of them is stick-slip is open"
+        )
+    return ""
 
 
 _FEW = "too few to tell an oscillation from a wander: slide further at this speed"

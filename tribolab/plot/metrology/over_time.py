@@ -73,6 +73,8 @@ def control(table: pd.DataFrame, *, title: str = "", ax: Axes | None = None) -> 
                 days[signal], column["value"][signal], "x", color=VERMILLION, markersize=6,
                 markeredgewidth=1.3, label="signal",
             )  # fmt: skip
+        if days.max() == days.min():  # a single campaign: no interval to divide
+            axes.set_xlim(days[0] - 1.0, days[0] + 1.0)
         locator = mdates.AutoDateLocator(maxticks=6)
         axes.xaxis.set_major_locator(locator)
         axes.xaxis.set_major_formatter(mdates.ConciseDateFormatter(locator))

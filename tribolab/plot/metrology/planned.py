@@ -74,7 +74,7 @@ def runs_needed(table: pd.DataFrame, *, title: str = "", ax: Axes | None = None)
                     axes.vlines(at, own[name], own[sure], colors=colour, linewidth=1)
                     axes.plot(at, own[sure], "_", color=colour, markersize=6)
             keep(figure, "runs", str(condition), sliding_speed_m_s=speed, **own)
-        speed_axis(axes)
+        speed_axis(axes, table["sliding_speed_m_s"].to_numpy(dtype=float))
         drawn = [name for name in (*_ASSURED, *_ASSURED.values()) if name in table]
         top = float(np.nanmax(table[drawn].to_numpy(dtype=float), initial=2.0))
         axes.set_ylim(0.0, 1.15 * top)

@@ -9,7 +9,6 @@ import xarray as xr
 
 from tribolab.core.limit import Limit
 from tribolab.errors import AnalysisError, ConfigError, Cure, nearest, shown
-from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.qc import signals
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import FAIL, SUSPECT, attach
@@ -21,6 +20,8 @@ from tribolab.qc.register import (
     results_of_checks,
 )
 from tribolab.qc.scan import profiles
+from tribolab.qc.scan.artefact_checks import ARTEFACT_CHECKS
+from tribolab.qc.scan.artefacts import longest_run
 from tribolab.qc.scan.instrument import INSTRUMENT_CHECKS
 from tribolab.qc.scan.subject import ScanSubject
 from tribolab.several import of_runs
@@ -131,7 +132,7 @@ def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
     ends = np.zeros_like(missing) if subject.is_map else profiles.at_the_ends(missing)
     inside = missing & ~ends
     count, share = int(missing.sum()), float(inside.mean())
-    row = int(np.argmax([profiles.longest_run(m) for m in inside]))
+    row = int(np.argmax([longest_run(m) for m in inside]))
     if not inside[row].any():
         row = int(np.argmax(ends.any(axis=1)))
         at = np.flatnonzero(ends[row])
@@ -145,7 +146,7 @@ def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
         return [
             Result(status, "height", text, left_out, "1", where, count, flags, True, cure),
         ]
-    longest = profiles.longest_run(inside[row])
+    longest = longest_run(inside[row])
     at = np.flatnonzero(inside[row])
     where = subject.where(row, int(at[0]), int(at[-1]))
     span = longest * subject.pitch
@@ -179,7 +180,9 @@ def _steps(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _clipping(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
-    flags = np.stack([profiles.clipped(row, int(limits["points"])) for row in subject.rows])
+    fewest, share = int(limits["points"]), limits["noisy"]
+    noisy = 1.0 if subject.is_map else share
+    flags = np.stack([profiles.clipped(row, fewest, noisy) for row in subject.rows])
     text = "{count:point lies|points lie} flat at the end of the range: cut off there"
     return _flagged(subject, flags, text, limits["fail"])
 
@@ -200,18 +203,12 @@ def _form(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         where = subject.profile_names[steepest]
         text = f"the tilt is {np.degrees(angle):.3g} deg in the middle of {where}"
         results.append(Result(status, "tilt", text, angle, "rad"))
-    share, digits = [], []
+    share = []
     for row, profile in zip(subject.filled, flat, strict=True):
         whole, rest = float(np.ptp(row.height.values)), float(np.ptp(profile.height.values))
         share.append(1.0 - min(rest / whole, 1.0) if whole > 0 else 0.0)
-        step = quantisation_step(row.height.values)
-        digits.append(float(profile.height.std()) / step if step > 0 else np.inf)
-    fewest = min(digits)
-    status = "suspect" if fewest < limits["digits"] else "pass"
     text = f"form ({kind}) takes {max(share):.2%} of the range"
-    if np.isfinite(fewest):
-        text += f"; the roughness left is {fewest:.3g} digits of the gauge (rms)"
-    return [*results, Result(status, "height", text, max(share))]
+    return [*results, Result("pass", "height", text, max(share))]
 
 
 def _level(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -335,6 +332,7 @@ _PROFILE_CHECKS = (
         "Level the specimen or choose a larger range, and scan again.",
         {
             "points": Limit(8.0, "1", "a stylus rests on one height for some points by chance"),
+            "noisy": Limit(0.01, "1", "fewer points at the end, spread by noise, are summits"),
             "fail": Limit(0.01, "1", "a hundredth cut off changes Rq and spectrum"),
         },
         _clipping,
@@ -347,7 +345,6 @@ _PROFILE_CHECKS = (
         {
             "tilt": Limit(0.0873, "rad", "5 deg: lengths along the surface are 0.4 % longer"),
             "fail": Limit(0.349, "rad", "20 deg: the flank of a stylus begins to touch"),
-            "digits": Limit(2.0, "1", "roughness of fewer digits of the gauge is quantisation"),
         },
         _form,
     ),
@@ -399,5 +396,6 @@ _REPEAT_CHECKS = (
 )
 
 SCAN_CHECKS: dict[str, Check[ScanSubject]] = {
-    check.name: check for check in (*_PROFILE_CHECKS, *INSTRUMENT_CHECKS, *_REPEAT_CHECKS)
+    check.name: check
+    for check in (*_PROFILE_CHECKS, *ARTEFACT_CHECKS, *INSTRUMENT_CHECKS, *_REPEAT_CHECKS)
 }

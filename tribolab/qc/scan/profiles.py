@@ -9,26 +9,14 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.oscillation.noise import quantisation_step
 from tribolab.medians import median, median_of_known
 from tribolab.qc import signals
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, SUSPECT
+from tribolab.qc.scan.artefacts import longest_run, noisy_stop, rounding_step
 from tribolab.surface.roughness import roughness_parameters
 
 _MOVED = 0.02  # share of points that move, from which on they are no rare jumps
 _BLOCK = 512  # points whose slopes are compared with each other
-
-
-def longest_run(marked: np.ndarray) -> int:
-    """Length of the longest stretch of True.
-
-    Examples
-    --------
-    >>> longest_run(np.array([True, False, True, True, False]))
-    2
-    """
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], marked.astype(np.int8), [0]])))
-    return int((edges[1::2] - edges[::2]).max(initial=0))
 
 
 def at_the_ends(marked: np.ndarray) -> np.ndarray:
@@ -86,7 +74,7 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
     middles = np.array([median_of_known(b) if np.isfinite(b).any() else 0.0 for b in blocks])
     spread = np.array([_spread(b, m) for b, m in zip(blocks, middles, strict=True)])
     least = np.quantile(spread, 0.25)
-    digit = quantisation_step(height)
+    digit = rounding_step(height)
     for start, block, middle, scale in zip(
         np.cumsum([0, *(len(b) for b in blocks[:-1])]), blocks, middles, spread, strict=True
     ):  # a loop over blocks, not over points
@@ -123,7 +111,7 @@ def _spread(values: np.ndarray, middle: float) -> float:
     return usual / 0.6745
 
 
-def clipped(height: np.ndarray, fewest: int = 5) -> np.ndarray:
+def clipped(height: np.ndarray, fewest: int = 5, noisy: float = 0.01) -> np.ndarray:
     """Flag flat tops or bottoms at the end of the gauge's range.
 
     Parameters
@@ -132,6 +120,8 @@ def clipped(height: np.ndarray, fewest: int = 5) -> np.ndarray:
         Heights of one profile [m] (x), as measured: with tilt and form.
     fewest
         Smallest number of points in a row on the outermost height.
+    noisy
+        Smallest share of the points on a stop whose reading has noise.
 
     Returns
     -------
@@ -148,6 +138,9 @@ def clipped(height: np.ndarray, fewest: int = 5) -> np.ndarray:
         at_end = height == end
         if longest_run(at_end) < fewest:
             flags[at_end & (flags == SUSPECT)] = GOOD
+    known = np.isfinite(height)
+    if noisy < 1.0 and known.any() and not (flags == SUSPECT).any():
+        flags[np.flatnonzero(known)[noisy_stop(height[known], noisy, fewest)]] = SUSPECT
     return flags
 
 

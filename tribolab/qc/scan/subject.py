@@ -125,12 +125,16 @@ class ScanSubject:
             _, profiles = self.form
             rows = np.stack([profile.height.values for profile in profiles])
             return why_not_self_affine(xr.Dataset({"height": (("scan", "x"), rows)}, {"x": x}))
+        scans = self.map_without_form
+        return "" if scans is None else why_not_self_affine(scans)
+
+    @cached_property
+    def map_without_form(self) -> xr.Dataset | None:
+        """Map less a polynomial of second order; None if it has too few heights."""
         if not np.isfinite(self.rows).any() or min(self.scans.height.shape[-2:]) < _FEWEST:
-            return ""
+            return None
         scans = self.scans[["height"]].assign_attrs(self.scans.attrs)
-        if "form_removed" not in scans.attrs:
-            scans = remove_form(scans, "polynomial")
-        return why_not_self_affine(scans)
+        return scans if "form_removed" in scans.attrs else remove_form(scans, "polynomial")
 
     @cached_property
     def wave(self) -> tuple[float, float]:

@@ -16,7 +16,6 @@ from tribolab.friction.decisions.rejected import kept
 from tribolab.io.netcdf import read_groups
 from tribolab.plot.runs.signals import LOOKED_AT
 from tribolab.records.mode_record import ModeRecord, condition
-from tribolab.records.wording import with_error
 from tribolab.report.figures.files import Drawn
 from tribolab.report.slowest import lowest_loads, slow_segments
 from tribolab.words import many, number, span, speed_text
@@ -187,8 +186,10 @@ def _in_words(trace: Trace) -> str:
     mean = trace.friction.isel(segment=trace.segment)
     for name, what, unit in (("friction_coefficient", "µ", ""), ("friction_force", "F", " N")):
         if name in mean:
-            error = float(mean[f"{name}_std"]) if f"{name}_std" in mean else None
-            return f"{trace.label}: {what} = {with_error(float(mean[name]), error, unit)}"
+            text = f"{trace.label}: {what} = {number(float(mean[name]))}{unit}"
+            if f"{name}_std" in mean:
+                text += f" (standard deviation {number(float(mean[f'{name}_std']), 2)}{unit})"
+            return text
     return trace.label
 
 

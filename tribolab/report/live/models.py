@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribolab.campaign.store.data_files import read_data
-from tribolab.records.model_words import stress_interval
+from tribolab.records.model_words import shear_stress_u95, stress_interval
 from tribolab.records.parts import number_of
 from tribolab.records.wording import with_error
 from tribolab.report.document.models import ModelRow
@@ -109,7 +109,7 @@ def shear_stress_figure(models: Sequence[ModelRow], colours: Mapping[str, int]) 
                     colour=colours[surface],
                     surface=surface,
                     medium=medium,
-                    error=[fit[error] * _MPA for _, fit in known],
+                    error=[shear_stress_u95(fit, fit[error]) * _MPA for _, fit in known],
                     told=[_told(row, fit, name) for row, fit in known],
                     open=open_,
                 )
@@ -120,7 +120,7 @@ def shear_stress_figure(models: Sequence[ModelRow], colours: Mapping[str, int]) 
         "model",
         "Shear stress in the contact",
         "Open: as fitted, for the contact area without adhesion; filled: in the larger area that "
-        "adhesion makes. Bars: the whole standard error, the spectrum's part in it where known.",
+        "adhesion makes. Bars: U95, with the spectrum's part where known.",
         "Fitted shear stress over the load, by surface and medium.",
         (Panel(Axis("load", "N"), Axis("shear stress σ", "MPa", least=0.0)),),
         tuple(series),
@@ -130,8 +130,9 @@ def shear_stress_figure(models: Sequence[ModelRow], colours: Mapping[str, int]) 
 
 def _told(row: ModelRow, fit: Mapping[str, Any], name: str) -> str:
     error = "corrected_shear_stress_error_Pa" if name else "shear_stress_total_error_Pa"
-    value = with_error(fit[f"{name}shear_stress_Pa"] * _MPA, fit[error] * _MPA, " MPa")
-    lines = [f"load {force_text(row.model.normal_force)}", f"σ = {value}"]
+    u95 = shear_stress_u95(fit, fit[error]) * _MPA
+    value = with_error(fit[f"{name}shear_stress_Pa"] * _MPA, u95, " MPa")
+    lines = [f"load {force_text(row.model.normal_force)}", f"σ = {value} (U95)"]
     if not name:
         interval = stress_interval(fit["shear_stress_low_Pa"], fit["shear_stress_high_Pa"])
         lines.append(f"95 % interval: {interval} MPa")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from tribolab.records.judgement import undecided_trends
 from tribolab.records.model_words import is_described
 from tribolab.records.roughness_words import roughness_in_words
 from tribolab.records.run_steps import TEXT
@@ -45,7 +46,11 @@ def in_short(document: Mapping[str, Any]) -> list[str]:
     """
     rough = ((s["name"], s["roughness"]) for s in document.get("surfaces", ()) if s["roughness"])
     along = _along(document.get("findings", ()))
-    return [*_falls(document["curves"]), *_models(document), *along, *roughness_in_words(rough)]
+    known = [run for run in document.get("runs", ()) if run.get("segments")]
+    runs = ((run["name"], run["segments"], run["quantity"] or "") for run in known)
+    open_ = [f"{text}." for text in [undecided_trends(runs)] if text]
+    roughness = roughness_in_words(rough)
+    return [*_falls(document["curves"]), *_models(document), *along, *open_, *roughness]
 
 
 def _along(findings: Iterable[Mapping[str, Any]]) -> list[str]:

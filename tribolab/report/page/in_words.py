@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from tribolab.records.model_words import is_described, stress_interval
-from tribolab.records.wording import with_error
+from tribolab.records.wording import NORMAL, with_error
 from tribolab.report.live.curves import system_name
 from tribolab.report.live.points import point_error
 from tribolab.report.plain import listed, plain_speed, plain_speeds
@@ -205,7 +205,7 @@ def oscillation_text(mode: Mapping[str, Any]) -> str:
         return f"{of} alone {verb} like stick-slip, as noise does now and then."
     text = f"Stick-slip in {of}."
     if mode["scaling_exponent"] is not None:
-        power = with_error(mode["scaling_exponent"], mode["scaling_error"])
+        power = with_error(mode["scaling_exponent"], NORMAL * mode["scaling_error"])
         scaling = str(mode["scaling"])
         text += f" {scaling[:1].upper()}{scaling[1:]} (frequency goes with speed to the {power})."
     return text

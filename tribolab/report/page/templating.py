@@ -19,9 +19,9 @@ from markupsafe import Markup
 from tribolab import words
 from tribolab.records import judgement, wording
 from tribolab.records.hurst_words import hurst_verdict, is_steep
-from tribolab.records.model_words import is_described, stress_interval
+from tribolab.records.model_words import is_described, shear_stress_u95, stress_interval
 from tribolab.records.packed import deflated
-from tribolab.records.roughness_words import form_in_words
+from tribolab.records.roughness_words import form_in_words, roughness_u95
 from tribolab.report.page.glossary import HEADS, TERMS
 from tribolab.report.page.in_words import conditions, oscillation_text
 from tribolab.report.page.sections import Section
@@ -160,6 +160,9 @@ def environment(folder: Path) -> jinja2.Environment:
         "judge": judgement.judge,
         "trend_texts": judgement.trend_texts,
         "stress_interval": stress_interval,
+        "shear_stress_u95": shear_stress_u95,
+        "roughness_u95": roughness_u95,
+        "NORMAL": wording.NORMAL,
         "conditions": conditions,
         "oscillating": oscillation_text,
         "is_described": is_described,
