@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from tribolab.errors import AnalysisError, Cure, ReadError, UnitError, shown
 from tribolab.quantities import unit_conversion
 from tribolab.reading.raw.opening import damage_told, isolated
+from tribolab.reading.raw.source import check_regular, read_unchanged
 from tribolab.turns import reciprocal
 from tribolab.units import conversion, positive
 
@@ -216,7 +217,7 @@ def read_modulus(
     array([1500000., 1800000.])
     """
     path = Path(path)
-    table = _find_table(path, sheet)
+    table = read_unchanged([path], lambda: _find_table(path, sheet))
     columns = {}
     for role, pattern in _COLUMNS.items():
         name = next(n for n in table.columns if pattern.fullmatch(n))
@@ -270,8 +271,7 @@ def _one_sweep(data: np.ndarray, sweep: int | None, name: str) -> np.ndarray:
 
 def _find_table(path: Path, sheet: str | None) -> pd.DataFrame:
     """Return the table that has the three columns, its row of units first."""
-    if not path.is_file():
-        raise ReadError(f"{path}: there is no such file")
+    check_regular(path)
     if path.suffix.lower() in (".xls", ".xlsx", ".ods"):
         tables = [pd.DataFrame(t.cells, columns=t.names) for t in _workbook_tables(path, sheet)]
     else:

@@ -96,6 +96,8 @@ def _natural(text: str) -> list[tuple[bool, int, str]]:
 def _there(raw: Path, pattern: str) -> str:
     """Say what is in the folder where the pattern stops to match, or that it names that folder."""
     parts = Path(pattern).parts
+    if _is_special(raw / pattern):
+        return "; it is no regular file (a pipe, socket or device): write its content to a file"
     if len(parts) > 1 and parts[0] == raw.name and not _is_folder(raw / parts[0]):
         return f"; patterns are relative to {raw.name}/: leave '{raw.name}/' out"
     folder = raw
@@ -112,6 +114,13 @@ def _there(raw: Path, pattern: str) -> str:
     )
     in_folder = "" if folder == raw else f" in {folder.relative_to(raw)}/"
     return f"; there is{in_folder} {listed}" + (hint if "did you mean" in hint else "")
+
+
+def _is_special(path: Path) -> bool:
+    try:
+        return path.exists() and not path.is_dir()
+    except (OSError, ValueError):
+        return False
 
 
 def _is_folder(path: Path) -> bool:

@@ -28,6 +28,7 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from tribolab.errors import ReadError, TribolabError
 from tribolab.reading.raw import limits
+from tribolab.reading.raw.source import check_regular
 from tribolab.room import take_in
 
 P = ParamSpec("P")
@@ -161,22 +162,6 @@ def largest_unpacked(size: int) -> int:
     ceiling = int(float(most)) if most.replace(".", "", 1).isdigit() else limits.MAX_UNPACKED.value
     ratio = limits.UNPACKED_PER_BYTE.value * size
     return int(min(max(limits.UNPACKED_FOR_ANY_FILE.value, ratio), ceiling))
-
-
-def check_regular(path: Path) -> None:
-    """Refuse what is not a file with content: a folder, a pipe, a socket, a device.
-
-    Raises
-    ------
-    ReadError
-        If it is none, or there is no such file.
-    """
-    if path.is_dir():
-        raise ReadError(f"{path}: this is a folder, not a file")
-    if not path.exists():
-        raise ReadError(f"{path}: there is no such file")
-    if not path.is_file():
-        raise ReadError(f"{path}: this is not a regular file (a pipe, socket or device)")
 
 
 def _in_child(
