@@ -48,6 +48,16 @@ def inputs_of(campaign: Campaign) -> list[tuple[Path, str]]:
     return inputs
 
 
+def inputs_outside(campaign: Campaign) -> list[Path]:
+    """Return the files that a campaign reads outside of its own folder and that of its raw files.
+
+    Links are followed. Who publishes the results of a campaign made by others shows these files.
+    """
+    homes = [campaign.file.resolve().parent, campaign.raw.resolve()]
+    files = dict.fromkeys(path.resolve() for path, _ in inputs_of(campaign) if path.is_file())
+    return [file for file in files if not any(file.is_relative_to(home) for home in homes)]
+
+
 def instrument_of(campaign: Campaign, name: str) -> str:
     """Name of a dialect as it is; a dialect's own file relative to the campaign file."""
     return str(campaign.file.parent / name) if name.endswith(".toml") else name
