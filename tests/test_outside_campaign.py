@@ -63,8 +63,9 @@ def test_i_know_does_not_open_a_folder_with_files_of_others(campaign):
 def test_raw_files_from_elsewhere_are_named(files, campaign, tmp_path):
     file = campaign(files.format(tmp_path))
     (file.parent / "raw/link.csv").symlink_to(tmp_path / "elsewhere/a.csv")
-    assert f"reads 1 file outside of its own folder and that of campaign.raw: {tmp_path}" in (
-        run(file)[1]
+    assert (
+        f"reads 1 file outside of its own folder and that of campaign.raw: {tmp_path}"
+        in (run(file)[1])
     )
     assert "outside" not in run(file, "--i-know")[1]
 
