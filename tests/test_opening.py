@@ -77,6 +77,11 @@ def test_an_error_of_ours_keeps_its_parts(file):
     assert str(caught.value) == f"{file}: no table; describe it"
 
 
+def test_what_no_reader_expects_of_a_library_is_damage_of_the_file(file):
+    with pytest.raises(ReadError, match=f"{file}: this file cannot be read: IndexError"):
+        cases.meet_the_unexpected(file)
+
+
 def test_a_missing_library_is_named(file):
     words = r"needs the package a_library_that_is_not_there; install it: pip install 'tribolab"
     with pytest.raises(MissingLibraryError, match=words):

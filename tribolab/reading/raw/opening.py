@@ -68,6 +68,13 @@ _FUNCTIONS = {  # that rebuild arrays and datasets; everything else that comes b
 _PACKAGES = {"python_calamine": "python-calamine", "nptdms": "npTDMS"}
 _ROOMS = ("builtins", "numpy", "pandas", "xarray", "datetime", "collections", "pathlib", "tribolab")
 
+# what readers turn into words themselves; a library that raises anything else met what it does not
+# expect, as SciPy does with an IndexError in a damaged netCDF file
+_HANDLED = (
+    *(TribolabError, ImportError, OSError, EOFError, ValueError, KeyError, TypeError),
+    *(RuntimeError, Warning),
+)
+
 inside = False  # whether this is the child
 
 
@@ -200,7 +207,11 @@ def _in_child(
         if ended.code == 0:
             return _result(handle)
         if ended.code == 3:
-            raise _unpacked_error(_result(handle))
+            error = _unpacked_error(_result(handle))
+            if isinstance(error, _HANDLED):
+                raise error
+            with damage_told(path, "file"):
+                raise error
     finally:
         os.close(handle)
         with contextlib.suppress(OSError):
