@@ -198,4 +198,11 @@ def _companion(path: Path, dialect: Dialect) -> LogDialects:
     if other is None or dialect.pair is None or not other.exists():
         return []
     check_regular(other)
+    if other.is_symlink() and not path.is_symlink():  # git-annex and DataLad link all of a run
+        raise ReadError(
+            f"the companion log {shown(other.name)} is a link to {other.resolve()}; tribolab reads "
+            "no data from elsewhere unless you name them",
+            where=path,
+            cure="copy that log beside this one, or name both",
+        )
     return [(other, load_dialect(dialect.pair.instrument))]

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from tribolab.campaign.settings.problems import SettingsProblem
 from tribolab.campaign.settings.review import REVIEW_FILE
 from tribolab.errors import nearest, shown
+from tribolab.io.zero_reading import parse_zero
 from tribolab.provenance import as_text, sha256_of_file
 
 if TYPE_CHECKING:
@@ -54,7 +55,12 @@ def inputs_outside(campaign: Campaign) -> list[Path]:
     Links are followed. Who publishes the results of a campaign made by others shows these files.
     """
     homes = [campaign.file.resolve().parent, campaign.raw.resolve()]
-    files = dict.fromkeys(path.resolve() for path, _ in inputs_of(campaign) if path.is_file())
+    named = [path for path, _ in inputs_of(campaign)]
+    for entry in campaign.run:
+        if entry.zero and (blank := parse_zero(entry.zero).file):
+            runs = [file for p in entry.files for file in matching_files(campaign.raw, p)]
+            named += [run.parent / blank for run in runs]
+    files = dict.fromkeys(path.resolve() for path in named if path.is_file())
     return [file for file in files if not any(file.is_relative_to(home) for home in homes)]
 
 

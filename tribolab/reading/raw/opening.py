@@ -207,11 +207,11 @@ def _in_child(
         if ended.code == 0:
             return _result(handle)
         if ended.code == 3:
-            error = _unpacked_error(_result(handle))
-            if isinstance(error, _HANDLED):
-                raise error
+            raised = _unpacked_error(_result(handle))
+            if isinstance(raised, _HANDLED):
+                raise raised
             with damage_told(path, "file"):
-                raise error
+                raise raised
     finally:
         os.close(handle)
         with contextlib.suppress(OSError):
