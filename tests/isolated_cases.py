@@ -54,3 +54,8 @@ class Sly:
 @isolated()
 def answer_with_a_command(path: Path):
     return Sly()
+
+
+@isolated()
+def meet_the_unexpected(path: Path):
+    return [][0]

@@ -11,11 +11,15 @@ from pathlib import Path
 import isolated_cases as cases
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 import tribolab
-from tribolab.errors import ReadError
+from tribolab.cli import app
+from tribolab.errors import ReadError, TribolabError
+from tribolab.io.tables.schema import load_schema
 from tribolab.reading.raw import limits, opening
-from tribolab.reading.raw.opening import CrashedError, MissingLibraryError, check_regular
+from tribolab.reading.raw.opening import CrashedError, MissingLibraryError
+from tribolab.reading.raw.source import check_regular
 
 POSIX = pytest.mark.skipif(not hasattr(os, "fork"), reason="children are copies on POSIX only")
 
@@ -73,6 +77,11 @@ def test_an_error_of_ours_keeps_its_parts(file):
     assert str(caught.value) == f"{file}: no table; describe it"
 
 
+def test_what_no_reader_expects_of_a_library_is_damage_of_the_file(file):
+    with pytest.raises(ReadError, match=f"{file}: this file cannot be read: IndexError"):
+        cases.meet_the_unexpected(file)
+
+
 def test_a_missing_library_is_named(file):
     words = r"needs the package a_library_that_is_not_there; install it: pip install 'tribolab"
     with pytest.raises(MissingLibraryError, match=words):
@@ -100,6 +109,46 @@ def test_what_is_no_file_is_refused_at_once(tmp_path):
             check_regular(path)
     with pytest.raises(ReadError, match="not a regular file"):
         check_regular(Path("/dev/zero"))
+
+
+FORCE = "# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n" + "".join(
+    f"{n / 10},0.5,31.0\n" for n in range(30)
+)
+
+
+@POSIX
+@pytest.mark.parametrize("name", ["pipe.csv", "link.csv", "zero.csv"])
+@pytest.mark.parametrize(
+    "command", ["info", "check", "dialect", "run", "info a_force.csv --instrument", "campaign",
+                "scans", "modulus", "schema", "companion"],
+)  # fmt: skip
+def test_no_command_opens_what_is_no_regular_file(command, name, tmp_path, monkeypatch):
+    """One that does waits for ever, or for all memory."""
+    monkeypatch.chdir(tmp_path)
+    os.mkfifo("pipe.csv")
+    Path("link.csv").symlink_to("pipe.csv")
+    Path("zero.csv").symlink_to("/dev/zero")
+    Path("a_force.csv").write_text(FORCE)
+    if command == "schema":
+        Path(name).rename("own.json")
+        name = "own.json"
+    if command in ("scans", "modulus", "schema"):
+        reader = {"scans": tribolab.read_scans, "modulus": tribolab.read_modulus}
+        with pytest.raises(TribolabError, match=f"{name}.*not a regular file"):
+            reader.get(command, load_schema)(Path(name))
+        return
+    if command == "companion":
+        Path("a_motion.csv").symlink_to(name)
+        command, name = "check", "a_force.csv"
+    if command == "campaign":
+        Path("campaign.toml").symlink_to(name)
+        command, name = "run", "campaign.toml"
+    if command.endswith("--instrument"):
+        Path(name).rename("own.toml")
+        name = "own.toml"
+    answer = CliRunner().invoke(app, [*command.split(), name])
+    assert answer.exit_code in (2, 3)
+    assert "not a regular file" in " ".join(answer.output.split())
 
 
 @POSIX

@@ -164,8 +164,8 @@ def damaged(case: int, sources: Sources, folder: Path):
         ways += "+other name"
     target.write_bytes(content)
     for ending, other in (("_force", "_motion"), ("_motion", "_force")):
-        if target.stem.endswith(ending):
-            mate = source.with_name(source.name.replace(ending, other))
+        mate = source.with_name(source.name.replace(ending, other))
+        if target.stem.endswith(ending) and mate.is_file():
             shutil.copy(mate, folder / mate.name)
             if ending == "_motion":  # the run is read by its main log
                 target = folder / mate.name

@@ -25,6 +25,7 @@ from tribolab.io.missing import missing_of
 from tribolab.io.runs import read_log as known_log
 from tribolab.quantities import quantity
 from tribolab.reading.moduli import holds_modulus, read_modulus_table
+from tribolab.reading.raw.source import check_regular
 from tribolab.reversals import reversals
 from tribolab.words import Count, explain
 
@@ -157,8 +158,11 @@ def _is_told(path: Path, error: ReadError) -> bool:
     if isinstance(error, GuessedError):
         return False  # which is told again
     try:
+        check_regular(path)
         if is_own_text(path):
             return True
+    except ReadError:  # which the error says
+        return True
     except OSError:
         return False
     draft = draft_of(path)

@@ -20,7 +20,7 @@ from tribolab.campaign.store.ledger import Ledger
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.campaign.store.staging import resolved, staged
 from tribolab.campaign.store.unchanged import note, unchanged
-from tribolab.errors import ConfigError
+from tribolab.errors import ConfigError, Cure, shown
 from tribolab.report.code import code_of_page
 from tribolab.report.figures.choice import wanted
 
@@ -37,6 +37,7 @@ def run_campaign(
     figures: str = "all",
     pdf: bool = False,
     verify: bool = False,
+    outside: bool = False,
 ) -> Outcome:
     r"""Analyse a campaign and write its results: data, tables, figures and the report.
 
@@ -68,6 +69,8 @@ def run_campaign(
     verify
         Whether raw files and results are recognised by their checksums only, each read anew; by
         default raw files and large results by size, time and inode first.
+    outside
+        Whether ``output`` in the campaign file may lead out of the folder of that file.
 
     Returns
     -------
@@ -101,6 +104,8 @@ def run_campaign(
     else:
         campaign, runs = load_and_plan(path_or_campaign)
     place = resolved(campaign.output if output is None else output)
+    if output is None and not outside:
+        _keep_inside(campaign, place)
     _keep_apart(campaign, place)
     if executor is not None and (jobs is not None or scheduler is not None):
         raise ConfigError("give either an executor, or jobs, or scheduler")
@@ -146,6 +151,22 @@ def _reached(campaign: Campaign, raw: Path, place: Path) -> bool:
     patterns += [p for surface in campaign.surface for p in surface.scans or ()]
     wild = [pattern for pattern in patterns if not (raw / pattern).is_file()]
     return depth == 0 or any("**" in p or len(Path(p).parts) > depth for p in wild)
+
+
+def _keep_inside(campaign: Campaign, place: Path) -> None:
+    """Refuse a results folder outside of the campaign's: a file of others must not choose it."""
+    home = campaign.file.resolve().parent
+    if not place.is_relative_to(home):
+        raise ConfigError(
+            f"campaign.output = '{shown(campaign.campaign.output)}' writes results to {place}, "
+            f"outside of the campaign's folder {home}",
+            where=campaign.file,
+            cure=Cure(
+                notebook="name a folder in it, or say output= or outside=True",
+                terminal="name a folder in it, or say --output or --i-know",
+                campaign="name a folder in it, or say --output or --i-know",
+            ),
+        )
 
 
 def _keep_apart(campaign: Campaign, place: Path) -> None:

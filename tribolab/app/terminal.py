@@ -12,8 +12,11 @@ from rich.segment import Segment
 from rich.table import Table
 
 from tribolab.app.ranges import range_of
+from tribolab.campaign.settings.config import Campaign
+from tribolab.campaign.settings.files import inputs_outside
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.errors import harmless
+from tribolab.provenance import as_text
 from tribolab.records.part_records import CurveRecord, SurfaceRecord
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome, SurfaceOutcome
 from tribolab.records.roughness_words import DOUBTFUL_FORM, roughness_in_words
@@ -296,6 +299,18 @@ def _doubts(surface: SurfaceOutcome) -> list[str]:
         for finding in surface.findings
         if not finding.check
         and (finding.severity == "suspect" or finding.message.startswith(DOUBTFUL_FORM))
+    ]
+
+
+def outside_lines(campaign: Campaign) -> list[str]:
+    """Name the files outside of the campaign's folders that were read, and what to do."""
+    files = inputs_outside(campaign)
+    if not files:
+        return []
+    return [
+        f"{campaign.file.name} reads {Count(len(files)):file|files} outside of its own folder and "
+        f"that of campaign.raw: {_handful(list(map(as_text, files)))}; what they hold is in the "
+        "results. Copy what belongs to the campaign into its folder; --i-know silences this line"
     ]
 
 

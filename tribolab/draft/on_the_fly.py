@@ -17,6 +17,7 @@ from tribolab.io import cures, runs
 from tribolab.io.dialects.find import Dialect, Instrument, UnknownFileError
 from tribolab.io.dialects.signature import peek
 from tribolab.io.signals import Signals
+from tribolab.reading.raw.source import read_unchanged
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -69,12 +70,17 @@ def read_run(
         how: runs.Reading = {**said, "pair": False} if drafted else said
         return runs.read_run(path, dialect, **how)
 
-    return _by_any(paths, instrument, read)
+    return read_unchanged(paths, lambda: _by_any(paths, instrument, read))
 
 
 def read_log(path: PathLike, instrument: Instrument | None = None) -> Signals:
     """Read one raw file by itself, as arrays; see `read_run` and `tribolab.io.runs.read_log`."""
-    return _by_any([Path(path)], instrument, lambda dialect, _: runs.read_log(path, dialect))
+
+    def read(dialect: Instrument | None, _: bool) -> Signals:
+        return runs.read_log(path, dialect)
+
+    file = Path(path)
+    return read_unchanged([file], lambda: _by_any([file], instrument, read))
 
 
 def _by_any(paths: list[Path], instrument: Instrument | None, read: _Reader[_Run]) -> _Run:

@@ -6,6 +6,7 @@ The face of `tribolab.io.scans.read` for whoever does not know beforehand what w
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Literal, overload
 
@@ -22,6 +23,7 @@ from tribolab.io.scans.column_map import UnclearOrderError
 from tribolab.io.scans.extent import doubt_about_heights
 from tribolab.io.scans.read import files_of, read_known_scans, stacked
 from tribolab.io.scans.undescribed import is_own_text
+from tribolab.reading.raw.source import read_unchanged
 from tribolab.stamping import stamp
 
 _TRACE = ", trace "
@@ -106,10 +108,13 @@ def read_scans(
     """
     files = files_of(paths)
     units = {"x_unit": x_unit, "height_unit": height_unit}
-    if instrument is not None:
-        read = [read_known_scans([file], instrument, **units) for file in files]
-    else:
-        read = [_read(file, units) for file in files]
+
+    def read_file(file: Path) -> list[xr.Dataset]:
+        if instrument is not None:
+            return read_known_scans([file], instrument, **units)
+        return _read(file, units)
+
+    read = [read_unchanged([file], partial(read_file, file)) for file in files]
     traces = [(file, scan) for file, scans in zip(files, read, strict=True) for scan in scans]
     if not stack:
         return [stamp(scan) for _, scan in traces]

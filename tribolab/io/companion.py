@@ -55,7 +55,7 @@ def describe_companion(
         if dialect is None:
             return {}
         other = companion_path(Path(path), dialect)
-        if other is None or not other.is_file():
+        if other is None or not other.exists():
             return {"missing": companion_name(Path(path), dialect)}
         log = read_log(path, instrument) if log is None else log
         attrs = with_companion(log, other, dialect).attrs

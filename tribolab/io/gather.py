@@ -31,6 +31,7 @@ from tribolab.io.zero_reading import free_while_zeroed, take_zeros, zeros_of_der
 from tribolab.pieces import chosen, concatenated
 from tribolab.provenance import CONVENTIONS, as_text, history_line
 from tribolab.quantities import QUANTITIES
+from tribolab.reading.raw.source import read_unchanged
 from tribolab.untyped import Json
 
 LogDialects = list[tuple[Path, Dialect]]
@@ -130,7 +131,7 @@ def _blank(run: Path, name: str, dialect: Dialect) -> dict[str, np.ndarray]:
 
         return read_table(peek(run).path, dialect, name.removeprefix("table "))
     path = run.parent / name
-    content = read_content(path, dialect)
+    content = read_unchanged([path], lambda: read_content(path, dialect))
     set_time(content, dialect)
     columns = _columns([content], dialect)
     if dialect.derived:

@@ -11,6 +11,7 @@ from tribolab.io.dialects.find import is_scan, load_dialect, recognise
 from tribolab.io.dialects.signature import is_results, peek
 from tribolab.io.scans.held_arrays import holds_arrays
 from tribolab.io.seal import carries_seal
+from tribolab.reading.raw.source import check_regular
 
 _LAST_NUMBER = re.compile(r"[ _-]*\d+$")
 
@@ -58,6 +59,7 @@ def kind_of(path: str | Path, instrument: str | Path | None = None) -> str:
 def _holds_map(path: Path) -> bool:
     """Whether a file of arrays by name holds a map, or profiles side by side."""
     try:
+        check_regular(path)
         with path.open("rb") as file:
             head = file.read(16)
         if not holds_arrays(path, head) or carries_seal(path):

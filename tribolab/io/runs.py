@@ -15,6 +15,7 @@ from tribolab.io.gather import LogDialects, gather
 from tribolab.io.logs import companion_name, companion_path
 from tribolab.io.row_counts import with_companion_rows
 from tribolab.io.signals import Signals, dataset_of, signals_of
+from tribolab.reading.raw.source import check_regular, read_unchanged
 from tribolab.units import positive, to_si
 
 if TYPE_CHECKING:
@@ -129,7 +130,7 @@ def _joined(log: Signals, companions: LogDialects, shift: float | None) -> Signa
     # late: starting stays quick
     from tribolab.io.clocks.merge import merge
 
-    motion = gather(companions)
+    motion = read_unchanged([path for path, _ in companions], lambda: gather(companions))
     return with_companion_rows(merge(log, motion, shift), log, motion)
 
 
@@ -194,6 +195,14 @@ def _sorted_out(paths: list[Path], dialects: list[Dialect]) -> tuple[LogDialects
 def _companion(path: Path, dialect: Dialect) -> LogDialects:
     """Return the companion log, if the instrument writes one and it lies beside the file."""
     other = companion_path(path, dialect)
-    if other is None or dialect.pair is None or not other.is_file():
+    if other is None or dialect.pair is None or not other.exists():
         return []
+    check_regular(other)
+    if other.is_symlink() and not path.is_symlink():  # git-annex and DataLad link all of a run
+        raise ReadError(
+            f"the companion log {shown(other.name)} is a link to {other.resolve()}; tribolab reads "
+            "no data from elsewhere unless you name them",
+            where=path,
+            cure="copy that log beside this one, or name both",
+        )
     return [(other, load_dialect(dialect.pair.instrument))]

@@ -6,6 +6,7 @@ import dataclasses
 import functools
 import gzip
 import re
+import stat
 import zipfile
 import zlib
 from pathlib import Path
@@ -107,14 +108,31 @@ def _members(path: Path) -> list[str] | None:
     """Names of the files in a plain archive; None of Office files, x3p, NumPy."""
     try:
         with zipfile.ZipFile(path) as archive:
-            names = [info.filename for info in archive.infolist() if not info.is_dir()]
+            parts = [info for info in archive.infolist() if not info.is_dir()]
+            names = [info.filename for info in parts]
     except (zipfile.BadZipFile, OSError, ValueError):
         return None
     if any(name.split("/")[-1] in _OFFICE for name in names):
         return None
     if holds_arrays(path):
         return None  # an archive of NumPy's arrays is read as a whole
+    for part in parts:
+        _refuse_outside(path, part)
     return [name for name in names if not name.startswith("__MACOSX/")]
+
+
+def _refuse_outside(path: Path, part: zipfile.ZipInfo) -> None:
+    """Refuse a member that is a link, or whose name leads out of the archive."""
+    name = part.filename.replace("\\", "/")
+    outside = name.startswith("/") or name[1:2] == ":" or ".." in name.split("/")
+    if outside or stat.S_ISLNK(part.external_attr >> 16):
+        what = "has a name outside of it" if outside else "is a link"
+        raise ReadError(
+            f"'{shown(part.filename, 60)}' in this archive {what}; tribolab reads no data from "
+            "outside a file",
+            where=path,
+            cure="pack the files themselves again",
+        )
 
 
 @functools.lru_cache(maxsize=64)

@@ -15,6 +15,7 @@ from tribolab.errors import Cure, ReadError, UnitError, shown
 from tribolab.quantities import unit_conversion
 from tribolab.reading.lexicon.lexicon import known_words, names, normalise_label
 from tribolab.reading.raw.opening import damage_told, isolated
+from tribolab.reading.raw.source import check_regular, read_unchanged
 from tribolab.turns import reciprocal
 from tribolab.units import conversion
 
@@ -92,7 +93,7 @@ def read_modulus_table(
         If there is no such table, a unit is missing, or there are several sweeps and none is named.
     """
     path = Path(path)
-    table = _find_table(path, sheet)
+    table = read_unchanged([path], lambda: _find_table(path, sheet))
     remarks: list[str] = []
     data = _in_si(table, unit, path.name, remarks)
     if data.shape[1] < 2:
@@ -115,8 +116,7 @@ def holds_modulus(path: str | Path) -> bool:
 
 
 def _find_table(path: Path, sheet: str | None, longest: int | None = None) -> _Table:
-    if not path.is_file():
-        raise ReadError(f"{path}: there is no such file")
+    check_regular(path)
     seen: dict[str, None] = {}
     workbook = path.suffix.lower() in _WORKBOOKS
     for rows, decimal in _workbook(path, sheet) if workbook else _text(path, longest):

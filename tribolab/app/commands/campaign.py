@@ -105,6 +105,13 @@ def run(
         typer.Option(help="Figures for publication: all, curves (measured curves only) or none."),
     ] = "all",
     pdf: Annotated[bool, typer.Option("--pdf", help="Write figures as PDF, too.")] = False,
+    i_know: Annotated[
+        bool,
+        typer.Option(
+            "--i-know",
+            help="Let the campaign file write and read outside of its own folder.",
+        ),
+    ] = False,
     verify: Annotated[
         bool,
         typer.Option(
@@ -154,21 +161,24 @@ def run(
                     figures=figures,
                     pdf=pdf,
                     verify=verify,
+                    outside=i_know,
                 )
         except BaseException:
             if written:
                 withdraw(file)
             raise
-        if new_folder and not any(part.done for part in (*outcome.runs, *outcome.surfaces)):
-            # late: starting stays quick
-            from tribolab.app.terminal import failure_lines
+        # late: with what the analysis needs, it is loaded by now
+        from tribolab.app import terminal
 
+        if new_folder and not any(part.done for part in (*outcome.runs, *outcome.surfaces)):
             withdraw(file, place)  # a next try starts anew
-            for line in why_unread(campaign, instrument) or failure_lines(outcome):
+            for line in why_unread(campaign, instrument) or terminal.failure_lines(outcome):
                 say(f"tribolab: {line}", to_stderr=True)
             raise typer.Exit(UNREADABLE)
         if written:
             say(f"{file} is written: complete it with what is known of the measurement")
+        for line in () if i_know or written else terminal.outside_lines(outcome.campaign):
+            say(f"tribolab: {line}", to_stderr=True)
         code = show_outcome(outcome, debug)
     raise typer.Exit(code)
 

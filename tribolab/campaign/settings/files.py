@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from tribolab.campaign.settings.problems import SettingsProblem
 from tribolab.campaign.settings.review import REVIEW_FILE
 from tribolab.errors import nearest, shown
+from tribolab.io.zero_reading import parse_zero
 from tribolab.provenance import as_text, sha256_of_file
 
 if TYPE_CHECKING:
@@ -46,6 +47,21 @@ def inputs_of(campaign: Campaign) -> list[tuple[Path, str]]:
         if instrument and instrument.endswith(".toml"):
             inputs.append((Path(instrument_of(campaign, instrument)), "a dialect"))
     return inputs
+
+
+def inputs_outside(campaign: Campaign) -> list[Path]:
+    """Return the files that a campaign reads outside of its own folder and that of its raw files.
+
+    Links are followed. Who publishes the results of a campaign made by others shows these files.
+    """
+    homes = [campaign.file.resolve().parent, campaign.raw.resolve()]
+    named = [path for path, _ in inputs_of(campaign)]
+    for entry in campaign.run:
+        if entry.zero and (blank := parse_zero(entry.zero).file):
+            runs = [file for p in entry.files for file in matching_files(campaign.raw, p)]
+            named += [run.parent / blank for run in runs]
+    files = dict.fromkeys(path.resolve() for path in named if path.is_file())
+    return [file for file in files if not any(file.is_relative_to(home) for home in homes)]
 
 
 def instrument_of(campaign: Campaign, name: str) -> str:
@@ -96,6 +112,8 @@ def _natural(text: str) -> list[tuple[bool, int, str]]:
 def _there(raw: Path, pattern: str) -> str:
     """Say what is in the folder where the pattern stops to match, or that it names that folder."""
     parts = Path(pattern).parts
+    if _is_special(raw / pattern):
+        return "; it is no regular file (a pipe, socket or device): write its content to a file"
     if len(parts) > 1 and parts[0] == raw.name and not _is_folder(raw / parts[0]):
         return f"; patterns are relative to {raw.name}/: leave '{raw.name}/' out"
     folder = raw
@@ -112,6 +130,13 @@ def _there(raw: Path, pattern: str) -> str:
     )
     in_folder = "" if folder == raw else f" in {folder.relative_to(raw)}/"
     return f"; there is{in_folder} {listed}" + (hint if "did you mean" in hint else "")
+
+
+def _is_special(path: Path) -> bool:
+    try:
+        return path.exists() and not path.is_dir()
+    except (OSError, ValueError):
+        return False
 
 
 def _is_folder(path: Path) -> bool:

@@ -113,7 +113,8 @@ def plan_runs(campaign: Campaign) -> Plan:
     for number, surface in enumerate(campaign.surface):
         resolve_patterns(campaign.raw, surface.scans or (), ("surface", number, "scans"), problems)
     if (name := campaign.contact.modulus_file) and not (campaign.raw / name).is_file():
-        what = f"there is no file {campaign.raw / name}"
+        there = (campaign.raw / name).exists()
+        what = f"{'no regular' if there else 'there is no'} file {campaign.raw / name}"
         problems.append(SettingsProblem(("contact", "modulus_file"), what))
     for number, entry in enumerate(campaign.run):
         where = ("run", number, "files")

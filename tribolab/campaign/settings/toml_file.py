@@ -10,7 +10,8 @@ from typing import Generic, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from tribolab.campaign.settings import problems
-from tribolab.errors import ConfigError
+from tribolab.errors import ConfigError, ReadError
+from tribolab.reading.raw.source import check_regular
 
 SettingsModel = TypeVar("SettingsModel", bound=BaseModel)
 
@@ -31,7 +32,11 @@ def text_of(path: Path, missing: str) -> str:
         If it cannot be read.
     """
     try:
+        if path.exists():
+            check_regular(path)
         return path.read_text(encoding="utf-8-sig")
+    except ReadError as error:
+        raise ConfigError(error) from error
     except FileNotFoundError as error:
         raise ConfigError(f"{path}: there is no such file; {missing}") from error
     except (OSError, UnicodeDecodeError) as error:

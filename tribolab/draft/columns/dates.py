@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -20,6 +21,8 @@ _FORMS = (
     *("%M:%S.%f", "%M:%S,%f"),  # with a fraction only: 01:30 may be hours and minutes
 )
 _TRIED = 20
+# in a text of each of these forms: a table of 200 columns of words would take a minute to try them
+_LIKE_A_DATE = re.compile(r"\d:\d|^\s*\d{4}-?\d\d")
 
 
 def find_form(texts: Sequence[str]) -> tuple[str, str]:
@@ -43,7 +46,10 @@ def find_form(texts: Sequence[str]) -> tuple[str, str]:
     ('%m/%d/%Y %H:%M:%S', ('', ''))
     """
     filled = [text for text in texts if text]
-    fitting = [form for form in _FORMS if filled[:_TRIED] and _fits(filled[:_TRIED], form)]
+    first = filled[:_TRIED]
+    if not first or not all(map(_LIKE_A_DATE.search, first)):
+        return "", ""
+    fitting = [form for form in _FORMS if _fits(first, form)]
     fitting = [form for form in fitting if _fits(filled, form)]
     if not fitting:
         return "", ""

@@ -24,6 +24,7 @@ from tribolab.draft.stated.values import without_unit
 from tribolab.draft.words.sentences import phrases
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
+from tribolab.reading.raw.source import check_regular
 from tribolab.unit_names import WEIGHTS
 
 COUNTED = "heights in counts, of which the file does not say how much one is"
@@ -279,9 +280,10 @@ def _drafts_of(path: object) -> list[str]:
     found = []
     for beside in sorted(file.parent.glob("*.toml"))[:_MOST_BESIDE]:
         try:
+            check_regular(beside)
             with beside.open(encoding="utf-8") as text:
                 found += [str(beside)] if text.readline().startswith(first) else []
-        except (OSError, ValueError):
+        except (OSError, ValueError, ReadError):
             continue
     return found[:1]
 

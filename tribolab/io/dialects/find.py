@@ -14,6 +14,7 @@ from tribolab.io import cures
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, is_results, peek
 from tribolab.io.schema_folder import schema_folder
+from tribolab.reading.raw.source import check_regular
 from tribolab.untyped import Json
 
 __all__ = [
@@ -75,8 +76,12 @@ def load_dialect(name_or_path: Instrument) -> Dialect:
         return _load(known[str(name_or_path)])
     path = Path(name_or_path)
     if path.suffix == ".toml":
-        if not path.is_file():
+        if not path.exists():
             raise ConfigError(f"{path}: there is no such dialect file")
+        try:
+            check_regular(path)
+        except ReadError as error:
+            raise ConfigError(error) from error
         return _parse(path)
     raise ConfigError(
         f"no instrument is called '{shown(str(name_or_path))}'{nearest(str(name_or_path), known)}; "

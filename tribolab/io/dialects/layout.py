@@ -127,11 +127,16 @@ class Rows(Strict):
     )
 
 
+_IN_A_NAME = r"^[^/\\\x00]+$"  # the companion lies beside the file
+
+
 class Pair(Strict):
     """A second log with a clock of its own: the names differ by one ending."""
 
-    own: str = Field(description="ending of this file's stem, e.g. '_force'")
-    other: str = Field(description="ending of the companion's stem, e.g. '_motion'")
+    own: str = Field(description="ending of this file's stem, e.g. '_force'", pattern=_IN_A_NAME)
+    other: str = Field(
+        description="ending of the companion's stem, e.g. '_motion'", pattern=_IN_A_NAME
+    )
     instrument: str = Field(description="dialect of the companion")
 
 

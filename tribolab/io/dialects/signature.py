@@ -16,6 +16,7 @@ from tribolab.io.patterns import why_missing
 from tribolab.io.tables.xml_workbook import is_xml_workbook
 from tribolab.io.unpacked import ZIP, holds_arrays, is_workbook, unpacked
 from tribolab.reading.raw.hdf5_safety import refuse_outside
+from tribolab.reading.raw.source import check_regular
 
 HEAD = 1 << 20  # bytes looked at for preamble and header
 
@@ -80,8 +81,8 @@ def peek(path: str | Path, *, binary: bool = False) -> File:
     """
     path = Path(path)
     try:
-        if path.exists() and not path.is_file():
-            raise ReadError(f"{path}: this is not a file; name the raw file itself")
+        if path.exists():
+            check_regular(path)
         with path.open("rb") as file:
             head = file.read(HEAD)
             size = file.seek(0, 2)

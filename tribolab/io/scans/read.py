@@ -29,6 +29,7 @@ from tribolab.io.scans.isolated import take_isolated
 from tribolab.io.scans.passes import find_passes
 from tribolab.io.scans.undescribed import read_undescribed
 from tribolab.provenance import as_text, made, sha256_of_file
+from tribolab.reading.raw.source import check_regular
 from tribolab.stamping import stamp
 from tribolab.units import positive
 from tribolab.untyped import Json
@@ -101,8 +102,7 @@ def _every_dialect() -> tuple[Dialect, ...]:
 def _read(
     path: Path, dialect: Dialect | None, x_unit: str | None, height_unit: str | None
 ) -> list[xr.Dataset]:
-    if not path.is_file():
-        raise ReadError(f"{path}: there is no such file")
+    check_regular(path)
     if dialect is None:
         dialect = _recognised(path)
     if dialect is not None:

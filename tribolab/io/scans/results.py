@@ -14,6 +14,7 @@ from tribolab.io.scans.formats import result
 from tribolab.io.scans.named_results import read_named_results
 from tribolab.provenance import provenance
 from tribolab.quantities import QUANTITIES
+from tribolab.reading.raw.source import read_unchanged
 from tribolab.stamping import stamp
 from tribolab.units import conversion
 
@@ -54,6 +55,10 @@ def read_tester_results(path: str | Path) -> xr.Dataset:
     >>> float(found.Ra), found.attrs["lambda_c_m"], found.attrs["instrument_errors"]
     (3.246e-06, 0.0008, 'Rc: Err110')
     """
+    return read_unchanged([Path(path)], lambda: _results(path))
+
+
+def _results(path: str | Path) -> xr.Dataset:
     file = peek(path)
     if not is_surftest_results(file.head):
         if is_results(file.head):

@@ -12,9 +12,10 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from tribolab.errors import ConfigError, UnitError, nearest, shown
+from tribolab.errors import ConfigError, ReadError, UnitError, nearest, shown
 from tribolab.io.schema_folder import schema_folder
 from tribolab.io.tables.violations import Broken, Violations
+from tribolab.reading.raw.source import check_regular
 from tribolab.units import conversion
 
 _SCHEMAS = ("run", "scan")
@@ -217,7 +218,10 @@ _CHECKS: Mapping[str, Callable[[np.ndarray, Any, frozenset[str]], np.ndarray | N
 @functools.lru_cache(maxsize=16)
 def _load(path: Path) -> Mapping[str, Any]:
     try:
+        check_regular(path)
         schema = json.loads(path.read_text(encoding="utf-8"))
+    except ReadError as error:
+        raise ConfigError(error) from error
     except (OSError, ValueError) as error:
         raise ConfigError(f"{path}: the schema cannot be read: {error}") from error
     _check_schema(schema, str(path))

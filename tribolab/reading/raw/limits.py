@@ -28,3 +28,8 @@ MAX_UNPACKED = Limit(
     "(bytes) changes it",
 )  # fmt: skip
 PATIENCE = Limit(60.0, "s", "waiting for a child beyond its computing time, on a busy machine")
+AT_REST = Limit(
+    600.0, "s", "age from which on size and times alone show whether a file is written to: FAT "
+    "notes times to 2 s, network file systems some 60 s late, and clocks of servers differ",
+)  # fmt: skip
+READINGS = Limit(3.0, "1", "readings of a file that changes while it is read, before it is refused")

@@ -28,6 +28,7 @@ from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 from tribolab.errors import ReadError, TribolabError
 from tribolab.reading.raw import limits
+from tribolab.reading.raw.source import check_regular
 from tribolab.room import take_in
 
 P = ParamSpec("P")
@@ -66,6 +67,13 @@ _FUNCTIONS = {  # that rebuild arrays and datasets; everything else that comes b
 }
 _PACKAGES = {"python_calamine": "python-calamine", "nptdms": "npTDMS"}
 _ROOMS = ("builtins", "numpy", "pandas", "xarray", "datetime", "collections", "pathlib", "tribolab")
+
+# what readers turn into words themselves; a library that raises anything else met what it does not
+# expect, as SciPy does with an IndexError in a damaged netCDF file
+_HANDLED = (
+    *(TribolabError, ImportError, OSError, EOFError, ValueError, KeyError, TypeError),
+    *(RuntimeError, Warning),
+)
 
 inside = False  # whether this is the child
 
@@ -163,22 +171,6 @@ def largest_unpacked(size: int) -> int:
     return int(min(max(limits.UNPACKED_FOR_ANY_FILE.value, ratio), ceiling))
 
 
-def check_regular(path: Path) -> None:
-    """Refuse what is not a file with content: a folder, a pipe, a socket, a device.
-
-    Raises
-    ------
-    ReadError
-        If it is none, or there is no such file.
-    """
-    if path.is_dir():
-        raise ReadError(f"{path}: this is a folder, not a file")
-    if not path.exists():
-        raise ReadError(f"{path}: there is no such file")
-    if not path.is_file():
-        raise ReadError(f"{path}: this is not a regular file (a pipe, socket or device)")
-
-
 def _in_child(
     path: Path,
     function: Callable[..., Any],
@@ -215,7 +207,11 @@ def _in_child(
         if ended.code == 0:
             return _result(handle)
         if ended.code == 3:
-            raise _unpacked_error(_result(handle))
+            raised = _unpacked_error(_result(handle))
+            if isinstance(raised, _HANDLED):
+                raise raised
+            with damage_told(path, "file"):
+                raise raised
     finally:
         os.close(handle)
         with contextlib.suppress(OSError):
