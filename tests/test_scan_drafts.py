@@ -7,6 +7,7 @@ import pytest
 
 from tribolab.app.checks import check_files
 from tribolab.app.file_info import file_lines
+from tribolab.draft.dialect.answers import corrected
 from tribolab.draft.dialect.draft import draft_dialect, save_draft
 from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError, TribolabError
@@ -663,3 +664,11 @@ def test_one_unit_for_a_table_is_that_of_all_its_lengths(tmp_path, said):
     two = written(tmp_path, f"{said}\n# lateral resolution unit: um\n# X Z\n{rows}\n", "two.txt")
     with pytest.raises(ReadError):
         read_scans(two)
+
+
+def test_a_map_without_names_is_not_metres_wide_and_y_follows_x(shared_data):
+    draft = draft_dialect(shared_data / "cases/map_without_names.csv")
+    assert [column.unit for column in draft.understood.columns] == ["um", "um", "um"]
+    told = corrected(draft, "x", 1, "mm")
+    assert [column.unit for column in told.understood.columns[:2]] == ["mm", "mm"]
+    assert not told.understood.columns[1].guessed

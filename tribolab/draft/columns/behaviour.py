@@ -17,6 +17,8 @@ _SAME = 0.9999  # correlation of one signal in two units
 _COMPARED = 1000  # columns held against one another: their pairs grow with the square
 _EVERY = 20  # a smooth signal travels as far when only every so-manyth sample is looked at
 _SMOOTH = 1.12
+_LONGEST_SCAN = 200.0  # mm, the largest traverse of a profilometer
+_HIGHEST = 5.0  # mm, the range of a stylus gauge
 
 
 def by_behaviour(
@@ -80,8 +82,10 @@ def _is_clock(x: np.ndarray) -> bool:
 
 def _scan_units(part: np.ndarray, height: int) -> tuple[str, str]:
     """Heights as large as the length, number for number, are in a smaller unit than it."""
-    z = part[:, height]
-    return "mm", "um" if np.nanmax(z) - np.nanmin(z) > 0.1 * np.ptp(part[:, 0]) else "mm"
+    reach, length = np.ptp(part[:, height][np.isfinite(part[:, height])]), np.ptp(part[:, 0])
+    if length > _LONGEST_SCAN:  # metres, in millimetres
+        return "um", "um" if reach < 0.1 * length else "nm"
+    return "mm", "um" if reach > 0.1 * length or reach > _HIGHEST else "mm"
 
 
 def _map(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftColumn], list[str]]:

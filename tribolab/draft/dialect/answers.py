@@ -73,6 +73,8 @@ def corrected(
     for column in before.columns:
         if column.place == place:
             columns.append(_said(column, Worth(name, unit or "", scale), sign, draft))
+        elif name == "x" and column.quantity == "y" and unit and column.guessed:
+            columns.append(column._replace(unit=unit, guessed=(), options=()))  # as x, of a map
         elif name in (column.quantity, column.said):
             note = "not this quantity, as was said"
             columns.append(
