@@ -205,7 +205,7 @@ def light_rest(
     time, normal, limits = rests
     for start, stop in limits:
         first, last = np.searchsorted(time, [start, stop])
-        level = _level(normal, first, last, load)
+        level = level_without_load(normal, first, last, load)
         if level.size < _FEWEST:
             continue
         reads = float(np.mean(normal[level]))
@@ -238,7 +238,7 @@ def _unloaded(
     before, levels = 0.0, []
     for start, stop in limits:
         first, last = np.searchsorted(time, [start, stop])
-        level = _level(normal, first, last, load)
+        level = level_without_load(normal, first, last, load)
         # more than the zero before may be a light load; less is none, surfaces hardly pull
         if level.size < _FEWEST or np.mean(normal[level]) - before > UNLOADED * load:
             continue
@@ -274,7 +274,7 @@ def _bare(
     return levels
 
 
-def _level(normal: np.ndarray, first: int, last: int, load: float) -> np.ndarray:
+def level_without_load(normal: np.ndarray, first: int, last: int, load: float) -> np.ndarray:
     """Return the samples of a rest that lie at one level far below the load, if there is one.
 
     However far below zero: at rest nothing pulls, and what reads so has an offset.

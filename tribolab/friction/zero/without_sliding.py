@@ -9,7 +9,7 @@ import xarray as xr
 
 from tribolab.friction.zero import limits
 from tribolab.friction.zero.parts import Doubt, ZeroReference, doubt
-from tribolab.friction.zero.rests import Zeros
+from tribolab.friction.zero.rests import Zeros, level_without_load
 from tribolab.medians import median
 
 _FEWEST = 20  # samples
@@ -47,7 +47,7 @@ def without_sliding(
         return WithoutSliding(nothing, nothing)
     return WithoutSliding(
         nothing if rests is None else _before_sliding(run, segments, rests, load),
-        _without_load(run, segments, rests),
+        _without_load(run, segments, rests, load),
     )
 
 
@@ -81,7 +81,7 @@ def _before_sliding(
 
 
 def _without_load(
-    run: xr.Dataset, segments: xr.Dataset, rests: Zeros | None
+    run: xr.Dataset, segments: xr.Dataset, rests: Zeros | None, load: float
 ) -> tuple[float, float]:
     """Return half the loop of strokes without load; of one way, what rests do not read."""
     if "sliding_velocity" not in run:
@@ -89,7 +89,9 @@ def _without_load(
     found: list[tuple[float, float, float, float]] = []  # direction, mean, its error, middle
     time, velocity, force = (run[k].values for k in ("time", "sliding_velocity", "friction_force"))
     for part in stretches_of(run, segments, "no load"):
-        own = force[part][np.isfinite(force[part])]
+        # where the load comes or goes friction does, too
+        bare = level_without_load(run["normal_force"].values, part.start, part.stop, load)
+        own = force[bare][np.isfinite(force[bare])]
         speed = np.nanmean(velocity[part]) if own.size else 0.0
         if own.size >= _FEWEST and speed:
             error = float(np.std(own)) / np.sqrt(own.size)
