@@ -282,7 +282,16 @@ def level_without_load(normal: np.ndarray, first: int, last: int, load: float) -
     light = first + np.flatnonzero(normal[first:last] < _LIGHT * load)
     if light.size < _FEWEST:
         return light
-    # the load's ramp begins in the same rest: readings far from the usual one are left out
+    # the load's ramp begins in the same rest, and may be most of it: where readings lie densest is
+    # the level, and what is far from it is left out
+    ordered = np.sort(normal[light])
+    part = light.size // 4
+    width = ordered[part:] - ordered[: light.size - part]
+    densest = int(np.argmin(width))
+    level = median(ordered[densest : densest + part + 1])
+    # of normal noise the densest quarter is 0.637 standard deviations wide
+    apart = np.abs(normal[light] - level)
+    light = light[apart <= 5 * max(float(width[densest]) / 0.637, 1e-4 * load)]
     rest = np.abs(normal[light] - median(normal[light]))
     return light[rest <= 5 * max(median(rest) / 0.6745, 1e-4 * load)]
 
