@@ -106,3 +106,27 @@ def test_what_the_mean_leaves_in_a_spectrum_is_no_line():
     fine = Spectrum(frequency, power, np.ones(40), np.full(40, 2.0), "made")
     line, _, powers = gather(fine, np.ones(40), 2)
     assert line == 2.0 and powers.sum() == 0
+
+
+@pytest.mark.parametrize("size", [0.1, 0.2, 0.3])
+@pytest.mark.parametrize("noise", [0.02, 0.1])
+def test_a_sine_on_a_larger_sawtooth_is_not_called_a_sine(size, noise):
+    for seed in range(5):
+        rng = np.random.default_rng([seed, 11])
+        turns = rng.uniform(8, 30) * np.arange(3000) / 3000
+        wave = size * np.sin(2 * np.pi * (5.3 * turns + rng.uniform()))
+        found = seen(1 + saw(turns) + wave + noise * rng.standard_normal(3000), 0.01)
+        assert found["waveform"].item() in ("sawtooth stick-slip", "not decided")
+        if found["waveform"].item() != "not decided":
+            known = found["dominant_frequency"].item() * 30
+            assert known == pytest.approx(turns[-1], rel=0.05)
+
+
+@pytest.mark.parametrize("noise", [0.02, 0.2])
+def test_three_periods_are_not_decided(noise):
+    for seed in range(5):
+        rng = np.random.default_rng([seed, 12])
+        turns = 3 * np.arange(3000) / 3000 + rng.uniform()
+        for wave in (saw(turns), np.sin(2 * np.pi * turns) / 2):
+            found = seen(1 + wave + noise * rng.standard_normal(3000), 0.01)
+            assert found["waveform"].item() == "not decided"

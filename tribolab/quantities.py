@@ -272,6 +272,8 @@ _ROWS = [
     ("recurrence_time", "T", "s", "time from drop to drop"),
     ("recurrence_distance", "\\lambda", "m", "mean sliding distance from drop to drop"),
     ("loading_stiffness", "k", "N/m", "friction force over distance during a stick"),
+    ("critical_stiffness_low", "k_c", "N/m", "lowest critical stiffness that the cycles allow"),
+    ("critical_stiffness_high", "k_c", "N/m", "highest critical stiffness that the cycles allow"),
     ("mains_frequency", "f", "Hz", "frequency of the strongest line of the mains", "cycles"),
     ("class_probability", "p", "1", "probability of the class of waveform"),
     ("spike_share", "", "1", "part of the samples that are single spikes"),

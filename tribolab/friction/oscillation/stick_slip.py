@@ -11,6 +11,7 @@ import xarray as xr
 from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import belong, friction_signal, trimmed_slices
 from tribolab.friction.decisions.rejected import REJECTED
+from tribolab.friction.oscillation.critical_stiffness import critical_stiffness
 from tribolab.friction.oscillation.examine import EventLimits, Examined, examine_record
 from tribolab.friction.oscillation.regularity import SLIP_KINDS
 from tribolab.friction.oscillation.rig_waves import RigMotion, RigWave, motion_of, rig_wave
@@ -114,7 +115,9 @@ def stick_slip(
         ``peak_prominence``, ``oscillation_swing``, ``oscillation_share``, ``background_noise``,
         ``sample_noise``, ``harmonic_content``; ``events`` (their number), mean and scatter of
         ``drop``, ``stick_duration``, ``slip_duration``, ``recurrence_time`` [s],
-        ``recurrence_distance`` [m], ``loading_slope`` [1/m], ``loading_stiffness`` [N/m];
+        ``recurrence_distance`` [m], ``loading_slope`` [1/m], ``loading_stiffness`` [N/m],
+        ``critical_stiffness_low`` and ``_high`` [N/m] (bounds, of regular sawtooth stick-slip; see
+        `tribolab.friction.oscillation.critical_stiffness`);
         ``fall_share``, ``asymmetry_p_value``, ``derivative_skewness``, ``period_scatter``,
         ``drop_scatter``; ``mains_frequency``, ``mains_amplitude``, ``rig_swing``
         (of what repeats with each turn), ``spike_share``;
@@ -183,6 +186,12 @@ def stick_slip(
         waves.append(wave)
         remarks.append(_remark(seen, _cut_off(signal.raw), v))
     data = slip_columns(examined, speed, np.array(loads))
+    saw = (data["waveform"] == CLASSES[1]) & (data["regularity"] == SLIP_KINDS[0])
+    bounds = critical_stiffness(
+        data["drop"], data["recurrence_distance"], data["loading_stiffness"],
+        1.0 if force else np.array(loads), np.where(saw, data["events"], 0),
+    )  # fmt: skip
+    data["critical_stiffness_low"], data["critical_stiffness_high"] = bounds
     data["rig_swing"] = np.array([np.nan if wave is None else wave.swing for wave in waves])
     data["instrument"] = _texts(_instrument(examined, speed, waves, motion))
     data["remark"] = _texts(remarks)

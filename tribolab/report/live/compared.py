@@ -123,7 +123,7 @@ def _every_run(known: FrictionOverSpeed, colours: Mapping[str, int]) -> LiveFigu
         id="curves-runs",
         section="curves",
         title="Every run of the repeats",
-        note="A point for each run and speed. Bars: the standard error within the run, which says "
+        note="A point for each run and speed. Bars: U95 within the run, which says "
         "nothing of the next run. "
         + told_apart([curve.medium for curve in series], "filled", "open"),
         alt=f"Friction coefficient over sliding speed of {many(len(series), 'run')}, "

@@ -1,0 +1,81 @@
+"""How far a stick-slip cycle is from steady sliding: bounds of the critical stiffness."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tribolab.core.limit import Limit
+
+FEWEST_CYCLES = Limit(8.0, "1", "cycles, of which mean drop and distance are known to 5 %")
+ERROR_OF_CREEP = Limit(
+    0.05, "1", "error of the creep share: a mean drop is known to some 5 % at a third of noise"
+)
+# creep share and k/k_c of settled cycles of the ageing law (slider of test_critical_stiffness)
+# and measured as `stick_slip` does: the rise is less steep than the rig near k_c
+_LEAST = (  # b = 1.5 a
+    [0.0, 0.0469, 0.1005, 0.1442, 0.1845, 0.2298, 0.2675, 0.376],
+    [0.0, 0.0998, 0.2953, 0.4871, 0.6725, 0.7955, 0.8282, 0.7717],
+)
+_LARGEST = (  # b = 3 a
+    [0.0, 0.0215, 0.0438, 0.0645, 0.0899, 0.1197, 0.1392, 0.1845, 0.25],
+    [0.0, 0.1004, 0.3017, 0.5016, 0.7024, 0.852, 0.9008, 0.949, 1.0],
+)
+
+
+def critical_stiffness(
+    drop: np.ndarray,
+    recurrence_distance: np.ndarray,
+    stiffness: np.ndarray,
+    load: np.ndarray | float,
+    cycles: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest and highest critical stiffness [N/m] that cycles of stick-slip allow.
+
+    Parameters
+    ----------
+    drop
+        Mean drop of the friction coefficient [1] (or of the force [N], with a load of 1).
+    recurrence_distance
+        Mean sliding distance from drop to drop [m].
+    stiffness
+        Of the rig: the steepest rise of the friction force during a stick [N/m].
+    load
+        Normal force [N].
+    cycles
+        Number of cycles; NaN is returned for fewer than 8.
+
+    Returns
+    -------
+    tuple of ndarray
+        Infinity as the highest: creep is too small to bound it, the rig is far too soft.
+
+    Notes
+    -----
+    Steady sliding is unstable where the rig is softer than ``k_c = -(dF/d ln v)/D_c
+    = (b - a) N/D_c``, rate-and-state friction of memory length D_c, quasi-static [1]_. D_c is not
+    known from one run, but the sample creeps the more between slips the nearer k is to k_c: over
+    the distance from drop to drop a sample that sticks loads the rig by k times that distance.
+    ``1 - drop N/(k distance)`` is the part that it creeps, zero for k << k_c. The bounds are those
+    of cycles simulated with b = 1.5 a and b = 3 a, with an error of the creep of 0.05. A mass lets
+    slips overshoot, which changes drop and distance alike; it raises k_c by
+    ``(b - a)/a m v^2/D_c^2``.
+
+    References
+    ----------
+    .. [1] J. R. Rice, A. L. Ruina, J. Appl. Mech. 50, 343 (1983).
+
+    Examples
+    --------
+    >>> low, high = critical_stiffness(np.array([0.1]), np.array([1.1e-4]), 1e4, 10.0, 20)
+    >>> bool(low[0] > 1e4), bool(low[0] < high[0])
+    (True, True)
+    """
+    drop, distance, k = (np.asarray(x, float) for x in (drop, recurrence_distance, stiffness))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        creep = 1.0 - drop * load / (k * distance)
+        error = ERROR_OF_CREEP.value
+        largest = np.interp(creep + error, *_LARGEST)
+        least = np.interp(creep - error, *_LEAST)
+        low, high = k / largest, k / least
+    known = np.isfinite(creep) & (creep > -2 * error) & (np.asarray(cycles) >= FEWEST_CYCLES.value)
+    return np.where(known, low, np.nan), np.where(known, high, np.nan)
