@@ -162,13 +162,13 @@ def _concept(label: str) -> str:
     ['modulus_frequency', 'loss_modulus', 'storage_modulus', 'loss_factor', 'complex_modulus', '']
     """
     text = label.translate(_PRIMES).replace("''", "pp").replace('"', "pp").replace("'", "p")
-    text = normalise_label(text.replace("*", "star"))
-    if text == "temperature" or not text:
-        return ""
-    for word in known_words("modulus"):
-        if text in word.symbols or text in names(word.quantity):
-            return word.quantity
-    return "temperature" if text in ("t", "temp", "ts", *names("temperature")) else ""
+    words = text.replace("*", "star").split()
+    for part in (words, words[:-1], words[-1:]):  # "Storage modulus E'": name and symbol
+        name = normalise_label(" ".join(part))
+        for word in known_words("modulus") if name else ():
+            if name in word.symbols or name in names(word.quantity):
+                return word.quantity
+    return "temperature" if name in ("t", "temp", "ts", *names("temperature")) else ""
 
 
 def _enough(columns: dict[str, _Column]) -> bool:

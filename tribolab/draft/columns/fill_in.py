@@ -58,6 +58,7 @@ def filled_in(
     written = unit if say_unit else None
     if option.unit:
         written = option.unit
+    if option.unit and kind != "scan":
         guessed.append(f"'{shown(unit)}' means {option.unit}")
     fill_in = unsaid = ""
     dated = normalise_label(bare[0]) in DATES

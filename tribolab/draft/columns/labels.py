@@ -83,7 +83,7 @@ def _stated_units(layout: Layout, cells: Sequence[str]) -> dict[int, str]:
     found = {}
     for place in bare:
         name = cells[place - 1].strip()
-        words = re.compile(rf"(?<![^\W_]){re.escape(name)}{_IN}{_SAID_UNIT}")
+        words = re.compile(rf"(?<!\w){re.escape(name)}{_IN}{_SAID_UNIT}")
         told = [match["unit"].rstrip(".") for line in lines for match in words.finditer(line)]
         explained = re.compile(_LEGEND.format(name=re.escape(name)))
         for match in (match for line in lines for match in explained.finditer(line)):

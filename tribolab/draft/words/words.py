@@ -43,6 +43,7 @@ _LONGEST = 1000  # characters of a name that are looked at: searches take their 
 _WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［］【】]+)[）］】]$")
 # what a unit means for a quantity in this SI unit: weights for forces
 _MEANT = {"N": WEIGHTS}
+_OF_HEIGHTS = {"m": {"A": "angstrom"}}
 COUNTS = "counts"
 # columns of time that are called by their unit, as the clocks of microcontrollers are
 _CLOCKS = {"millis": "ms", "msec": "ms", "msecs": "ms", "ms": "ms", "micros": "us", "usec": "us"}
@@ -232,7 +233,7 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
         score = max(_score(text, word), _OF_DEVICE * _score(own, word) if own else 0.0)
         score = max(score, _score(plain, word) if plain else 0.0)
         known = quantity(word.quantity)
-        read_as = _MEANT.get(known.unit, {}).get(unit or "")
+        read_as = (_OF_HEIGHTS if scan else _MEANT).get(known.unit, {}).get(unit or "")
         fits = unit is None or converts(read_as or unit, known.unit, known.bare)
         if score and (known.unit != "1" if counted else fits):
             # what only this quantity is measured in tells it, whatever else the name says
