@@ -217,7 +217,7 @@ def _dated(
             continue
         cells = [row[index] if index < len(row) else "" for row in rows]
         form, other = find_form(cells)
-        if not form:
+        if not form or len(cells) != len(numbers):  # a damaged row is split in two ways
             continue
         numbers[:, index] = seconds(cells, form)
         dated = column._replace(
