@@ -277,7 +277,10 @@ def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
     for index in np.flatnonzero(~understood).tolist():
         column = frame[index]
         pointed = column.astype(str).str.replace(",", ".") if layout.decimal == "," else column
-        known = pd.to_numeric(pointed, errors="coerce")
+        try:
+            known = pd.to_numeric(pointed, errors="coerce")
+        except OverflowError:  # whole numbers of hundreds of digits
+            known = pd.to_numeric(pointed.astype(str), errors="coerce")
         numbers[:, index] = known.to_numpy(dtype=float)
         odd = column[known.isna() & column.notna()].astype(str).str.strip()
         odd = odd[~odd.str.lower().isin(["nan", ""])]
