@@ -22,6 +22,7 @@ from tribolab.deposit.crate import (
     data_package,
 )
 from tribolab.errors import OutputError, ReadError, brief
+from tribolab.reading.raw.opening import largest_unpacked
 from tribolab.report import tables
 from tribolab.report.read_results import Results
 from tribolab.untyped import Json
@@ -122,6 +123,12 @@ def problems_of(path: str | Path) -> list[str]:
     path = Path(path)
     try:
         with zipfile.ZipFile(path) as archive:
+            size = sum(info.file_size for info in archive.infolist())  # no more is unpacked
+            if size > largest_unpacked(path.stat().st_size):
+                raise ReadError(
+                    f"{path}: it unpacks to {size / 1e6:.0f} MB, more than "
+                    "results can hold; unpack it yourself if you trust where it is from"
+                )
             names = [info.filename for info in archive.infolist() if not info.is_dir()]
             if METADATA not in names:
                 raise ReadError(f"{path}: nothing was packed here: it has no {METADATA}")

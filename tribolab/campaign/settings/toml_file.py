@@ -10,9 +10,13 @@ from typing import Generic, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from tribolab.campaign.settings import problems
+from tribolab.core.limit import Limit
 from tribolab.errors import ConfigError, ReadError
 from tribolab.reading.raw.source import check_regular
 
+MOST_TABLES = Limit(
+    10_000.0, "1", "tables [[run]] and the like in a file: 150 000 take 40 s to be understood"
+)
 SettingsModel = TypeVar("SettingsModel", bound=BaseModel)
 
 
@@ -84,6 +88,11 @@ def open_settings(
         If anything in it is wrong: the message has the file, the line, the key and the cure.
     """
     text = text_of(path, missing)
+    if (tables := text.count("\n[[")) > MOST_TABLES.value:
+        raise ConfigError(
+            f"{path}: {tables} tables such as [[run]] are more than {MOST_TABLES.value:.0f}; name "
+            "many runs by one pattern, or make several campaigns"
+        )
     try:
         content = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:

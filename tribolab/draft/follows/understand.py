@@ -221,7 +221,7 @@ def _dated(
         index = column.place - 1
         cells = [row[index] if index < len(row) else "" for row in rows] if text[index] else []
         form, other = find_form(cells)
-        if form:
+        if form and len(cells) == len(numbers):  # a damaged row is split in two ways
             found.append((column, seconds(cells, form), form, other))
     if not found:
         return columns
@@ -284,7 +284,10 @@ def _numbers(layout: Layout) -> tuple[np.ndarray, list[str], list[list[str]]]:
     for index in np.flatnonzero(~understood).tolist():
         column = frame[index]
         pointed = column.astype(str).str.replace(",", ".") if layout.decimal == "," else column
-        known = pd.to_numeric(pointed, errors="coerce")
+        try:
+            known = pd.to_numeric(pointed, errors="coerce")
+        except OverflowError:  # whole numbers of hundreds of digits
+            known = pd.to_numeric(pointed.astype(str), errors="coerce")
         numbers[:, index] = known.to_numpy(dtype=float)
         odd = column[known.isna() & column.notna()].astype(str).str.strip()
         odd = odd[~odd.str.lower().isin(["nan", ""])]

@@ -114,7 +114,8 @@ def _in_units(raw: np.ndarray, channel: _Channel) -> list[str]:
     values = raw.astype(float)
     if channel.turn and channel.wrap:
         values = np.unwrap(values, period=channel.wrap)
-    values = values / channel.turn if channel.turn else values * channel.scale + channel.bias
+    with np.errstate(over="ignore", invalid="ignore"):  # damaged numbers may be anything
+        values = values / channel.turn if channel.turn else values * channel.scale + channel.bias
     return ["" if not np.isfinite(value) else repr(value) for value in values.tolist()]
 
 

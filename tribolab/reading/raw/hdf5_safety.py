@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from tribolab.errors import ReadError, shown
+from tribolab.reading.raw import limits
 from tribolab.reading.raw.opening import isolated
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
@@ -20,7 +21,7 @@ _OWN_FILTERS = frozenset((1, 2, 3, 4, 5, 6, 32000))
 
 
 class OutsideError(ReadError):
-    """A file takes data from outside of it."""
+    """A file takes data from outside of it, or holds too much to tell."""
 
 
 @isolated("h5py")
@@ -42,8 +43,14 @@ def check_self_contained(path: Path) -> None:
     import h5py
 
     with h5py.File(path, "r") as file:
-        look = _Look(path, h5py, file)
+        look = _Look(h5py, file)
         file.id.links.visit(look)
+    if look.too_many:
+        raise OutsideError(
+            f"{path}: more than {limits.HDF5_OBJECTS.value:.0f} groups and datasets, or more than "
+            f"{limits.HDF5_DEPTH.value:.0f} groups in one another, are no measurement; save the "
+            "run's own datasets in a file of their own"
+        )
     if look.found:
         name, what = look.found
         raise OutsideError(
@@ -92,12 +99,17 @@ def _has_user_block(path: Path) -> bool:
 class _Look:
     """Looks at one link after the other; stops at the first that leads out of the file."""
 
-    def __init__(self, path: Path, h5py: Any, file: Any) -> None:
+    def __init__(self, h5py: Any, file: Any) -> None:
         self._h5py, self._file = h5py, file
         self.found: tuple[str, str] | None = None
+        self._count, self.too_many = 0, False
 
     def __call__(self, name: bytes) -> bool | None:
         h5 = self._h5py
+        self._count += 1
+        if self._count > limits.HDF5_OBJECTS.value or name.count(b"/") > limits.HDF5_DEPTH.value:
+            self.too_many = True  # an error would not pass through the library
+            return True
         kind = self._file.id.links.get_info(name).type
         what = ""
         if kind == h5.h5l.TYPE_HARD:

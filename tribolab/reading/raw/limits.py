@@ -33,3 +33,8 @@ AT_REST = Limit(
     "notes times to 2 s, network file systems some 60 s late, and clocks of servers differ",
 )  # fmt: skip
 READINGS = Limit(3.0, "1", "readings of a file that changes while it is read, before it is refused")
+HDF5_OBJECTS = Limit(
+    10_000.0, "1", "groups and datasets in an HDF5 file: 30 000 take half a minute to look at",
+    "measured with h5py 3 on empty groups",
+)  # fmt: skip
+HDF5_DEPTH = Limit(100.0, "1", "groups in one another: 3000 take half a minute to look at")
