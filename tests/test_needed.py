@@ -20,6 +20,18 @@ xr.Dataset({"force": ("time", [1.0, 2.0])}, {"time": [0.0, 0.1]}).force.to_numpy
 print(sorted({"dask", "pint"} & set(sys.modules)))
 """
 
+_UNCHANGED = """
+import sys
+import tribolab.app.first_campaign, tribolab.app.run, tribolab.app.terminal
+import tribolab.campaign.store.unchanged, tribolab.cli
+print(sorted({"xarray", "pandas", "scipy", "pint", "matplotlib", "netCDF4"} & set(sys.modules)))
+"""
+
+
+def test_telling_that_nothing_changed_loads_none_of_what_analyses():
+    done = subprocess.run([sys.executable, "-c", _UNCHANGED], capture_output=True, text=True)
+    assert done.stdout.strip() == "[]", done.stdout + done.stderr
+
 
 @pytest.mark.parametrize("name", sorted({*FILES, *SIMULATION, *ANALYSIS}))
 def test_a_module_that_workers_import_is_there(name):
