@@ -65,6 +65,7 @@ _FUNCTIONS = {  # that rebuild arrays and datasets; everything else that comes b
     ("copyreg", "_reconstructor"),
 }
 _PACKAGES = {"python_calamine": "python-calamine", "nptdms": "npTDMS"}
+_OF_FORMATS = {"python_calamine", "nptdms", "SurfaceTopography"}  # the others come with tribolab
 _ROOMS = ("builtins", "numpy", "pandas", "xarray", "datetime", "collections", "pathlib", "tribolab")
 
 inside = False  # whether this is the child
@@ -208,9 +209,11 @@ def _in_child(
         )
         ended = _ONLY.run(job)
         if isinstance(ended, str):
+            package = _PACKAGES.get(ended, ended)
+            source = "'tribolab[formats]'" if ended.split(".")[0] in _OF_FORMATS else package
             raise MissingLibraryError(
-                f"{path}: this kind of file needs the package {_PACKAGES.get(ended, ended)}; "
-                "install it: pip install 'tribolab[formats]'"
+                f"{path}: this kind of file needs the package {package}; "
+                f"install it: pip install {source}"
             )
         if ended.code == 0:
             return _result(handle)
