@@ -65,7 +65,7 @@ _FUNCTIONS = {  # that rebuild arrays and datasets; everything else that comes b
     ("copyreg", "_reconstructor"),
 }
 _PACKAGES = {"python_calamine": "python-calamine", "nptdms": "npTDMS"}
-_OF_FORMATS = {"python_calamine", "nptdms", "SurfaceTopography"}  # the others come with tribolab
+_OF_CORE = {"h5py", "netCDF4", "xarray", "pandas", "pyarrow"}  # what no extra brings
 _ROOMS = ("builtins", "numpy", "pandas", "xarray", "datetime", "collections", "pathlib", "tribolab")
 
 inside = False  # whether this is the child
@@ -210,7 +210,7 @@ def _in_child(
         ended = _ONLY.run(job)
         if isinstance(ended, str):
             package = _PACKAGES.get(ended, ended)
-            source = "'tribolab[formats]'" if ended.split(".")[0] in _OF_FORMATS else package
+            source = package if ended.split(".")[0] in _OF_CORE else "'tribolab[formats]'"
             raise MissingLibraryError(
                 f"{path}: this kind of file needs the package {package}; "
                 f"install it: pip install {source}"
