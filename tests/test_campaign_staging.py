@@ -289,13 +289,42 @@ def test_a_link_to_a_folder_stays_a_link(tmp_path):
     assert (tmp_path / "disk" / "answer.txt").read_text() == "new"
 
 
-@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT])
-def test_a_full_disk_is_one_clear_error_and_the_old_stays(tmp_path, number):
+@pytest.mark.parametrize(
+    ("number", "words"),
+    [
+        (errno.ENOSPC, "disk is full"),
+        (errno.EDQUOT, "quota is used up"),
+        (errno.EFBIG, "larger than the file system or a limit"),
+        (errno.EROFS, "read-only"),
+        (errno.EACCES, "no permission"),
+        (errno.EIO, "disk reports an error"),
+    ],
+)
+def test_a_write_that_fails_is_one_clear_error_and_the_old_stays(tmp_path, number, words):
     output = tmp_path / "results"
     write(output, "old")
-    with pytest.raises(OutputError, match=r"(full|used up).*untouched"), staged(output):
+    with pytest.raises(OutputError, match=rf"{words}.*untouched"), staged(output):
         raise OSError(number, os.strerror(number))
     assert (output / "answer.txt").read_text() == "old"
+
+
+_TOO_LARGE = """
+import resource, sys
+from pathlib import Path
+import numpy as np, xarray as xr
+from tribolab.campaign.store.data_files import write_data
+resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
+signals = xr.Dataset({"force": ("time", np.random.default_rng(1).random(400_000))})
+write_data({"run": signals}, Path(sys.argv[1]) / "run.nc")
+"""
+
+
+def test_a_limit_of_the_file_size_is_told_though_hdf5_hides_it(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-c", _TOO_LARGE, str(tmp_path)], capture_output=True, text=True
+    )
+    assert "OutputError: run.nc: the file is larger than" in done.stderr
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_an_error_about_another_file_keeps_its_own_words(tmp_path):

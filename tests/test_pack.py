@@ -1,6 +1,7 @@
 """Deposits: what is packed can be read, checked and run again; a changed byte is seen."""
 
 import json
+import re
 import shutil
 import subprocess
 import zipfile
@@ -78,6 +79,25 @@ def test_the_tables_are_as_the_data_package_says(unpacked):
             kind = table[field["name"]].dtype
             assert kind.kind in kinds[field["type"]] or pd.api.types.is_string_dtype(kind)
         assert resource["hash"] == f"sha256:{sha256_of_file(unpacked / resource['path'])}"
+
+
+@pytest.mark.slow
+def test_names_that_steer_a_terminal_reach_no_page_table_or_member_as_they_are(tmp_path):
+    short = tl.rig.Rig(tl.rig.Protocol(speeds=(1e-4, 1e-3)))
+    for path in tl.rig.write_run(tl.rig.simulate_run("Sb-S", "dry", rig=short), tmp_path / "raw"):
+        path.rename(path.with_name(f"\x1b[31m\x07\n\x9b2J\u202e{path.name}"))
+    file = tmp_path / "campaign.toml"
+    file.write_text('[campaign]\nname = "one"\n[[run]]\nfiles = "*.csv"\n')
+    results = run_campaign(file, jobs=1, figures="none").folder
+    tl.pack(results, tmp_path / "one.zip", raw=True, licence="CC-BY-4.0")
+    steers = re.compile("[\x07\x1b\x9b\u202e]")
+    texts = [path for path in results.rglob("*") if path.suffix in (".csv", ".html", ".json")]
+    assert not [path for path in texts if steers.search(path.read_text("utf-8"))]
+    sources = pd.read_parquet(results / "tables/sources.parquet")["file"]
+    with zipfile.ZipFile(tmp_path / "one.zip") as archive:
+        names = archive.namelist()
+    assert all(name.isprintable() for name in [*names, *sources])
+    assert set(sources) <= set(names)
 
 
 def changed(deposit, target, name, how):

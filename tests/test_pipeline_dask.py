@@ -12,7 +12,7 @@ import time
 import pytest
 from campaigns import simulated
 
-from tribolab.app.run import run_campaign
+from tribolab.app.run import run_campaign, run_here_if_lost
 from tribolab.campaign.engine.cluster import ClusterGone
 from tribolab.campaign.engine.executor import workers
 from tribolab.campaign.pipeline import process
@@ -81,6 +81,42 @@ def test_a_cluster_that_is_gone_is_one_clear_error_and_leaves_nothing(tmp_path, 
             assert left == {"campaign.toml", "raw", "truth"}
     assert not heard  # Dask's own errors would stand beside ours
     assert {name: _levels()[name] for name in levels} == levels
+
+
+@pytest.mark.slow
+def test_a_campaign_whose_cluster_is_lost_midway_is_finished_here(tmp_path, monkeypatch):
+    monkeypatch.setattr("tribolab.campaign.engine.cluster.PATIENCE", 0.5)
+    campaign = simulated(tmp_path, repeats=1)
+    said: list[str] = []
+    with _processes(tmp_path) as (address, scheduler, join):
+        join()
+        outcome = run_here_if_lost(
+            campaign,
+            say=said.append,
+            scheduler=address,
+            jobs=None,
+            figures="none",
+            progress=lambda stage, done, total: scheduler.kill(),
+        )
+        again = run_here_if_lost(
+            campaign, say=said.append, scheduler=address, jobs=None, figures="none"
+        )
+    assert [run.status for run in outcome.runs] == ["done"] * 2
+    assert (outcome.folder / "report.html").is_file()
+    assert len(said) == 1 and "Dask cluster is lost" in said[0]
+    assert all(run.reused for run in again.runs)  # what is unchanged asks no scheduler
+
+
+@pytest.mark.slow
+def test_a_campaign_is_run_here_if_no_scheduler_answers(tmp_path, monkeypatch):
+    monkeypatch.setattr("tribolab.campaign.engine.cluster.DASK_TIMEOUT", "1s")
+    said: list[str] = []
+    campaign = simulated(tmp_path, repeats=1)
+    outcome = run_here_if_lost(
+        campaign, say=said.append, scheduler="tcp://127.0.0.1:1", figures="none"
+    )
+    assert [run.status for run in outcome.runs] == ["done"] * 2
+    assert len(said) == 1 and "no Dask scheduler answers at tcp://127.0.0.1:1" in said[0]
 
 
 def _levels():

@@ -129,6 +129,13 @@ def test_what_is_damaged_is_named_and_computed_again_from_the_raw_files(campaign
 
 
 @pytest.mark.slow
+def test_results_with_figures_are_the_same_when_computed_again(campaign):
+    run_campaign(campaign, jobs=1, figures="curves")
+    assert list((campaign.parent / "results/figures").glob("*.svg"))
+    assert recomputed(campaign.parent / "results", jobs=1) == []
+
+
+@pytest.mark.slow
 def test_a_forged_table_with_a_matching_marker_is_told_by_recomputing_alone(campaign):
     results = campaign.parent / "results"
     assert recomputed(results, jobs=1) == []

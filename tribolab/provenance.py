@@ -6,6 +6,7 @@ import datetime as dt
 import hashlib
 import json
 import os
+import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -25,15 +26,24 @@ def sha256_of(value: Any) -> str:
     return hashlib.sha256(text.encode(errors="surrogateescape")).hexdigest()
 
 
+# C0, C1, separators of lines and paragraphs, and what overrides the direction of text
+_STEERS = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
+
+
 def as_text(path: str | Path) -> str:
-    r"""Return a path, or a name, as results write it: bytes that are not UTF-8 as ``\xff``.
+    r"""Return a path, or a name, as results write it, in print that steers no terminal or page.
+
+    Bytes that are not UTF-8, control characters and what turns the direction of text are escaped.
 
     Examples
     --------
+    >>> as_text("raw/\x1b[31mred\n.csv")
+    'raw/\\x1b[31mred\\n.csv'
     >>> as_text("raw/Öl.csv"), as_text(os.fsdecode(b"raw/\xd6l.csv"))
     ('raw/Öl.csv', 'raw/\\xd6l.csv')
     """
-    return os.fsencode(path).decode("utf-8", "backslashreplace")
+    text = os.fsencode(path).decode("utf-8", "backslashreplace")
+    return _STEERS.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
 
 
 def history_line(action: str) -> str:

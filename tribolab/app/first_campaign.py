@@ -12,8 +12,6 @@ from tribolab.campaign.settings.files import scan_files
 from tribolab.campaign.settings.load import load_and_plan
 from tribolab.campaign.settings.run_names import safe_name
 from tribolab.campaign.store.ledger import Ledger
-from tribolab.draft.dialect.tables import quoted
-from tribolab.draft.on_the_fly import holds_run
 from tribolab.errors import ConfigError, TribolabError
 from tribolab.io.kinds import kind_of
 from tribolab.io.logs import group_files
@@ -160,6 +158,8 @@ def _is_campaign(path: Path) -> bool:
 def _campaign_of(
     paths: Sequence[Path], folder: Path, results: str, instrument: str | None = None
 ) -> str:
+    from tribolab.draft.dialect.tables import quoted  # late: starting stays quick
+
     raw = Path(os.path.commonpath([path.parent for path in paths]))
     where = os.path.relpath(raw, folder) if raw.is_relative_to(folder) else str(raw)
     name = paths[0].stem if len(paths) == 1 else raw.name
@@ -181,6 +181,8 @@ def _said(instrument: str | None, folder: Path) -> list[str]:
     """Return the line that names an instrument; the file of a dialect relative to the campaign."""
     if instrument is None:
         return []
+    from tribolab.draft.dialect.tables import quoted  # late: starting stays quick
+
     file = Path(instrument)
     if file.suffix == ".toml":
         whole = file.resolve()
@@ -192,6 +194,8 @@ def _said(instrument: str | None, folder: Path) -> list[str]:
 def _holds_run(path: Path, instrument: str | None) -> bool:
     if instrument is not None:
         return kind_of(path, instrument) == "run"
+    from tribolab.draft.on_the_fly import holds_run  # late: starting stays quick
+
     try:
         kind = kind_of(path)
         return kind == "run" or (kind == "unknown" and holds_run(path, by_name=False))

@@ -6,8 +6,10 @@ import contextlib
 from collections.abc import Callable
 from concurrent.futures import Executor
 from pathlib import Path
+from typing import Any
 
 from tribolab.app.needed import ANALYSIS
+from tribolab.campaign.engine.cluster import ClusterAbsent, ClusterGone
 from tribolab.campaign.engine.executor import workers
 from tribolab.campaign.engine.pool import LastingPool
 from tribolab.campaign.engine.stage import Progress
@@ -142,6 +144,30 @@ def run_campaign(
         outcome.store.close()
     foreign = tuple(Ledger.read(place).foreign())
     return outcome.read_at(place, Catalogue.of(place), foreign, damaged)
+
+
+def run_here_if_lost(
+    path_or_campaign: str | Path | Campaign,
+    *,
+    say: Callable[[str], None],
+    scheduler: str | None,
+    **options: Any,
+) -> Outcome:
+    """Run a campaign on a cluster, or wholly here if the cluster is lost or does not answer.
+
+    Parameters
+    ----------
+    path_or_campaign, scheduler, options
+        As for `run_campaign`.
+    say
+        Called with the reason before the campaign is run here.
+    """
+    try:
+        return run_campaign(path_or_campaign, scheduler=scheduler, **options)
+    except (ClusterGone, ClusterAbsent) as lost:
+        why = str(lost).split(";")[0]
+        say(f"{why}; --local-if-lost: the campaign is analysed here instead")
+    return run_campaign(path_or_campaign, **options)
 
 
 def _reached(campaign: Campaign, raw: Path, place: Path) -> bool:

@@ -22,7 +22,9 @@ from tribolab.errors import ConfigError, OutputError, ReadError, brief
 from tribolab.version import __version__
 
 # what says when and where it was made, not what came out
-_PASSING = frozenset({"made_at", "versions", "seconds", "history"})
+_PASSING = frozenset({"made_at", "versions", "seconds", "history", "reused"})
+# the files of figures for publication, which are not drawn again
+_DRAWN = frozenset({"figures", "surface_figures", "model_figures", "sliding_figures"})
 
 
 def problems(results: Path) -> list[str]:
@@ -123,7 +125,7 @@ def _differing(there: Path, made: Path, name: str) -> list[str]:
 def _unlike(one: object, other: object, at: str = "") -> Iterator[str]:
     """Name the entries in which two reports differ."""
     if isinstance(one, dict) and isinstance(other, dict):
-        for key in sorted({*one, *other} - _PASSING):
+        for key in sorted({*one, *other} - _PASSING - _DRAWN):
             yield from _unlike(one.get(key), other.get(key), f"{at}.{key}" if at else key)
     elif isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
         for place, pair in enumerate(zip(one, other, strict=True)):

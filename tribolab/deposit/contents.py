@@ -12,7 +12,7 @@ from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.store.ledger import Ledger
 from tribolab.errors import ConfigError, ReadError
 from tribolab.io.zero_reading import parse_zero
-from tribolab.provenance import sha256_of_file
+from tribolab.provenance import as_text, sha256_of_file
 from tribolab.report.campaign_tables import TABLES
 from tribolab.untyped import Json
 
@@ -98,7 +98,7 @@ def items_of(results: Path, campaign: Campaign, *, raw: bool) -> list[Item]:
     paths = [path.resolve() for path, _ in inputs]
     root = Path(os.path.commonpath([home, *(path.parent for path in paths)]))
     items = [
-        Item(path, path.relative_to(root).as_posix(), words.capitalize(), _kind(path))
+        Item(path, as_text(path.relative_to(root)), words.capitalize(), _kind(path))
         for path, (_, words) in zip(paths, inputs, strict=True)
     ]
     below = (home.relative_to(root) / _RESULTS).as_posix()

@@ -11,6 +11,7 @@ import numpy as np
 from tribolab.friction.coefficient.steadiness import chance_limit
 from tribolab.friction.segments.find import why_no_segment
 from tribolab.records.decision_rows import decision_notices
+from tribolab.records.notice_words import OUTSIDE
 from tribolab.records.parts import Notice
 from tribolab.records.run_facts import (
     counting,
@@ -25,7 +26,7 @@ from tribolab.records.run_facts import (
 )
 from tribolab.records.run_record import DecisionRow
 from tribolab.records.run_steps import steps_that_differ
-from tribolab.records.run_trend import OUTSIDE, trends_along
+from tribolab.records.run_trend import trends_along
 from tribolab.words import duration, many, percent
 
 if TYPE_CHECKING:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from tribolab.records.notice_words import STEPS_DIFFER
 from tribolab.records.same_speed import of_one_speed
 from tribolab.words import many, percent
 
 _FEWEST = 3  # speeds that several steps have in common
 _DIFFERS = 0.1  # of the friction, from step to step
-TEXT = "friction at one speed differs from step to step"  # how its text begins
 
 
 def steps_that_differ(friction: xr.Dataset, values: np.ndarray) -> str:
@@ -45,6 +45,7 @@ def steps_that_differ(friction: xr.Dataset, values: np.ndarray) -> str:
     steps = np.unique(step[np.isfinite(step)]).size
     usual = percent(float(np.median(apart)))
     return (
-        f"{TEXT} (temperature, surface?), usually by {usual}, at {many(len(apart), 'speed')} of "
-        f"{many(steps, 'step')}: the curve is a mean of them, tables/friction.csv has each"
+        f"{STEPS_DIFFER} (temperature, surface?), usually by {usual}, at "
+        f"{many(len(apart), 'speed')} of {many(steps, 'step')}: the curve is a mean "
+        "of them, tables/friction.csv has each"
     )

@@ -12,9 +12,6 @@ from tribolab.records.same_speed import of_one_speed
 from tribolab.records.wording import with_error
 from tribolab.words import duration, many, number, percent, speed_text
 
-OUTSIDE = "what lies outside "  # how the text of strokes of which a part counts begins
-TRENDS = ("friction rises along", "friction falls along")  # how its text begins
-
 
 class RunTrend(NamedTuple):
     """Change of friction from the first to the last of the segments of one speed.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -100,6 +101,13 @@ def run(
             show_default=False,
         ),
     ] = None,
+    local_if_lost: Annotated[
+        bool,
+        typer.Option(
+            "--local-if-lost",
+            help="Analyse everything here if the Dask cluster does not answer or is lost.",
+        ),
+    ] = False,
     figures: Annotated[
         str,
         typer.Option(help="Figures for publication: all, curves (measured curves only) or none."),
@@ -145,14 +153,15 @@ def run(
             why_unread,
             withdraw,
         )
-        from tribolab.app.run import run_campaign
+        from tribolab.app.run import run_campaign, run_here_if_lost
 
+        run_it = partial(run_here_if_lost, say=partial(say, to_stderr=True))
         file, written = campaign_file(campaign, Path(), instrument)
         place = output or file.parent / results_of(file)
         new_folder = written and not place.exists()
         try:
             with progress_bars(quiet) as progress:
-                outcome = run_campaign(
+                outcome = (run_it if local_if_lost else run_campaign)(
                     file,
                     output=output,
                     jobs=jobs,

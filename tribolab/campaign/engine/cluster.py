@@ -24,13 +24,17 @@ class ClusterGone(OutputError):
     """The scheduler or all of its workers are gone, and nothing more can be done there."""
 
 
+class ClusterAbsent(ConfigError):
+    """No scheduler answers at the address, or it has no workers."""
+
+
 def gone(why: str, done: int, of: int) -> str:
     """Say that the cluster is lost, why, and what of the work was done."""
     said = f"; {done} of {of} pieces of work were done" if of else ""
     return (
         f"the Dask cluster is lost: {why}{said}. Nothing was written, results of before are as "
-        "they were; start scheduler and workers again and repeat the command, or leave "
-        "--scheduler out"
+        "they were; start scheduler and workers again and repeat the command, leave --scheduler "
+        "out, or add --local-if-lost"
     )
 
 
@@ -41,7 +45,9 @@ def dask_executor(scheduler: str) -> Iterator[Executor]:
     Raises
     ------
     ConfigError
-        If Dask is not installed, no scheduler answers there, or it has no workers.
+        If Dask is not installed.
+    ClusterAbsent
+        If no scheduler answers there, or it has no workers.
     """
     try:
         # late: distributed takes long to load
@@ -53,14 +59,14 @@ def dask_executor(scheduler: str) -> Iterator[Executor]:
     try:
         client = Client(scheduler, timeout=DASK_TIMEOUT, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
-        raise ConfigError(
+        raise ClusterAbsent(
             f"no Dask scheduler answers at {scheduler}; start one with 'dask scheduler' and give "
             "its address, e.g. tcp://localhost:8786"
         ) from error
     try:
         with _silent("distributed"):  # what it would say of a lost worker is said by us
             if not client.scheduler_info()["workers"]:
-                raise ConfigError(f"the Dask scheduler at {scheduler} has no workers")
+                raise ClusterAbsent(f"the Dask scheduler at {scheduler} has no workers")
             yield Cluster(client)
     finally:
         with contextlib.suppress(Exception), _silent("distributed"):

@@ -13,6 +13,7 @@ import contextlib
 import os
 import sqlite3
 import time
+import weakref
 import zlib
 from collections.abc import Container, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -68,6 +69,8 @@ class Catalogue:
 
     def __init__(self, known: sqlite3.Connection | None) -> None:
         self._known = known
+        if known is not None:  # whoever forgets the catalogue closes it
+            weakref.finalize(self, known.close)
 
     @classmethod
     def of(cls, folder: Path | None) -> Catalogue:
@@ -360,10 +363,16 @@ def _opened(folder: Path | None) -> sqlite3.Connection | None:
         (folder / CATALOGUE).stat()
         address = f"{(folder / CATALOGUE).resolve().as_uri()}?mode=ro&immutable=1"
         known = sqlite3.connect(address, uri=True, check_same_thread=False)
-        if list(known.execute("SELECT value FROM fact WHERE name='format'")) == [(_FORMAT,)]:
+        if _has_our_format(known):
             return known
         known.close()
     return None
+
+
+def _has_our_format(known: sqlite3.Connection) -> bool:
+    with contextlib.suppress(sqlite3.Error):  # damaged
+        return list(known.execute("SELECT value FROM fact WHERE name='format'")) == [(_FORMAT,)]
+    return False
 
 
 def _entries(rows: Iterable[tuple[str, str, bytes]], record: type[Kept]) -> Iterator[Entry[Kept]]:

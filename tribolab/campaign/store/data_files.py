@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import hashlib
 import os
+import resource
 import shutil
 import uuid
 from collections.abc import Mapping
@@ -19,8 +20,19 @@ if TYPE_CHECKING:
     import xarray as xr
 
 UNFINISHED = ".part"
-_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EACCES, errno.EPERM, errno.EIO)
 _LITTLE = 1 << 20
+CURES = {
+    errno.ENOSPC: "the disk is full; make room or choose another folder with --output",
+    errno.EDQUOT: "the disk quota is used up; make room or choose another folder with --output",
+    errno.EACCES: "no permission to write here; choose another folder with --output",
+    errno.EPERM: "no permission to write here; choose another folder with --output",
+    errno.EROFS: "the file system is read-only; choose another folder with --output",
+    errno.EFBIG: "the file is larger than the file system or a limit (ulimit -f) allows; choose "
+    "another folder with --output",
+    errno.EIO: "the disk reports an error; choose another folder with --output",
+    errno.ENAMETOOLONG: "a name that is too long; choose a shorter one with --output",
+    errno.ELOOP: "a symbolic link that leads to itself; choose another folder with --output",
+}
 
 
 def write_data(groups: Mapping[str | None, xr.Dataset], path: Path) -> None:
@@ -49,18 +61,27 @@ def write_data(groups: Mapping[str | None, xr.Dataset], path: Path) -> None:
         write_groups(groups, part)
         part.replace(path)
     except (OSError, RuntimeError, TribolabError) as error:
-        # a full disk reaches Python as ENOSPC, or as the HDF5 library's "HDF error"
-        full = shutil.disk_usage(path.parent).free < _LITTLE if path.parent.is_dir() else False
-        cause = error.__cause__ if isinstance(error, TribolabError) else error
-        number = errno.ENOSPC if full else getattr(cause, "errno", None)
+        number = _number_of(error, groups, path.parent)
         part.unlink(missing_ok=True)
-        if number == errno.ENOSPC:
-            raise OutputError(
-                f"{path.name}: the disk is full; make room or choose another folder with --output"
-            ) from error
-        if number in _NO_ROOM or not path.parent.is_dir():
+        if number in CURES:
+            raise OutputError(f"{path.name}: {CURES[number]}") from error
+        if not path.parent.is_dir():
             raise OutputError(f"{path.name}: cannot be written ({brief(error)})") from error
         raise
+
+
+def _number_of(
+    error: Exception, groups: Mapping[str | None, xr.Dataset], folder: Path
+) -> int | None:
+    """Return the errno of a failed write; the HDF5 library hides it in its "HDF error"."""
+    cause = error.__cause__ if isinstance(error, TribolabError) else error
+    number = getattr(cause, "errno", None)
+    if folder.is_dir() and shutil.disk_usage(folder).free < _LITTLE:
+        return errno.ENOSPC
+    largest, _ = resource.getrlimit(resource.RLIMIT_FSIZE)
+    if largest != resource.RLIM_INFINITY and sum(g.nbytes for g in groups.values()) > largest:
+        return number or errno.EFBIG
+    return number
 
 
 def read_data(path: Path, group: str | None = None) -> xr.Dataset:

@@ -23,23 +23,13 @@ from pathlib import Path
 from typing import IO
 
 from tribolab.campaign.store.catalogue import CATALOGUE
+from tribolab.campaign.store.data_files import CURES
 from tribolab.campaign.store.ledger import MARKER, Ledger, other_name
 from tribolab.errors import ConfigError, OutputError
 
 _RENAME_EXCHANGE = 2
 _AT_FDCWD = -100
 _READY = "ready"  # in a room inside the output: the swap has begun, and is to be completed
-
-_CURES = {
-    errno.ENOSPC: "the disk is full; make room or choose another folder with --output",
-    errno.EDQUOT: "the disk quota is used up; make room or choose another folder with --output",
-    errno.EACCES: "no permission to write here; choose another folder with --output",
-    errno.EPERM: "no permission to write here; choose another folder with --output",
-    errno.EROFS: "the file system is read-only; choose another folder with --output",
-    errno.EIO: "the disk reports an error; choose another folder with --output",
-    errno.ENAMETOOLONG: "a name that is too long; choose a shorter one with --output",
-    errno.ELOOP: "a symbolic link that leads to itself; choose another folder with --output",
-}
 
 
 @contextlib.contextmanager
@@ -316,11 +306,11 @@ def exchange(former: Path, latter: Path) -> bool:
 
 def _is_about(error: OSError, room: Path, output: Path) -> bool:
     """Whether an error is about writing here: about no file at all, or about one of ours."""
-    if error.errno not in _CURES:
+    if error.errno not in CURES:
         return False
     path = None if error.filename is None else Path(str(error.filename))
     return path is None or path.is_relative_to(room) or path.is_relative_to(output)
 
 
 def _cure(error: OSError) -> str:
-    return _CURES.get(error.errno or 0, f"cannot write here ({error.strerror or error})")
+    return CURES.get(error.errno or 0, f"cannot write here ({error.strerror or error})")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tribolab.errors import Cure, ReadError, shown
+from tribolab.errors import ReadError, shown
 from tribolab.io.content.model import Content, Piece
 from tribolab.io.dialects.columnar import layout_of, named
 from tribolab.io.dialects.columns import resolve, scales_of, symbols
@@ -41,12 +41,6 @@ def read_columnar(path: Path, dialect: Dialect) -> Content:
                 columns[signal.quantity] = values * signal.scale + signal.offset
     except ReadError:
         raise
-    except ImportError as error:
-        raise ReadError(
-            f"{dialect.format} files need a library that is not installed ({error.name})",
-            where=path,
-            cure=Cure(*['install it with: pip install "tribolab[formats]"'] * 3),
-        ) from error
     except Exception as error:  # each of these libraries has its own ways to say "damaged"
         raise ReadError(
             f"this {dialect.format} file cannot be read: {shown(str(error), 200)}", where=path

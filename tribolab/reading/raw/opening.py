@@ -66,6 +66,7 @@ _FUNCTIONS = {  # that rebuild arrays and datasets; everything else that comes b
     ("copyreg", "_reconstructor"),
 }
 _PACKAGES = {"python_calamine": "python-calamine", "nptdms": "npTDMS"}
+_OF_CORE = {"h5py", "netCDF4", "xarray", "pandas", "pyarrow"}  # what no extra brings
 _ROOMS = ("builtins", "numpy", "pandas", "xarray", "datetime", "collections", "pathlib", "tribolab")
 
 # what readers turn into words themselves; a library that raises anything else met what it does not
@@ -200,9 +201,11 @@ def _in_child(
         )
         ended = _ONLY.run(job)
         if isinstance(ended, str):
+            package = _PACKAGES.get(ended, ended)
+            source = package if ended.split(".")[0] in _OF_CORE else "'tribolab[formats]'"
             raise MissingLibraryError(
-                f"{path}: this kind of file needs the package {_PACKAGES.get(ended, ended)}; "
-                "install it: pip install 'tribolab[formats]'"
+                f"{path}: this kind of file needs the package {package}; "
+                f"install it: pip install {source}"
             )
         if ended.code == 0:
             return _result(handle)

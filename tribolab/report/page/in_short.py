@@ -7,9 +7,8 @@ from typing import Any, NamedTuple
 
 from tribolab.records.judgement import undecided_trends
 from tribolab.records.model_words import is_described
+from tribolab.records.notice_words import STEPS_DIFFER, TRENDS
 from tribolab.records.roughness_words import roughness_in_words
-from tribolab.records.run_steps import TEXT
-from tribolab.records.run_trend import TRENDS
 from tribolab.report.page.in_words import by_speed, conditions, half_speed
 from tribolab.report.plain import listed, plain_speed
 from tribolab.words import force_text, is_dry, many
@@ -55,7 +54,7 @@ def in_short(document: Mapping[str, Any]) -> list[str]:
 
 def _along(findings: Iterable[Mapping[str, Any]]) -> list[str]:
     """Say of which runs friction changes from stroke to stroke or from step to step."""
-    told = [row for row in findings if row["message"].startswith((*TRENDS, TEXT))]
+    told = [row for row in findings if row["message"].startswith((*TRENDS, STEPS_DIFFER))]
     if len(told) > _MOST:
         return [f"Friction changes along {many(len({row['run'] for row in told}), 'run')}."]
     return [f"{row['run']}: {row['message']}." for row in told]

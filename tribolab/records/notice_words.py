@@ -1,0 +1,7 @@
+"""How the notices of a run begin that the terminal and the page's first lines pick out."""
+
+from __future__ import annotations
+
+OUTSIDE = "what lies outside "  # of strokes of which a part counts
+STEPS_DIFFER = "friction at one speed differs from step to step"
+TRENDS = ("friction rises along", "friction falls along")
