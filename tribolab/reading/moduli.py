@@ -22,9 +22,11 @@ from tribolab.units import conversion
 SHEAR_TO_TENSILE = 3.0  # E = 2 (1 + nu) G of an incompressible solid
 _LARGEST = 32 << 20  # bytes of a table in text
 _HEAD = 200  # rows among which the names stand
+_LONGEST, _WIDEST = 80, 300  # letters of a name, and columns
 _WORKBOOKS = (".xls", ".xlsx", ".xlsm", ".ods")
 _PRIMES = str.maketrans({"\u2032": "'", "\u2019": "'", "\u00b4": "'", "\u2033": '"', "\u201d": '"'})
-_UNIT = re.compile(r"\s*(?:\bin\s+)?[\[(]\s*([^\[\]()]*?)\s*[\])]\s*$")
+_UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]\s*$")  # behind "G' in"
+_IN = re.compile(r"\bin$")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _COMMA, _POINT = (re.compile(rf"(?<![\d{s}])\d+{s}\d+(?![\d{s}])") for s in (",", r"\."))
 _NO_UNIT = ("", "-", "1", "[]", "[-]", "[1]")
@@ -121,6 +123,8 @@ def _find_table(path: Path, sheet: str | None, longest: int | None = None) -> _T
     workbook = path.suffix.lower() in _WORKBOOKS
     for rows, decimal in _workbook(path, sheet) if workbook else _text(path, longest):
         for place, row in enumerate(rows[:_HEAD]):
+            if len(row) > _WIDEST:
+                continue
             columns = _columns(row)
             seen |= dict.fromkeys(cell.strip() for cell in row if _concept(_bare(cell)[0]))
             if _enough(columns):
@@ -149,10 +153,11 @@ def _bare(cell: str) -> tuple[str, str]:
     >>> _bare("G' in [Pa]"), _bare('E" (MPa)'), _bare("Tan(delta)")
     (("G'", 'Pa'), ('E"', 'MPa'), ('Tan(delta)', ''))
     """
-    match = _UNIT.search(cell)
+    cell = cell.strip()
+    match = _UNIT.search(cell) if len(cell) <= _LONGEST else None
     if match is None or normalise_label(match[1]) in ("delta", "δ"):
-        return cell.strip(), ""
-    return cell[: match.start()].strip(), match[1]
+        return cell, ""
+    return _IN.sub("", cell[: match.start()].strip()).strip(), match[1].strip()
 
 
 def _concept(label: str) -> str:
@@ -161,14 +166,15 @@ def _concept(label: str) -> str:
     >>> [_concept(label) for label in ("f", 'E"', "G'", "Tan(delta)", "|G*|", "Step time")]
     ['modulus_frequency', 'loss_modulus', 'storage_modulus', 'loss_factor', 'complex_modulus', '']
     """
+    if len(label) > _LONGEST:
+        return ""
     text = label.translate(_PRIMES).replace("''", "pp").replace('"', "pp").replace("'", "p")
     words = text.replace("*", "star").split()
-    for part in (words, words[:-1], words[-1:]):  # "Storage modulus E'": name and symbol
-        name = normalise_label(" ".join(part))
-        for word in known_words("modulus") if name else ():
-            if name in word.symbols or name in names(word.quantity):
-                return word.quantity
-    return "temperature" if name in ("t", "temp", "ts", *names("temperature")) else ""
+    whole, without_symbol = (normalise_label(" ".join(part)) for part in (words, words[:-1]))
+    for word in known_words("modulus"):
+        if whole in word.symbols or {whole, without_symbol} & names(word.quantity):
+            return word.quantity  # "Storage modulus E'" is its name and its symbol
+    return "temperature" if whole in ("t", "temp", "ts", *names("temperature")) else ""
 
 
 def _enough(columns: dict[str, _Column]) -> bool:
