@@ -105,3 +105,49 @@ def test_a_damaged_workbook_in_xml_costs_one_message(text, says, tmp_path):
         sheets_of(tmp_path / "run.xml")
     with pytest.raises(ReadError):
         tl.read(tmp_path / "run.xml")
+
+
+def test_heights_in_a_are_in_angstrom(tmp_path):
+    x = np.arange(400) * 0.5
+    z = 300 * np.sin(x / 5)
+    lines = [f"{a:.4f},{b:.1f}" for a, b in zip(x, z, strict=True)]
+    (tmp_path / "scan.csv").write_text("Lateral(um),Total Profile(A)\n" + "\n".join(lines))
+    scan = tl.read_scans(tmp_path / "scan.csv")
+    assert float(scan.height.max()) == pytest.approx(300e-10, rel=1e-3)
+    assert float(scan.x[1] - scan.x[0]) == pytest.approx(0.5e-6)
+
+
+def test_a_path_that_only_grows_is_no_position_beside_one_that_turns(tmp_path):
+    t = np.arange(2000) * 0.02
+    x = 3 * np.abs((t / 4) % 2 - 1)  # mm, to and fro at 0.75 mm/s
+    path = np.concatenate([[0], np.cumsum(np.abs(np.diff(x)))]) / 1000  # m
+    mu = 0.2 * np.sign(np.gradient(x)) + 0.003 * np.random.default_rng(4).standard_normal(2000)
+    lines = [f"{a:.2f};{b:.5f};{c:.4f};{d:.4f}" for a, b, c, d in zip(t, path, x, mu, strict=True)]
+    head = "Time [s];Distance [m];Position [mm];mu []\n"
+    (tmp_path / "run.txt").write_text(head + "\n".join(lines))
+    run = tl.read(tmp_path / "run.txt")
+    assert float(run.position.max()) == pytest.approx(3e-3)
+    found = tl.friction_coefficient(run, tl.find_segments(run))
+    np.testing.assert_allclose(found.sliding_speed, 0.75e-3, rtol=0.01)
+
+
+def test_a_summary_below_a_sheet_and_settings_on_another_are_understood(tmp_path):
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    cover = book.active
+    cover.title = "Deckblatt"
+    for row in [("Normalkraft", 20, "N"), ("Drehzahl", 120, "1/min"), ("Reibradius", 15, "mm")]:
+        cover.append(row)
+    sheet = book.create_sheet("Messdaten")
+    sheet.append(["Zeit [s]", "Reibkraft [N]"])
+    rng = np.random.default_rng(5)
+    for k in range(400):
+        sheet.append([k, 5 + 0.05 * float(rng.standard_normal())])
+    sheet.append([])
+    sheet.append(["Mittelwert", 5.0])
+    book.save(tmp_path / "run.xlsx")
+    run = tl.read(tmp_path / "run.xlsx")
+    assert run.sizes["time"] == 400
+    found = tl.friction_coefficient(run, tl.find_segments(run))
+    assert found.sliding_speed.item() == pytest.approx(2 * np.pi * 2 * 0.015)
+    assert found.friction_coefficient.item() == pytest.approx(0.25, rel=0.01)

@@ -248,3 +248,22 @@ def test_an_uncertainty_of_the_zero_in_the_wrong_unit_is_a_mistake_in_the_campai
     (run,) = outcome.runs
     assert run.reason.startswith("campaign.toml, line 7, [[run]] 1: zero_uncertainty must be")
     assert "dimensionless here, e.g. \"1 %\", not '0.2 N'" in run.reason
+
+
+def test_a_rest_that_is_mostly_the_ramp_of_the_load_still_shows_its_zero():
+    rng = np.random.default_rng(8)
+    t = np.arange(6000) * 0.01
+    load = np.interp(t, [0, 1.2, 4.0, 60], [0, 0, 5, 5]) + 0.02 * rng.standard_normal(t.size)
+    speed = np.where(t > 8, 0.1, 0.0)
+    friction = 0.1 * 5 * (t > 8) + 0.01 * rng.standard_normal(t.size)
+    run = xr.Dataset(
+        {
+            "friction_force": ("time", friction),
+            "normal_force": ("time", load),
+            "sliding_velocity": ("time", speed),
+        },
+        {"time": t},
+    )
+    found = tl.friction_coefficient(run, tl.find_segments(run))
+    assert abs(float(found.normal_force_offset[0])) < 0.02
+    assert found.friction_coefficient.item() == pytest.approx(0.1, rel=0.01)

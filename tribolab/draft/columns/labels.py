@@ -34,6 +34,8 @@ def labelled(layout: Layout) -> list[DraftColumn]:
     for place, cell in enumerate(cells, start=1):
         name, unit = split_name(cell)
         said = ""
+        if unit == "A" and matches(name, unit, scan=True):
+            said = unit = "angstrom"  # of heights, as profilometers write it
         if unit is not None and not is_unit(unit) and unit.isupper() and is_unit(unit.lower()):
             said = unit = unit.lower()  # TIME (S), POSITION (MM)
         if unit in _PURE or not (unit is None or measures_something(unit) or is_count(unit)):

@@ -30,7 +30,7 @@ def meant(
     numbers
         Their numbers (rows, columns) as written.
     """
-    matched = _without_rows(bare, numbers, matched)
+    matched = _without_path(_without_rows(bare, numbers, matched), numbers)
     matched = _without_weak(columns, bare, _across_if_moved(bare, matched))
     return _without_lengths(bare, _without_axes(columns, bare, matched))
 
@@ -45,6 +45,15 @@ def _without_rows(
         else options
         for place, ((name, unit, _), options) in enumerate(zip(bare, matched, strict=True))
     ]
+
+
+def _without_path(matched: list[list[Match]], numbers: np.ndarray) -> list[list[Match]]:
+    """Beside a position that turns round, a length that only grows is the whole path."""
+    places = [k for k, o in enumerate(matched) if o and o[0].quantity == "position"]
+    steps = {k: np.diff(numbers[np.isfinite(numbers[:, k]), k]) for k in places}
+    turn = [k for k, moved in steps.items() if (moved < 0).any() and (moved > 0).any()]
+    grow = [k for k, moved in steps.items() if moved.size and (moved >= 0).all()]
+    return [[] if turn and k in grow else options for k, options in enumerate(matched)]
 
 
 def _across_if_moved(bare: list[Bare], matched: list[list[Match]]) -> list[list[Match]]:

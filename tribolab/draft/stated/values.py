@@ -40,7 +40,7 @@ _MOST_OF_SCAN = 200  # settings of a profilometer, among which the few that coun
 _SAID = (
     r"(?P<before>\W*(?P<key>[^\W\d][^:：=\t;{mark}]*?)(?:\"?\s*[:：=]?\s*[:：=\t;{mark}]\s*\"?|\s{{2,80}}))"
     r"(?:(?:\+/?-|±)\s?)?(?P<number>[-+]?\d[\d.{digits}]*(?:e[-+]?\d+)?)[\s;{mark}\"]*"
-    r"(?P<unit>[^\s\d;,\"][^\s;,\"]*)?"
+    r"(?P<unit>1/[^\W\d]\w*|[^\s\d;,\"][^\s;,\"]*)?"
     r"(?:[\s;,\t\"]*(?:\(.*\))?|(?:[,;]| [-–—]) ?[^\W\d][^\d:：=]*)$"
 )
 _SAYS = re.compile(_SAID.format(mark="", digits=","), re.IGNORECASE)

@@ -16,6 +16,7 @@ from tribolab.reading.raw.opening import damage_told, isolated
 _MOST_CELLS = 50_000_000  # of a sheet
 _MOST_ROWS, _MOST_WIDE = 100, 12  # of settings that stand in cells
 _HEAD = 4096  # bytes that tell a workbook in XML
+_SUMMARY = 30  # rows of it, below a table
 _SHORT = 200  # characters of a setting
 Cells = Sequence[Sequence[object]]
 
@@ -141,7 +142,7 @@ def table_below(
         units = [str(cell).strip("[]() ") or None for cell in rows[line]]
         units += [None] * (len(names) - len(units))
         first += 1
-    body = rows[first:]
+    body = _without_summary(rows[first:])
 
     def column(place: int) -> np.ndarray:
         cells = [row[place] if place < len(row) else "" for row in body]
@@ -151,6 +152,16 @@ def table_below(
 
     above = settings_above(rows[: line - 1][:_MOST_ROWS])
     return SheetColumns(names, units[: len(names)], column, above)
+
+
+def _without_summary(body: Cells) -> Cells:
+    """Return the rows above an empty one below which words stand: "Mean", and its number."""
+    for place in range(max(len(body) - _SUMMARY, 0), len(body)):
+        if any(cell not in ("", None) for cell in body[place]):
+            continue
+        below = [cell for row in body[place:] for cell in row if isinstance(cell, str)]
+        return body[:place] if any(text.strip(" .,-") for text in below) else body
+    return body
 
 
 def _check_size(path: Path, sheet: str, page: object) -> None:
