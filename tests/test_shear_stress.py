@@ -289,7 +289,9 @@ def test_a_fit_shows_number_unit_and_error_at_once_and_the_rest_as_a_table():
     assert (table.unit[["shear_stress", "interval_low", "chi_square"]] == ["Pa", "Pa", "1"]).all()
     assert tuple(table.value[["interval_low", "interval_high"]]) == found.interval
     shown, folded = found._repr_html_().split("<details>")
-    assert f"{found.shear_stress / 1e6:.3g} ± {found.total_error / 1e6:.2g} MPa" in shown
+    # a plus-minus is for U95 alone, here and everywhere
+    error = f"(standard error {found.total_error / 1e6:.2g} MPa)"
+    assert f"{found.shear_stress / 1e6:.3g} MPa</b> {error}" in shown
     assert "statistical only" not in shown and folded.count("<tr>") > len(table)
     assert "statistical only" in fit(measured(0.02, 1))._repr_html_()
 

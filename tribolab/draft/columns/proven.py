@@ -16,6 +16,7 @@ from tribolab.reading.interpret.physics import Candidate, Proof, known_quantitie
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
 
 _NEAR = 0.1  # of the best score: names that suit a quantity about as well
+_MOST = 100  # columns: of more, too many may be members of a rule
 _NAMED = ("mass", "turns", "distance", "torque")
 
 
@@ -30,7 +31,7 @@ def proven(columns: Sequence[DraftColumn], numbers: np.ndarray) -> dict[int, Pro
         Their numbers (rows, columns) as written; NaN for a column of text.
     """
     bare = [bare_name(column) for column in columns]
-    if all(unit is not None for _, unit, _ in bare):
+    if len(columns) > _MOST or all(unit is not None for _, unit, _ in bare):
         return {}  # nothing is left to be proven
     candidates = [_candidate(*one, values) for one, values in zip(bare, numbers.T, strict=True)]
     return prove(candidates, numbers)

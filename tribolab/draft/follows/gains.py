@@ -140,9 +140,10 @@ def _texts(layout: Layout, column: DraftColumn, names: Sequence[str]) -> Iterato
     yield _Said(column.label)
     lines = [line[:_LONGEST] for line in layout.text_above()]
     for name in names:
-        words = [re.escape(word) for word in re.split(r"[\s_]+", name) if word]
-        if not words:
+        plain = [word for word in re.split(r"[\s_]+", name) if word]
+        if not plain or not any(plain[0] in line for line in lines):
             continue
+        words = [re.escape(word) for word in plain]
         # "Fx: 10 N/V", "Gain Fx: 10 N/V", "load, sensitivity: 10 N/V"
         named = re.compile(
             rf"(?:^[^\w]*|[;,|]\s*|\s{{2,}}){_FACTOR_OF}{r'[ _]*'.join(words)}(?![^\W_])"

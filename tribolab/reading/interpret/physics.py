@@ -21,6 +21,7 @@ from tribolab.quantities import QUANTITIES, unit_conversion
 from tribolab.reading.interpret.limits import AGREEMENT, ROWS, SPREAD
 from tribolab.units import conversion
 
+_MOST_MEMBERS = 500  # ways in which columns may be members of one rule
 Units = dict[int, str]
 
 
@@ -133,7 +134,7 @@ def _members(rule: Rule, candidates: Sequence[Candidate]) -> Iterator[tuple[int,
         [place for place, candidate in enumerate(candidates) if name in candidate.quantities]
         for name in rule.members
     ]
-    for places in itertools.product(*options):
+    for places in itertools.islice(itertools.product(*options), _MOST_MEMBERS):
         if len(set(places)) == len(places):
             yield places
 
