@@ -223,7 +223,7 @@ def _told_of_runs(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
 def _undecided(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
     """Return in a line how many segments may have a large trend or none."""
     # late: starting stays quick
-    from tribolab.records.judgement import undecided_trends
+    from tribolab.records.trends import undecided_trends
 
     entries = [(run.name, outcome.store.get("run", run.name, RunRecord)) for run in done]
     facts = [(name, entry.record.facts) for name, entry in entries if entry is not None]

@@ -17,10 +17,10 @@ from tribolab.friction.zero.of_run import PAIRED
 from tribolab.medians import median
 from tribolab.records.decision_rows import decision_rows
 from tribolab.records.frames import friction_columns, plain_rows
-from tribolab.records.judgement import not_decided
 from tribolab.records.run_record import CheckRow, Highlight, LeftOut, RunFacts, Waveform
 from tribolab.records.same_speed import of_one_speed
 from tribolab.records.traces import flagged_spans
+from tribolab.records.trends import not_decided
 from tribolab.records.wording import SPREAD_OF, plain_value
 from tribolab.words import many, percent
 

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SIGNIFICANT = 0.01  # chance of a trend below which a segment is not steady: runs have hundreds
 SUSPECT_DRIFT = 0.05  # of the run's typical friction: above the usual spread of repeats
 FAILING_DRIFT = 0.50  # of the run's typical friction: a mean over such a change has no meaning
 SAMPLES = 10.0  # fewer effective samples do not tell a trend from slow wandering
 _MANY = 20  # segments
-_LIMITS = {
+LIMITS = {
     "suspect": SUSPECT_DRIFT,
     "fail": FAILING_DRIFT,
     "chance": SIGNIFICANT,
@@ -23,7 +26,7 @@ IS_NOT_STEADY, IS_STEADY, NOT_DECIDED = 0, 1, 2
 STEADINESS_WORDS = {IS_NOT_STEADY: "not steady", IS_STEADY: "steady", NOT_DECIDED: "undecided"}
 
 
-def chance_limit(samples: np.ndarray, limits: Mapping[str, float] = _LIMITS) -> np.ndarray:
+def chance_limit(samples: np.ndarray, limits: Mapping[str, float] = LIMITS) -> np.ndarray:
     """Return the p value below which a line through each segment is a trend (segment).
 
     Of more than 20 segments the p value has to be smaller, by the square of their number: in a
@@ -37,7 +40,7 @@ def chance_limit(samples: np.ndarray, limits: Mapping[str, float] = _LIMITS) -> 
     samples
         Effective samples (segment).
     limits
-        `_LIMITS`, or those of the check on steadiness.
+        `LIMITS`, or those of the check on steadiness.
 
     Examples
     --------
@@ -67,12 +70,12 @@ def undecided(
     chance, samples
         The line's p value, and effective samples (segment).
     limits
-        `_LIMITS`, or those of the check on steadiness.
+        `LIMITS`, or those of the check on steadiness.
 
     Examples
     --------
     >>> p, n = np.array([0.36, 0.36, 1e-4, 0.36]), np.array([2.8, 90.0, 2.8, 90.0])
-    >>> undecided(np.array([-0.2, -0.2, -0.2, -6.2]), p, n, _LIMITS)
+    >>> undecided(np.array([-0.2, -0.2, -0.2, -6.2]), p, n, LIMITS)
     array([ True, False, False,  True])
     """
     size = np.abs(change)
@@ -121,7 +124,7 @@ def judged(friction: xr.Dataset) -> xr.Dataset:
     change = relative_change(friction)
     if change is None:
         change = np.full(chance.shape, np.nan)
-    open_ = ~np.isfinite(chance) | undecided(change, chance, samples, _LIMITS)
+    open_ = ~np.isfinite(chance) | undecided(change, chance, samples, LIMITS)
     flag = np.where(
         open_, NOT_DECIDED, np.where(chance < chance_limit(samples), IS_NOT_STEADY, IS_STEADY)
     )

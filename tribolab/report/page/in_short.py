@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from tribolab.records.judgement import undecided_trends
 from tribolab.records.model_words import is_described
 from tribolab.records.notice_words import STEPS_DIFFER, TRENDS
 from tribolab.records.roughness_words import roughness_in_words
+from tribolab.records.trends import undecided_trends
 from tribolab.report.page.in_words import by_speed, conditions, half_speed
 from tribolab.report.plain import listed, plain_speed
 from tribolab.words import force_text, is_dry, many

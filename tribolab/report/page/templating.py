@@ -17,7 +17,7 @@ import jinja2.bccache
 from markupsafe import Markup
 
 from tribolab import words
-from tribolab.records import judgement, wording
+from tribolab.records import judgement, trends, wording
 from tribolab.records.hurst_words import hurst_verdict, is_steep
 from tribolab.records.model_words import is_described, shear_stress_u95, stress_interval
 from tribolab.records.packed import deflated
@@ -158,7 +158,7 @@ def environment(folder: Path) -> jinja2.Environment:
         "span": words.span,
         "load_text": words.load_text,
         "judge": judgement.judge,
-        "trend_texts": judgement.trend_texts,
+        "trend_texts": trends.trend_texts,
         "stress_interval": stress_interval,
         "shear_stress_u95": shear_stress_u95,
         "roughness_u95": roughness_u95,
