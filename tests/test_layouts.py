@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import tribolab as tl
+from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.errors import ReadError
 from tribolab.io.tables.workbook import sheets_of
 
@@ -151,3 +152,9 @@ def test_a_summary_below_a_sheet_and_settings_on_another_are_understood(tmp_path
     found = tl.friction_coefficient(run, tl.find_segments(run))
     assert found.sliding_speed.item() == pytest.approx(2 * np.pi * 2 * 0.015)
     assert found.friction_coefficient.item() == pytest.approx(0.25, rel=0.01)
+
+
+def test_a_line_of_thousands_of_cells_is_a_table_without_line_ends(tmp_path):
+    (tmp_path / "run.txt").write_text("\t".join(f"{0.01 * k:.3f}" for k in range(5000)) + "\n")
+    with pytest.raises(ReadError, match="5000 columns in 1 rows.*each row on a line of its own"):
+        draft_dialect(tmp_path / "run.txt")

@@ -45,6 +45,7 @@ _LONGEST = 200  # characters of a line that are looked at
 _COUNT = re.compile(r"(?<![\d.,])(\d{2,7})(?![\d.,])[^\d]{0,20}$")  # "Number of points: 5600"
 _FEW = 20  # lines at the end that tell what parts cells
 _MOST_COLUMNS = 20_000
+_WIDE, _FEWEST_OF_WIDE = 1000, 5  # columns, and rows: a line end that is lost makes such a line
 _MOST_TURNED = 1 << 28  # bytes of a file of few long lines
 _MOST_ABOVE = 500  # lines of text above a table that are looked at
 
@@ -203,10 +204,11 @@ def find_layout(file: File) -> Layout:
         blocks, skip_lines = without_marks(lines, find_blocks(lines, grammar), grammar)
         main, others = main_blocks(blocks)
     first = main[0]
-    if first.width > _MOST_COLUMNS:
+    rows = sum(len(block.rows) for block in main)
+    if first.width > _MOST_COLUMNS or (first.width > _WIDE and rows < _FEWEST_OF_WIDE):
         raise ReadError(
-            f"{file.path}: {first.width} columns are more than an instrument writes "
-            f"({_MOST_COLUMNS}); is it the right file, and is each row on a line of its own?"
+            f"{file.path}: {first.width} columns in {rows} rows are more than an instrument "
+            "writes; is it the right file, and is each row on a line of its own?"
         )
     heading = first.heading
     pattern, repeats = header_pattern(lines, main, grammar) if heading else (None, False)
