@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from tribolab import cli
 from tribolab.errors import AnalysisError, ReadError
-from tribolab.reading.moduli import read_modulus_table
+from tribolab.reading.moduli import holds_modulus, read_modulus_table
 from tribolab.rubber.modulus import (
     PDMS_STAND_IN,
     FractionalZener,
@@ -279,6 +279,19 @@ def test_a_sweep_is_named_by_its_temperature(shared_data):
     assert read_modulus(path, "100 C").storage[-1] == pytest.approx(585.8391184e6)
     with pytest.raises(ReadError, match="no sweep at 300 C"):
         read_modulus(path, "300 C")
+
+
+def test_a_file_that_cannot_be_opened_costs_one_message(tmp_path, monkeypatch):
+    path = tmp_path / "sweep.txt"
+    path.write_text("f,E',E''\nHz,MPa,MPa\n1,2,3\n2,3,4\n", "utf-8")
+
+    def closed(self, *_):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("pathlib.Path.open", closed)
+    assert not holds_modulus(path)
+    with pytest.raises(ReadError, match="sweep.txt.*cannot be opened.*Permission denied"):
+        read_modulus_table(path)
 
 
 def test_info_says_that_a_modulus_is_one(shared_data):

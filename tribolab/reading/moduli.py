@@ -112,7 +112,7 @@ def holds_modulus(path: str | Path) -> bool:
     """Whether a file holds a table of storage and loss modulus over frequency, by its beginning."""
     try:
         _find_table(Path(path), None, _HEAD)
-    except ReadError:
+    except (ReadError, OSError):  # whoever reads it says why it cannot be opened
         return False
     return True
 
@@ -348,8 +348,11 @@ def _at_temperature(sweeps: Sequence[np.ndarray], wanted: str, name: str) -> np.
 
 def _text(path: Path, longest: int | None) -> Iterator[tuple[list[Row], str]]:
     """Yield the rows of a text for each delimiter that may be its own."""
-    with path.open("rb") as file:
-        raw = file.read(_LARGEST + 1 if longest is None else 400 * longest)
+    try:
+        with path.open("rb") as file:
+            raw = file.read(_LARGEST + 1 if longest is None else 400 * longest)
+    except OSError as error:
+        raise ReadError(f"{path}: the file cannot be opened: {error}") from error
     if len(raw) > _LARGEST:
         raise ReadError(f"{path.name}: {path.stat().st_size >> 20} MB are no table of a modulus")
     lines = _decoded(raw).splitlines()[:longest]

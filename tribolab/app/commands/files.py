@@ -100,8 +100,8 @@ def info(
                 say(f"tribolab: {description.error}", to_stderr=True)
             else:
                 say("\n".join(description.lines))
-        modulus = len(described) == 1 and holds_modulus(described[0].file)
-        if len(described) == 1 and not described[0].error and not modulus:
+        alone = len(described) == 1 and not described[0].error
+        if alone and not holds_modulus(described[0].file):
             file = shlex.quote(str(described[0].file))
             file += f" --instrument {shlex.quote(instrument)}" if instrument else ""
             say(f"next: tribolab check {file} (is it usable?), tribolab run {file} (its results)")

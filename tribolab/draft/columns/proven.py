@@ -37,9 +37,7 @@ def proven(columns: Sequence[DraftColumn], numbers: np.ndarray) -> dict[int, Pro
     return prove(candidates, numbers)
 
 
-def with_proven_units(
-    columns: Sequence[DraftColumn], proofs: dict[int, Proof]
-) -> list[DraftColumn]:
+def add_proven_units(columns: Sequence[DraftColumn], proofs: dict[int, Proof]) -> list[DraftColumn]:
     """Return columns with the units that are proven, where the file says none."""
     return [
         column._replace(unit=proof.unit, name=column.name or bare_name(column)[0])
@@ -67,7 +65,7 @@ def _candidate(name: str, unit: str | None, say: bool, values: np.ndarray) -> Ca
     return Candidate(frozenset(quantities), unit)
 
 
-def with_proofs(
+def restrict_to_proofs(
     matched: Sequence[list[Match]], proofs: dict[int, Proof], numbers: np.ndarray
 ) -> list[list[Match]]:
     """Return what names may stand for, given what is proven: it leaves others no choice.

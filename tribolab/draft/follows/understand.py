@@ -21,7 +21,7 @@ from tribolab.draft.columns.heights import (
 )
 from tribolab.draft.columns.labels import bare_name, labelled
 from tribolab.draft.columns.plain_numbers import plain_numbers
-from tribolab.draft.columns.proven import proven, with_proofs, with_proven_units
+from tribolab.draft.columns.proven import add_proven_units, proven, restrict_to_proofs
 from tribolab.draft.columns.ratio import disagreement, force_or_ratio
 from tribolab.draft.columns.results_table import are_points
 from tribolab.draft.columns.turning import angle_of, torque_of
@@ -81,7 +81,7 @@ def understand(layout: Layout) -> Understood:
     unit = find_height_unit(layout)
     columns = in_stated_unit(labelled(layout), unit, find_unit_along(layout))
     proofs = proven(columns, numbers)
-    columns = with_proven_units(columns, proofs)
+    columns = add_proven_units(columns, proofs)
     pitch = find_pitch(layout)
     density = "" if pitch is not None else find_point_density(layout)
     length = None if pitch is not None or density else find_profile_length(layout)
@@ -348,7 +348,7 @@ def _by_name(
     bare = [bare_name(column) for column in columns]
     run = [matches(name, unit) for name, unit, _ in bare]
     scan = [matches(name, unit, scan=True) for name, unit, _ in bare]
-    run = with_proofs(_timed(bare, run, numbers), proofs, numbers)
+    run = restrict_to_proofs(_timed(bare, run, numbers), proofs, numbers)
     best = {options[0].quantity for options in run if options}
     profile = {options[0].quantity for options in scan if options}
     if not best & {"time", "friction_force", "normal_force", "sliding_velocity"} and (
