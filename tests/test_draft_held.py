@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.draft.words.words import split_unit
+from tribolab.reading.interpret.names import split_unit
 
 N = 300
 T = np.arange(N) / 20

@@ -7,7 +7,7 @@ import pytest
 
 import tribolab as tl
 from tribolab.draft.file.lines import find_encoding
-from tribolab.draft.words.words import matches
+from tribolab.reading.interpret.names import matches
 from tribolab.reading.lexicon.lexicon import known_words
 
 TERMS = {

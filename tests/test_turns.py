@@ -5,9 +5,9 @@ import pytest
 from dialects import dialect_of
 
 import tribolab as tl
-from tribolab.draft.file.header import is_unit
 from tribolab.errors import ConfigError, ReadError, TribolabError, UnitError
 from tribolab.quantities import QUANTITIES, dictionary, quantity, unit_conversion
+from tribolab.reading.interpret.unit_texts import is_unit
 from tribolab.rubber.modulus import read_modulus
 from tribolab.stamping import labelled
 from tribolab.turns import reciprocal

@@ -13,18 +13,18 @@ from tribolab.draft.columns.turning import angle_of, torque_of
 from tribolab.draft.dialect.answers import column_of, corrected, fits, written
 from tribolab.draft.dialect.draft import Draft, as_profile, holds_counts, holds_heights
 from tribolab.draft.dialect.worth import ANGLE, TORQUE, Worth, si_unit_of, worth_of
-from tribolab.draft.file.header import converts, is_unit
 from tribolab.draft.file.layout import Layout
+from tribolab.draft.follows.candidate_lines import amount_of, candidate_lines, likely_value
 from tribolab.draft.follows.follows import what_follows
 from tribolab.draft.follows.lacking import lacking
-from tribolab.draft.follows.may_say import amount_of, likely_value, may_say
 from tribolab.draft.follows.sums import ADDS
 from tribolab.draft.model import Agreed, DraftColumn, Understood, other_units
+from tribolab.draft.stated.settings import Amount
 from tribolab.draft.stated.stated_load import stated_number
-from tribolab.draft.stated.values import DraftValue
 from tribolab.errors import ReadError, TribolabError, shown
 from tribolab.io.zero_reading import parse_zero
 from tribolab.quantities import QUANTITIES, quantity
+from tribolab.reading.interpret.unit_texts import converts, is_unit
 
 _NONE = "-"
 _YES = ("yes", "y")
@@ -129,7 +129,7 @@ def _ask_for_lengths(
     guessed = [value for value in follows.values if value.guess]
     if guessed or "the radius of the track" in lacks:
         guess = f"{stated_number(guessed[0]):.6g} {guessed[0].unit}" if guessed else _NONE
-        said = may_say(layout, follows, "the radius")
+        said = candidate_lines(layout, follows, "the radius")
         value = likely_value(layout, follows, "the radius")
         question = "what is the radius of the track, with its unit"
         question += f"; is it in {said}?" if said else "?"
@@ -301,7 +301,7 @@ def _stated_amount(draft: Draft, amount: str) -> str:
     return amount_of(told[0]) if told and not told[0].guess else ""
 
 
-def _with_line(draft: Draft, amount: str, value: DraftValue) -> Draft:
+def _with_line(draft: Draft, amount: str, value: Amount) -> Draft:
     """Return a draft in which a line of the file states the load or the speed, as a person said."""
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
@@ -311,7 +311,7 @@ def _with_line(draft: Draft, amount: str, value: DraftValue) -> Draft:
     return written(draft, layout, understood)
 
 
-def _may_say(draft: Draft, amount: str) -> tuple[str, DraftValue | None]:
+def _may_say(draft: Draft, amount: str) -> tuple[str, Amount | None]:
     """Quote the lines of the file that may state an amount, and return what they state."""
     layout, understood = draft.layout, draft.understood
     lack = {"load": "the load", "speed": "the sliding speed"}.get(amount, "")
@@ -321,7 +321,7 @@ def _may_say(draft: Draft, amount: str) -> tuple[str, DraftValue | None]:
     missing = any(said.startswith(lack) for said in lacking(understood, follows))
     if not missing:
         return "", None
-    return may_say(layout, follows, lack), likely_value(layout, follows, lack)
+    return candidate_lines(layout, follows, lack), likely_value(layout, follows, lack)
 
 
 def _with_amount(draft: Draft, amount: str, text: str) -> Draft:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import re
 
-from tribolab.draft.file.header import converts, is_unit
 from tribolab.errors import ReadError, TribolabError
+from tribolab.reading.interpret.unit_texts import converts, is_unit
 from tribolab.turns import reciprocal
 from tribolab.unit_names import WEIGHTS
 from tribolab.units import positive

@@ -9,11 +9,11 @@ import numpy as np
 from tribolab.draft.columns.fill_in import FORCES, Bare, filled_in
 from tribolab.draft.columns.meant import ACROSS, meant
 from tribolab.draft.columns.turning import torque_of
-from tribolab.draft.file.header import converts
 from tribolab.draft.model import UNKNOWN_NAME, WHICH_FORCE, DraftColumn, Kind
-from tribolab.draft.words.words import KNOWN_WORD, Match, is_count
 from tribolab.errors import shown
 from tribolab.quantities import QUANTITIES, quantity, unit_conversion
+from tribolab.reading.interpret.names import KNOWN_WORD, Match, is_count
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import Role, normalise_label, role_of
 
 SIGNALS = {

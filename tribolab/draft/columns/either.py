@@ -8,14 +8,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import WHICH_FORCE, DraftColumn
 from tribolab.draft.stated.lengths import find_arm
+from tribolab.draft.stated.settings import Amount, numeric_settings
 from tribolab.draft.stated.stated_load import find_load, stated_number
-from tribolab.draft.stated.values import DraftValue, find_values
 from tribolab.errors import shown
 from tribolab.quantities import unit_conversion
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label, role_of
 
 _LOADED = 0.4  # of the largest reading
@@ -56,7 +56,7 @@ def told_by_load(
         if not open_ones and not held & _FRICTION:
             forces = (c for c in columns if converts(c.read_unit or "", "N"))
             open_ones = [c for c in forces if not c.used and _IS_FORCE.search(_name(c))]
-    stated = find_values(layout) if len(open_ones) == 1 else []
+    stated = numeric_settings(layout) if len(open_ones) == 1 else []
     load = find_load(stated)
     if load is None:
         return list(columns)
@@ -81,7 +81,7 @@ def without_means(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftC
     means = [c for c in columns if c.used and c.guessed and c.quantity == "friction_coefficient"]
     if not means or "friction_force" not in held or role_of(means[0].label) not in _WORKED_OUT:
         return list(columns)
-    if "normal_force" not in held and find_load(find_values(layout)) is None:
+    if "normal_force" not in held and find_load(numeric_settings(layout)) is None:
         return list(columns)
     note = "worked out by the instrument; the forces give it"
     return [
@@ -94,7 +94,7 @@ def _name(column: DraftColumn) -> str:
     return normalise_label(bare_name(column)[0])
 
 
-def _guessed(column: DraftColumn, load: DraftValue, values: np.ndarray) -> DraftColumn:
+def _guessed(column: DraftColumn, load: Amount, values: np.ndarray) -> DraftColumn:
     stated = stated_number(load) * unit_conversion(load.unit or "N", "normal_force")[0]
     read = np.abs(values[np.isfinite(values)])
     read = read * unit_conversion(column.read_unit or "N", "normal_force")[0]

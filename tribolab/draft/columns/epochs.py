@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.draft.file.header import converts
 from tribolab.io.dialects.dates import Epoch
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.units import conversion
 
 _DAY = 86400.0  # [s]

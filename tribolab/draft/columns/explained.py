@@ -6,11 +6,11 @@ import re
 from collections.abc import Collection, Sequence
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import NO_NUMBERS, DraftColumn
-from tribolab.draft.words.words import matches
 from tribolab.errors import shown
+from tribolab.reading.interpret.names import matches
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label
 
 _LONGEST = 300  # characters of a line that are looked at

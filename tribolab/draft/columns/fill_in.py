@@ -8,9 +8,9 @@ import numpy as np
 
 from tribolab.draft.columns.epochs import DATES, counted_from
 from tribolab.draft.model import DraftColumn, Kind, other_units, time_unit
-from tribolab.draft.words.words import KNOWN_WORD, Match, is_count
 from tribolab.errors import shown
 from tribolab.quantities import quantity
+from tribolab.reading.interpret.names import KNOWN_WORD, Match, is_count
 from tribolab.reading.lexicon.lexicon import normalise_label, role_of
 
 Bare = tuple[str, str | None, bool]  # a name without its unit, the unit, whether it is to be said

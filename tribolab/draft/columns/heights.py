@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn, other_units
-from tribolab.draft.words.words import KNOWN_WORD, matches
+from tribolab.reading.interpret.names import KNOWN_WORD, matches
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label
 
 # of profiles side by side that are counted and nothing else

@@ -6,13 +6,13 @@ import re
 from collections.abc import Sequence
 
 from tribolab.draft.columns.fill_in import Bare
-from tribolab.draft.file.header import is_unit, measures_something
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.lvm import units_above
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.values import words_said
-from tribolab.draft.words.words import COUNTS, is_count, matches, split_unit
+from tribolab.draft.stated.settings import text_settings
 from tribolab.io.dialects.cells import split_name
+from tribolab.reading.interpret.names import COUNTS, is_count, matches, split_unit
+from tribolab.reading.interpret.unit_texts import is_unit, measures_something
 from tribolab.reading.lexicon.lexicon import normalise_label
 from tribolab.unit_names import unit_in_words
 
@@ -110,7 +110,7 @@ def _named_above(layout: Layout) -> str:
 
     "Signal: friction force [N], zero not corrected" names it as a header does.
     """
-    for key, text in words_said(layout, bare=True):
+    for key, text in text_settings(layout, bare=True):
         unit = _UNIT_IN.search(text)
         if unit is None or not is_unit(unit[1]) or not _SIGNAL.search(normalise_label(key)):
             continue

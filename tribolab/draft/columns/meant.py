@@ -8,7 +8,7 @@ from tribolab.draft.columns.fill_in import Bare
 from tribolab.draft.columns.turning import angle_of, torque_of
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.words.strokes import is_frequency, lengths_beside_frequencies
-from tribolab.draft.words.words import KNOWN_WORD, Match, is_axis
+from tribolab.reading.interpret.names import KNOWN_WORD, Match, is_axis
 from tribolab.reading.lexicon.lexicon import normalise_label, role_of
 
 ACROSS = {"fy"}  # names of a force across the motion

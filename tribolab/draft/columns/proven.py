@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.words.stated_words import is_radius
-from tribolab.draft.words.words import Match, is_count, matches
 from tribolab.quantities import QUANTITIES
+from tribolab.reading.interpret.names import Match, is_count, matches
 from tribolab.reading.interpret.physics import Candidate, Proof, known_quantities, prove
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
 
 _NEAR = 0.1  # of the best score: names that suit a quantity about as well

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.words.words import split_unit
 from tribolab.io.force_ratio import doubt_about, doubt_about_coefficient
 from tribolab.quantities import unit_conversion
+from tribolab.reading.interpret.names import split_unit
 
 _APART = 1.5  # times: filters and zeros that the instrument took off make less
 _FEW = 20  # rows under load that tell

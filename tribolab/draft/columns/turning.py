@@ -7,11 +7,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.words.stated_words import is_radius
-from tribolab.draft.words.words import is_count, split_unit
 from tribolab.io.dialects.cells import split_name
+from tribolab.reading.interpret.names import is_count, split_unit
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
 
 _TORQUE = key_pattern("torque")

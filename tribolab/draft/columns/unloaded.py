@@ -8,13 +8,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from tribolab.draft.columns.turning import torque_of
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.settings import numeric_settings
 from tribolab.draft.stated.stated_zero import find_zero, zero_in_doubt
-from tribolab.draft.stated.values import find_values
 from tribolab.draft.words.stated_words import NOT_TAKEN_OFF
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.unit_names import unit_in_words
 from tribolab.units import conversion
 
@@ -104,7 +104,7 @@ def with_zero(
     signal = force or (None if "friction_coefficient" in held else torque_of(columns))
     if not line or signal is None or "normal_force" in held:
         return list(columns)
-    values = find_values(layout)
+    values = numeric_settings(layout)
     unit = "N" if force is not None else "N m"
     stated = find_zero(layout, values, unit) or zero_in_doubt(layout, values, unit)
     if stated is not None and not NOT_TAKEN_OFF.search(line):

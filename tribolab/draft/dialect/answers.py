@@ -8,10 +8,10 @@ from tribolab.draft.columns.clock import find_clock
 from tribolab.draft.dialect.drafted import Drafted
 from tribolab.draft.dialect.toml import dialect_toml
 from tribolab.draft.dialect.worth import ANGLE, TORQUE, Worth, si_unit_of
-from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn, Understood
 from tribolab.errors import ReadError
 from tribolab.quantities import QUANTITIES, quantity
+from tribolab.reading.interpret.unit_texts import converts
 
 if TYPE_CHECKING:
     from tribolab.draft.file.layout import Layout

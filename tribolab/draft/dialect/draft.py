@@ -16,12 +16,12 @@ from tribolab.draft.dialect.toml import dialect_toml
 from tribolab.draft.file.layout import Layout, find_layout
 from tribolab.draft.follows.understand import first_cells_of, understand
 from tribolab.draft.model import Understood
-from tribolab.draft.words.words import matches, split_unit
 from tribolab.errors import ConfigError, OutputError, ReadError, TribolabError, shown
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.dialects.find import recognise
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, is_results, is_surftest_results, named_values, peek
+from tribolab.reading.interpret.names import matches, split_unit
 
 
 class Draft(Drafted):
@@ -54,7 +54,7 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
 
     Notes
     -----
-    Names are looked up in one vocabulary, `tribolab.draft.words.words`; columns without a name
+    Names are looked up in `tribolab.reading.interpret.names`; columns without a name
     are judged by their numbers, `tribolab.draft.columns.behaviour`.
 
     Examples

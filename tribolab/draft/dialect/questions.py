@@ -11,19 +11,19 @@ from typing import NamedTuple
 from tribolab.draft.columns.explained import left_aside
 from tribolab.draft.columns.turning import torque_of
 from tribolab.draft.dialect.drafted import Drafted
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import further_words, is_numbered
+from tribolab.draft.follows.candidate_lines import candidate_lines
 from tribolab.draft.follows.follows import what_follows
 from tribolab.draft.follows.lacking import lacking, unknown_of
-from tribolab.draft.follows.may_say import may_say
 from tribolab.draft.follows.model import Follows
 from tribolab.draft.model import NO_NUMBERS, DraftColumn, Understood
+from tribolab.draft.stated.settings import lines_without_unit
 from tribolab.draft.stated.stated_zero import STILL
-from tribolab.draft.stated.values import without_unit
 from tribolab.draft.words.sentences import phrases
 from tribolab.errors import ReadError, shown
 from tribolab.io import cures
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.raw.source import check_regular
 from tribolab.unit_names import WEIGHTS
 
@@ -199,7 +199,7 @@ def missing_words(draft: Drafted) -> list[str]:
     if draft.layout is None or draft.understood is None:
         return lacks + unused
     follows = what_follows(draft.layout, draft.understood)
-    told = [(lack, may_say(draft.layout, follows, lack)) for lack in lacks]
+    told = [(lack, candidate_lines(draft.layout, follows, lack)) for lack in lacks]
     return [lack + (f"; is it {line}?" if line else "") for lack, line in told] + unused
 
 
@@ -221,7 +221,7 @@ def _lacks(draft: Drafted) -> list[str]:
 
 
 def _unused(draft: Drafted, lacks: Sequence[str]) -> list[str]:
-    lines = without_unit(draft.layout) if draft.layout and lacks else []
+    lines = lines_without_unit(draft.layout) if draft.layout and lacks else []
     return [shown(line, 40) for line in lines]
 
 
@@ -233,7 +233,7 @@ def unsaid_distance(draft: Drafted) -> str:
     draft
         From `tribolab.draft.dialect.draft.draft_dialect`; its answer is `HEIGHTS`.
     """
-    lines = without_unit(draft.layout, bare=True) if draft.layout else []
+    lines = lines_without_unit(draft.layout, bare=True) if draft.layout else []
     said = ", ".join(f"'{shown(line, 40)}'" for line in lines)
     return f"{HEIGHTS}; of {said} the unit is not said" if lines else HEIGHTS
 

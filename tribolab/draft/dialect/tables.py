@@ -11,7 +11,7 @@ import numpy as np
 
 from tribolab.draft.follows.model import DraftedFormula
 from tribolab.draft.model import UNKNOWN_NAME, DraftColumn
-from tribolab.draft.stated.values import DraftValue
+from tribolab.draft.stated.settings import Amount
 from tribolab.quantities import quantity
 
 FILL_IN = "FILL IN"
@@ -96,7 +96,7 @@ def formula_table(formula: DraftedFormula) -> str:
     return "\n".join([f"# {comment(formula.about)}", *lines]) + "\n"
 
 
-def value_tables(values: list[DraftValue], used: Sequence[DraftValue]) -> str:
+def value_tables(values: list[Amount], used: Sequence[Amount]) -> str:
     """Return the single values that are used, and proposals for others as comments."""
     kept = []
     for value in used:
@@ -113,7 +113,7 @@ def value_tables(values: list[DraftValue], used: Sequence[DraftValue]) -> str:
     return "\n".join([*kept, *parts])
 
 
-def _value(value: DraftValue) -> list[str]:
+def _value(value: Amount) -> list[str]:
     """Return one value as it stands in a dialect."""
     lines = ["[[value]]", f"name = {quoted(value.name)}"]
     if value.source != "preamble":

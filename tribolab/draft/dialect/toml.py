@@ -17,15 +17,15 @@ from tribolab.draft.dialect.tables import (
     unused_columns,
     value_tables,
 )
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.follows import what_follows
 from tribolab.draft.follows.model import SAYS_FRICTION, SAYS_LOAD, Follows
 from tribolab.draft.model import DraftColumn, Understood
 from tribolab.draft.stated.lengths import find_pitch, find_profile_length
+from tribolab.draft.stated.settings import Amount, numeric_settings
 from tribolab.draft.stated.traces import find_stated
-from tribolab.draft.stated.values import DraftValue, find_values
 from tribolab.io.dialects.dates import has_day
+from tribolab.reading.interpret.unit_texts import converts
 
 _MOST = 12  # values that a long preamble states
 _REMOVE = "then remove the '#' below"
@@ -84,12 +84,12 @@ def _of_groups(layout: Layout) -> bool:
 
 def _values(
     layout: Layout, understood: Understood, follows: Follows
-) -> tuple[list[DraftValue], list[DraftValue]]:
+) -> tuple[list[Amount], list[Amount]]:
     """Return the single values that the file states, and those of them that are used."""
     taken_over = list(follows.values)
     if understood.kind != "scan":
-        return find_values(layout), taken_over
-    values = find_values(layout, bare=True)
+        return numeric_settings(layout), taken_over
+    values = numeric_settings(layout, bare=True)
     pitch = find_pitch(layout) if understood.pitch_pattern else None
     pitch = find_profile_length(layout) if understood.length_pattern else pitch
     if pitch is not None:

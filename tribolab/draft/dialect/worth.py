@@ -6,9 +6,9 @@ import re
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-from tribolab.draft.file.header import converts
 from tribolab.errors import UnitError, shown
 from tribolab.quantities import QUANTITIES, quantity
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.units import conversion
 
 # no quantities of a run, but what a radius makes a friction force and a position of

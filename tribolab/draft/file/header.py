@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import functools
 import re
 import unicodedata
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from tribolab.errors import TribolabError
+from tribolab.reading.interpret.unit_texts import is_unit
 from tribolab.reading.lexicon.lexicon import known_words
-from tribolab.turns import Counted
-from tribolab.unit_names import WEIGHTS
-from tribolab.units import conversion
 
 if TYPE_CHECKING:
     from tribolab.draft.file.lines import Grammar
@@ -21,7 +17,6 @@ _ABOVE = 8  # lines above the first row that are looked at
 _LONGEST_MARK = 80  # characters of it
 _TELLING = 200  # cells that tell whether a row is one of units
 _WORD = re.compile(r"\S+")
-_SPECIAL = re.compile(r"([.^$*+?{}\[\]\\|()])")
 # A name of words with its unit in brackets, or a word. No name is longer than so: without an end to
 # look for it, a long line without brackets would be gone through once for each of its words
 _BRACKETED = re.compile(r"\S[^\[\]()]{0,200}?[\[(][^\[\]()]{0,100}[\])]|\S+")
@@ -42,18 +37,8 @@ _MARK = re.compile(
     r"|(?:header|data|header[\s_\-]*section)[\s_\-]*(?:end|start|begin)s?|(?:头|表头|数据)(?:结束|开始))\W*",
     re.IGNORECASE,
 )
-# SI units of what an instrument records: a text that converts to one of them is a unit
-DIMENSIONS = (
-    *("s", "m", "N", "m/s", "1", "Pa", "K", "V", "1/s", "Hz", "rad/s", "Pa s", "N/m"),
-    *("m/s**2", "N m"),
-)
 _STEMS = frozenset(stem for word in known_words("run") for stem in word.stems)
 _SYMBOLS = frozenset(symbol for word in known_words("run") for symbol in word.symbols)
-# what else files hold and no quantity of ours is: areas, volumes, wear rates, power, charges
-_FURTHER = (
-    *("ohm", "m**2", "m**3", "m**2/s", "m**3/s", "m**2/N", "W", "W/m**2", "A", "A s", "S"),
-    *("farad", "kg", "kg/m**3", "S/m", "1/K", "T"),
-)
 
 
 class Heading(NamedTuple):
@@ -122,48 +107,6 @@ def first_cells(line: str, delimiter: str) -> str:
         return line.strip()
     cells = line.split(delimiter)
     return delimiter.join(cells[:2]) + (delimiter if len(cells) > 2 else "")
-
-
-def escaped(text: str) -> str:
-    """Return text as a pattern that people can read: blanks stay blanks."""
-    return _SPECIAL.sub(r"\\\1", text).replace("\t", r"\t")
-
-
-def is_unit(text: str) -> bool:
-    """Whether a text is a unit of something that an instrument records.
-
-    >>> is_unit("mm/sec"), is_unit("°C"), is_unit("Fx"), is_unit("3")
-    (True, True, False, False)
-    """
-    return text in WEIGHTS or any(converts(text, dimension) for dimension in DIMENSIONS)
-
-
-def measures_something(text: str) -> bool:
-    """Whether a text in brackets is a unit, of whatever: then the column is in nothing else.
-
-    >>> measures_something("mm³"), measures_something("N"), measures_something("left")
-    (True, True, False)
-    """
-    if is_unit(text):
-        return True
-    letter = len(text) == 1 and text.isascii()  # of a channel rather than of amperes
-    return not letter and any(converts(text, dimension) for dimension in _FURTHER)
-
-
-# what is counted, and a length to printers alone
-_COUNTED = frozenset({"point", "points", "pixel", "pixels", "dot", "dots", "line", "lines"})
-
-
-@functools.lru_cache(maxsize=4096)  # a failed conversion is not remembered elsewhere
-def converts(text: str, si_unit: str, bare: Counted | None = None) -> bool:
-    """Whether a text is a unit that can be turned into an SI unit (`bare`: see `conversion`)."""
-    if not text or re.fullmatch(r"[\d.,+]+", text) or text.lower() in _COUNTED:
-        return False
-    try:
-        conversion(text, si_unit, bare)
-    except TribolabError:
-        return False
-    return True
 
 
 def _cells(line: str, grammar: Grammar, width: int) -> tuple[tuple[str, ...], bool]:

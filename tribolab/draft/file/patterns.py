@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tribolab.draft.file.header import escaped, first_cells
+from tribolab.draft.file.header import first_cells
 from tribolab.draft.file.lines import Grammar
 from tribolab.draft.file.marks import STEP_WORD, Block
 from tribolab.io.dialects.mended import line_feeds
 from tribolab.io.dialects.signature import HEAD, File
+from tribolab.reading.interpret.patterns import escaped
 
 _TAIL = 1 << 14
 _TRIED = 20  # patterns of a step's number

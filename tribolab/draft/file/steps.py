@@ -9,8 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.draft.file.header import escaped, is_unit
 from tribolab.io.dialects.held_tables import HeldFile, HeldTable
+from tribolab.reading.interpret.patterns import escaped
+from tribolab.reading.interpret.unit_texts import is_unit
 
 _SHARED = 0.8  # of the columns of the largest table, those that another step has, too
 _ALIKE = 2  # columns, at least

@@ -12,12 +12,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.values import DraftValue
+from tribolab.draft.stated.settings import Amount
 from tribolab.draft.words.stated_words import ACROSS
 from tribolab.errors import shown
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label
 
 _LONGEST = 300  # characters of a line that are looked at
@@ -153,7 +153,7 @@ def guesses_of_inclined(layout: Layout, columns: Sequence[DraftColumn]) -> list[
     return []
 
 
-def radius_of_ball(inclined: Inclined, values: Sequence[DraftValue]) -> DraftValue | None:
+def radius_of_ball(inclined: Inclined, values: Sequence[Amount]) -> Amount | None:
     """Return the radius at which a ball touches at an angle, from its stated size.
 
     Parameters
@@ -161,7 +161,7 @@ def radius_of_ball(inclined: Inclined, values: Sequence[DraftValue]) -> DraftVal
     inclined
         From `find_inclined`.
     values
-        From `tribolab.draft.stated.values.find_values`.
+        From `tribolab.draft.stated.settings.numeric_settings`.
     """
     sizes = [v for v in values if _is_size(v) and _ONE_BALL.search(v.key)]
     if len(sizes) != 1 or not inclined.sine:
@@ -171,5 +171,5 @@ def radius_of_ball(inclined: Inclined, values: Sequence[DraftValue]) -> DraftVal
     return sizes[0]._replace(name="track_radius", to="m", scale=scale)
 
 
-def _is_size(value: DraftValue) -> bool:
+def _is_size(value: Amount) -> bool:
     return bool(value.unit and converts(value.unit, "m"))

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.gains import with_unit
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.values import DraftValue, find_values
-from tribolab.draft.words.words import matches
+from tribolab.draft.stated.settings import Amount, numeric_settings
+from tribolab.reading.interpret.names import matches
+from tribolab.reading.interpret.unit_texts import converts
 
 _FORCES = {"friction_force": "friction", "normal_force": "load"}  # and names of their volts
 _RATIO = re.compile(
@@ -26,7 +26,7 @@ class Calibrated(NamedTuple):
 
     quantity: str
     column: DraftColumn
-    value: DraftValue
+    value: Amount
 
     @property
     def symbol(self) -> str:
@@ -58,7 +58,9 @@ def calibrated_forces(layout: Layout, columns: Sequence[DraftColumn]) -> list[Ca
     """
     held = {c.quantity for c in columns if c.quantity and (c.used or c.fill_in)}
     told = [(column, _force_of(column)) for column in columns if not column.used]
-    factors = [factor for value in find_values(layout) if (factor := _factor(value)) is not None]
+    factors = [
+        factor for value in numeric_settings(layout) if (factor := _factor(value)) is not None
+    ]
     made = []
     for quantity in _FORCES:
         mine = [column for column, force in told if force == quantity]
@@ -92,7 +94,7 @@ def _force_of(column: DraftColumn) -> str:
     return options[0].quantity if options and options[0].quantity in _FORCES else ""
 
 
-def _factor(value: DraftValue) -> DraftValue | None:
+def _factor(value: Amount) -> Amount | None:
     """Return a value as a force per volt, or volts per force, where its text states one."""
     stated = _RATIO.search(value.text)
     if stated is None or value.source != "preamble":
@@ -101,7 +103,7 @@ def _factor(value: DraftValue) -> DraftValue | None:
     return value._replace(unit=unit, to="N/V" if unit.endswith("V") else "V/N")
 
 
-def _speaks_of(factor: DraftValue, quantity: str) -> bool:
+def _speaks_of(factor: Amount, quantity: str) -> bool:
     """Whether a factor's name is of a force, or of none."""
     options = [option for option in matches(factor.key, None) if option.quantity in _FORCES]
     return not options or options[0].quantity == quantity

@@ -11,9 +11,9 @@ from tribolab.draft.columns.turning import radius_of, torque_of
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.axial import Inclined, axial_force_of, find_inclined, radius_of_ball
 from tribolab.draft.follows.bridges import calibrated_forces
+from tribolab.draft.follows.candidate_lines import confirmed_value
 from tribolab.draft.follows.from_axis import radius_from_axis
 from tribolab.draft.follows.gains import stated_gains
-from tribolab.draft.follows.may_say import agreed_value
 from tribolab.draft.follows.model import (
     SAYS_FRICTION,
     SAYS_LOAD,
@@ -34,12 +34,12 @@ from tribolab.draft.follows.sums import loads_that_add
 from tribolab.draft.follows.two_bodies import Pair, Radii, radii_of, shaft_of_torque
 from tribolab.draft.model import Understood
 from tribolab.draft.stated.counts import zero_in_counts
-from tribolab.draft.stated.lengths import find_arm, find_radius, is_at_arm, on_rim, ring_of
-from tribolab.draft.stated.programme import programme_of
+from tribolab.draft.stated.lengths import find_arm, find_radius, find_ring, is_at_arm, slides_on_rim
+from tribolab.draft.stated.programme import find_programme
+from tribolab.draft.stated.settings import Amount, numeric_settings, text_settings
 from tribolab.draft.stated.stated_load import find_load, lifted_on_return, stated_number
-from tribolab.draft.stated.stated_zero import find_zero, reading_of, zero_in_doubt
-from tribolab.draft.stated.stroke_settings import as_stated
-from tribolab.draft.stated.values import DraftValue, find_values, words_said
+from tribolab.draft.stated.stated_zero import find_zero, friction_column, zero_in_doubt
+from tribolab.draft.stated.stroke_settings import stated_strokes
 from tribolab.quantities import unit_conversion
 from tribolab.unit_names import WEIGHTS
 
@@ -66,9 +66,9 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
         return Follows()
     # with a unit still to be filled in, a column is there all the same
     names = {c.quantity for c in understood.columns if c.quantity and (c.used or c.fill_in)}
-    values = find_values(layout)
+    values = numeric_settings(layout)
     if "step" in names:
-        values += programme_of(layout)
+        values += find_programme(layout)
     told = _Told(layout, understood, names, values, find_inclined(layout))
     if any(gain.quantity == "rotation_speed" for gain in stated_gains(layout, understood.columns)):
         names.add("rotation_speed")
@@ -90,7 +90,7 @@ class _Told(NamedTuple):
     layout: Layout
     understood: Understood
     names: set[str]
-    values: list[DraftValue]
+    values: list[Amount]
     inclined: Inclined | None
 
     @property
@@ -102,7 +102,7 @@ class _Told(NamedTuple):
 
 def _track_of(told: _Told) -> Track:
     layout, understood = told.layout, told.understood
-    track = _track(told.values, understood, rim=on_rim(layout))
+    track = _track(told.values, understood, rim=slides_on_rim(layout))
     if not track.formula:
         away = radius_from_axis(layout, understood.columns, understood.numbers)
         track = Track(away.formula, (), (("stage", away.column),)) if away else track
@@ -114,7 +114,7 @@ def _track_of(told: _Told) -> Track:
 def _speed(told: _Told, track: Track, pair: Pair | None, radii: Radii | None) -> Follows:
     """Say how fast it slides: as a person said, by two surfaces, or by what is there."""
     names, understood = told.names, told.understood
-    if (agreed := agreed_value(told.values, understood.agreed, "speed")) is not None:
+    if (agreed := confirmed_value(told.values, understood.agreed, "speed")) is not None:
         said = agreed._replace(name="set_speed", unit=agreed.own_unit, to=None, guess="")
         return Follows(values=(said,), speed=SpeedBy("set speed"))
     if understood.speed:
@@ -130,7 +130,7 @@ def _speed(told: _Told, track: Track, pair: Pair | None, radii: Radii | None) ->
     if pair is not None or names & says_speed:
         turns = stated_turns(told.values) if "sliding_velocity" in names else None
         return Follows() if turns is None else Follows(values=(turns,))
-    return with_speed(Follows(), names, told.values, understood, words_said(told.layout), track)
+    return with_speed(Follows(), names, told.values, understood, text_settings(told.layout), track)
 
 
 def _of_torque(result: Follows, told: _Told, arm: Track) -> Follows:
@@ -168,7 +168,7 @@ def _of_loads(result: Follows, told: _Told) -> Follows:
 
 def _of_reading(result: Follows, told: _Told, track: Track) -> Follows:
     """Bring a force from its arm to the track, and take a stated zero off it."""
-    reading = reading_of(told.understood.columns)
+    reading = friction_column(told.understood.columns)
     if reading is None:
         return result
     bare = reading._replace(zero="")
@@ -233,9 +233,9 @@ def _of_stated_load(result: Follows, told: _Told) -> Follows:
             result, DraftedFormula("normal_force", on_contacts("set_normal_force"), about)
         )
     if "position" in names and result.speed is None:
-        result = result._replace(values=(*result.values, *as_stated(told.values)))
+        result = result._replace(values=(*result.values, *stated_strokes(told.values)))
     load = find_load(told.values)
-    if (agreed := agreed_value(told.values, understood.agreed, "load")) is not None:
+    if (agreed := confirmed_value(told.values, understood.agreed, "load")) is not None:
         unit = WEIGHTS.get(agreed.own_unit or "", agreed.own_unit)
         load = agreed._replace(name="set_normal_force", unit=unit, to=None, guess="")
     axial = axial_force_of(understood.columns)
@@ -260,7 +260,7 @@ def _of_stated_load(result: Follows, told: _Told) -> Follows:
     return result
 
 
-def _is_held(load: DraftValue, told: _Told) -> bool:
+def _is_held(load: Amount, told: _Told) -> bool:
     """Whether the one column of the load stays at what the text states: it is its set-point."""
     understood = told.understood
     columns = [c for c in understood.columns if c.used and c.quantity == "normal_force"]
@@ -276,17 +276,17 @@ def _is_held(load: DraftValue, told: _Told) -> bool:
     return bool(low > 1 / _HELD and high < _HELD)
 
 
-def _track(values: Sequence[DraftValue], understood: Understood, *, rim: bool) -> Track:
+def _track(values: Sequence[Amount], understood: Understood, *, rim: bool) -> Track:
     """Return the radius of the track: what a person said, a column, or what the text states."""
     if understood.radius:
         return Track(f"'{understood.radius}'")
-    if (agreed := agreed_value(values, understood.agreed, "radius")) is not None:
+    if (agreed := confirmed_value(values, understood.agreed, "radius")) is not None:
         return of_value(agreed._replace(name="track_radius", to="m", guess=""))
     column = radius_of(understood.columns)
     if column is not None:
         return Track("radius", symbols=(("radius", column),))
     radius = find_radius(values, rim=rim)
-    if (radius is None or radius.guess) and not rim and (ring := ring_of(values)) is not None:
+    if (radius is None or radius.guess) and not rim and (ring := find_ring(values)) is not None:
         return Track("((inner_radius + outer_radius) / 2)", ring)
     return of_value(radius)
 

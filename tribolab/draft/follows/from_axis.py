@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.units import conversion
 
 _LONGEST = 400  # characters of a line that are looked at

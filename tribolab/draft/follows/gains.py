@@ -10,14 +10,14 @@ from collections.abc import Iterator, Sequence
 from typing import Literal, NamedTuple
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.counts import COUNT_WORD, zero_beside
-from tribolab.draft.stated.values import DraftValue
+from tribolab.draft.stated.counts import COUNT_WORD, stated_offset
+from tribolab.draft.stated.settings import Amount
 from tribolab.draft.words.sentences import pattern_behind
-from tribolab.draft.words.words import COUNTS, matches
 from tribolab.io.dialects.cells import split_name
+from tribolab.reading.interpret.names import COUNTS, matches
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label
 from tribolab.unit_names import WEIGHTS, unit_in_words
 
@@ -65,7 +65,7 @@ class Gain(NamedTuple):
     column: DraftColumn
     formula: str
     about: str
-    values: tuple[DraftValue, ...] = ()
+    values: tuple[Amount, ...] = ()
 
     @property
     def symbol(self) -> str:
@@ -196,7 +196,7 @@ def _by_ratio(column: DraftColumn, raw: str, said: _Said) -> Gain | None:
 
 def _zero_of(
     said: _Said, factor: re.Match[str], raw: str, quantity: str
-) -> tuple[str, tuple[DraftValue, ...], _ZeroOf] | None:
+) -> tuple[str, tuple[Amount, ...], _ZeroOf] | None:
     """Return the zero that stands beside a factor: "0.0015 N/count, zero 118 counts".
 
     Returns
@@ -205,7 +205,7 @@ def _zero_of(
         As a formula has it, the value that it rests on, and what it is one of: of the signal, of
         its ratio to what feeds a bridge, or of what the signal makes.
     """
-    match = zero_beside(said.text, factor.end())
+    match = stated_offset(said.text, factor.end())
     if match is None or not float(match["number"].replace(",", ".")):
         return None
     unit = unit_in_words(match["unit"] or "")
@@ -253,12 +253,12 @@ def _by_bridge(column: DraftColumn, said: _Said) -> Gain | None:
 
 def _number(
     match: re.Match[str], said: _Said, unit: str, name: str, to: str
-) -> tuple[str, tuple[DraftValue, ...]]:
+) -> tuple[str, tuple[Amount, ...]]:
     """Return a number as a formula has it, and the value that it is where a line states it."""
     if not said.line:  # the column's name: a file of another number has another column
         return f"'{match['number'].replace(',', '.')} {unit}'", ()
     pattern = pattern_behind(said.line[: said.place + match.start("number")])
-    value = DraftValue(
+    value = Amount(
         name, pattern, unit, to, said.line.strip(), own_unit=unit, key=normalise_label(name)
     )
     return name, (value,)

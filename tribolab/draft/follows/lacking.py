@@ -11,7 +11,7 @@ from tribolab.draft.follows.speed import angle_in
 from tribolab.draft.follows.two_bodies import has_turning_surfaces
 from tribolab.draft.model import NO_NUMBERS, WHICH_FORCE, DraftColumn, Understood
 from tribolab.draft.stated.lengths import is_at_arm
-from tribolab.draft.stated.stated_zero import reading_of
+from tribolab.draft.stated.stated_zero import friction_column
 from tribolab.draft.words.strokes import is_frequency
 from tribolab.errors import shown
 from tribolab.io.dialects.cells import split_name
@@ -40,7 +40,7 @@ def lacking(understood: Understood, follows: Follows) -> list[str]:
         names.add("crank")
     if angle_in(understood) is not None or has_turning_surfaces(understood.columns):
         names.add("rotation_speed")  # the radius makes a position, or a speed, of it
-    reading = reading_of(understood.columns)
+    reading = friction_column(understood.columns)
     made = any(formula.quantity == "friction_force" for formula in follows.formulas)
     if reading is not None and is_at_arm(reading) and not made:
         names.remove("friction_force")  # without the radius an arm's force is none of the contact

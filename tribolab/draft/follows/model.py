@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.values import DraftValue
+from tribolab.draft.stated.settings import Amount
 
 SAYS_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
@@ -43,20 +43,20 @@ class Follows(NamedTuple):
 
     formulas: tuple[DraftedFormula, ...] = ()
     symbols: tuple[tuple[str, DraftColumn], ...] = ()
-    values: tuple[DraftValue, ...] = ()
+    values: tuple[Amount, ...] = ()
     speed: SpeedBy | None = None
-    zero_in_doubt: DraftValue | None = None
+    zero_in_doubt: Amount | None = None
 
 
 class Track(NamedTuple):
     """A radius as it stands in a formula, and the value or the column that it rests on."""
 
     formula: str = ""
-    values: tuple[DraftValue, ...] = ()
+    values: tuple[Amount, ...] = ()
     symbols: tuple[tuple[str, DraftColumn], ...] = ()
 
 
-def of_value(value: DraftValue | None) -> Track:
+def of_value(value: Amount | None) -> Track:
     """Return a value of the text as it stands in a formula."""
     return Track() if value is None else Track(value.name, (value,))
 
@@ -64,7 +64,7 @@ def of_value(value: DraftValue | None) -> Track:
 def and_also(
     before: Follows,
     formula: DraftedFormula,
-    values: Sequence[DraftValue] = (),
+    values: Sequence[Amount] = (),
     symbols: tuple[tuple[str, DraftColumn], ...] = (),
 ) -> Follows:
     """Add a formula, and the values and columns that it needs."""

@@ -12,13 +12,13 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.counts import stated_worth
+from tribolab.draft.stated.counts import calibration_factor
 from tribolab.draft.stated.lengths import find_traverse_speed, pitch_of_clock, seconds_apart
-from tribolab.draft.words.words import KNOWN_WORD, length_unit, matches
 from tribolab.errors import shown
+from tribolab.reading.interpret.names import KNOWN_WORD, length_unit, matches
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label
 from tribolab.units import conversion
 
@@ -182,12 +182,14 @@ def _way(
             return column._replace(
                 quantity="x", unit=unit if say else column.unit, used=True, note=""
             )
-        worths = [said for line in lines if (said := stated_worth(line)) and converts(said, "m")]
+        worths = [
+            said for line in lines if (said := calibration_factor(line)) and converts(said, "m")
+        ]
         own = [
             said
             for line in lines
             if not _HEIGHT_LINE.search(line) or _ALONG.search(normalise_label(line))
-            if (said := stated_worth(line)) and converts(said, "m")
+            if (said := calibration_factor(line)) and converts(said, "m")
         ]
         if (unit is None or column.counted) and (own or worths):
             taken = (own or worths)[0]
@@ -258,7 +260,7 @@ def _worth_of_count(lines: Sequence[str]) -> str:
     for line in lines:
         if not _COUNT.search(line) or _ALONG.search(normalise_label(line)):
             continue
-        if (said := stated_worth(line)) and converts(said, "m"):
+        if (said := calibration_factor(line)) and converts(said, "m"):
             found.add(said)
             continue
         alone = [m for m in _ALONE.finditer(line) if length_unit(m["unit"])]

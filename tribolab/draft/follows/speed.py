@@ -6,17 +6,21 @@ import re
 from collections.abc import Sequence
 
 from tribolab.draft.columns.turning import angle_of, torque_of, turns_of
-from tribolab.draft.file.header import escaped
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.follows.model import CRANK, DraftedFormula, Follows, SpeedBy, Track, and_also
 from tribolab.draft.follows.two_bodies import Pair, Radii, along_friction, as_symbol, pair_of
 from tribolab.draft.model import DraftColumn, Understood
-from tribolab.draft.stated.slip import stated_ratio
-from tribolab.draft.stated.stated_zero import reading_of
-from tribolab.draft.stated.stroke_settings import strokes_of, strokes_of_turns, strokes_said
-from tribolab.draft.stated.values import DraftValue
+from tribolab.draft.stated.settings import Amount
+from tribolab.draft.stated.slip import find_slide_roll_ratio
+from tribolab.draft.stated.stated_zero import friction_column
+from tribolab.draft.stated.stroke_settings import (
+    find_strokes,
+    strokes_from_answer,
+    strokes_of_turns,
+)
 from tribolab.draft.words.stated_words import PER_MINUTE, STROKE
+from tribolab.reading.interpret.patterns import escaped
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
 
 _DRIVE = re.compile(
@@ -43,7 +47,7 @@ _SURFACES = ("first_surface", "second_surface")  # symbols of their speeds
 def with_speed(
     before: Follows,
     names: set[str],
-    values: Sequence[DraftValue],
+    values: Sequence[Amount],
     understood: Understood,
     words: Sequence[tuple[str, str]],
     track: Track,
@@ -102,14 +106,14 @@ def with_speed(
         about = "the slide-to-roll ratio is the sliding speed over the mean speed of both surfaces"
         formula = DraftedFormula("sliding_velocity", "slide_roll_ratio * rolling_speed", about)
         return and_also(before, formula)._replace(speed=SpeedBy("none"))
-    ratio = stated_ratio(values) if "rolling_speed" in names else None
+    ratio = find_slide_roll_ratio(values) if "rolling_speed" in names else None
     if ratio is not None:
         about = f"'{ratio.text}' is the sliding speed over the mean speed of both surfaces"
         formula = DraftedFormula("sliding_velocity", f"{ratio.name} * rolling_speed", about)
         return and_also(before, formula, (ratio,))._replace(speed=SpeedBy("none"))
-    of_strokes = strokes_of(values, understood)
+    of_strokes = find_strokes(values, understood)
     if understood.strokes is not None:
-        of_strokes = strokes_said(values, understood.strokes) or of_strokes
+        of_strokes = strokes_from_answer(values, understood.strokes) or of_strokes
     if of_strokes is None or (of_strokes.symbols and "rotation_speed" in names):
         known = turning or "set_speed" in names
         return before if known else _with_set_speed(before, values, track)
@@ -161,7 +165,7 @@ def with_difference(
         )
     ]
     less, more = ("+", "-") if pair.opposed else ("-", "+")
-    friction = torque_of(understood.columns) or reading_of(understood.columns)
+    friction = torque_of(understood.columns) or friction_column(understood.columns)
     if not along_friction(pair, radii, understood.numbers, friction):
         speeds = speeds[::-1]
     about = "two surfaces slide at the difference of their speeds"
@@ -174,22 +178,22 @@ def with_difference(
     return and_also(result, DraftedFormula("rolling_speed", rolling, "their mean speed"))
 
 
-def _crank(words: Sequence[tuple[str, str]]) -> DraftValue | None:
+def _crank(words: Sequence[tuple[str, str]]) -> Amount | None:
     """Return what the text says of a crank that drives strokes, to be kept with the run."""
     said = [text for key, text in words if _DRIVE.search(normalise_label(key))]
     told = next((text for text in said if _SINE.search(text.lower())), None)
     if told is None:
         return None
-    return DraftValue(CRANK, f"({escaped(told)})", None, None, told)
+    return Amount(CRANK, f"({escaped(told)})", None, None, told)
 
 
-def _is_rotation(value: DraftValue) -> bool:
+def _is_rotation(value: Amount) -> bool:
     step = value.source == "step" and _STEP.search(value.key) is not None
     named = step or value.source == "programme" or _SPEED_OF_TURNS.search(value.key) is not None
     return named and PER_MINUTE.fullmatch(value.own_unit or "") is not None
 
 
-def stated_turns(values: Sequence[DraftValue]) -> DraftValue | None:
+def stated_turns(values: Sequence[Amount]) -> Amount | None:
     """Return the one rotation speed that the text states, as a value of the dialect."""
     turns = [value for value in values if _is_rotation(value)]
     return turns[0]._replace(unit="rpm", to="rad/s", name="rotation") if len(turns) == 1 else None
@@ -201,7 +205,7 @@ def angle_in(understood: Understood) -> DraftColumn | None:
     return angle_of(columns) or turns_of(columns, understood.numbers)
 
 
-def _with_set_speed(before: Follows, values: Sequence[DraftValue], track: Track) -> Follows:
+def _with_set_speed(before: Follows, values: Sequence[Amount], track: Track) -> Follows:
     """Let the speed that the text states be that of the run, which is asked about."""
     stated = [value for value in values if value.name == "set_speed"]
     rate = stated_turns(values)
@@ -218,7 +222,7 @@ def _with_set_speed(before: Follows, values: Sequence[DraftValue], track: Track)
     return before._replace(speed=speed, values=(*before.values, stated[0]))
 
 
-def _asked_of(speed: SpeedBy, value: DraftValue, guess: str) -> SpeedBy:
+def _asked_of(speed: SpeedBy, value: Amount, guess: str) -> SpeedBy:
     """Ask whether a speed of some name holds all along; what each step states holds in it."""
     its = _ITS_SPEED.search(value.key) and not _ANOTHER_SPEED.search(value.text)
     if value.source in ("step", "programme") or its:

@@ -9,7 +9,7 @@ import numpy as np
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.sensor import lost_values
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.values import find_values
+from tribolab.draft.stated.settings import numeric_settings
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.scans.stated_missing import take_stated
 
@@ -28,7 +28,9 @@ def take_stated_missing(
     numbers
         Their numbers (rows, columns) as written; changed in place.
     """
-    stated = [(v.text, v.number) for v in find_values(layout, bare=True) if v.number == v.number]
+    stated = [
+        (v.text, v.number) for v in numeric_settings(layout, bare=True) if v.number == v.number
+    ]
     stated += lost_values(layout.text_above(bare=True))
     heights = [c.place - 1 for c in columns if c.used and c.quantity == "height"]
     taken = {number for place in heights for _, number, _ in take_stated(numbers[:, place], stated)}

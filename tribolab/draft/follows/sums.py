@@ -8,13 +8,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.settings import numeric_settings
 from tribolab.draft.stated.stated_load import find_load, stated_number
-from tribolab.draft.stated.values import find_values
-from tribolab.draft.words.words import matches
 from tribolab.quantities import unit_conversion
+from tribolab.reading.interpret.names import matches
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label
 
 _LONGEST = 300  # characters of a line or name that are looked at
@@ -131,7 +131,7 @@ def _told_by_load(
     layout: Layout, pair: tuple[DraftColumn, DraftColumn], numbers: np.ndarray
 ) -> bool | None:
     """Whether a stated load is the sum of both (True) or that of each (False); None if neither."""
-    load = find_load(find_values(layout))
+    load = find_load(numeric_settings(layout))
     if load is None:
         return None
     stated = stated_number(load) * unit_conversion(load.unit or "N", "normal_force")[0]

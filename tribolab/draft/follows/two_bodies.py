@@ -9,12 +9,12 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.draft.columns.labels import bare_name
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.values import DraftValue
+from tribolab.draft.stated.settings import Amount
 from tribolab.draft.words.stated_words import ACROSS, RADIUS
-from tribolab.draft.words.words import matches
+from tribolab.reading.interpret.names import matches
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label, role_of
 from tribolab.turns import reciprocal
 from tribolab.unit_names import plain_unit
@@ -78,7 +78,7 @@ class Radii(NamedTuple):
     """Of both bodies: in formulas, and the values that they rest on."""
 
     formulas: tuple[str, str]
-    values: tuple[DraftValue, ...]
+    values: tuple[Amount, ...]
 
     @property
     def alike(self) -> bool:
@@ -166,7 +166,7 @@ def has_turning_surfaces(columns: Sequence[DraftColumn]) -> bool:
     return any(c.note == _SURFACE and not c.used and _speed_of(c) == _SPEEDS[0] for c in columns)
 
 
-def radii_of(pair: Pair, values: Sequence[DraftValue], said: str) -> Radii | None:
+def radii_of(pair: Pair, values: Sequence[Amount], said: str) -> Radii | None:
     """Return the radii of two bodies that the text states; of one size where it says but one.
 
     Parameters
@@ -174,7 +174,7 @@ def radii_of(pair: Pair, values: Sequence[DraftValue], said: str) -> Radii | Non
     pair
         From `pair_of`.
     values
-        From `tribolab.draft.stated.values.find_values`.
+        From `tribolab.draft.stated.settings.numeric_settings`.
     said
         The radius that a person said, if any.
     """

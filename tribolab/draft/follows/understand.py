@@ -27,7 +27,6 @@ from tribolab.draft.columns.results_table import are_points
 from tribolab.draft.columns.turning import angle_of, torque_of
 from tribolab.draft.columns.unloaded import with_zero
 from tribolab.draft.columns.way import beside_turns
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.axial import guesses_of_inclined
 from tribolab.draft.follows.bridges import calibrated_forces
@@ -37,9 +36,11 @@ from tribolab.draft.follows.stated_missing import take_stated_missing
 from tribolab.draft.follows.sums import adding_up, loads_that_add
 from tribolab.draft.follows.two_bodies import pair_of, without_surfaces
 from tribolab.draft.model import NO_NUMBERS, DraftColumn, Kind, Understood
-from tribolab.draft.stated.counts import with_worth
-from tribolab.draft.stated.factors import missing_factors, missing_of_heights
+from tribolab.draft.stated.columns_from_settings import columns_from_settings
+from tribolab.draft.stated.counts import apply_count_scale
+from tribolab.draft.stated.factors import unapplied_factors, unapplied_height_factors
 from tribolab.draft.stated.lengths import (
+    confirm_lever_arm_force,
     find_height_unit,
     find_pitch,
     find_point_density,
@@ -47,19 +48,18 @@ from tribolab.draft.stated.lengths import (
     find_unit_along,
     metres,
     pitch_of_clock,
-    sure_at_arm,
 )
 from tribolab.draft.stated.sampling import find_pace, find_sampling
-from tribolab.draft.stated.slip import of_both_surfaces
-from tribolab.draft.stated.told_by_settings import told_by_settings
-from tribolab.draft.stated.values import DraftValue
-from tribolab.draft.words.words import Match, matches
+from tribolab.draft.stated.settings import Amount
+from tribolab.draft.stated.slip import as_entrainment_speed
 from tribolab.errors import ReadError, brief, shown
 from tribolab.io.content.missing_marks import take_marks
 from tribolab.io.content.model import LARGEST
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.dates import seconds
+from tribolab.reading.interpret.names import Match, matches
 from tribolab.reading.interpret.physics import Proof
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label
 from tribolab.units import conversion, positive
 
@@ -86,7 +86,7 @@ def understand(layout: Layout) -> Understood:
     density = "" if pitch is not None else find_point_density(layout)
     length = None if pitch is not None or density else find_profile_length(layout)
     apart = pitch is not None or bool(density) or length is not None
-    guesses = missing_factors(layout)
+    guesses = unapplied_factors(layout)
     lacks = ""
     kind: Kind
     if apart and (layout.width == 1 and _may_be_heights(columns[0]) or side_by_side(columns)):
@@ -114,12 +114,12 @@ def understand(layout: Layout) -> Understood:
     columns = told_by_load(layout, force_or_ratio(columns), numbers) if kind == "run" else columns
     if kind == "run":
         columns = without_surfaces(columns, pair_of(layout, columns, numbers))
-        columns = sure_at_arm(layout, columns)
+        columns = confirm_lever_arm_force(layout, columns)
         columns = adding_up(layout, beside_turns(columns, numbers), numbers)
-        columns = of_both_surfaces(layout, without_means(layout, columns))
+        columns = as_entrainment_speed(layout, without_means(layout, columns))
         guesses += disagreement(columns, numbers)
         guesses += guesses_of_inclined(layout, columns)
-    columns = _dated(with_worth(layout, columns, numbers), layout, numbers, text)
+    columns = _dated(apply_count_scale(layout, columns, numbers), layout, numbers, text)
     columns = [
         column._replace(
             used=False,
@@ -140,13 +140,13 @@ def understand(layout: Layout) -> Understood:
     columns = _without_counter(layout, columns, numbers) if kind == "run" else columns
     period = summed(columns, numbers)
     if kind == "run":
-        columns = against_motion(told_by_settings(layout, columns, numbers), numbers)
+        columns = against_motion(columns_from_settings(layout, columns, numbers), numbers)
     on_repeat, restart, columns = find_clock(layout, columns, numbers)
     columns = with_zero(layout, columns, numbers) if kind == "run" else columns
     used = [column.place - 1 for column in columns if column.used]
     if kind == "scan":
         heights = [c.place - 1 for c in columns if c.used and c.quantity == "height"]
-        factors = missing_of_heights(layout, numbers[:, heights], columns)
+        factors = unapplied_height_factors(layout, numbers[:, heights], columns)
         guesses += [said for said in factors if said[-45:] not in " ".join(guesses)]
     said = take_stated_missing(layout, columns, numbers) if kind == "scan" else []
     words = tuple(dict.fromkeys([*said, *(word for index in used for word in missing[index])]))
@@ -321,9 +321,7 @@ def _may_be_heights(column: DraftColumn) -> bool:
     return converts(unit, "m") and height and not matches(name, unit)
 
 
-def _likely_unit(
-    layout: Layout, numbers: np.ndarray, pitch: DraftValue | None, density: str
-) -> str:
+def _likely_unit(layout: Layout, numbers: np.ndarray, pitch: Amount | None, density: str) -> str:
     """Return the unit that heights may be in: um, or nm where they were as large as the scan."""
     step = (
         metres(pitch) if pitch is not None else positive(density, "m", "pitch") if density else 0.0

@@ -8,15 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.draft.file.header import converts, is_unit
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.settings import Amount, numeric_settings
 from tribolab.draft.stated.stated_load import find_load
-from tribolab.draft.stated.values import DraftValue, find_values
 from tribolab.draft.words.stated_words import OFF_ALREADY, TAKEN_OFF, ZERO
-from tribolab.draft.words.words import matches, split_unit
 from tribolab.errors import shown
 from tribolab.quantities import quantity
+from tribolab.reading.interpret.names import matches, split_unit
+from tribolab.reading.interpret.unit_texts import converts, is_unit
 from tribolab.reading.lexicon.lexicon import normalise_label
 from tribolab.unit_names import WEIGHTS
 from tribolab.units import conversion
@@ -83,7 +83,7 @@ class _Worth(NamedTuple):
         return bool(si_unit) and converts(WEIGHTS.get(self.unit, self.unit), si_unit)
 
 
-def with_worth(
+def apply_count_scale(
     layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray
 ) -> list[DraftColumn]:
     """Guess what a count of a column is from the one line that states it: "Encoder: 500 counts/mm".
@@ -106,12 +106,12 @@ def with_worth(
     return _raw_force(layout, result, stated, numbers)
 
 
-def zero_beside(text: str, start: int) -> re.Match[str] | None:
+def stated_offset(text: str, start: int) -> re.Match[str] | None:
     """Return where a text states a zero that is still in the signal, behind some place.
 
-    >>> zero_beside("0.002 N/count, zero 118 counts", 14)["number"]
+    >>> stated_offset("0.002 N/count, zero 118 counts", 14)["number"]
     '118'
-    >>> zero_beside("0.002 N/count, zero 118 counts (subtracted)", 14)
+    >>> stated_offset("0.002 N/count, zero 118 counts (subtracted)", 14)
     """
     match = next((m for m in ZERO_BESIDE.finditer(text) if m.start() >= start), None)
     if match is None or TAKEN_OFF.search(text) or OFF_ALREADY.search(text[match.end() :]):
@@ -119,10 +119,10 @@ def zero_beside(text: str, start: int) -> re.Match[str] | None:
     return match
 
 
-def stated_worth(line: str) -> str:
+def calibration_factor(line: str) -> str:
     """Return what a line says that one count is worth, as a unit; "" if it says nothing.
 
-    >>> stated_worth("Encoder: 500 counts/mm"), stated_worth("Sample 12")
+    >>> calibration_factor("Encoder: 500 counts/mm"), calibration_factor("Sample 12")
     ('0.002 mm', '')
     """
     worth = _worth(line)
@@ -130,14 +130,14 @@ def stated_worth(line: str) -> str:
 
 
 def zero_in_counts(
-    values: Sequence[DraftValue], column: DraftColumn, numbers: np.ndarray
-) -> DraftValue | None:
+    values: Sequence[Amount], column: DraftColumn, numbers: np.ndarray
+) -> Amount | None:
     """Return the zero that a file states as a converter's reading; None if none, or several.
 
     Parameters
     ----------
     values
-        From `tribolab.draft.stated.values.find_values`.
+        From `tribolab.draft.stated.settings.numeric_settings`.
     column
         The friction force in counts, whose worth is known.
     numbers
@@ -202,7 +202,7 @@ def _raw_force(
     raw = [column for column in unknown if _is_raw(column, numbers[:, column.place - 1])]
     if len(raw) != 1:
         return columns
-    known = "normal_force" in held or find_load(find_values(layout)) is not None
+    known = "normal_force" in held or find_load(numeric_settings(layout)) is not None
     line = shown(of_force[0].line, 40)
     guess = f"it is the friction force, for '{line}'"
     taken = raw[0]._replace(
@@ -267,7 +267,7 @@ def _worth(line: str) -> _Worth | None:
 
 def _zero_beside(line: str, start: int, worth: float, unit: str) -> float:
     """Return the counts without force that a line states behind what one is worth; else 0."""
-    match = zero_beside(line, start)
+    match = stated_offset(line, start)
     if match is None:
         return 0.0
     zero, own = _number(match["number"]), WEIGHTS.get(match["unit"] or "", match["unit"] or "")

@@ -70,7 +70,7 @@ _STEP_OF_GAUGE = re.compile(
 _ONE_UNIT = re.compile(r"(?<![\d.,])1(?:[.,]0+)?\s*[^\W\d]*\W*$")  # "z resolution: 1 nm"
 
 
-def missing_factors(layout: Layout) -> list[str]:
+def unapplied_factors(layout: Layout) -> list[str]:
     """Say what signals may still have to be multiplied by: levers, gains, scales, contacts.
 
     A factor of one, and a single contact, are not spoken of.
@@ -89,7 +89,7 @@ def missing_factors(layout: Layout) -> list[str]:
     return [sentence for sentence in said if sentence]
 
 
-def missing_of_heights(
+def unapplied_height_factors(
     layout: Layout, heights: np.ndarray, columns: Sequence[DraftColumn]
 ) -> list[str]:
     """Say what heights may still have to be multiplied by: a factor, or what one step is worth.

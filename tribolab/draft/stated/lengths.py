@@ -8,10 +8,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.values import DraftValue, find_values, words_said
+from tribolab.draft.stated.settings import Amount, numeric_settings, text_settings
 from tribolab.draft.words.sentences import phrases, points_per_length
 from tribolab.draft.words.stated_words import (
     ACROSS,
@@ -36,8 +35,9 @@ from tribolab.draft.words.stated_words import (
     UNIT,
     VERTICAL,
 )
-from tribolab.draft.words.words import length_unit, matches
 from tribolab.io.dialects.cells import split_name
+from tribolab.reading.interpret.names import length_unit, matches
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label
 from tribolab.units import conversion
 
@@ -67,7 +67,7 @@ _UNEVEN = 0.1  # of the interval of heights that are taken by the clock
 _USUAL = frozenset({"nm", "um", "µm", "μm", "mm", "pm", "Å", "angstrom", "microns", "micron"})
 
 
-def find_pitch(layout: Layout) -> DraftValue | None:
+def find_pitch(layout: Layout) -> Amount | None:
     """Return the distance of a profile's points that the text before the heights states, or None.
 
     Parameters
@@ -77,7 +77,7 @@ def find_pitch(layout: Layout) -> DraftValue | None:
     """
     found = [
         value
-        for value in find_values(layout, bare=True)
+        for value in numeric_settings(layout, bare=True)
         if value.source == "preamble" and PITCH.search(value.key) and _is_length(value)
     ]
     axes = {value.key[-1] for value in found}
@@ -86,7 +86,7 @@ def find_pitch(layout: Layout) -> DraftValue | None:
     return found[0]._replace(name="pitch", to="m")
 
 
-def find_profile_length(layout: Layout) -> DraftValue | None:
+def find_profile_length(layout: Layout) -> Amount | None:
     """Return the length of a whole profile that the text before the heights states, or None.
 
     Where the text also says how many points the profile has, and as many follow, nothing is
@@ -97,7 +97,7 @@ def find_profile_length(layout: Layout) -> DraftValue | None:
     layout
         From `tribolab.draft.file.layout.find_layout`.
     """
-    values = [value for value in find_values(layout, bare=True) if value.source == "preamble"]
+    values = [value for value in numeric_settings(layout, bare=True) if value.source == "preamble"]
     lengths = [v for v in values if PROFILE_LENGTH.search(v.key) and _is_length(v)]
     if len(lengths) != 1:
         return None
@@ -120,7 +120,7 @@ def find_height_unit(layout: Layout) -> str:
         From `tribolab.draft.file.layout.find_layout`.
     """
     said = [
-        (normalise_label(key), length_unit(text)) for key, text in words_said(layout, bare=True)
+        (normalise_label(key), length_unit(text)) for key, text in text_settings(layout, bare=True)
     ]
     said = [(key, unit) for key, unit in said if unit]
     own = {unit for key, unit in said if HEIGHT_UNIT.search(key) or _names_heights(key)}
@@ -136,7 +136,7 @@ def find_height_unit(layout: Layout) -> str:
 def _of_all(layout: Layout) -> str:
     """Return the unit of all lengths of a table of several columns: "Units: mm"; "" if none is."""
     said = [
-        (normalise_label(key), length_unit(text)) for key, text in words_said(layout, bare=True)
+        (normalise_label(key), length_unit(text)) for key, text in text_settings(layout, bare=True)
     ]
     units = {unit for key, unit in said if unit}
     stated = [unit for key, unit in said if unit and UNIT.search(key)]
@@ -167,7 +167,7 @@ def find_unit_along(layout: Layout) -> str:
         From `tribolab.draft.file.layout.find_layout`.
     """
     said = [
-        (normalise_label(key), length_unit(text)) for key, text in words_said(layout, bare=True)
+        (normalise_label(key), length_unit(text)) for key, text in text_settings(layout, bare=True)
     ]
     units = {unit for key, unit in said if unit and ALONG.search(key)}
     if len(units) > 1:
@@ -202,7 +202,7 @@ def find_point_density(layout: Layout) -> str:
 
 def _between_ends(layout: Layout) -> str:
     """Return the distance of points that lie between a stated start and end; "" if unknown."""
-    values = [v for v in find_values(layout, bare=True) if v.source == "preamble"]
+    values = [v for v in numeric_settings(layout, bare=True) if v.source == "preamble"]
     counts = {v.number for v in values if v.own_unit is None and _COUNT.search(v.key)}
     ends = [[metres(v) for v in values if _is_length(v) and e.search(v.key)] for e in _ENDS]
     if any(len(stated) != 1 for stated in ends) or not any(
@@ -214,7 +214,7 @@ def _between_ends(layout: Layout) -> str:
 
 
 def _sampled_on_the_way(layout: Layout) -> str:
-    values = [value for value in find_values(layout, bare=True) if value.source == "preamble"]
+    values = [value for value in numeric_settings(layout, bare=True) if value.source == "preamble"]
     speed = _only(values, TRAVERSE_SPEED, "m/s")
     rate = _only(values, RATE, "Hz")
     return f"{1e6 * speed / rate:.12g} um" if speed > 0 and rate > 0 else ""
@@ -247,7 +247,7 @@ def find_traverse_speed(layout: Layout, *, of_sensor: bool = False) -> float:
     of_sensor
         Whether the file is known to be of a sensor on its way: any one speed is that of it.
     """
-    values = [value for value in find_values(layout, bare=True) if value.source == "preamble"]
+    values = [value for value in numeric_settings(layout, bare=True) if value.source == "preamble"]
     if (speed := _only(values, TRAVERSE_SPEED, "m/s")) > 0:
         return speed
     said = [
@@ -286,7 +286,7 @@ def seconds_apart(time: np.ndarray) -> float:
     return step if step > 0 and float(np.abs(steps - step).max()) < _UNEVEN * step else 0.0
 
 
-def _only(values: Sequence[DraftValue], words: re.Pattern[str], si_unit: str) -> float:
+def _only(values: Sequence[Amount], words: re.Pattern[str], si_unit: str) -> float:
     """Return what a text states once by such words, in SI; 0 if it does not."""
     units = [value.unit or value.own_unit or "" for value in values]
     told = [
@@ -297,7 +297,7 @@ def _only(values: Sequence[DraftValue], words: re.Pattern[str], si_unit: str) ->
     return told[0] if len(told) == 1 else 0.0
 
 
-def on_rim(layout: Layout) -> bool:
+def slides_on_rim(layout: Layout) -> bool:
     """Whether a file says that the track is the outside of what turns, as in block on ring.
 
     Parameters
@@ -309,19 +309,19 @@ def on_rim(layout: Layout) -> bool:
     return any(ON_RIM.search(text[:_LONGEST]) for text in texts)
 
 
-def find_radius(values: Sequence[DraftValue], *, rim: bool = False) -> DraftValue | None:
+def find_radius(values: Sequence[Amount], *, rim: bool = False) -> Amount | None:
     """Return the radius of the track, if just one of a file's values is one, or its diameter.
 
     Parameters
     ----------
     values
-        From `find_values`.
+        From `numeric_settings`.
     rim
         Whether the track is the outside of what turns: its size is the track's.
 
     Returns
     -------
-    DraftValue or None
+    Amount or None
         With a `guess` where it is only a radius "R", or the size of what turns.
     """
     lengths = [v._replace(to="m") for v in values if _is_length(v)]
@@ -346,13 +346,13 @@ def find_radius(values: Sequence[DraftValue], *, rim: bool = False) -> DraftValu
     return perhaps[0] if len(perhaps) == 1 else None
 
 
-def ring_of(values: Sequence[DraftValue]) -> tuple[DraftValue, DraftValue] | None:
+def find_ring(values: Sequence[Amount]) -> tuple[Amount, Amount] | None:
     """Return the inner and the outer radius of a ring that slides on its face, or their diameters.
 
     Parameters
     ----------
     values
-        From `find_values`.
+        From `numeric_settings`.
 
     Returns
     -------
@@ -379,13 +379,13 @@ def ring_of(values: Sequence[DraftValue]) -> tuple[DraftValue, DraftValue] | Non
     return None
 
 
-def find_arm(values: Sequence[DraftValue]) -> DraftValue | None:
+def find_arm(values: Sequence[Amount]) -> Amount | None:
     """Return the arm of a torque, if just one of a file's values is one.
 
     Parameters
     ----------
     values
-        From `find_values`.
+        From `numeric_settings`.
     """
     arms = [v for v in values if _is_length(v) and ARM.search(v.key)]
     return arms[0]._replace(to="m") if len(arms) == 1 else None
@@ -402,7 +402,7 @@ def is_at_arm(column: DraftColumn) -> bool:
     return AT_ARM.search(normalise_label(split_name(column.label)[0])) is not None
 
 
-def sure_at_arm(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftColumn]:
+def confirm_lever_arm_force(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftColumn]:
     """Let a force that is named as one on an arm be no guess where the text states the arm.
 
     Parameters
@@ -413,15 +413,15 @@ def sure_at_arm(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftCol
         The columns as they are understood.
     """
     held = [c for c in columns if c.used and c.quantity == "friction_force" and is_at_arm(c)]
-    if len(held) != 1 or find_arm(find_values(layout)) is None:
+    if len(held) != 1 or find_arm(numeric_settings(layout)) is None:
         return list(columns)
     return [c._replace(guessed=(), options=()) if c is held[0] else c for c in columns]
 
 
-def _is_length(value: DraftValue) -> bool:
+def _is_length(value: Amount) -> bool:
     return bool(value.unit and converts(value.unit, "m"))
 
 
-def metres(value: DraftValue) -> float:
+def metres(value: Amount) -> float:
     """Return the length [m] that a value states; NaN where it is none."""
     return value.number * conversion(value.unit or "m", "m")[0] if _is_length(value) else math.nan

@@ -7,14 +7,15 @@ from __future__ import annotations
 
 import re
 
-from tribolab.draft.file.header import converts, escaped
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import STEP_WORD
-from tribolab.draft.stated.values import DraftValue
+from tribolab.draft.stated.settings import Amount
 from tribolab.draft.words.stated_words import ACROSS, LOAD, PER_MINUTE, RADIUS
 from tribolab.draft.words.strokes import is_frequency, is_length
-from tribolab.draft.words.words import matches, split_unit
 from tribolab.io.dialects.cells import split_name, split_row
+from tribolab.reading.interpret.names import matches, split_unit
+from tribolab.reading.interpret.patterns import escaped
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label
 from tribolab.unit_names import unit_in_words
 
@@ -30,7 +31,7 @@ _NOTHING = re.compile(r"[-–—*/.]*|n/?a|none|off|無|无|なし", re.IGNORECA
 _DELIMITERS = ("\t", ";", ",", "whitespace")
 
 
-def programme_of(layout: Layout) -> list[DraftValue]:
+def find_programme(layout: Layout) -> list[Amount]:
     """Return what a table of steps above the signals says of each, as values of its own.
 
     Parameters
@@ -40,7 +41,7 @@ def programme_of(layout: Layout) -> list[DraftValue]:
 
     Returns
     -------
-    list of DraftValue
+    list of Amount
         With ``source`` "programme": rotations (rad/s), radii (m), speeds (m/s), forces (N), and
         lengths (m) and frequencies (Hz) of strokes.
     """
@@ -74,7 +75,7 @@ def _steps_below(lines: list[str], width: int, delimiter: str) -> int:
     return count
 
 
-def _values(line: str, names: list[str], delimiter: str) -> list[DraftValue]:
+def _values(line: str, names: list[str], delimiter: str) -> list[Amount]:
     found = []
     for place, cell in enumerate(names[1:], start=1):
         name, unit = split_name(cell)
@@ -98,7 +99,7 @@ def _values(line: str, names: list[str], delimiter: str) -> list[DraftValue]:
         if to == "m/s" and known not in ("sliding_velocity", "set_speed"):
             continue
         found.append(
-            DraftValue(
+            Amount(
                 _SAID.get(to) or kind,
                 _pattern(place, len(names), delimiter),
                 unit,

@@ -8,13 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.draft.file.header import converts, escaped
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.lvm import interval_above
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.values import find_values
+from tribolab.draft.stated.settings import numeric_settings
 from tribolab.draft.words.stated_words import INTERVAL, RATE
 from tribolab.errors import shown
+from tribolab.reading.interpret.patterns import escaped
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label
 
 # "# Cadence d'acquisition : 1000 pts/s", "Rate (kS/s) = 1"; "1000 samples per second" alone
@@ -127,7 +128,7 @@ def find_pace(
     """
     names = {column.quantity for column in columns if column.used}
     way = next((c for c in columns if c.used and c.quantity == "position"), None)
-    speeds = [value for value in find_values(layout) if value.name == "set_speed"]
+    speeds = [value for value in numeric_settings(layout) if value.name == "set_speed"]
     if way is None or "sliding_velocity" in names or len(speeds) != 1 or not speeds[0].own_unit:
         return None
     edges = np.cumsum([0, *(len(block.rows) for block in layout.blocks)])
@@ -141,7 +142,7 @@ def find_pace(
 
 def _in_values(layout: Layout) -> Sampling | None:
     """Return what stands in a sentence or among other values of a line."""
-    for value in find_values(layout):
+    for value in numeric_settings(layout):
         interval = INTERVAL.search(value.key) is not None
         if value.source != "preamble" or not (interval or RATE.search(value.key)):
             continue

@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.values import DraftValue, find_values
+from tribolab.draft.stated.settings import Amount, numeric_settings
 from tribolab.io.dialects.cells import split_name
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label, role_of
 
 _RATIO = re.compile(
@@ -26,13 +26,13 @@ _OF_SLIDING = re.compile(
 )
 
 
-def stated_ratio(values: Sequence[DraftValue]) -> DraftValue | None:
+def find_slide_roll_ratio(values: Sequence[Amount]) -> Amount | None:
     """Return the slide-to-roll ratio that a file states as a number or in per cent, or None.
 
     Parameters
     ----------
     values
-        From `tribolab.draft.stated.values.find_values`.
+        From `tribolab.draft.stated.settings.numeric_settings`.
     """
     fitting = [
         value._replace(name="slide_roll_ratio_stated", unit=value.own_unit or "1", to="1")
@@ -42,7 +42,7 @@ def stated_ratio(values: Sequence[DraftValue]) -> DraftValue | None:
     return fitting[0] if len(fitting) == 1 else None
 
 
-def of_both_surfaces(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftColumn]:
+def as_entrainment_speed(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftColumn]:
     """Take a speed beside a slide-to-roll ratio for the mean one of both surfaces.
 
     Parameters
@@ -59,7 +59,9 @@ def of_both_surfaces(layout: Layout, columns: Sequence[DraftColumn]) -> list[Dra
     """
     speeds = [c for c in columns if c.used and c.quantity == "sliding_velocity"]
     in_column = any(c.used and c.quantity == "slide_roll_ratio" for c in columns)
-    if len(speeds) != 1 or not (in_column or stated_ratio(find_values(layout)) is not None):
+    if len(speeds) != 1 or not (
+        in_column or find_slide_roll_ratio(numeric_settings(layout)) is not None
+    ):
         return list(columns)
     name = split_name(speeds[0].label)[0]
     if role_of(name) == "set" or _OF_SLIDING.search(normalise_label(name)):

@@ -5,18 +5,18 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
-from tribolab.draft.stated.values import DraftValue
+from tribolab.draft.stated.settings import Amount
 from tribolab.draft.words.stated_words import LOAD
 from tribolab.io.dialects.patterns import guarded
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.unit_names import WEIGHTS
 from tribolab.units import conversion
 
 _ALIKE = 0.01  # relative difference of a weight and of the force of it, both rounded
 
 
-def find_load(values: Sequence[DraftValue]) -> DraftValue | None:
+def find_load(values: Sequence[Amount]) -> Amount | None:
     """Return the load that the text before the table states, as a force; None if none, or several.
 
     Where the text states none, that of the file's name. A load of zero is none.
@@ -24,7 +24,7 @@ def find_load(values: Sequence[DraftValue]) -> DraftValue | None:
     Parameters
     ----------
     values
-        From `tribolab.draft.stated.values.find_values`.
+        From `tribolab.draft.stated.settings.numeric_settings`.
     """
     fitting = []
     of_name = [v for v in values if v.source == "file name" and v.name == "set_normal_force"]
@@ -43,7 +43,7 @@ def find_load(values: Sequence[DraftValue]) -> DraftValue | None:
     return fitting[0] if len(fitting) == 1 else None
 
 
-def _are_one(one: DraftValue, other: DraftValue) -> bool:
+def _are_one(one: Amount, other: Amount) -> bool:
     """Whether two loads are a weight and the force of it, as "2.5 kg" and "24.5 N"."""
     if "step" in (one.source, other.source) or one.unit == other.unit:
         return False
@@ -94,13 +94,13 @@ _NOT = re.compile(
 )
 
 
-def stated_number(value: DraftValue) -> float:
+def stated_number(value: Amount) -> float:
     """Return the number that a value's text states, in the value's unit.
 
     Parameters
     ----------
     value
-        From `tribolab.draft.stated.values.find_values`.
+        From `tribolab.draft.stated.settings.numeric_settings`.
     """
     stated = guarded(value.pattern).first(value.text) or "nan"
     return value.scale * float(stated.rstrip(".,").replace(",", "."))

@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.values import DraftValue
+from tribolab.draft.stated.settings import Amount
 from tribolab.draft.words.stated_words import NOT_TAKEN_OFF, OFF_ALREADY, TAKEN_OFF, ZERO
-from tribolab.draft.words.words import matches
+from tribolab.reading.interpret.names import matches
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import part_pattern
 
 _LONGEST = 300  # characters of a line that are looked at
@@ -22,9 +22,7 @@ _OF_LOAD = re.compile(
 _OTHER = {"normal_force", "set_normal_force", "temperature", "position"}
 
 
-def find_zero(
-    layout: Layout, values: Sequence[DraftValue], unit: str, said: str = ""
-) -> DraftValue | None:
+def find_zero(layout: Layout, values: Sequence[Amount], unit: str, said: str = "") -> Amount | None:
     """Return the zero of the friction signal that a file states and that is still in the signal.
 
     Parameters
@@ -32,7 +30,7 @@ def find_zero(
     layout
         From `tribolab.draft.file.layout.find_layout`.
     values
-        From `tribolab.draft.stated.values.find_values`.
+        From `tribolab.draft.stated.settings.numeric_settings`.
     unit
         "N" of a force, "N m" of a torque.
     said
@@ -40,7 +38,7 @@ def find_zero(
 
     Returns
     -------
-    DraftValue or None
+    Amount or None
         None, too, where nothing says whether it was taken off: see `zero_in_doubt`.
     """
     zero = _stated(values, unit)
@@ -52,8 +50,8 @@ def find_zero(
 
 
 def zero_in_doubt(
-    layout: Layout, values: Sequence[DraftValue], unit: str, said: str = ""
-) -> DraftValue | None:
+    layout: Layout, values: Sequence[Amount], unit: str, said: str = ""
+) -> Amount | None:
     """Return a stated zero of which nothing says whether it was taken off the signal.
 
     Parameters
@@ -69,19 +67,19 @@ def zero_in_doubt(
     return None if told else zero
 
 
-def _is_still_in(layout: Layout, zero: DraftValue | None) -> bool:
+def _is_still_in(layout: Layout, zero: Amount | None) -> bool:
     own = zero is not None and NOT_TAKEN_OFF.search(zero.text)
     return bool(own) or _says(layout, zero, NOT_TAKEN_OFF)
 
 
-def _stated(values: Sequence[DraftValue], unit: str) -> DraftValue | None:
+def _stated(values: Sequence[Amount], unit: str) -> Amount | None:
     fitting = [value for value in values if _is_zero(value, unit)]
     if len(fitting) > 1:  # that of the load beside it is another
         fitting = [value for value in fitting if not _OF_LOAD.search(value.key)]
     return fitting[0] if len(fitting) == 1 and fitting[0].number else None
 
 
-def _says(layout: Layout, zero: DraftValue | None, words: re.Pattern[str]) -> bool:
+def _says(layout: Layout, zero: Amount | None, words: re.Pattern[str]) -> bool:
     """Whether another line above the table says something of zeros."""
     others = (
         line[:_LONGEST] for line in layout.text_above() if zero is None or line.strip() != zero.text
@@ -89,7 +87,7 @@ def _says(layout: Layout, zero: DraftValue | None, words: re.Pattern[str]) -> bo
     return any(words.search(line) for line in others)
 
 
-def reading_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
+def friction_column(columns: Sequence[DraftColumn]) -> DraftColumn | None:
     """Return the column that holds the friction force, of which a zero may be taken off.
 
     Parameters
@@ -101,7 +99,7 @@ def reading_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
     return held[0] if len(held) == 1 else None
 
 
-def _is_zero(value: DraftValue, unit: str) -> bool:
+def _is_zero(value: Amount, unit: str) -> bool:
     if value.source != "preamble" or not ZERO.search(value.key):
         return False
     if not (value.own_unit and converts(value.own_unit, unit)):

@@ -8,14 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.draft.file.header import converts
 from tribolab.draft.model import DraftColumn, Understood
-from tribolab.draft.stated.values import DraftValue
+from tribolab.draft.stated.settings import Amount
 from tribolab.draft.words.stated_words import FREQUENCY, HALF_STROKE, RATE, STROKE
 from tribolab.draft.words.strokes import END_TO_END, is_frequency, is_length
-from tribolab.draft.words.words import split_unit
 from tribolab.errors import shown
 from tribolab.io.dialects.cells import split_name
+from tribolab.reading.interpret.names import split_unit
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import role_of
 
 _CYCLES = re.compile(
@@ -31,12 +31,12 @@ class Strokes(NamedTuple):
     """Length and frequency of strokes: what [speed] says of them, where they stand, a guess."""
 
     settings: tuple[tuple[str, str], ...]
-    values: tuple[DraftValue, ...] = ()
+    values: tuple[Amount, ...] = ()
     symbols: tuple[tuple[str, DraftColumn], ...] = ()
     guess: str = ""
 
 
-def strokes_of(values: Sequence[DraftValue], understood: Understood) -> Strokes | None:
+def find_strokes(values: Sequence[Amount], understood: Understood) -> Strokes | None:
     """Return length and frequency of strokes, of the text above the table and of columns.
 
     What a column holds goes before what the text states: it says when it changes.
@@ -44,7 +44,7 @@ def strokes_of(values: Sequence[DraftValue], understood: Understood) -> Strokes 
     Parameters
     ----------
     values
-        From `tribolab.draft.stated.values.find_values`.
+        From `tribolab.draft.stated.settings.numeric_settings`.
     understood
         What is known of the columns.
     """
@@ -54,7 +54,7 @@ def strokes_of(values: Sequence[DraftValue], understood: Understood) -> Strokes 
         settings = (("stroke_value", stroke.name), ("frequency_value", frequency.name))
         return Strokes(settings, (stroke, frequency), guess=guess)
     symbols: list[tuple[str, DraftColumn]] = []
-    kept: list[DraftValue] = []
+    kept: list[Amount] = []
     if len(lengths) == 1 and not lengths[0].used:
         symbols.append(("stroke", lengths[0]))
         guess = ""
@@ -72,13 +72,13 @@ def strokes_of(values: Sequence[DraftValue], understood: Understood) -> Strokes 
     return Strokes(settings, tuple(kept), tuple(symbols), guess)
 
 
-def strokes_said(values: Sequence[DraftValue], said: tuple[str, str]) -> Strokes | None:
+def strokes_from_answer(values: Sequence[Amount], said: tuple[str, str]) -> Strokes | None:
     """Return the strokes that a person said, with what the text states of what was not said.
 
     Parameters
     ----------
     values
-        From `tribolab.draft.stated.values.find_values`.
+        From `tribolab.draft.stated.settings.numeric_settings`.
     said
         Length and frequency with their units; "" for what was not said.
     """
@@ -93,7 +93,7 @@ def strokes_said(values: Sequence[DraftValue], said: tuple[str, str]) -> Strokes
     return Strokes(tuple(settings), tuple(kept)) if len(settings) == len(said) else None
 
 
-def strokes_of_values(values: Sequence[DraftValue]) -> Strokes | None:
+def find_strokes_above(values: Sequence[Amount]) -> Strokes | None:
     """Return the length and frequency of strokes that stand above the table."""
     stroke, frequency, guess = _stated(values)
     if stroke is None or frequency is None:
@@ -102,13 +102,13 @@ def strokes_of_values(values: Sequence[DraftValue]) -> Strokes | None:
     return Strokes(settings, (stroke, frequency), guess=guess)
 
 
-def strokes_of_turns(values: Sequence[DraftValue], often: DraftColumn) -> Strokes | None:
+def strokes_of_turns(values: Sequence[Amount], often: DraftColumn) -> Strokes | None:
     """Return strokes of a length that the text states, of which a crank makes one each turn.
 
     Parameters
     ----------
     values
-        From `tribolab.draft.stated.values.find_values`.
+        From `tribolab.draft.stated.settings.numeric_settings`.
     often
         The column that says how fast the crank turns.
     """
@@ -119,7 +119,7 @@ def strokes_of_turns(values: Sequence[DraftValue], often: DraftColumn) -> Stroke
     return Strokes(settings, (stroke,), (("stroke_frequency", often),), guess)
 
 
-def _stated(values: Sequence[DraftValue]) -> tuple[DraftValue | None, DraftValue | None, str]:
+def _stated(values: Sequence[Amount]) -> tuple[Amount | None, Amount | None, str]:
     """Return the length and the frequency of strokes as the text has them, and what is guessed."""
     stroke, frequency, guess = _only(values, STROKE, "m"), _only(values, FREQUENCY, "Hz"), ""
     if stroke is not None and _EITHER_WAY.search(stroke.text):
@@ -135,7 +135,7 @@ def _stated(values: Sequence[DraftValue]) -> tuple[DraftValue | None, DraftValue
     return stroke, frequency, guess
 
 
-def _says_several(value: DraftValue) -> bool:
+def _says_several(value: Amount) -> bool:
     """Whether a line states more than one number of its unit: '2 Hz, then 5 Hz', '2 / 5 Hz'."""
     if value.source != "preamble" or not value.own_unit:
         return False
@@ -143,9 +143,9 @@ def _says_several(value: DraftValue) -> bool:
     return len(set(said)) > 1 or _LIST.search(value.text) is not None
 
 
-def as_stated(values: Sequence[DraftValue]) -> tuple[DraftValue, ...]:
+def stated_strokes(values: Sequence[Amount]) -> tuple[Amount, ...]:
     """Return what stands above the table of strokes, to be held against a recorded position."""
-    strokes = strokes_of_values(values)
+    strokes = find_strokes_above(values)
     if strokes is None or strokes.guess:
         return ()
     if any(value.source in ("step", "programme") for value in strokes.values):
@@ -186,7 +186,7 @@ def _change(understood: Understood, columns: Sequence[DraftColumn]) -> bool:
     return bool(values.size) and float(values.max()) > _SEVERAL * float(values.min())
 
 
-def _only(values: Sequence[DraftValue], key: re.Pattern[str], unit: str) -> DraftValue | None:
+def _only(values: Sequence[Amount], key: re.Pattern[str], unit: str) -> Amount | None:
     """Return the one value of that name and kind; None if there is none, or several."""
     fitting = [
         value

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.stated.lengths import metres
-from tribolab.draft.stated.values import DraftValue, find_values
+from tribolab.draft.stated.settings import Amount, numeric_settings
 from tribolab.draft.words.stated_words import (
     ACROSS_TIP,
     OF_TRACE,
@@ -18,7 +18,7 @@ from tribolab.draft.words.stated_words import (
 _TIPS = (1e-9, 1e-3)  # m, of the smallest and largest radius of a tip
 
 
-def find_stated(layout: Layout, *, placed: bool) -> list[DraftValue]:
+def find_stated(layout: Layout, *, placed: bool) -> list[Amount]:
     """Return what the text before a profile states of it, each under the name that checks know.
 
     Parameters
@@ -30,11 +30,11 @@ def find_stated(layout: Layout, *, placed: bool) -> list[DraftValue]:
 
     Returns
     -------
-    list of DraftValue
+    list of Amount
         ``tip_radius``, ``stated_length``, ``stated_pitch`` and ``stated_points``, where they are
         stated just once.
     """
-    values = [value for value in find_values(layout, bare=True) if value.source == "preamble"]
+    values = [value for value in numeric_settings(layout, bare=True) if value.source == "preamble"]
     tips = [v for v in values if TIP.search(v.key) and _TIPS[0] < _radius(v) < _TIPS[1]]
     whole = [v for v in values if PROFILE_LENGTH.search(v.key) and metres(v) > 0]
     whole = [v for v in whole if not PART_OF_TRACE.search(v.key) and OF_TRACE.search(v.key)]
@@ -51,5 +51,5 @@ def find_stated(layout: Layout, *, placed: bool) -> list[DraftValue]:
     return found
 
 
-def _radius(value: DraftValue) -> float:
+def _radius(value: Amount) -> float:
     return metres(value) * (0.5 if ACROSS_TIP.search(value.key) else 1.0)

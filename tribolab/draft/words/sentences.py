@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from tribolab.draft.file.header import escaped, is_unit
+from tribolab.reading.interpret.patterns import escaped
+from tribolab.reading.interpret.unit_texts import is_unit
 from tribolab.reading.lexicon.lexicon import normalise_label
 
 _LONGEST = 300  # characters of a line that are looked at

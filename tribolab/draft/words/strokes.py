@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tribolab.draft.file.header import converts
 from tribolab.draft.words.stated_words import FREQUENCY, STROKE
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label, without_role
 
 END_TO_END = re.compile(

@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from tribolab.draft.file.header import DIMENSIONS, converts, escaped, is_unit
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.words.levers import weight_on_lever
@@ -30,7 +29,9 @@ from tribolab.draft.words.stated_words import (
     TIP,
     TURNING,
 )
-from tribolab.draft.words.words import matches, split_unit
+from tribolab.reading.interpret.names import matches, split_unit
+from tribolab.reading.interpret.patterns import escaped
+from tribolab.reading.interpret.unit_texts import DIMENSIONS, converts, is_unit
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, role_of, without_role
 from tribolab.unit_names import WEIGHTS, unit_in_words
 
@@ -92,7 +93,7 @@ _IN_NAME = re.compile(r"(?:^|_)(?P<number>\d+(?:\.\d+)?)(?P<unit>N|mN)(?=_|$)")
 _SET = {"normal_force": "set_normal_force", "sliding_velocity": "set_speed"}
 
 
-class DraftValue(NamedTuple):
+class Amount(NamedTuple):
     """One value as a dialect's [[value]] would say it; `own_unit` is as the file writes it.
 
     `key` is what the file calls it, squeezed; `guess` what of it is one.
@@ -124,7 +125,7 @@ def _text_above(layout: Layout, *, bare: bool) -> tuple[str, ...]:
     return tuple(line[:_LONGEST_ENTRY] for line in lines)
 
 
-def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
+def numeric_settings(layout: Layout, *, bare: bool = False) -> list[Amount]:
     """Find the single values that a file and its name state, a dozen at most of the former.
 
     Parameters
@@ -136,13 +137,13 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
 
     Returns
     -------
-    list of DraftValue
+    list of Amount
         A dozen at most, of heights more.
     """
-    values: dict[str, DraftValue] = {}
+    values: dict[str, Amount] = {}
     name = layout.file.path.name
     if radius := radius_in_name(name):
-        values["track_radius"] = DraftValue(
+        values["track_radius"] = Amount(
             *("track_radius", radius.pattern, radius.unit, "m", name, "file name", radius.unit),
             scale=radius.scale,
             key="trackradius",
@@ -156,9 +157,7 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
         pattern = rf"_(\d+(?:\.\d+)?){in_name['unit']}(?:_|\.)"
         if re.search(pattern, layout.file.path.name):
             name = layout.file.path.name
-            value = DraftValue(
-                "set_normal_force", pattern, in_name["unit"], None, name, "file name"
-            )
+            value = Amount("set_normal_force", pattern, in_name["unit"], None, name, "file name")
             values[value.name] = value
     units = _units_apart(layout, bare=bare)
     for line in _text_above(layout, bare=bare):
@@ -179,7 +178,7 @@ def find_values(layout: Layout, *, bare: bool = False) -> list[DraftValue]:
     return [_of_steps(value, layout) for value in values.values() if _holds_on(value, layout)]
 
 
-def _holds_on(value: DraftValue, layout: Layout) -> bool:
+def _holds_on(value: Amount, layout: Layout) -> bool:
     """Whether no line between the rows states another: "Step 2: 30 rpm" below "Step 1: 10 rpm"."""
     if layout.skip_lines is None or value.source != "preamble":
         return True
@@ -191,7 +190,7 @@ def _holds_on(value: DraftValue, layout: Layout) -> bool:
     return not said - {first[1] if first else ""}
 
 
-def _of_steps(value: DraftValue, layout: Layout) -> DraftValue:
+def _of_steps(value: Amount, layout: Layout) -> Amount:
     """Return a value as one of each step, where the text before later tables says another."""
     if not layout.repeats or value.source != "preamble":
         return value
@@ -201,7 +200,7 @@ def _of_steps(value: DraftValue, layout: Layout) -> DraftValue:
     return value._replace(source="step") if len(said) > 1 else value
 
 
-def _speed_in_name(path: Path) -> DraftValue | None:
+def _speed_in_name(path: Path) -> Amount | None:
     """Return the speed that a file's name states: PTFE_3N_10mms.csv."""
     match = _SPEED_IN_NAME.search(path.stem)
     if match is None:
@@ -209,24 +208,24 @@ def _speed_in_name(path: Path) -> DraftValue | None:
     pattern = rf"(?:^|[_\- ])(\d+(?:\.\d+)?){match['unit']}{match['per']}(?:[_\- .])"
     unit = f"{match['unit']}/s"
     key = "slidingspeed"
-    return DraftValue("set_speed", pattern, unit, None, path.name, "file name", unit, key=key)
+    return Amount("set_speed", pattern, unit, None, path.name, "file name", unit, key=key)
 
 
-def _strokes_in_name(name: str) -> list[DraftValue]:
+def _strokes_in_name(name: str) -> list[Amount]:
     """Return the stroke that a file's name states, and how often it comes: stroke8mm_2Hz.csv."""
     stroke, often = _STROKE_IN_NAME.search(name), _HERTZ_IN_NAME.search(name)
     if stroke is None:  # frequencies alone may be how often samples are taken
         return []
     key, unit = re.escape(stroke["key"]), stroke["unit"]
     pattern = rf"{key}(\d+(?:[.,]\d+)?)[_ ]?{unit}"
-    found = [DraftValue("stroke", pattern, unit, "m", name, "file name", unit, key="stroke")]
+    found = [Amount("stroke", pattern, unit, "m", name, "file name", unit, key="stroke")]
     if often is not None:
         pattern, said = r"(?:^|[_\- f])(\d+(?:[.,]\d+)?)[_ ]?Hz", "frequency"
-        found.append(DraftValue(said, pattern, "Hz", "Hz", name, "file name", "Hz", key=said))
+        found.append(Amount(said, pattern, "Hz", "Hz", name, "file name", "Hz", key=said))
     return found
 
 
-def _keep(values: dict[str, DraftValue], value: DraftValue) -> None:
+def _keep(values: dict[str, Amount], value: Amount) -> None:
     """Keep a value, under a name of its own: letters of the east make none."""
     if value.name in values and value.key == values[value.name].key:
         return
@@ -237,7 +236,7 @@ def _keep(values: dict[str, DraftValue], value: DraftValue) -> None:
     values.setdefault(name, value._replace(name=name))
 
 
-def words_said(layout: Layout, *, bare: bool = False) -> list[tuple[str, str]]:
+def text_settings(layout: Layout, *, bare: bool = False) -> list[tuple[str, str]]:
     """Return what the text before the table says in words: "Drive: crank" as ("Drive", "crank").
 
     Parameters
@@ -266,12 +265,13 @@ def _said(line: str) -> re.Match[str] | None:
 def _units_apart(layout: Layout, *, bare: bool) -> dict[str, str]:
     """Return units that stand in lines of their own, by whose they are: "Stroke unit: mm"."""
     said = [
-        (_UNIT_OF.match(normalise_label(key)), text) for key, text in words_said(layout, bare=bare)
+        (_UNIT_OF.match(normalise_label(key)), text)
+        for key, text in text_settings(layout, bare=bare)
     ]
     return {match["key"] or match["behind"]: text.strip(" []()") for match, text in said if match}
 
 
-def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:
+def _value(said: re.Match[str], units: Mapping[str, str]) -> Amount:
     key, unit = said["key"], unit_in_words((said["unit"] or "").strip("[]()")) or None
     bracket = _BRACKETS.search(key)
     if unit is None and bracket and is_unit(bracket[1]):
@@ -292,9 +292,9 @@ def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:
     plain = normalise_label(_BRACKETS.sub("", key))
     dimension = next((d for d in DIMENSIONS if unit and converts(unit, d)), None)
     if unit is None or dimension is None:
-        return DraftValue(_name(key), pattern, None, None, line, own_unit=unit, key=plain)
+        return Amount(_name(key), pattern, None, None, line, own_unit=unit, key=plain)
     if dimension == "m/s" and _MACHINE_SPEED.search(plain):
-        return DraftValue("set_speed", pattern, unit, None, line, own_unit=unit, key=plain)
+        return Amount("set_speed", pattern, unit, None, line, own_unit=unit, key=plain)
     options = matches(key, unit)
     if options and options[0].score > 0.5:
         quantity = _SET.get(options[0].quantity, options[0].quantity)
@@ -304,11 +304,11 @@ def _value(said: re.Match[str], units: Mapping[str, str]) -> DraftValue:
         other = quantity == "set_normal_force" and not LOAD.search(plain)  # a preload is none
         if quantity.startswith("set_") and not other:
             read_as = options[0].unit or unit
-            return DraftValue(quantity, pattern, read_as, None, line, own_unit=unit, key=plain)
-    return DraftValue(_name(key), pattern, unit, dimension, line, own_unit=unit, key=plain)
+            return Amount(quantity, pattern, read_as, None, line, own_unit=unit, key=plain)
+    return Amount(_name(key), pattern, unit, dimension, line, own_unit=unit, key=plain)
 
 
-def without_unit(layout: Layout, *, bare: bool = False) -> list[str]:
+def lines_without_unit(layout: Layout, *, bare: bool = False) -> list[str]:
     """Return the lines that state a length, a load or how often strokes come, but no unit of it.
 
     Parameters
@@ -321,12 +321,12 @@ def without_unit(layout: Layout, *, bare: bool = False) -> list[str]:
     wanted = (PITCH, PROFILE_LENGTH) if bare else (RADIUS, DIAMETER, ARM, STROKE, FREQUENCY, LOAD)
     return [
         value.text
-        for value in find_values(layout, bare=bare)
+        for value in numeric_settings(layout, bare=bare)
         if value.own_unit is None and any(words.search(value.key) for words in wanted)
     ]
 
 
-def _of_phrase(phrase: Phrase) -> DraftValue | None:
+def _of_phrase(phrase: Phrase) -> Amount | None:
     """Return what a sentence states, if it is one of the things that a run or profile needs."""
     dimension = next((d for d in DIMENSIONS if converts(phrase.unit, d)), None)
     weight = phrase.unit in WEIGHTS
@@ -340,7 +340,7 @@ def _of_phrase(phrase: Phrase) -> DraftValue | None:
         return None
     lever = weight_on_lever(phrase.line) if weight else 0.0
     speed = dimension == "m/s"
-    return DraftValue(
+    return Amount(
         "set_speed" if speed else _name(phrase.key),
         phrase.pattern,
         None if weight else phrase.unit,

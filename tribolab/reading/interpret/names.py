@@ -6,8 +6,8 @@ import functools
 import re
 from typing import NamedTuple
 
-from tribolab.draft.file.header import converts, is_unit
 from tribolab.quantities import quantity
+from tribolab.reading.interpret.unit_texts import converts, is_unit
 from tribolab.reading.lexicon.lexicon import (
     Word,
     keys_of,

@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.model import Follows
 from tribolab.draft.model import Agreed
+from tribolab.draft.stated.settings import Amount, numeric_settings
 from tribolab.draft.stated.stated_load import stated_number
-from tribolab.draft.stated.values import DraftValue, find_values
 from tribolab.draft.words.stated_words import OTHER_RADIUS, STROKE
 from tribolab.errors import shown
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.unit_names import WEIGHTS
 
 _LACKS = {"the radius": "m", "the load": "N", "the sliding speed": "m/s"}
 _QUOTED = 3
 
 
-def may_say(layout: Layout, follows: Follows, lack: str) -> str:
+def candidate_lines(layout: Layout, follows: Follows, lack: str) -> str:
     """Quote the lines above the table that may state what a run lacks; "" if none does.
 
     Parameters
@@ -35,32 +35,32 @@ def may_say(layout: Layout, follows: Follows, lack: str) -> str:
     return " or ".join(f"'{shown(line, 50)}'" for line in dict.fromkeys(lines[:_QUOTED]))
 
 
-def likely_value(layout: Layout, follows: Follows, lack: str) -> DraftValue | None:
+def likely_value(layout: Layout, follows: Follows, lack: str) -> Amount | None:
     """Return what these lines state; None if they state nothing, or two amounts.
 
     Parameters
     ----------
     layout, follows, lack
-        As `may_say` takes them.
+        As `candidate_lines` takes them.
     """
     values = [value for value in _perhaps(layout, follows, lack) if stated_number(value) > 0]
     return values[0] if len({amount_of(value) for value in values}) == 1 else None
 
 
-def amount_of(value: DraftValue | None) -> str:
+def amount_of(value: Amount | None) -> str:
     """Return what a value states, as "22.5 mm"; "" of none."""
     return "" if value is None else f"{stated_number(value):.6g} {value.own_unit}"
 
 
-def agreed_value(
-    values: Sequence[DraftValue], agreed: Sequence[tuple[Agreed, str]], what: Agreed
-) -> DraftValue | None:
+def confirmed_value(
+    values: Sequence[Amount], agreed: Sequence[tuple[Agreed, str]], what: Agreed
+) -> Amount | None:
     """Return the value whose line a person took for the radius, the load or the speed.
 
     Parameters
     ----------
     values
-        From `tribolab.draft.stated.values.find_values`.
+        From `tribolab.draft.stated.settings.numeric_settings`.
     agreed
         What was agreed to: of `tribolab.draft.model.Understood`.
     what
@@ -70,13 +70,13 @@ def agreed_value(
     return next((v for v in values if lines and v.text == lines[-1] and v.own_unit), None)
 
 
-def _perhaps(layout: Layout, follows: Follows, lack: str) -> list[DraftValue]:
+def _perhaps(layout: Layout, follows: Follows, lack: str) -> list[Amount]:
     """Return what is stated above the table in a unit of what a run lacks."""
     unit = next((unit for words, unit in _LACKS.items() if lack.startswith(words)), "")
     used = {value.text for value in follows.values}
     return [
         value
-        for value in find_values(layout)
+        for value in numeric_settings(layout)
         if unit and value.source != "file name" and value.text not in used
         if converts(WEIGHTS.get(value.own_unit or "", value.own_unit or ""), unit)
         if unit != "m" or not (OTHER_RADIUS.search(value.key) or STROKE.search(value.key))

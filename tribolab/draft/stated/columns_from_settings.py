@@ -6,15 +6,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.draft.file.header import converts
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.sampling import find_sampling
-from tribolab.draft.stated.values import find_values
+from tribolab.draft.stated.settings import numeric_settings
 from tribolab.draft.words.stated_words import STROKE
 from tribolab.errors import UnitError
 from tribolab.io.dialects.patterns import guarded
 from tribolab.io.dialects.time_rule import sampling_interval
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.units import conversion
 
 _CLOSE = 0.02  # relative, of an interval
@@ -22,7 +22,7 @@ _AS_FAR = 0.05  # relative, of a way: noise and the ends of a drive add to it
 _ENDS = 0.5  # % of the rows at each end, which may be noise
 
 
-def told_by_settings(
+def columns_from_settings(
     layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray
 ) -> list[DraftColumn]:
     """Take for sure what a column was guessed to be where a setting agrees with its numbers.
@@ -81,7 +81,7 @@ def _goes_a_stroke(layout: Layout, column: DraftColumn, values: np.ndarray) -> b
     way = float(high - low) * conversion(unit, "m")[0]
     stated = [
         value.number * conversion(value.unit, "m")[0]
-        for value in find_values(layout)
+        for value in numeric_settings(layout)
         if value.unit and STROKE.search(value.key) and converts(value.unit, "m")
     ]
     return any(stroke > 0 and abs(way / stroke - 1) < _AS_FAR for stroke in stated)
