@@ -121,7 +121,7 @@ def test_the_search_for_such_names_finds_them(text):
 
 
 def test_every_cure_has_words_of_its_own_for_the_terminal_and_the_campaign():
-    from tribolab.io import cures
+    from tribolab.reading import cures
 
     said = [one for one in vars(cures).values() if isinstance(one, errors.Cure)]
     said += [cures.name_instrument(), cures.unknown_instrument(Path("a b.txt"), cures.RUN)]

@@ -13,7 +13,6 @@ from tribolab.app.scan_info import areal_lines, roughness_lines, stated_lines
 from tribolab.campaign.engine.stage import Stage
 from tribolab.draft.on_the_fly import draft_of, holds_run, read_log
 from tribolab.errors import ReadError, TribolabError, shown, told
-from tribolab.io import cures
 from tribolab.io.companion import CompanionFacts, describe_companion
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.dialects.find import known_dialects, load_dialect
@@ -24,6 +23,7 @@ from tribolab.io.kinds import kind_of
 from tribolab.io.missing import missing_of
 from tribolab.io.runs import read_log as known_log
 from tribolab.quantities import quantity
+from tribolab.reading import cures
 from tribolab.reading.moduli import holds_modulus, read_modulus_table
 from tribolab.reading.raw.source import check_regular
 from tribolab.reversals import reversals

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeVar, Unpack
 
 from tribolab.aliases import PathLike
 from tribolab.errors import LacksError, ReadError
-from tribolab.io import cures, runs
+from tribolab.io import runs
 from tribolab.io.dialects.find import Dialect, Instrument, UnknownFileError
 from tribolab.io.dialects.signature import peek
 from tribolab.io.signals import Signals
+from tribolab.reading import cures
 from tribolab.reading.raw.source import read_unchanged
 
 if TYPE_CHECKING:

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 import numpy as np
 
 from tribolab.errors import Cure, ReadError, UnitError
-from tribolab.io.content.read import measurable
 from tribolab.io.dialects.formula import Operand, evaluate, in_base_units, names_in, parse_formula
 from tribolab.io.dialects.model import Derived, Dialect
 from tribolab.io.dialects.value_rule import Value
@@ -15,6 +14,7 @@ from tribolab.io.way_back import goes_back
 from tribolab.medians import median
 from tribolab.pieces import lowered
 from tribolab.quantities import QUANTITIES, quantity
+from tribolab.reading.raw.missing_marks import measurable
 from tribolab.untyped import Json
 
 _LIGHT, _UNLOADED = 0.4, 0.1  # shares of the usual normal stress: a light one, and none

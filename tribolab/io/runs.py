@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, TypedDict
 
 from tribolab.aliases import PathLike
 from tribolab.errors import ReadError, shown
-from tribolab.io import cures
 from tribolab.io.dialects.find import Dialect, Instrument, is_scan, load_dialect, recognise
 from tribolab.io.dialects.signature import peek
 from tribolab.io.gather import LogDialects, gather
 from tribolab.io.logs import companion_name, companion_path
 from tribolab.io.row_counts import with_companion_rows
 from tribolab.io.signals import Signals, dataset_of, signals_of
+from tribolab.reading import cures
 from tribolab.reading.raw.source import check_regular, read_unchanged
 from tribolab.units import positive, to_si
 

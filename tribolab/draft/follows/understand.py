@@ -53,14 +53,13 @@ from tribolab.draft.stated.sampling import find_pace, find_sampling
 from tribolab.draft.stated.settings import Amount
 from tribolab.draft.stated.slip import as_entrainment_speed
 from tribolab.errors import ReadError, brief, shown
-from tribolab.io.content.missing_marks import take_marks
-from tribolab.io.content.model import LARGEST
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.dates import seconds
 from tribolab.reading.interpret.names import Match, matches
 from tribolab.reading.interpret.physics import Proof
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label
+from tribolab.reading.raw.missing_marks import LARGEST, take_marks
 from tribolab.units import conversion, positive
 
 _RISES = 0.9  # share of the steps from row to row; a clock may start anew

@@ -9,8 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-LARGEST = 1e60  # [SI] beyond it a number is damage; its fourth power is a number still
-
 
 class Piece(NamedTuple):
     """One table: arrays in SI by quantity, and what the text before it says."""

@@ -9,8 +9,7 @@ from typing import TypeVar
 import numpy as np
 
 from tribolab.errors import ReadError, shown
-from tribolab.io.content.missing_marks import take_marks
-from tribolab.io.content.model import LARGEST, Content, Piece
+from tribolab.io.content.model import Content, Piece
 from tribolab.io.content.programme import programmed_steps
 from tribolab.io.content.steps import last_match, started
 from tribolab.io.dialects.as_written import as_written
@@ -19,6 +18,7 @@ from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, fits_format, peek
 from tribolab.pieces import anywhere
 from tribolab.provenance import sha256_of_file
+from tribolab.reading.raw.missing_marks import beyond_range, measurable, take_marks
 
 _T = TypeVar("_T")
 _UNCLEAR = 0.5  # of a load's largest number, that of the other sign
@@ -127,35 +127,6 @@ def _read_text(file: File, dialect: Dialect, size: int) -> Content:
     return Content(
         file.path, sha256, pieces, labels, tuple(unused), left_out, {}, own, scales, foot
     )
-
-
-def measurable(values: np.ndarray) -> np.ndarray:
-    """Return values in SI with those that nothing measures as NaN, and traces of nothing as 0.
-
-    So whatever stands in a file, squares and ratios of its numbers are numbers, too. What is
-    infinite stays so: it is refused or left out where it is met.
-
-    >>> measurable(np.array([1.0, -1e300, 1e-310])).tolist()
-    [1.0, nan, 0.0]
-    """
-    if values.dtype.kind != "f" or not anywhere(_odd, values):
-        return values
-    return np.where(_beyond(values), np.nan, np.where(_nothing(values), 0.0, values))
-
-
-def _odd(values: np.ndarray) -> np.ndarray:
-    return _beyond(values) | _nothing(values)
-
-
-def _beyond(values: np.ndarray) -> np.ndarray:
-    """Which numbers nothing measured can have."""
-    return (np.abs(values) > LARGEST) & np.isfinite(values)
-
-
-def _nothing(values: np.ndarray) -> np.ndarray:
-    """Which numbers are a trace of nothing."""
-    size = np.abs(values)
-    return (size < 1 / LARGEST) & (size > 0)
 
 
 def _no_value(values: np.ndarray) -> bool:
@@ -270,7 +241,7 @@ def _possible(content: Content) -> Content:
             columns[name] = measurable(values)
             if columns[name] is values:
                 continue
-            if odd := int(_beyond(values).sum()):
+            if odd := int(beyond_range(values).sum()):
                 places[name] = places.get(name, 0) + odd
         pieces.append(piece._replace(columns=columns))
     content = content._replace(pieces=pieces)
@@ -282,9 +253,9 @@ def _possible(content: Content) -> Content:
 
 def _without_beyond(values: np.ndarray) -> np.ndarray:
     """Return times with those that no clock can show as infinite."""
-    if not anywhere(_beyond, values):
+    if not anywhere(beyond_range, values):
         return values
-    return np.where(_beyond(values), np.inf, values)
+    return np.where(beyond_range(values), np.inf, values)
 
 
 def _whole_number(path: Path, text: str | None) -> int | None:

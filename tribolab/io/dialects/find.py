@@ -10,10 +10,10 @@ from typing import Any
 from pydantic import ValidationError
 
 from tribolab.errors import ConfigError, ReadError, TribolabError, brief, nearest, shown
-from tribolab.io import cures
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, is_results, peek
 from tribolab.io.schema_folder import schema_folder
+from tribolab.reading import cures
 from tribolab.reading.raw.source import check_regular
 from tribolab.untyped import Json
 

@@ -8,11 +8,11 @@ import re
 from itertools import islice
 
 from tribolab.errors import ReadError, shown
-from tribolab.io import cures
 from tribolab.io.dialects.cells import split_name, split_row
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import Guarded
 from tribolab.io.dialects.signature import File
+from tribolab.reading import cures
 
 BOM = b"\xef\xbb\xbf"
 _CLASS = re.compile(r"(?<!\\)\[")

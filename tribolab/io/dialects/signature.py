@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tribolab.errors import ReadError
-from tribolab.io import cures
 from tribolab.io.dialects.arranged import holds_names
 from tribolab.io.dialects.declared_records import declares_records
 from tribolab.io.patterns import why_missing
 from tribolab.io.tables.xml_workbook import is_xml_workbook
-from tribolab.io.unpacked import ZIP, holds_arrays, is_workbook, unpacked
+from tribolab.reading import cures
 from tribolab.reading.raw.hdf5_safety import refuse_outside
 from tribolab.reading.raw.source import check_regular
+from tribolab.reading.raw.unpacked import ZIP, holds_arrays, is_workbook, unpacked
 
 HEAD = 1 << 20  # bytes looked at for preamble and header
 

@@ -10,8 +10,6 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, shown
-from tribolab.io.content.missing_marks import take_marks
-from tribolab.io.content.read import measurable
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.scans.array_units import LENGTHS, UNITS, scaled, stated_unit, tokens, unit_of_scale
 from tribolab.io.scans.formats import NotSaidError
@@ -19,6 +17,7 @@ from tribolab.io.scans.grid import even
 from tribolab.io.scans.held_arrays import HeldArray, HeldArrays, read_arrays
 from tribolab.io.scans.matrix_header import header_of
 from tribolab.io.scans.named_units import unsaid
+from tribolab.reading.raw.missing_marks import measurable, take_marks
 from tribolab.units import conversion
 from tribolab.untyped import Json
 

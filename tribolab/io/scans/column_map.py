@@ -12,10 +12,9 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, shown
-from tribolab.io.content.missing_marks import take_marks
-from tribolab.io.content.read import measurable
 from tribolab.io.scans.matrix import texts_of, value_of
 from tribolab.io.scans.matrix_header import MatrixHeader, header_of
+from tribolab.reading.raw.missing_marks import measurable, take_marks
 
 _HEAD = 1 << 16  # bytes in which a column begins
 _HEAD_LINES = 500  # above it

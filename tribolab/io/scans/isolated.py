@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribolab.io.content.missing_marks import Marked
 from tribolab.io.scans.limits import (
     MAX_DIGITS_OF_MARK,
     MAX_SHARE_OF_MARK,
@@ -12,6 +11,7 @@ from tribolab.io.scans.limits import (
     MIN_DISTANCE_OF_SINGLE_MARK,
     MIN_OTHER_HEIGHTS,
 )
+from tribolab.reading.raw.missing_marks import Marked
 
 
 def take_isolated(height: np.ndarray) -> list[Marked]:

@@ -14,14 +14,13 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.io.content.missing_marks import take_marks
-from tribolab.io.content.read import measurable
 from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.matrix import GRAMMARS, cells_of, texts_of, value_of
 from tribolab.io.scans.matrix_header import UNIT, header_of
 from tribolab.io.scans.named_units import unsaid
 from tribolab.io.tables.workbook import sheets_of
-from tribolab.io.unpacked import ZIP, is_workbook
+from tribolab.reading.raw.missing_marks import measurable, take_marks
+from tribolab.reading.raw.unpacked import ZIP, is_workbook
 from tribolab.units import conversion
 
 _HEAD_LINES = 60  # above the positions

@@ -13,13 +13,12 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, shown
-from tribolab.io import cures
-from tribolab.io.content.missing_marks import Marked, take_marks
-from tribolab.io.content.read import measurable
 from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.matrix_header import MatrixHeader, header_of
 from tribolab.io.scans.named_units import unsaid
 from tribolab.io.scans.stated_missing import take_stated
+from tribolab.reading import cures
+from tribolab.reading.raw.missing_marks import Marked, measurable, take_marks
 from tribolab.units import conversion
 
 _HEAD = 1 << 20  # bytes in which a matrix begins

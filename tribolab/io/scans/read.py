@@ -11,7 +11,6 @@ import xarray as xr
 
 from tribolab.aliases import PathLike
 from tribolab.errors import Cure, ReadError, shown
-from tribolab.io import cures
 from tribolab.io.content.read import read_content
 from tribolab.io.dialects.find import (
     Dialect,
@@ -29,6 +28,7 @@ from tribolab.io.scans.isolated import take_isolated
 from tribolab.io.scans.passes import find_passes
 from tribolab.io.scans.undescribed import read_undescribed
 from tribolab.provenance import as_text, made, sha256_of_file
+from tribolab.reading import cures
 from tribolab.reading.raw.source import check_regular
 from tribolab.stamping import stamp
 from tribolab.units import positive

@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, brief
-from tribolab.io.content.read import measurable
 from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.named_units import unsaid
+from tribolab.reading.raw.missing_marks import measurable
 from tribolab.units import conversion
 
 _TEXT, _SINGLE = b"DSAA", b"DSBB"

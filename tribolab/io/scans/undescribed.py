@@ -21,7 +21,7 @@ from tribolab.io.scans.surfer import is_surfer, read_surfer
 from tribolab.io.scans.x3p import is_iso_xml, main_of, read_iso_xml, read_x3p
 from tribolab.io.scans.xml_values import is_xml, read_xml_values
 from tribolab.io.scans.zygo_xyz import is_zygo_xyz, read_zygo_xyz
-from tribolab.io.unpacked import ZIP, of_the_file, unpacked
+from tribolab.reading.raw.unpacked import ZIP, of_the_file, unpacked
 
 _HEAD = 1 << 14  # bytes that tell a format
 

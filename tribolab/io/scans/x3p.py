@@ -18,10 +18,10 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, brief, shown
-from tribolab.io.content.read import measurable
 from tribolab.io.scans.grid import even, gridded
 from tribolab.io.scans.safety import DAMAGE, refuse_bomb
 from tribolab.io.scans.xml_values import parsed
+from tribolab.reading.raw.missing_marks import measurable
 from tribolab.reading.raw.opening import isolated
 
 _MAIN = "main.xml"

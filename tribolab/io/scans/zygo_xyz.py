@@ -11,9 +11,9 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, brief
-from tribolab.io import cures
-from tribolab.io.content.read import measurable
 from tribolab.io.scans.formats import NotSaidError
+from tribolab.reading import cures
+from tribolab.reading.raw.missing_marks import measurable
 from tribolab.units import conversion
 
 _BEGIN = b"Zygo XYZ Data File"

@@ -14,6 +14,7 @@ import numpy as np
 
 from tribolab.pieces import anywhere, pieces
 
+LARGEST = 1e60  # [SI] beyond it a number is damage; its fourth power is a number still
 _NO_SIGNAL = 9.8e29  # in the file's own unit: beyond it a number is a mark, how rare it may be
 _NINES = (999.0, 9999.0, 99999.0, 999999.0, 9999999.0, 99999999.0)
 _MARKS = np.array(
@@ -138,3 +139,32 @@ def _without(parts: Sequence[np.ndarray], number: float) -> None:
         for first, last in pieces(0, part.size):
             piece = part[first:last]
             piece[piece == number] = np.nan
+
+
+def measurable(values: np.ndarray) -> np.ndarray:
+    """Return values in SI with those that nothing measures as NaN, and traces of nothing as 0.
+
+    So whatever stands in a file, squares and ratios of its numbers are numbers, too. What is
+    infinite stays so: it is refused or left out where it is met.
+
+    >>> measurable(np.array([1.0, -1e300, 1e-310])).tolist()
+    [1.0, nan, 0.0]
+    """
+    if values.dtype.kind != "f" or not anywhere(_odd, values):
+        return values
+    return np.where(beyond_range(values), np.nan, np.where(_nothing(values), 0.0, values))
+
+
+def _odd(values: np.ndarray) -> np.ndarray:
+    return beyond_range(values) | _nothing(values)
+
+
+def beyond_range(values: np.ndarray) -> np.ndarray:
+    """Which numbers nothing measured can have."""
+    return (np.abs(values) > LARGEST) & np.isfinite(values)
+
+
+def _nothing(values: np.ndarray) -> np.ndarray:
+    """Which numbers are a trace of nothing."""
+    size = np.abs(values)
+    return (size < 1 / LARGEST) & (size > 0)
