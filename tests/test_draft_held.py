@@ -113,15 +113,15 @@ def test_what_is_compressed_is_read_as_what_it_holds(write, tmp_path):
     is_right(tl.read(tmp_path / "run.gz"))
 
 
-def waveforms(path, step, speed, start=None):
+def waveforms(path, step, speed, start=None, offset=0.0):
     """Write forces at 20 Hz and speed in a group of its own, each with its interval."""
     from nptdms import ChannelObject, TdmsWriter
 
-    def said(interval, unit, begins="2025-01-01T10:00:00"):
-        clock = {"wf_start_time": np.datetime64(begins), "wf_start_offset": 0.0}
+    def said(interval, unit, begins="2025-01-01T10:00:00", after=0.0):
+        clock = {"wf_start_time": np.datetime64(begins), "wf_start_offset": after}
         return {"wf_increment": interval, "unit_string": unit, **clock}
 
-    motion = said(step, "mm/s", start) if start else said(step, "mm/s")
+    motion = said(step, "mm/s", start or "2025-01-01T10:00:00", offset)
     with TdmsWriter(path) as file:
         file.write_segment(
             [
@@ -138,15 +138,31 @@ def test_channels_with_clocks_of_their_own_are_brought_together(tmp_path):
     is_right(tl.read(file))
     waveforms(file, 0.2, SPEED[::4])
     run = tl.read(file)
-    assert (
-        run.attrs["time_source"] == "sample rate" and "every 4th row" in run.attrs["interpolated"]
-    )
-    np.testing.assert_allclose(run.friction_force / run.normal_force, 0.25, rtol=1e-6)
+    assert run.attrs["time_source"] == "sample rate"
+    assert "sliding_velocity: a value every 0.2 s" in run.attrs["interpolated"]
+    np.testing.assert_allclose(run.friction_force / run.normal_force, 0.25, rtol=1e-12)
     assert set(np.round(1e3 * run.sliding_velocity.values[T[: run.time.size] < 7], 6)) == {2.0}
-    # one that began later is on no common grid, and its group is left out
-    waveforms(file, 0.2, SPEED[::4], start="2025-01-01T10:00:01")
-    with pytest.raises(tl.TribolabError, match="rows are counted as seconds"):
-        tl.read(file)
+
+
+@pytest.mark.parametrize("said", [{"start": "2025-01-01T10:00:03"}, {"offset": 3.0}])
+@pytest.mark.parametrize("step", [0.05, 0.13, 0.004])
+def test_a_channel_that_begins_later_is_read_at_the_times_of_friction(step, said, tmp_path):
+    """Speed is 2 + 0.5 t mm/s, sampled by a clock of its own from 3 s on."""
+    own = 3 + step * np.arange(int(9 / step))
+    waveforms(tmp_path / "run.tdms", step, 2 + 0.5 * own, **said)
+    run = tl.read(tmp_path / "run.tdms")
+    np.testing.assert_allclose(run.friction_force, FRICTION, rtol=1e-12)
+    inside = (T >= own[0]) & (T <= own[-1])
+    speed = 1e3 * run.sliding_velocity.values
+    np.testing.assert_allclose(speed[inside], (2 + 0.5 * T)[inside], rtol=1e-9)
+    assert np.isnan(speed[~inside]).all() and 0 < inside.sum() < T.size
+
+
+def test_channels_of_different_times_are_no_run(tmp_path):
+    waveforms(tmp_path / "run.tdms", 0.05, SPEED, start="2025-01-01T11:00:00")
+    with pytest.raises(tl.TribolabError, match="recorded from 3600 to 3614.95 s") as told:
+        tl.read(tmp_path / "run.tdms")
+    assert "Speed" in str(told.value) and "no signals of one run" in str(told.value)
 
 
 def test_of_signals_that_stand_twice_it_is_asked_which_are_meant(tmp_path):

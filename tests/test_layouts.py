@@ -6,7 +6,7 @@ import pytest
 import tribolab as tl
 from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.errors import ReadError
-from tribolab.io.tables.workbook import sheets_of
+from tribolab.reading.raw.containers.workbook import sheets_of
 
 NAMES, UNITS = ["Time", "Friction force", "Normal force", "Speed"], ["s", "N", "N", "mm/s"]
 

@@ -30,7 +30,7 @@ from tribolab.io.dialects.text_tables import find_tables
 from tribolab.io.dialects.wrapped import numbers_in
 from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.io.scans.results import read_tester_results
-from tribolab.io.tables.mat5 import read_variables
+from tribolab.reading.raw.containers.mat import read_variables
 from tribolab.reading.raw.opening import damage_told
 from tribolab.rubber.modulus import read_modulus
 
@@ -118,13 +118,6 @@ def test_a_file_of_empty_lines_is_empty_in_any_encoding(tmp_path, mark):
 # ---- MAT
 
 
-def test_own_mat_reader_agrees_with_scipy(shared_data):
-    for path in sorted((shared_data / "stickslip_paper_CeCILL-B").glob("*.mat")):
-        theirs = scipy.io.loadmat(path)
-        for name, numbers, *_ in read_variables(path):
-            np.testing.assert_array_equal(numbers, theirs[name], strict=True)
-
-
 @pytest.mark.parametrize("packed", [True, False])
 @pytest.mark.parametrize("kind", ["f8", "f4", "i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8"])
 def test_every_class_of_numbers_comes_back(tmp_path, kind, packed):
@@ -147,7 +140,7 @@ def test_what_is_no_array_of_numbers_is_none(tmp_path):
 
 @pytest.mark.parametrize("seed", range(40))
 def test_a_mat_file_damaged_beneath_its_compression_does_not_crash(shared_data, tmp_path, seed):
-    # such files end scipy's reader, and the program, with a segmentation fault
+    # such files end SciPy's reader, and the process that it runs in, with a segmentation fault
     real = (shared_data / "stickslip_paper_CeCILL-B" / "k168Nm_v4300.mat").read_bytes()
     path = tmp_path / "k168Nm_v4300.mat"
     path.write_bytes(mat_inside(real, np.random.default_rng(seed)))
@@ -167,7 +160,7 @@ def test_sizes_that_a_mat_file_claims_are_held_against_what_is_there(tmp_path):
     packed = zlib.compress(element(14, inner))
     head = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H", 0x0100) + b"IM"
     (tmp_path / "a.mat").write_bytes(head + struct.pack("<II", 15, len(packed)) + packed)
-    with pytest.raises(ReadError, match=r"a\.mat.*'Fnorm' has 1 of 1152921504606846976 numbers"):
+    with pytest.raises(ReadError, match=r"a\.mat: this MAT file cannot be read.*array of size 1"):
         read_variables(tmp_path / "a.mat")
 
 

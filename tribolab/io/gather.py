@@ -127,7 +127,7 @@ def _blank(run: Path, name: str, dialect: Dialect) -> dict[str, np.ndarray]:
     """Return the columns of a blank run, beside the run or a table in it, and what follows."""
     if dialect.tables is not None and name.startswith("table "):
         # late: starting stays quick
-        from tribolab.io.content.held import read_table
+        from tribolab.io.content.containers import read_table
 
         return read_table(peek(run).path, dialect, name.removeprefix("table "))
     path = run.parent / name

@@ -21,6 +21,8 @@ def plain_numbers(layout: Layout) -> np.ndarray | None:
     layout
         From `tribolab.draft.file.layout.find_layout`.
     """
+    if layout.numbers is not None:
+        return layout.numbers.copy()
     if layout.delimiter == "whitespace" or len(layout.delimiter) != 1:
         return None
     names = [str(place) for place in range(layout.width)]

@@ -17,7 +17,7 @@ _TOLD = 4  # other tables that are named
 
 
 class HeldColumn(NamedTuple):
-    """A column: its name (and group) as the reader finds it, its unit, its numbers.
+    """A column: its name as the reader finds it, that within its table, its unit, its numbers.
 
     `said` is whether the reader finds the unit by itself; `shown` is what it is called for whoever
     looks for its meaning, where that is not its name. `unloaded` are its numbers in a table without
@@ -25,22 +25,13 @@ class HeldColumn(NamedTuple):
     """
 
     name: str
+    label: str
     unit: str | None
     values: np.ndarray
-    group: str = ""
+    table: str = ""
     said: bool = True
     shown: str = ""
     unloaded: np.ndarray | None = None
-
-
-def leaf(name: str) -> str:
-    """Return a column's own name, without the folder or structure that it lies in.
-
-    >>> leaf("log/Fx"), leaf("data.force"), leaf("Friction N/mm")
-    ('Fx', 'force', 'mm')
-    """
-    name = name.rsplit("/", 1)[-1]
-    return name.rsplit(".", 1)[-1] if " " not in name else name
 
 
 def better_name(name: str, meaning: str) -> str:
@@ -68,17 +59,13 @@ def one_of_each(columns: Sequence[HeldColumn]) -> list[HeldColumn]:
     left: set[str] = set()
     tables: dict[str, list[str]] = {}
     for column in columns:
-        tables.setdefault(_table(column), []).append(leaf(column.name))
+        tables.setdefault(column.table, []).append(column.label)
     for table, names in tables.items():
         if len(names) > 1 and any(len(set(names) & known) > 1 for known in kept.values()):
             left.add(table)
         else:
             kept[table] = set(names)
-    return [column for column in columns if _table(column) not in left]
-
-
-def _table(column: HeldColumn) -> str:
-    return column.name.removesuffix(leaf(column.name)).rstrip("/.") or column.group
+    return [column for column in columns if column.table not in left]
 
 
 def others_alike(chosen: Sequence[HeldColumn], every: Sequence[HeldColumn]) -> str:
@@ -91,11 +78,10 @@ def others_alike(chosen: Sequence[HeldColumn], every: Sequence[HeldColumn]) -> s
     every
         All columns of the file.
     """
-    names = {leaf(column.name) for column in chosen}
+    names = {column.label for column in chosen}
     alike: dict[str, int] = {}
     for column in every:
-        if not any(column is c for c in chosen) and leaf(column.name) in names:
-            table = _table(column)
-            alike[table] = alike.get(table, 0) + 1
+        if not any(column is c for c in chosen) and column.label in names:
+            alike[column.table] = alike.get(column.table, 0) + 1
     tables = [f"'{shown(table, 30)}'" for table, count in alike.items() if table and count > 1]
     return ", ".join(tables[:_TOLD])

@@ -9,6 +9,8 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from tribolab.draft.file.arrangement import arranged, arranged_table, from_json, from_records
 from tribolab.draft.file.blocks import find_blocks, main_blocks
 from tribolab.draft.file.header import Heading
@@ -54,9 +56,9 @@ class Held(NamedTuple):
     """Where columns are in a file that names them: its format, and of a workbook the sheet.
 
     `increment` is the time [s] from row to row where the file has a clock and no column of it;
-    `others` names tables besides the chosen one that have columns of the same names, `text` is
-    what stands beside the table: other cells, attributes. `steps` is the pattern of the names of
-    tables that are steps, `zero` where a zero is read, as a dialect says both.
+    `others` names tables besides the chosen one that have columns of the same names. `steps` is
+    the pattern of the names of tables that are steps, `zero` where a zero is read, as a dialect
+    says both.
     """
 
     form: str
@@ -65,13 +67,16 @@ class Held(NamedTuple):
     units_below: bool = False
     increment: float = 0.0
     others: str = ""
-    text: str = ""
     steps: str = ""
     zero: str = ""
 
 
 class Layout(NamedTuple):
-    """How a file is written, and the lines of its main table (or of its repeated tables)."""
+    """How a file is written, and the lines of its main table (or of its repeated tables).
+
+    `numbers` are those of the rows (rows, columns) where the file holds them as numbers: `lines`
+    are then what it says above them.
+    """
 
     file: File
     encoding: str
@@ -99,6 +104,7 @@ class Layout(NamedTuple):
     wrapped: bool = False
     arrangement: Arrangement = "below names"
     foot: tuple[str, ...] = ()
+    numbers: np.ndarray | None = None
 
     @property
     def delimiter_name(self) -> str:
@@ -130,9 +136,16 @@ class Layout(NamedTuple):
         rows = self.lines[heading.names + 1 : heading.units + 1]
         return sum(1 for line in rows if line.strip())
 
-    def rows(self) -> list[str]:
-        """Lines of numbers of all blocks, their cells in the order of the first."""
-        return [line for block in self.blocks for line in self._in_order(block)]
+    @property
+    def row_count(self) -> int:
+        """How many rows of numbers were looked at."""
+        return sum(len(block.rows) for block in self.blocks)
+
+    def rows(self, most: int | None = None) -> list[str]:
+        """Lines of numbers of all blocks, their cells in the order of the first; the first ones."""
+        if self.numbers is not None:
+            return ["\t".join(f"{x:.9g}" for x in row) for row in self.numbers[:most]]
+        return [line for block in self.blocks for line in self._in_order(block)][:most]
 
     def _in_order(self, block: Block) -> list[str]:
         lines = [self.lines[index] for index in block.rows]

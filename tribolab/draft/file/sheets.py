@@ -6,14 +6,10 @@ import datetime as dt
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-
-from tribolab.draft.file.held_column import ROWS, HeldColumn
+from tribolab.draft.file.held_column import ROWS
 from tribolab.draft.file.layout import Held
 from tribolab.errors import ReadError, shown
-from tribolab.io.dialects.cells import split_name
-from tribolab.io.tables import columnar
-from tribolab.io.tables.workbook import sheets_of
+from tribolab.reading.raw.containers.workbook import sheets_of
 
 _ABOVE = 40  # rows of a sheet above its names
 _MOMENTS = (dt.datetime, dt.time, dt.timedelta)
@@ -43,34 +39,6 @@ def main_sheet(path: Path) -> tuple[Held, set[str]]:
     _, held, names = max(tables, key=lambda table: table[0])
     alike = [t[1].sheet for t in tables if t[1] is not held and len(t[2] & names) > 1]
     return held._replace(others=", ".join(f"'{shown(sheet, 30)}'" for sheet in alike[:4])), names
-
-
-def read_sheet(path: Path) -> tuple[Held, list[HeldColumn]]:
-    """Return the columns of the sheet that holds most rows of numbers below names.
-
-    Parameters
-    ----------
-    path
-        The workbook.
-
-    Raises
-    ------
-    ReadError
-        If no sheet holds such rows.
-    """
-    held, _ = main_sheet(path)
-    layout = columnar.ColumnLayout(held.sheet, held.line, held.units_below)
-    table = columnar.open_columns(path, "excel", layout)
-    columns = []
-    for place, (label, unit) in enumerate(zip(table.names, table.units, strict=True)):
-        name, own = split_name(label)
-        try:
-            values = table.column(place)
-        except ReadError:  # a column of words
-            values = np.empty(0)
-        if label:
-            columns.append(HeldColumn(name, unit or own, values))
-    return held._replace(text=table.text), columns
 
 
 def _names_row(rows: Sequence[Sequence[object]]) -> int | None:

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.io.dialects.held_tables import HeldFile, HeldTable
 from tribolab.reading.interpret.patterns import escaped
 from tribolab.reading.interpret.unit_texts import is_unit
+from tribolab.reading.raw.model import RawColumn, RawFile, RawTable
 
 _SHARED = 0.8  # of the columns of the largest table, those that another step has, too
 _ALIKE = 2  # columns, at least
@@ -39,15 +39,11 @@ _WORKED_ON = re.compile(
 
 
 class HeldSteps(NamedTuple):
-    """Tables that are steps, with the same columns; the pattern of their names; unloaded tables.
+    """Tables that are steps, with the same columns; the pattern of their names; unloaded tables."""
 
-    `text` is what the file says of all of them.
-    """
-
-    steps: tuple[HeldTable, ...]
+    steps: tuple[RawTable, ...]
     pattern: str
-    zeros: tuple[HeldTable, ...]
-    text: str
+    zeros: tuple[RawTable, ...]
 
     @property
     def zero(self) -> str:
@@ -58,11 +54,11 @@ class HeldSteps(NamedTuple):
             return f"table {before[-1]} to table {after[0]}"
         return "".join(f"table {name}" for name in [*before[-1:], *after[:1]][:1])
 
-    def _is_after(self, table: HeldTable) -> bool:
+    def _is_after(self, table: RawTable) -> bool:
         return _AFTER.search(table.name) is not None
 
 
-def find_steps(file: HeldFile) -> HeldSteps | None:
+def find_steps(file: RawFile) -> HeldSteps | None:
     """Find tables that are steps of one run; None if no two tables have the same columns.
 
     One table beside which another of the same columns is named as what was recorded without
@@ -71,24 +67,25 @@ def find_steps(file: HeldFile) -> HeldSteps | None:
     Parameters
     ----------
     file
-        From `tribolab.io.dialects.held_tables`.
+        Its columns are labelled without their units.
     """
     tables = [_of_signals(table) for table in file.tables]
-    tables = [table for table in tables if len(table.names) >= _ALIKE and table.rows > 1]
+    tables = [table for table in tables if len(table.columns) >= _ALIKE and table.rows > 1]
     zeros = [table for table in tables if _ZERO.search(_own(table.name))]
     others = [table for table in tables if table not in zeros]
     if not others or len(tables) < 2:
         return None
-    largest = max(others, key=lambda table: table.rows * len(table.names))
-    needed = max(_ALIKE, _SHARED * len(largest.names))
-    steps = [t for t in others if len(set(t.names) & set(largest.names)) >= needed]
-    zeros = [t for t in zeros if set(t.names) & set(largest.names)]
+    largest = max(others, key=lambda table: table.rows * len(table.columns))
+    names = list(_by_label(largest))
+    needed = max(_ALIKE, _SHARED * len(names))
+    steps = [t for t in others if len(_by_label(t).keys() & set(names)) >= needed]
+    zeros = [t for t in zeros if _by_label(t).keys() & set(names)]
     if len(steps) + len(zeros) < 2 or _are_copies(steps):
         return None
-    common = [n for n in largest.names if all(n in table.names for table in steps)]
+    common = [n for n in names if all(n in _by_label(table) for table in steps)]
     left = [table.name for table in file.tables if table.name not in {t.name for t in steps}]
     pattern = _pattern([table.name for table in steps], left)
-    return HeldSteps(tuple(_with(t, common) for t in steps), pattern, tuple(zeros), file.text)
+    return HeldSteps(tuple(_with(t, common) for t in steps), pattern, tuple(zeros))
 
 
 def unit_beside(text: str, name: str, *, counted: bool = False) -> str | None:
@@ -126,59 +123,43 @@ def unit_beside(text: str, name: str, *, counted: bool = False) -> str | None:
     return f"{match[1]} {match[2]}" if counted else None
 
 
-def lines_of(found: HeldSteps, labels: Sequence[str], most: int) -> str:
-    """Lay steps out as text: each below its settings and the same line of names.
-
-    Parameters
-    ----------
-    found
-        From `find_steps`.
-    labels
-        Names of the columns with their units.
-    most
-        Rows of a step that are written.
-    """
-    parts = [found.text]
-    for table in found.steps:
-        columns = [np.asarray(values[:most], dtype=float) for values in table.arrays]
-        rows = ("\t".join(f"{x:.17g}" for x in row) for row in zip(*columns, strict=True))
-        parts.append("\n".join(filter(None, [table.text, "\t".join(labels), *rows])) + "\n")
-    return "\n".join(filter(None, parts))
-
-
 def _own(name: str) -> str:
     """Return a table's own name, without the folders that it lies in."""
     return name.rsplit("/", 1)[-1].rsplit(".", 1)[-1]
 
 
-def _of_signals(table: HeldTable) -> HeldTable:
+def _by_label(table: RawTable) -> dict[str, RawColumn]:
+    """Return the columns by their labels; of several with one label the first."""
+    found: dict[str, RawColumn] = {}
+    for column in table.columns:
+        found.setdefault(column.label, column)
+    return found
+
+
+def _of_signals(table: RawTable) -> RawTable:
     """Return a table with those of its columns that hold numbers and are as long as the longest."""
-    numbers = [n for n, v in zip(table.names, table.arrays, strict=True) if v.dtype.kind in "fiuMm"]
-    places = [table.names.index(name) for name in dict.fromkeys(numbers)]
-    longest = max((table.arrays[place].size for place in places), default=0)
-    return _with(table, [table.names[p] for p in places if table.arrays[p].size == longest])
+    numbers = (column for column in table.columns if column.values.dtype.kind in "fiuMm")
+    once = _by_label(table._replace(columns=tuple(numbers))).values()
+    longest = max((column.values.size for column in once), default=0)
+    return table._replace(columns=tuple(c for c in once if c.values.size == longest))
 
 
-def _with(table: HeldTable, names: Sequence[str]) -> HeldTable:
+def _with(table: RawTable, labels: Sequence[str]) -> RawTable:
     """Return a table with some of its columns, in an order of their own."""
-    places = [table.names.index(name) for name in names]
-    return table._replace(
-        names=tuple(names),
-        units=tuple(table.units[place] for place in places),
-        arrays=tuple(table.arrays[place] for place in places),
-        meanings=tuple(table.meanings[place] for place in places) if table.meanings else (),
-    )
+    columns = _by_label(table)
+    return table._replace(columns=tuple(columns[label] for label in labels))
 
 
-def _are_copies(steps: Sequence[HeldTable]) -> bool:
+def _are_copies(steps: Sequence[RawTable]) -> bool:
     """Whether tables hold the same signals twice, as raw and filtered ones, or at the same time."""
     if sum(_WORKED_ON.search(_own(table.name)) is not None for table in steps) > len(steps) / 3:
         return True
     for one, other in zip(steps, steps[1:], strict=False):
-        for name, values in zip(one.names, one.arrays, strict=True):
-            if name not in other.names:
+        columns = _by_label(other)
+        for name, values in ((column.label, column.values) for column in one.columns):
+            if name not in columns:
                 continue
-            again = other.arrays[other.names.index(name)]
+            again = columns[name].values
             if values.dtype.kind == "M" and again.dtype.kind == "M":
                 if values[0] < again[-1] and again[0] < values[-1]:
                     return True  # beside each other

@@ -379,4 +379,4 @@ def _timed(bare: list[Bare], run: list[list[Match]], numbers: np.ndarray) -> lis
 
 def first_cells_of(layout: Layout, number: int) -> list[list[str]]:
     """Cells of the first rows as they stand in the file."""
-    return [split_row(line, layout.delimiter) for line in layout.rows()[:number]]
+    return [split_row(line, layout.delimiter) for line in layout.rows(number)]

@@ -101,7 +101,7 @@ def find_profile_length(layout: Layout) -> Amount | None:
     lengths = [v for v in values if PROFILE_LENGTH.search(v.key) and _is_length(v)]
     if len(lengths) != 1:
         return None
-    points = len(layout.rows())
+    points = layout.row_count
     counts = [v.number for v in values if v.unit is None and POINTS.search(v.key)]
     said = lengths[0]._replace(name="profile_length", to="m")
     if any(abs(count - points) <= 1 for count in counts):
@@ -206,10 +206,10 @@ def _between_ends(layout: Layout) -> str:
     counts = {v.number for v in values if v.own_unit is None and _COUNT.search(v.key)}
     ends = [[metres(v) for v in values if _is_length(v) and e.search(v.key)] for e in _ENDS]
     if any(len(stated) != 1 for stated in ends) or not any(
-        abs(count - len(layout.rows())) < 1 for count in counts
+        abs(count - layout.row_count) < 1 for count in counts
     ):
         return ""
-    apart = (ends[1][0] - ends[0][0]) / (len(layout.rows()) - 1)
+    apart = (ends[1][0] - ends[0][0]) / (layout.row_count - 1)
     return f"{1e6 * apart:.12g} um" if apart > 0 else ""
 
 

@@ -55,26 +55,11 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
             f"{dialect.format}"
         )
     dialect = as_written(file, dialect)
-    if dialect.tables is not None:
+    if dialect.format != "text":
         # late: starting stays quick
-        from tribolab.io.content.held import read_steps
+        from tribolab.io.content.containers import read_columns
 
-        content = read_steps(file.path, dialect)
-    elif dialect.format == "mat":
-        # late: starting stays quick
-        from tribolab.io.content.mat import read_mat
-
-        content = read_mat(file.path, dialect)
-    elif dialect.format == "tdms":
-        # late: starting stays quick
-        from tribolab.io.content.tdms import read_tdms
-
-        content = read_tdms(file.path, dialect)
-    elif dialect.format != "text":
-        # late: starting stays quick
-        from tribolab.io.content.columnar import read_columnar
-
-        content = read_columnar(file.path, dialect)
+        content = read_columns(file.path, dialect)
     else:
         content = _read_text(file, dialect, size)
     if file.path != path:  # it was compressed

@@ -41,17 +41,17 @@ def mismatch(file: File, dialect: Dialect) -> str | None:
         return "its name does not fit"
     if dialect.format == "mat" and dialect.tables is None:
         # late: starting stays quick
-        from tribolab.io.tables.mat5 import variable_names
+        from tribolab.reading.raw.containers.mat import variable_names
 
         return _names_missing(rules, variable_names(file.path))
     if dialect.format == "tdms" and dialect.tables is None:
         # late: starting stays quick
-        from tribolab.io.tables.tdms_file import channel_names
+        from tribolab.reading.raw.containers.tdms import channel_names
 
         return _names_missing(rules, channel_names(file.path))
     if dialect.format != "text":
         # late: starting stays quick
-        from tribolab.io.dialects.columnar import column_names
+        from tribolab.io.dialects.containers import column_names
 
         return _names_missing(rules, column_names(file.path, dialect))
     return _text_mismatch(file, dialect)

@@ -12,8 +12,8 @@ from tribolab.errors import ReadError
 from tribolab.io.dialects.arranged import holds_names
 from tribolab.io.dialects.declared_records import declares_records
 from tribolab.io.patterns import why_missing
-from tribolab.io.tables.xml_workbook import is_xml_workbook
 from tribolab.reading import cures
+from tribolab.reading.raw.containers.xml_workbook import is_xml_workbook
 from tribolab.reading.raw.hdf5_safety import refuse_outside
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.raw.unpacked import ZIP, holds_arrays, is_workbook, unpacked

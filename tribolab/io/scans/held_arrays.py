@@ -10,7 +10,7 @@ import numpy as np
 
 from tribolab.errors import ReadError, brief
 from tribolab.io.scans.safety import DAMAGE, refuse_bomb
-from tribolab.io.tables.mat5 import read_variables
+from tribolab.reading.raw.containers.mat import read_variables
 from tribolab.reading.raw.hdf5_safety import check_self_contained
 from tribolab.reading.raw.opening import isolated
 from tribolab.untyped import Json
@@ -101,7 +101,7 @@ def _of_numpy(path: Path) -> HeldArrays:
 
 def _of_mat(path: Path) -> HeldArrays:
     variables = read_variables(path)
-    held = HeldArrays([], {v.name: v.text[:_LONGEST] for v in variables if v.text})
+    held = HeldArrays([], {v.name: v.texts[0][:_LONGEST] for v in variables if v.texts})
     for variable in variables:
         if variable.numbers is not None:
             numbers = variable.numbers

@@ -18,7 +18,7 @@ from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.matrix import GRAMMARS, cells_of, texts_of, value_of
 from tribolab.io.scans.matrix_header import UNIT, header_of
 from tribolab.io.scans.named_units import unsaid
-from tribolab.io.tables.workbook import sheets_of
+from tribolab.reading.raw.containers.workbook import sheets_of
 from tribolab.reading.raw.missing_marks import measurable, take_marks
 from tribolab.reading.raw.unpacked import ZIP, is_workbook
 from tribolab.units import conversion

@@ -148,7 +148,7 @@ def _steps(block: bytes) -> np.ndarray:
 def _arrays_only(path: Path) -> None:
     """Read the MAT file with our own reader first: it holds every size against the file's."""
     # late: starting stays quick
-    from tribolab.io.tables.mat5 import read_variables
+    from tribolab.reading.raw.containers.mat import read_variables
 
     if any(variable.numbers is None for variable in read_variables(path)):
         raise ReadError(

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import datetime as dt
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from tribolab.errors import ReadError, shown
-from tribolab.io.tables.xml_workbook import XmlWorkbook, is_xml_workbook
+from tribolab.reading.raw.containers.xml_workbook import XmlWorkbook, is_xml_workbook
+from tribolab.reading.raw.model import Place, RawColumn, RawFile, RawTable, Setting
 from tribolab.reading.raw.opening import damage_told, isolated
 
 _MOST_CELLS = 50_000_000  # of a sheet
@@ -18,16 +20,9 @@ _MOST_ROWS, _MOST_WIDE = 100, 12  # of settings that stand in cells
 _HEAD = 4096  # bytes that tell a workbook in XML
 _SUMMARY = 30  # rows of it, below a table
 _SHORT = 200  # characters of a setting
+_ABOVE = 40  # rows of a sheet above its names
+_UNIT_BEHIND = re.compile(r"\s*[\[(][^\[\]()]*[\])]$")
 Cells = Sequence[Sequence[object]]
-
-
-class SheetColumns(NamedTuple):
-    """Names and units of a table's columns, what gives their numbers, and the text beside it."""
-
-    names: list[str]
-    units: list[str | None]
-    column: Callable[[int], np.ndarray]
-    text: str
 
 
 @isolated("python_calamine")
@@ -89,7 +84,7 @@ def _book(path: Path) -> Any:
 
 def read_sheet(
     path: Path, sheet: str | None, line: int, skip: int = 0, *, units_below: bool = False
-) -> SheetColumns:
+) -> RawFile:
     """Read the table of one sheet.
 
     Parameters
@@ -109,30 +104,62 @@ def read_sheet(
         If there is no such sheet, or it ends before the table.
     """
     sheet, rows, few = _sheet_and_settings(path, sheet)
-    table = table_below(path, sheet, rows, line, skip, units_below=units_below)
-    text = [table.text, *map(settings_above, few)]
-    return table._replace(text="\n".join(filter(None, text)))
+    table = _table_below(path, sheet, rows, line, skip, units_below=units_below)
+    others = [setting for page in few for setting in _settings_above(page)]
+    return RawFile(path, "excel", (table._replace(name=""),), (*table.settings, *others))
 
 
-def table_below(
-    path: Path, sheet: str, rows: Cells, line: int, skip: int = 0, *, units_below: bool = False
-) -> SheetColumns:
-    """Return the table below a row of names, and what stands above that.
+def read_sheets(
+    path: Path, wanted: Sequence[str], line: int, *, units_below: bool = False
+) -> RawFile:
+    """Read the sheets of a workbook that hold the same table; others hold settings of all.
 
     Parameters
     ----------
-    path, sheet
-        For messages.
-    rows
-        Cells of the sheet.
-    line, skip, units_below
-        As for `read_sheet`.
+    path
+        The workbook.
+    wanted
+        Names of columns, without units: a sheet that has none of them is no table.
+    line, units_below
+        As for `read_sheet`; if the names are in another row of a sheet, they are found there.
 
     Raises
     ------
     ReadError
-        If the sheet ends before the table.
+        If the workbook cannot be read.
     """
+    tables: list[RawTable] = []
+    others: list[Setting] = []
+    for sheet, rows in sheets_of(path).items():
+        place = _row_of_names(rows, set(wanted), line)
+        if place is not None:
+            table = _table_below(path, sheet, rows, place, units_below=units_below)
+            columns = tuple(c for c in table.columns if c.label and c.values.dtype.kind != "U")
+            title = Setting("", sheet, Place(sheet), "title")
+            settings = (title, *table.settings)
+            tables.append(table._replace(columns=columns, settings=settings))
+        elif len(rows) <= _MOST_ROWS:
+            others += _settings_above(rows)
+    return RawFile(path, "excel", tuple(tables), tuple(others))
+
+
+def _row_of_names(rows: Cells, wanted: set[str], line: int) -> int | None:
+    """Return the row, from 1, with most of the wanted names; None if no row has any."""
+
+    def count(row: Sequence[object]) -> int:
+        texts = (cell.strip() for cell in row if isinstance(cell, str))
+        return len(wanted & {_UNIT_BEHIND.sub("", text) for text in texts})
+
+    places = [line - 1, *range(min(len(rows), _ABOVE))]
+    counts = {place: count(rows[place]) for place in places if place < len(rows) - 1}
+    best = max(counts, key=lambda place: counts[place], default=0)
+    return best + 1 if counts.get(best, 0) >= min(2, len(wanted)) else None
+
+
+def _table_below(
+    path: Path, sheet: str, rows: Cells, line: int, skip: int = 0, *, units_below: bool = False
+) -> RawTable:
+    """Return the table below a row of names, with the settings above that."""
     if len(rows) <= line:
         raise ReadError(f"sheet '{shown(sheet)}' ends before row {line + 1}", where=path)
     names = [str(cell) for cell in rows[line - 1]]
@@ -143,15 +170,14 @@ def table_below(
         units += [None] * (len(names) - len(units))
         first += 1
     body = _without_summary(rows[first:])
-
-    def column(place: int) -> np.ndarray:
+    columns = []
+    for place, (name, unit) in enumerate(zip(names, units, strict=False)):
         cells = [row[place] if place < len(row) else "" for row in body]
         # an empty row ends the table
         filled = [n for n, cell in enumerate(cells) if cell != ""]
-        return of_cells(path, cells[: filled[-1] + 1 if filled else 0])
-
-    above = settings_above(rows[: line - 1][:_MOST_ROWS])
-    return SheetColumns(names, units[: len(names)], column, above)
+        values = of_cells(cells[: filled[-1] + 1 if filled else 0])
+        columns.append(RawColumn(name, unit, values, path=name))
+    return RawTable(sheet, tuple(columns), tuple(_settings_above(rows[: line - 1][:_MOST_ROWS])))
 
 
 def _without_summary(body: Cells) -> Cells:
@@ -176,25 +202,33 @@ def is_small(page: object) -> bool:
     return bool(height <= _MOST_ROWS and width <= _MOST_WIDE)
 
 
-def settings_above(rows: Sequence[Sequence[object]]) -> str:
-    """Return rows of cells as lines, such as a text file has above its table."""
-    lines = []
-    for row in rows:
+def _settings_above(rows: Cells) -> list[Setting]:
+    """Return rows of cells that hold words as settings."""
+    settings = []
+    for line, row in enumerate(rows, start=1):
         cells = [" ".join(str(cell).split()) for cell in row[:_MOST_WIDE] if cell not in ("", None)]
         if cells and any(map(str.isalpha, "".join(cells))):
-            lines.append("\t".join(cells)[:_SHORT])
-    return "\n".join(lines)
+            text = "\t".join(cells)[:_SHORT]
+            settings.append(Setting("", text, Place(line=line), "cells"))
+    return settings
 
 
-def of_cells(path: Path, cells: Sequence[object]) -> np.ndarray:
-    """Return the numbers of a sheet's column, or its moments or times of day."""
+def of_cells(cells: Sequence[object]) -> np.ndarray:
+    """Return the numbers of a sheet's column, its moments or times of day, or a word in it.
+
+    >>> of_cells(["0,5", "", 2]).tolist(), of_cells([1.0, "error"]).tolist()
+    ([0.5, nan, 2.0], ['error'])
+    """
     first = next((cell for cell in cells if cell != ""), None)
     if isinstance(first, dt.datetime):
         moments = [c if isinstance(c, dt.datetime) else None for c in cells]
         return np.array(moments, dtype="datetime64[us]")
     if isinstance(first, dt.time | dt.timedelta):
         return np.array([_passed(cell) for cell in cells], dtype="timedelta64[us]")
-    return np.array([_cell(path, cell) for cell in cells])
+    try:
+        return np.array([_number(cell) for cell in cells], dtype=float)
+    except ValueError:
+        return np.array([next(str(cell) for cell in cells if not _is_number(cell))])
 
 
 def _passed(cell: object) -> dt.timedelta | None:
@@ -203,13 +237,16 @@ def _passed(cell: object) -> dt.timedelta | None:
     return cell if isinstance(cell, dt.timedelta) else None
 
 
-def _cell(path: Path, cell: object) -> float:
+def _number(cell: object) -> float:
     if isinstance(cell, int | float):
         return float(cell)
     text = str(cell).strip()
-    if not text:
-        return np.nan
+    return float(text.replace(",", ".")) if text else np.nan
+
+
+def _is_number(cell: object) -> bool:
     try:
-        return float(text.replace(",", "."))
-    except ValueError as error:
-        raise ReadError(f"'{shown(text, 40)}' is not a number", where=path) from error
+        _number(cell)
+    except ValueError:
+        return False
+    return True

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from tribolab.io.tables.settings_text import plain, setting_lines
 from tribolab.reading.lexicon.lexicon import keys_of
+from tribolab.reading.raw.containers.groups import Groups
+from tribolab.reading.raw.containers.settings import plain, settings_of
 from tribolab.reading.raw.hdf5_safety import check_self_contained
+from tribolab.reading.raw.model import RawColumn, RawFile
 from tribolab.reading.raw.opening import damage_told, isolated
 
 _OF_HDF5 = {
@@ -30,18 +32,8 @@ _MEANINGS = ("long_name", "description", "standard_name", "label", "title")
 _MOST_ELEMENTS = 500  # of a structure array
 
 
-class Hdf5Columns(NamedTuple):
-    """Columns by their paths, units and meanings where attributes say them; settings by group."""
-
-    names: list[str]
-    units: list[str | None]
-    arrays: list[np.ndarray]
-    meanings: list[str]
-    said: dict[str, list[str]]
-
-
 @isolated("h5py")
-def read_hdf5(path: Path) -> Hdf5Columns:
+def read_hdf5(path: Path) -> RawFile:
     """Read the columns of an HDF5 file and what its attributes and single values say.
 
     Parameters
@@ -63,7 +55,7 @@ def read_hdf5(path: Path) -> Hdf5Columns:
         with h5py.File(path, "r") as file:
             found.tell("", file)
             file.visititems(found.visit)
-    return found.columns
+    return found.groups.as_file(path, "hdf5", sort=True)
 
 
 class _Found:
@@ -71,7 +63,7 @@ class _Found:
 
     def __init__(self, h5py: Any) -> None:
         self._h5py = h5py
-        self.columns = Hdf5Columns([], [], [], [], {})
+        self.groups = Groups()
 
     def visit(self, name: str, item: Any) -> None:
         if name.startswith(_OF_LIBRARY):
@@ -86,19 +78,20 @@ class _Found:
             own = _each_its_own(units, len(item.dtype.names))
             for place, field in enumerate(item.dtype.names):
                 unit = own[place] or _of_field(item, place)
-                self._take(f"{name}/{field}", item[field], unit)
+                self._take(name, str(field), item[field], unit)
         elif labels:
             matrix = item[()]
             for place, label in enumerate(labels):
                 own = _each_its_own(units, len(labels))
-                self._take(f"{name}/{label}", matrix[:, place], own[place])
+                self._take(name, label, matrix[:, place], own[place])
         elif item.dtype.kind == "O" and self._h5py.check_dtype(ref=item.dtype):
             self._elements(name, item)
         elif _is_char(item):
             return
         elif item.dtype.kind in "fiu" and item.size == max(item.shape, default=0):
             unit = units if isinstance(units, str) else None
-            self._take(name, item[()], unit, meaning if isinstance(meaning, str) else "")
+            group, _, label = name.rpartition("/")
+            self._take(group, label, item[()], unit, meaning if isinstance(meaning, str) else "")
 
     def tell(self, name: str, item: Any) -> None:
         """Keep what attributes and single values say, by the group that they stand in."""
@@ -120,18 +113,17 @@ class _Found:
             self._say(group, own, _matlab_text(item))
 
     def _say(self, group: str, key: str, value: object) -> None:
-        self.columns.said.setdefault(group, []).extend(setting_lines(key, value))
+        self.groups.add_settings(group, settings_of(key, value, group))
 
-    def _take(self, name: str, values: np.ndarray, unit: object, meaning: str = "") -> None:
-        if values.dtype.kind not in "fiu" or values.size == 0:
-            return
-        if values.size != max(values.shape, default=0):
+    def _take(
+        self, group: str, label: str, values: np.ndarray, unit: object, meaning: str = ""
+    ) -> None:
+        single = values.dtype.kind not in "fiu" or values.size < 2
+        if single or values.size != max(values.shape):
             return  # not one column
-        names, units, arrays, meanings, _ = self.columns
-        names.append(name)
-        units.append(str(unit) if unit is not None else None)
-        arrays.append(values.ravel())
-        meanings.append(meaning)
+        said = str(unit) if unit is not None else None
+        path = f"{group}/{label}" if group else label
+        self.groups.add_column(group, RawColumn(label, said, values.ravel(), meaning, path))
 
     def _elements(self, name: str, item: Any) -> None:
         """Take a field of a structure array: each element's value lies elsewhere."""
@@ -146,7 +138,7 @@ class _Found:
             elif target.dtype.kind in "fiu" and target.size == 1:
                 self._say(element, field, plain(target[()]))
             elif target.dtype.kind in "fiu" and target.size:
-                self._take(f"{element}/{field}", target[()], None)
+                self._take(element, field, target[()], None)
 
 
 def _is_char(item: Any) -> bool:

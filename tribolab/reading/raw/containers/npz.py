@@ -9,12 +9,13 @@ from __future__ import annotations
 import re
 import zipfile
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
 from tribolab.errors import ReadError, shown
-from tribolab.io.tables.settings_text import plain, setting_lines
+from tribolab.reading.raw.containers.groups import Groups
+from tribolab.reading.raw.containers.settings import plain, settings_of
+from tribolab.reading.raw.model import RawColumn, RawFile, Setting
 from tribolab.reading.raw.opening import isolated, largest_unpacked
 
 _NAMES = re.compile(r"(?:columns?|names?|labels?|channels?|fields?|headers?|keys)$", re.IGNORECASE)
@@ -23,15 +24,11 @@ _STEP = re.compile(  # step2_force, force_s03, run1/load
 )
 
 
-class NpzColumns(NamedTuple):
-    """Columns as (table, name, numbers), and lines of settings by table."""
-
-    columns: list[tuple[str, str, np.ndarray]]
-    said: dict[str, list[str]]
+_Columns = list[tuple[str, str, np.ndarray]]  # table, name, numbers
 
 
 @isolated()
-def read_npz(path: Path) -> NpzColumns:
+def read_npz(path: Path) -> RawFile:
     """Read the arrays of an archive.
 
     Parameters
@@ -54,27 +51,34 @@ def read_npz(path: Path) -> NpzColumns:
     except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile) as error:
         what = f"this archive of arrays cannot be read: {shown(str(error), 120)}"
         raise ReadError(what, where=path) from error
-    said: dict[str, list[str]] = {}
-    columns = _columns_of(arrays, said)
+    columns, settings = _columns_of(arrays)
     tables = {table for table, _, _ in columns}
-    numbered = {name: _STEP.fullmatch(name) for table, name, _ in columns if not table}
-    steps = [match[match.lastgroup or 0] for match in numbered.values() if match is not None]
-    if tables == {""} and len(set(steps)) > 1 and len(steps) == len(columns):
-        return _by_steps(columns, numbered, said)
-    return NpzColumns(columns, said)
+    numbered = [_STEP.fullmatch(name) for table, name, _ in columns if not table]
+    parts = [match for match in numbered if match is not None]
+    steps = {match[match.lastgroup or 0] for match in parts}
+    if tables == {""} and len(steps) > 1 and len(parts) == len(columns):
+        columns = [
+            (match["table"] or match["last"], match["name"] or match["own"].rstrip("_"), values)
+            for match, (_, _, values) in zip(parts, columns, strict=True)
+        ]
+    groups = Groups()
+    groups.add_settings("", settings)
+    for table, name, values in columns:
+        place = f"{table}/{name}" if table else name
+        groups.add_column(table, RawColumn(name, None, values, path=place))
+    return groups.as_file(path, "npz")
 
 
-def _columns_of(
-    arrays: dict[str, np.ndarray], said: dict[str, list[str]]
-) -> list[tuple[str, str, np.ndarray]]:
-    columns: list[tuple[str, str, np.ndarray]] = []
+def _columns_of(arrays: dict[str, np.ndarray]) -> tuple[_Columns, list[Setting]]:
+    columns: _Columns = []
+    settings: list[Setting] = []
     names = [_texts(a) for key, a in arrays.items() if a.dtype.kind in "US" and _NAMES.search(key)]
     pairs: list[tuple[str, np.ndarray]] = []
     for key, array in arrays.items():
         if array.dtype.names:
             columns += [(key, field, array[field].ravel()) for field in array.dtype.names]
         elif array.size == 1 or array.dtype.kind in "US":
-            said.setdefault("", []).extend(setting_lines(key, plain(array)))
+            settings += settings_of(key, plain(array), key)
         elif array.dtype.kind not in "fiubMm":
             continue
         elif array.ndim == 1 or array.size == max(array.shape, default=0):
@@ -86,10 +90,10 @@ def _columns_of(
                 columns += [("", name, table[:, place]) for place, name in enumerate(own)]
             elif table.shape[1] == 2 and (np.diff(table[:, 0]) > 0).all():
                 pairs.append((key, table))
-    return columns + _on_one_clock(pairs)
+    return columns + _on_one_clock(pairs), settings
 
 
-def _on_one_clock(pairs: list[tuple[str, np.ndarray]]) -> list[tuple[str, str, np.ndarray]]:
+def _on_one_clock(pairs: list[tuple[str, np.ndarray]]) -> _Columns:
     """Return signals with times of their own at those of the longest, of slower ones between."""
     if not pairs:
         return []
@@ -99,21 +103,6 @@ def _on_one_clock(pairs: list[tuple[str, np.ndarray]]) -> list[tuple[str, str, n
         values = np.interp(clock, table[:, 0], table[:, 1], left=np.nan, right=np.nan)
         columns.append(("", key, values))
     return columns
-
-
-def _by_steps(
-    columns: list[tuple[str, str, np.ndarray]],
-    numbered: dict[str, re.Match[str] | None],
-    said: dict[str, list[str]],
-) -> NpzColumns:
-    parted = []
-    for _, name, values in columns:
-        match = numbered[name]
-        assert match is not None  # whoever parts them has looked
-        parted.append(
-            (match["table"] or match["last"], match["name"] or match["own"].rstrip("_"), values)
-        )
-    return NpzColumns(parted, said)
 
 
 def _texts(array: np.ndarray) -> list[str]:

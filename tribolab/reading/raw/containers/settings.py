@@ -1,21 +1,16 @@
-"""Settings that a file holds beside its columns, as the lines that a text file has above its table.
-
-Attributes, properties, metadata and single numbers all become ``key: value``, so that whoever
-reads the text above a table reads them, too.
-"""
+"""Settings of containers: attributes, properties, metadata and single numbers, typed."""
 
 from __future__ import annotations
 
 import json
 import re
 from collections.abc import Mapping
-from pathlib import PurePath
 
 import numpy as np
 
 from tribolab.reading.lexicon.lexicon import keys_of
+from tribolab.reading.raw.model import Place, Setting
 
-MOST_LINES = 200
 _SHORT = 200  # characters of a setting
 _DEEPEST = 6  # objects within objects
 _PER = re.compile(  # fric_N_per_V, v_set_um_per_s
@@ -33,16 +28,25 @@ def plain(value: object) -> object:
     return value
 
 
-def setting_lines(key: str, value: object, depth: int = 0) -> list[str]:
-    r"""Return the lines that say a setting; of an object, or its JSON, one for each that it holds.
+def settings_of(key: str, value: object, path: str = "", depth: int = 0) -> list[Setting]:
+    r"""Return what an attribute says; of an object, or its JSON, each value that it holds.
+
+    Parameters
+    ----------
+    key, value
+        Of the attribute.
+    path
+        Of the group or dataset that it belongs to.
+    depth
+        How many objects lie around it.
 
     Examples
     --------
-    >>> setting_lines("stroke_mm", 10.0), setting_lines("gain_N_per_V", 12.5)
-    (['stroke_mm: 10.0'], ['gain [N/V]: 12.5'])
-    >>> setting_lines("experiment", '{"track": {"radius": 18, "unit": "mm"}, "ok": null}')
+    >>> [s.line for s in settings_of("gain_N_per_V", 12.5)]
+    ['gain [N/V]: 12.5']
+    >>> [s.line for s in settings_of("rig", '{"track": {"radius": 18, "unit": "mm"}, "ok": null}')]
     ['track radius: 18 mm']
-    >>> setting_lines("note", "first\nsecond")
+    >>> [s.line for s in settings_of("note", "first\nsecond")]
     ['note: first second']
     """
     value = plain(value)
@@ -52,56 +56,40 @@ def setting_lines(key: str, value: object, depth: int = 0) -> list[str]:
         except (ValueError, RecursionError):
             pass
     if isinstance(value, Mapping):
-        return _of_object(key, value, depth) if depth < _DEEPEST else []
+        return _of_object(key, value, path, depth) if depth < _DEEPEST else []
     if isinstance(value, list | tuple):
         plain_ones = all(isinstance(each, str | int | float) for each in value)
         value = ", ".join(map(str, value)) if plain_ones else None
     if value is None or not str(value).strip():
         return []
-    text = " ".join(str(value).split())
-    return [f"{_with_unit(key)}: {text}"[:_SHORT]]
+    name = _with_unit(key)
+    text = " ".join(str(value).split())[: max(_SHORT - len(name), 0)]
+    return [Setting(name, text, Place(path))]
 
 
-def _of_object(key: str, value: Mapping[str, object], depth: int) -> list[str]:
+def _of_object(key: str, value: Mapping[str, object], path: str, depth: int) -> list[Setting]:
     units = next((value[name] for name in keys_of("unit") if name in value), None)
     rest = {name: each for name, each in value.items() if name not in keys_of("unit")}
     numbers = [n for n, each in rest.items() if isinstance(each, int | float)]
     if isinstance(units, str) and len(numbers) == 1 and key:  # {"value": 18, "unit": "mm"}
         name = "" if numbers[0].lower() in keys_of("value") else f" {numbers[0]}"
-        return [f"{key}{name}: {rest.pop(numbers[0])} {units}"[:_SHORT]]
-    lines = []
-    if isinstance(units, Mapping):  # units of what stands beside them, by name
+        text = f"{rest.pop(numbers[0])} {units}"[:_SHORT]
+        return [Setting(f"{key}{name}", text, Place(path))]
+    found = []
+    if isinstance(units, Mapping):  # units of its other values, by name
         own = {n: u for n, u in units.items() if n in rest and isinstance(u, str)}
         rest |= {n: f"{rest[n]} {u}" for n, u in own.items()}
         left = {f"{n}_unit": u for n, u in units.items() if n not in own}
-        lines += [line for n, u in left.items() for line in setting_lines(n, u, depth + 1)]
+        found += [s for n, u in left.items() for s in settings_of(n, u, path, depth + 1)]
     elif units is not None:
-        lines += setting_lines(f"{key}_unit" if key else "unit", units, depth + 1)
+        found += settings_of(f"{key}_unit" if key else "unit", units, path, depth + 1)
     for name, each in rest.items():
-        lines += setting_lines(str(name), each, depth + 1)
-    return lines
+        found += settings_of(str(name), each, path, depth + 1)
+    return found
 
 
 def _with_unit(key: str) -> str:
     """Return a key whose last words are a unit per another with that in brackets."""
     key = " ".join(key.split())
-    told = _PER.fullmatch(key)
-    return f"{told['key']} [{told['unit']}/{told['other']}]" if told else key
-
-
-def text_of(lines: list[str]) -> str:
-    """Return settings as a text of no more lines than a table has above it, each once."""
-    return "\n".join(list(dict.fromkeys(lines))[:MOST_LINES])
-
-
-def folder_and_leaf(name: str) -> tuple[str, str]:
-    """Return the group or structure that a column lies in, and its own name.
-
-    >>> folder_and_leaf("log/Fx"), folder_and_leaf("data.stage(2).force"), folder_and_leaf("F")
-    (('log', 'Fx'), ('data.stage(2)', 'force'), ('', 'F'))
-    """
-    if "/" in name:
-        path = PurePath(name)
-        return str(path.parent), path.name
-    folder, dot, own = name.rpartition(".")
-    return (folder, own) if dot and " " not in name else ("", name)
+    per = _PER.fullmatch(key)
+    return f"{per['key']} [{per['unit']}/{per['other']}]" if per else key

@@ -1,0 +1,63 @@
+"""Parquet and Feather: one table, whose metadata are settings."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tribolab.reading.lexicon.lexicon import keys_of
+from tribolab.reading.raw.containers.settings import plain, settings_of
+from tribolab.reading.raw.model import RawColumn, RawFile, RawTable
+from tribolab.reading.raw.opening import damage_told, isolated
+
+_OF_LIBRARIES = (b"pandas", b"ARROW:schema", b"PANDAS_ATTRS")
+
+
+@isolated("pyarrow", "pyarrow.parquet", "pyarrow.feather")
+def read_arrow(path: Path) -> RawFile:
+    """Read a Parquet or a Feather file.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Raises
+    ------
+    ReadError
+        If it is damaged.
+    """
+    # late: pyarrow takes long to load
+    import pyarrow as pa
+    from pyarrow import feather
+    from pyarrow import parquet as pq
+
+    with path.open("rb") as file:
+        form = "parquet" if file.read(4) == b"PAR1" else "feather"
+    with damage_told(path, f"{form} file"):
+        read = pq.read_table if form == "parquet" else feather.read_table
+        table = read(path, use_threads=False, memory_map=False)
+    columns = []
+    for place, name in enumerate(table.column_names):
+        values = table.column(place)
+        if pa.types.is_dictionary(values.type):  # words, or numbers that are kept once
+            values = values.cast(values.type.value_type)
+        if pa.types.is_decimal(values.type):
+            values = values.cast(pa.float64())
+        with damage_told(path, f"{form} file"):
+            numbers = values.to_numpy()
+        # what is no number (words, lists, structures) is of no use as a column
+        numbers = numbers if numbers.dtype.kind in "fiubMm" else np.empty(0, "U1")
+        columns.append(RawColumn(name, _unit_of(table.schema.field(place)), numbers, path=name))
+    said = dict(table.schema.metadata or {})
+    kept = {str(plain(key)): value for key, value in said.items() if key not in _OF_LIBRARIES}
+    settings = [setting for key, value in kept.items() for setting in settings_of(key, value)]
+    return RawFile(path, form, (RawTable("", tuple(columns)),), tuple(settings))
+
+
+def _unit_of(field: Any) -> str | None:
+    """Return the unit that a column's own metadata says."""
+    said = {str(plain(k)).lower(): str(plain(v)) for k, v in (field.metadata or {}).items()}
+    return next((said[key] for key in keys_of("unit") if said.get(key, "").strip()), None)

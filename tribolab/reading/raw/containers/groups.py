@@ -1,0 +1,61 @@
+"""Columns and settings collected by the group that they belong to, as the tables of a file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, Setting
+
+_NUMBERS = re.compile(r"\d+")
+
+
+class Groups:
+    """Columns and settings by the names of their groups, in the order of the file."""
+
+    def __init__(self) -> None:
+        self._columns: dict[str, list[RawColumn]] = {}
+        self._settings: dict[str, list[Setting]] = {}
+
+    def add_column(self, group: str, column: RawColumn) -> None:
+        """Add a column to a group."""
+        self._columns.setdefault(group, []).append(column)
+
+    def add_settings(self, group: str, settings: Iterable[Setting]) -> None:
+        """Add settings to a group."""
+        self._settings.setdefault(group, []).extend(settings)
+
+    def as_file(self, path: Path, container: str, *, sort: bool = False) -> RawFile:
+        """Return the groups as tables; settings of groups without a table are those of the file.
+
+        Parameters
+        ----------
+        path, container
+            Of the file.
+        sort
+            Whether the file keeps no order: then a second table comes before a tenth.
+        """
+        order = _in_natural_order(list(self._columns)) if sort else list(self._columns)
+        # one column next to settings is one of them
+        apart = {name for name in order if name and len(self._columns[name]) > 1}
+        tables = []
+        for name in order:
+            title = [Setting("", name, source="title"), *self._settings.get(name, [])]
+            tables.append(RawTable(name, tuple(self._columns[name]), tuple(title if name else [])))
+        rest = (s for name, said in self._settings.items() if name not in apart for s in said)
+        return RawFile(path, container, tuple(tables), tuple(rest))
+
+
+def _in_natural_order(names: Sequence[str]) -> list[str]:
+    """Sort names so that a second comes before a tenth.
+
+    >>> _in_natural_order(["step10", "step9", "step1"])
+    ['step1', 'step9', 'step10']
+    """
+
+    def key(name: str) -> list[tuple[str, int]]:
+        numbers = [int(digits) for digits in _NUMBERS.findall(name)[:20]]
+        return list(zip(_NUMBERS.split(name), [*numbers, 0], strict=False))
+
+    return sorted(names, key=key)

@@ -1,0 +1,141 @@
+"""MAT files of version 5 to 7, read by SciPy: a variable is a column, a structure a table."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tribolab.errors import ReadError
+from tribolab.reading.lexicon.lexicon import keys_of
+from tribolab.reading.raw.containers.groups import Groups
+from tribolab.reading.raw.containers.settings import settings_of
+from tribolab.reading.raw.model import RawColumn, RawFile
+from tribolab.reading.raw.opening import damage_told, isolated
+
+_DEEPEST = 8  # structures within structures
+_MOST_ELEMENTS = 500  # of an array of structures
+_LONGEST = 2000  # letters of a text
+_MOST_CELLS = 200  # texts of cells
+
+
+class Variable(NamedTuple):
+    """One variable: its name, and its numbers (None: text, cells, a complex array).
+
+    A field of a structure is called as in MATLAB: ``data.force``, of an array of structures
+    ``data(2).force``. `texts` are its text, or those of its cells.
+    """
+
+    name: str
+    numbers: np.ndarray | None
+    texts: tuple[str, ...] = ()
+
+
+@isolated("scipy.io")
+def read_variables(path: Path) -> list[Variable]:
+    """Read the variables of a MAT file.
+
+    Parameters
+    ----------
+    path
+        A file that begins with ``MATLAB 5.0``, as versions 5, 6 and 7 do.
+
+    Returns
+    -------
+    list of Variable
+        In the file's order.
+
+    Raises
+    ------
+    ReadError
+        If the file is damaged or cut short.
+    """
+    # late: SciPy takes long to load
+    from scipy.io import loadmat
+
+    with damage_told(path, "MAT file"), warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always")
+        content = loadmat(path, appendmat=False, mat_dtype=True)
+        # asked for MATLAB's own types, SciPy drops the imaginary parts
+        if any(issubclass(warning.category, np.exceptions.ComplexWarning) for warning in warned):
+            content = loadmat(path, appendmat=False)
+        found = [
+            variable
+            for name, value in content.items()
+            if not name.startswith("__")
+            for variable in _variables(name, value, 0)
+        ]
+    if not found:
+        raise ReadError("the MAT file is cut short: it holds no variable", where=path)
+    return found
+
+
+def _variables(name: str, value: Any, depth: int) -> list[Variable]:
+    """Return a variable, or the fields of a structure."""
+    # late: SciPy takes long to load
+    from scipy.io.matlab import MatlabFunction, MatlabOpaque
+
+    if isinstance(value, MatlabFunction | MatlabOpaque):
+        return [Variable(name, None)]
+    if value.dtype.names and depth < _DEEPEST and value.size <= _MOST_ELEMENTS:
+        return [
+            variable
+            for number, element in enumerate(value.ravel(order="F"), start=1)
+            for field in value.dtype.names
+            for variable in _variables(
+                f"{name}({number}).{field}" if value.size > 1 else f"{name}.{field}",
+                element[field],
+                depth + 1,
+            )
+        ]
+    if value.dtype.kind == "U":
+        return [Variable(name, None, tuple(str(x).strip("\0 ")[:_LONGEST] for x in value.flat[:1]))]
+    if value.dtype.kind == "O":
+        cells = [c for c in value.flat if isinstance(c, np.ndarray)]
+        alone = all(cell.dtype.kind == "U" and cell.size == 1 for cell in cells)
+        return [Variable(name, None, tuple(c.item() for c in cells[:_MOST_CELLS] if alone))]
+    if value.dtype.kind == "b":
+        value = value.astype(np.uint8)
+    return [Variable(name, value if value.dtype.kind in "fiu" else None)]
+
+
+def read_mat(path: Path) -> RawFile:
+    """Read the variables of a MAT file as columns, those of a structure as a table.
+
+    Parameters
+    ----------
+    path
+        The file.
+
+    Raises
+    ------
+    ReadError
+        If the file is damaged or cut short.
+    """
+    groups = Groups()
+    for variable in read_variables(path):
+        folder, _, name = variable.name.rpartition(".")
+        numbers = variable.numbers
+        if numbers is None or numbers.size == 1:
+            key = f"{name}_unit" if folder.rsplit(".", 1)[-1].lower() in _OF_UNITS else name
+            text: object = numbers if numbers is not None else list(variable.texts)
+            groups.add_settings(folder, settings_of(key, text, variable.name))
+        elif numbers.size and numbers.size == max(numbers.shape):
+            groups.add_column(folder, RawColumn(name, None, numbers.ravel(), path=variable.name))
+    return groups.as_file(path, "mat")
+
+
+_OF_UNITS = keys_of("unit")
+
+
+def variable_names(path: Path) -> set[str]:
+    """Names of the variables in a MAT file.
+
+    Raises
+    ------
+    ReadError
+        If the file is damaged.
+    """
+    return {variable.name for variable in read_variables(path)}

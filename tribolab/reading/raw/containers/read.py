@@ -1,0 +1,44 @@
+"""Which reader opens which container."""
+
+from __future__ import annotations
+
+import importlib
+from pathlib import Path
+
+from tribolab.reading.raw.model import RawFile
+
+# module and function of each: what they import takes long to load
+_READERS = {
+    "hdf5": ("hdf5", "read_hdf5"),
+    "netcdf": ("hdf5", "read_hdf5"),  # both begin alike
+    "mat": ("mat", "read_mat"),
+    "tdms": ("tdms", "read_tdms"),
+    "npz": ("npz", "read_npz"),
+    "parquet": ("arrow", "read_arrow"),
+    "feather": ("arrow", "read_arrow"),
+}
+CONTAINERS = frozenset(_READERS)
+IN_GROUPS = CONTAINERS - {"parquet", "feather"}  # those that may hold several tables
+
+
+def read_container(path: Path, form: str) -> RawFile:
+    """Read the tables and settings of a container that names its columns.
+
+    Parameters
+    ----------
+    path
+        The file.
+    form
+        One of `CONTAINERS`.
+
+    Raises
+    ------
+    ReadError
+        If it is damaged; other libraries have errors of their own.
+    ImportError
+        If the library for it is not installed.
+    """
+    module, function = _READERS[form]
+    reader = importlib.import_module(f"tribolab.reading.raw.containers.{module}")
+    file: RawFile = getattr(reader, function)(path)
+    return file
