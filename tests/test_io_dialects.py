@@ -13,6 +13,7 @@ from tribolab.errors import ConfigError, ReadError
 from tribolab.io.dialects.find import json_schema, known_dialects, load_dialect, recognise
 from tribolab.io.dialects.recognise import mismatch
 from tribolab.io.dialects.signature import peek
+from tribolab.io.dialects.write import dialect_toml
 from tribolab.io.schema_folder import schema_folder
 
 BASE = """
@@ -293,3 +294,10 @@ def test_a_pattern_longer_than_any_line_is_refused(tmp_path):
     (tmp_path / "mine.toml").write_text(BASE.replace("line = 1", f"pattern = '{'a' * 2000}'"))
     with pytest.raises(ConfigError, match="at most 1000 are taken"):
         load_dialect(tmp_path / "mine.toml")
+
+
+@pytest.mark.parametrize("name", known_dialects())
+def test_a_dialect_is_written_as_it_was_read(name, tmp_path):
+    file = tmp_path / "written.toml"
+    file.write_text(dialect_toml(load_dialect(name)), "utf-8")
+    assert load_dialect(file) == load_dialect(name)

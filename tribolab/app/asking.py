@@ -10,7 +10,7 @@ import numpy as np
 
 from tribolab.app.typed import NUMBER, amount_typed, as_amount, as_strokes, turning, turns_alone
 from tribolab.draft.columns.turning import angle_of, torque_of
-from tribolab.draft.dialect.answers import column_of, corrected, fits, written
+from tribolab.draft.dialect.answers import column_of, corrected, fits
 from tribolab.draft.dialect.draft import Draft, as_profile, holds_counts, holds_heights
 from tribolab.draft.dialect.worth import ANGLE, TORQUE, Worth, si_unit_of, worth_of
 from tribolab.draft.file.layout import Layout
@@ -141,7 +141,7 @@ def _ask_for_lengths(
             understood = understood._replace(agreed=agreed)
         else:
             understood = understood._replace(radius=radius)
-    return written(draft, layout, understood)
+    return draft.with_understood(understood)
 
 
 def _ask_for_pitch(draft: Draft, ask: Ask, say: Say) -> Draft:
@@ -246,7 +246,7 @@ def _with_strokes(draft: Draft, strokes: tuple[str, str]) -> Draft:
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
         return draft
-    draft = written(draft, layout, understood._replace(strokes=strokes))
+    draft = draft.with_understood(understood._replace(strokes=strokes))
     speed = what_follows(layout, understood._replace(strokes=strokes)).speed
     if speed is None or speed.source != "stroke":
         if not strokes[0] and turns_alone(strokes[1]):
@@ -278,7 +278,7 @@ def _with_sum(draft: Draft, typed: str, ask: Ask) -> Draft:
         else c
         for c in understood.columns
     ]
-    return written(draft, layout, understood._replace(kind="run", columns=tuple(columns)))
+    return draft.with_understood(understood._replace(kind="run", columns=tuple(columns)))
 
 
 def _said_amount(draft: Draft, amount: str) -> str:
@@ -308,7 +308,7 @@ def _with_line(draft: Draft, amount: str, value: Amount) -> Draft:
         return draft
     what: Agreed = "load" if amount == "load" else "speed"
     understood = understood._replace(agreed=(*understood.agreed, (what, value.text)))
-    return written(draft, layout, understood)
+    return draft.with_understood(understood)
 
 
 def _may_say(draft: Draft, amount: str) -> tuple[str, Amount | None]:
@@ -334,7 +334,7 @@ def _with_amount(draft: Draft, amount: str, text: str) -> Draft:
         understood = understood._replace(speed=text)
     else:
         understood = understood._replace(rate=text)
-    return written(draft, layout, understood)
+    return draft.with_understood(understood)
 
 
 def _column(draft: Draft, typed: str) -> DraftColumn:
@@ -428,4 +428,4 @@ def _ask_zero(draft: Draft, column: DraftColumn, worth: Worth, ask: Ask, say: Sa
         c._replace(offset=offset, zero=zero) if c.place == column.place else c
         for c in understood.columns
     ]
-    return written(draft, layout, understood._replace(columns=tuple(columns)))
+    return draft.with_understood(understood._replace(columns=tuple(columns)))

@@ -158,7 +158,7 @@ def _is_campaign(path: Path) -> bool:
 def _campaign_of(
     paths: Sequence[Path], folder: Path, results: str, instrument: str | None = None
 ) -> str:
-    from tribolab.draft.dialect.tables import quoted  # late: starting stays quick
+    from tribolab.io.dialects.write import quoted  # late: starting stays quick
 
     raw = Path(os.path.commonpath([path.parent for path in paths]))
     where = os.path.relpath(raw, folder) if raw.is_relative_to(folder) else str(raw)
@@ -181,7 +181,7 @@ def _said(instrument: str | None, folder: Path) -> list[str]:
     """Return the line that names an instrument; the file of a dialect relative to the campaign."""
     if instrument is None:
         return []
-    from tribolab.draft.dialect.tables import quoted  # late: starting stays quick
+    from tribolab.io.dialects.write import quoted  # late: starting stays quick
 
     file = Path(instrument)
     if file.suffix == ".toml":

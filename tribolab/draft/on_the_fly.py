@@ -199,7 +199,6 @@ def _told(path: Path) -> dict[str, str]:
 
 
 def _checksum(draft: Draft) -> str:
-    """Return what files of one layout have in common: the draft, but for names and remarks."""
-    lines = (line for line in draft.toml.splitlines() if not line.startswith(("#", "title =")))
-    body = "\n".join(line for line in lines if line != f'name = "{draft.name}"')
-    return hashlib.sha256(body.encode()).hexdigest()[:16]
+    """Return what files of one layout have in common: the dialect, but for its name."""
+    said = "" if draft.dialect is None else draft.dialect.model_dump_json(exclude={"name", "title"})
+    return hashlib.sha256(said.encode()).hexdigest()[:16]

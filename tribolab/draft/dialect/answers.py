@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
 from tribolab.draft.columns.clock import find_clock
 from tribolab.draft.dialect.drafted import Drafted
-from tribolab.draft.dialect.toml import dialect_toml
 from tribolab.draft.dialect.worth import ANGLE, TORQUE, Worth, si_unit_of
-from tribolab.draft.model import DraftColumn, Understood
+from tribolab.draft.model import DraftColumn
 from tribolab.errors import ReadError
 from tribolab.quantities import QUANTITIES, quantity
 from tribolab.reading.interpret.unit_texts import converts
-
-if TYPE_CHECKING:
-    from tribolab.draft.file.layout import Layout
 
 AnyDraft = TypeVar("AnyDraft", bound=Drafted)
 
@@ -96,13 +92,7 @@ def corrected(
     if name == "time":
         on_repeat, restart, timed = find_clock(layout, columns, before.numbers)
         understood = understood._replace(columns=tuple(timed), on_repeat=on_repeat, restart=restart)
-    return written(draft, layout, understood)
-
-
-def written(draft: AnyDraft, layout: Layout, understood: Understood) -> AnyDraft:
-    """Return a draft that says what was understood anew."""
-    toml = dialect_toml(draft.name, layout, understood) if understood.kind != "table" else ""
-    return draft._replace(kind=understood.kind, understood=understood, toml=toml)
+    return draft.with_understood(understood)
 
 
 def _said(column: DraftColumn, worth: Worth, sign: int, draft: Drafted) -> DraftColumn:

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import os
 import re
-import tomllib
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 from tribolab.aliases import PathLike
 from tribolab.draft.dialect.drafted import SHOWN, Drafted
 from tribolab.draft.dialect.questions import COUNTED, unsaid_distance
 from tribolab.draft.dialect.show import draft_html
-from tribolab.draft.dialect.toml import dialect_toml
 from tribolab.draft.file.layout import Layout, find_layout
 from tribolab.draft.follows.understand import first_cells_of, understand
 from tribolab.draft.model import Understood
 from tribolab.errors import ConfigError, OutputError, ReadError, TribolabError, shown
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.dialects.find import recognise
-from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, is_results, is_surftest_results, named_values, peek
 from tribolab.reading.interpret.names import matches, split_unit
 
@@ -75,24 +73,20 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
     layout, understood = _understood(file)
     if understood.kind == "scan" and not any(column.used for column in understood.columns):
         understood = understood._replace(kind="table")
-    toml = dialect_toml(name, layout, understood) if understood.kind != "table" else ""
     draft = Draft(
         path=file.path,
         name=name,
         kind=understood.kind,
         layout=layout,
         understood=understood,
-        toml=toml,
-        answer="" if toml else _answer(file, understood),
+        answer="" if understood.kind != "table" else _answer(file, understood),
         cells=tuple(map(tuple, first_cells_of(layout, SHOWN))),
         known=_known(file),
     )
-    if toml:
-        _validate(draft)
-    if not toml and holds_counts(draft):
-        return draft._replace(answer=f"{COUNTED} ('tribolab dialect' asks for it in a terminal)")
-    if not toml and holds_heights(draft):
-        return draft._replace(answer=unsaid_distance(draft))
+    if draft.dialect is None and holds_counts(draft):
+        return replace(draft, answer=f"{COUNTED} ('tribolab dialect' asks for it in a terminal)")
+    if draft.dialect is None and holds_heights(draft):
+        return replace(draft, answer=unsaid_distance(draft))
     return draft
 
 
@@ -175,15 +169,6 @@ def _known(file: File) -> str:
         return ""
 
 
-def _validate(draft: Draft) -> None:
-    try:
-        Dialect.model_validate(tomllib.loads(draft.toml))
-    except (ValueError, TribolabError) as error:
-        raise ReadError(
-            f"{draft.path}: the file was understood, but no dialect can say it: {error}"
-        ) from error
-
-
 def holds_heights(draft: Drafted) -> bool:
     """Whether a table is one column that is named as heights are, without positions."""
     return _is_heights(draft) and not holds_counts(draft)
@@ -218,8 +203,8 @@ def as_profile(draft: Draft, pitch: str = "", unit: str | None = None) -> Draft:
     unit
         What the heights are written in; None if the file says it.
     """
-    layout, understood = draft.layout, draft.understood
-    if layout is None or understood is None:
+    understood = draft.understood
+    if understood is None:
         return draft
     heights = understood.columns[0]._replace(quantity="height", used=True, note="", options=())
     said = unit or heights.read_unit
@@ -229,8 +214,7 @@ def as_profile(draft: Draft, pitch: str = "", unit: str | None = None) -> Draft:
         fill_in="",
     )
     whole = understood._replace(kind="scan", columns=(heights,), pitch=pitch)
-    toml = dialect_toml(draft.name, layout, whole)
-    return draft._replace(kind="scan", understood=whole, toml=toml, answer="")
+    return replace(draft.with_understood(whole), answer="")
 
 
 def _answer(file: File, understood: Understood) -> str:
@@ -270,13 +254,9 @@ def _results(file: File, name: str) -> Draft:
         path=file.path,
         name=name,
         kind="table",
-        layout=None,
-        understood=None,
-        toml="",
         answer=(
             f"{len(rows)} results of a roughness tester (name, value, unit, condition), without "
             "the profile; 'tribolab check' reads it without a dialect"
         ),
         cells=tuple(tuple(row) for row in rows[:SHOWN]),
-        known="",
     )

@@ -1,28 +1,32 @@
-"""What was understood of an unknown file, as plain data."""
+"""What was understood of an unknown file, and the dialect that reads it."""
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
+from typing import Self
 
 import numpy as np
 
 from tribolab.draft.columns.explained import left_aside
-from tribolab.draft.dialect.tables import FILL_IN
+from tribolab.draft.dialect.describe import Described, describe, dialect_of
+from tribolab.draft.dialect.remarks import remarks_of
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.follows import what_follows
 from tribolab.draft.model import Kind, Understood
 from tribolab.errors import TribolabError, shown
 from tribolab.io.dialects.model import Dialect
+from tribolab.io.dialects.write import FILL_IN, dialect_toml
 from tribolab.io.runs import read_log
 from tribolab.quantities import unit_conversion
 
 SHOWN = 10  # rows shown as understood
 
 
-class Drafted(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Drafted:
     """What was understood of a file.
 
     Attributes
@@ -33,8 +37,6 @@ class Drafted(NamedTuple):
         ``run``, ``scan``, or ``table``: numbers that are neither, for which there is no dialect.
     layout, understood
         How the file is written and what its columns hold; None for a file of results.
-    toml
-        The dialect as TOML; empty for a table.
     answer
         For a table: what the file is, and what reads it.
     cells
@@ -46,17 +48,39 @@ class Drafted(NamedTuple):
     path: Path
     name: str
     kind: Kind
-    layout: Layout | None
-    understood: Understood | None
-    toml: str
-    answer: str
-    cells: tuple[tuple[str, ...], ...]
-    known: str
+    layout: Layout | None = None
+    understood: Understood | None = None
+    answer: str = ""
+    cells: tuple[tuple[str, ...], ...] = ()
+    known: str = ""
 
-    @property
+    @cached_property
+    def _described(self) -> Described | None:
+        if self.kind == "table" or self.layout is None or self.understood is None:
+            return None
+        return describe(self.layout, self.understood)
+
+    @cached_property
     def dialect(self) -> Dialect | None:
-        """The dialect; None for a table."""
-        return Dialect.model_validate(tomllib.loads(self.toml)) if self.toml else None
+        """The dialect; None for a table.
+
+        Raises
+        ------
+        ReadError
+            If no dialect can describe the file.
+        """
+        return None if self._described is None else dialect_of(self.name, self._described)
+
+    @cached_property
+    def toml(self) -> str:
+        """The dialect as TOML, with remarks as comments; empty for a table."""
+        if self.dialect is None or self._described is None:
+            return ""
+        return dialect_toml(self.dialect, remarks_of(self._described))
+
+    def with_understood(self, understood: Understood) -> Self:
+        """Return the draft of a file that is understood otherwise."""
+        return replace(self, kind=understood.kind, understood=understood)
 
     @property
     def named(self) -> bool:

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 
 from tribolab.aliases import PathLike
-from tribolab.draft.dialect.answers import written
 from tribolab.draft.dialect.draft import Draft, draft_dialect
 from tribolab.draft.model import DraftColumn
 from tribolab.errors import ReadError
@@ -98,7 +97,7 @@ def _joined(drafts: Sequence[Draft]) -> Draft:
         missing=tuple(dict.fromkeys(words)),
         restart=any(draft.understood.restart for draft in drafts if draft.understood),
     )
-    return written(first, first.layout, understood)
+    return first.with_understood(understood)
 
 
 def _in_use(draft: Draft) -> dict[_Key, DraftColumn]:

@@ -49,12 +49,12 @@ def print_draft(draft: Drafted, console: Console, *, rows: bool = True) -> None:
         console.print(f"  {escape(line)}", soft_wrap=True)
     if draft.known:
         console.print(f"  the known instrument '{draft.known}' reads it already")
-    if draft.understood is not None and draft.toml:
+    if draft.understood is not None and draft.dialect:
         console.print(_columns_table(draft))
         print_signals(draft, console, rows=rows)
     else:
         console.print(_cells_table(draft))
-    if draft.toml and draft.guesses:
+    if draft.dialect and draft.guesses:
         console.print("guessed, so look at it:")
         for guess in draft.guesses:
             console.print(f"  - {escape(guess)}", soft_wrap=True)
@@ -67,7 +67,7 @@ def print_signals(
     signals = draft.signals()
     for table in _rows_tables(signals) if rows else ():
         console.print(table)
-    if not draft.toml or not blocks:
+    if not draft.dialect or not blocks:
         return
     part, which = _seen(signals)
     table = _table("signals", which, "from", "to")
