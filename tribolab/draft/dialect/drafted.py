@@ -10,7 +10,7 @@ from typing import Self
 
 import numpy as np
 
-from tribolab.draft.columns.explained import left_aside
+from tribolab.draft.columns.text_evidence import unused_force_columns
 from tribolab.draft.dialect.describe import Described, describe, dialect_of
 from tribolab.draft.dialect.remarks import remarks_of
 from tribolab.draft.file.layout import Layout
@@ -108,7 +108,7 @@ class Drafted:
         follows = what_follows(self.layout, self.understood)
         speed = [follows.speed.guess] if follows.speed is not None and follows.speed.guess else []
         used = {column.place for _, column in follows.symbols}
-        speed += left_aside(self.layout, self.understood.columns, used)
+        speed += unused_force_columns(self.layout, self.understood.columns, used)
         return (
             *self.layout.notes,
             *self.layout.guesses,

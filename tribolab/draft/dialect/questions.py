@@ -8,7 +8,7 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from tribolab.draft.columns.explained import left_aside
+from tribolab.draft.columns.text_evidence import unused_force_columns
 from tribolab.draft.columns.turning import torque_of
 from tribolab.draft.dialect.drafted import Drafted
 from tribolab.draft.file.layout import Layout
@@ -84,7 +84,7 @@ def questions(draft: Drafted) -> list[Question]:
     follows = what_follows(layout, understood)
     if understood.kind == "run":
         places = {column.place for _, column in follows.symbols}
-        aside = left_aside(layout, understood.columns, places)
+        aside = unused_force_columns(layout, understood.columns, places)
         asked += [Question("forces", said, ("to be taken off, or added",)) for said in aside]
     asked += _of_roles(understood, follows)
     held = {column.quantity for column in understood.columns if column.used}

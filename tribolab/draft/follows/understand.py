@@ -7,10 +7,9 @@ import io
 import numpy as np
 
 from tribolab.draft.columns.against_motion import against_motion
-from tribolab.draft.columns.assign import SIGNALS, assigned
-from tribolab.draft.columns.either import told_by_load, without_means
+from tribolab.draft.columns.decide import SIGNALS, decide
 from tribolab.draft.columns.epochs import DATES, counted_from
-from tribolab.draft.columns.explained import as_explained
+from tribolab.draft.columns.evidence import RULES, Facts
 from tribolab.draft.columns.fill_in import Bare
 from tribolab.draft.columns.heights import (
     as_heights,
@@ -24,9 +23,9 @@ from tribolab.draft.columns.plain_numbers import plain_numbers
 from tribolab.draft.columns.proven import add_proven_units, proven, restrict_to_proofs
 from tribolab.draft.columns.ratio import disagreement, force_or_ratio
 from tribolab.draft.columns.results_table import are_points
+from tribolab.draft.columns.text_evidence import by_legend, by_mean, by_stated_load
 from tribolab.draft.columns.turning import angle_of, torque_of
 from tribolab.draft.columns.unloaded import with_zero
-from tribolab.draft.columns.way import beside_turns
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.axial import guesses_of_inclined
 from tribolab.draft.follows.bridges import calibrated_forces
@@ -102,20 +101,19 @@ def understand(layout: Layout) -> Understood:
         kind, columns, density, lacks = "scan", sensed.columns, sensed.pitch, sensed.lacks
         apart = bool(density or lacks)
     elif _say_something(columns):
-        kind, columns = _by_name(columns, numbers, proofs, placed=apart)
+        kind, columns = _by_name(layout, columns, numbers, proofs, placed=apart)
     else:
         # late: starting stays quick
         from tribolab.draft.columns.behaviour import by_behaviour
 
         kind, columns, behaving = by_behaviour(columns, numbers)
         guesses += behaving
-    columns = as_explained(layout, columns) if kind == "run" else columns
-    columns = told_by_load(layout, force_or_ratio(columns), numbers) if kind == "run" else columns
     if kind == "run":
+        columns = force_or_ratio(columns)
         columns = without_surfaces(columns, pair_of(layout, columns, numbers))
         columns = confirm_lever_arm_force(layout, columns)
-        columns = adding_up(layout, beside_turns(columns, numbers), numbers)
-        columns = as_entrainment_speed(layout, without_means(layout, columns))
+        columns = adding_up(layout, columns, numbers)
+        columns = as_entrainment_speed(layout, columns)
         guesses += disagreement(columns, numbers)
         guesses += guesses_of_inclined(layout, columns)
     columns = _dated(apply_count_scale(layout, columns, numbers), layout, numbers, text)
@@ -336,6 +334,7 @@ def _say_something(columns: list[DraftColumn]) -> bool:
 
 
 def _by_name(
+    layout: Layout,
     columns: list[DraftColumn],
     numbers: np.ndarray,
     proofs: dict[int, Proof],
@@ -351,9 +350,10 @@ def _by_name(
     if not best & {"time", "friction_force", "normal_force", "sliding_velocity"} and (
         {"x", "height"} <= profile or (placed and "height" in profile)
     ):
-        return "scan", assigned(columns, bare, scan, numbers, "scan")
+        return "scan", decide(Facts(columns, bare, scan, numbers, "scan"), RULES)
     kind: Kind = "run" if best & ({"time"} | SIGNALS) else "table"
-    return kind, assigned(columns, bare, run, numbers, kind)
+    rules = (*RULES, by_legend(layout), by_stated_load(layout), by_mean(layout))
+    return kind, decide(Facts(columns, bare, run, numbers, kind), rules)
 
 
 def _timed(bare: list[Bare], run: list[list[Match]], numbers: np.ndarray) -> list[list[Match]]:

@@ -1,0 +1,95 @@
+"""Each rule of evidence decides something: without it the same columns are taken otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tribolab.draft.columns import evidence, text_evidence
+from tribolab.draft.columns.decide import decide
+from tribolab.draft.columns.evidence import RULES, Facts, Rule
+from tribolab.draft.columns.labels import bare_name, labelled
+from tribolab.draft.columns.text_evidence import by_legend, by_mean, by_stated_load
+from tribolab.draft.file.layout import Layout, find_layout
+from tribolab.draft.model import DraftColumn
+from tribolab.io.dialects.signature import peek
+from tribolab.reading.interpret.names import matches
+
+N = 60
+T = np.arange(N) / 10
+TURNS = np.sign(np.sin(T))
+BACK_AND_FORTH = 5 * np.sin(T)
+TEXT_RULES = ("by_legend", "by_stated_load", "by_mean")
+
+
+def decided(
+    folder: Path, above: str, columns: dict[str, np.ndarray], without: str = ""
+) -> list[DraftColumn]:
+    numbers = np.column_stack([np.broadcast_to(x, N) for x in columns.values()]).astype(float)
+    rows = "\n".join("\t".join(f"{x:.6g}" for x in row) for row in numbers)
+    file = folder / "a.txt"
+    file.write_text(f"{above}\n" * bool(above) + "\t".join(columns) + f"\n{rows}\n")
+    layout = find_layout(peek(file))
+    found = labelled(layout)
+    bare = [bare_name(column) for column in found]
+    options = [matches(name, unit) for name, unit, _ in bare]
+    return decide(Facts(found, bare, options, numbers, "run"), _rules(layout, without))
+
+
+def _rules(layout: Layout, without: str) -> Sequence[Rule]:
+    by_text = {
+        "by_legend": by_legend(layout),
+        "by_stated_load": by_stated_load(layout),
+        "by_mean": by_mean(layout),
+    }
+    general = [rule for rule in RULES if rule.__name__ != without]
+    return [*general, *(rule for name, rule in by_text.items() if name != without)]
+
+
+CASES = {
+    "by_name": ("", {"Time [s]": T, "Friction force [N]": TURNS}),
+    "by_role": ("", {"Load setpoint [N]": T, "Load [N]": 5 + 0.1 * T, "Actual load [N]": 5 + T}),
+    "by_position": ("", {"Fx [N]": TURNS, "Load [N]": 5.0, "Fx [N] ": TURNS}),
+    "by_numbers": ("", {"t": BACK_AND_FORTH, "Fx [N]": TURNS}),
+    "by_size": ("", {"Fx [N]": 0.1 * TURNS, "Ft [N]": 0.0 * T, "Fr [N]": 3 * TURNS}),
+    "by_row_count": ("", {"n": np.arange(N), "Fx [N]": TURNS}),
+    "by_path": ("", {"Position [mm]": BACK_AND_FORTH, "Sliding distance [mm]": T}),
+    "by_motion": ("", {"Displacement [mm]": 0.1 * T, "Speed [mm/s]": 5.0, "Fx [N]": TURNS}),
+    "by_torque": ("", {"Torque [N m]": TURNS, "Force [N]": 5.0}),
+    "by_strokes": ("", {"Stroke [mm]": 5.0, "Frequency [Hz]": 2.0, "Fx [N]": TURNS}),
+    "by_axes": ("", {"Stage.X [mm]": 0 * T + 3, "Rotation speed [rpm]": 60.0, "Fx [N]": TURNS}),
+    "by_rotation": ("", {"Position [mm]": T**2, "Rotation speed [rpm]": 60.0, "Fx [N]": TURNS}),
+    "by_legend": ("Fx = vertical; Fz = tangential", {"Fx [N]": 5.0, "Fz [N]": TURNS}),
+    "by_stated_load": ("Load: 20 N", {"Force [N]": 6 * TURNS, "Speed [mm/s]": 5.0}),
+    "by_mean": ("Load: 20 N", {"Friction force [N]": TURNS, "Mean COF [-]": 0.05}),
+}
+
+
+@pytest.mark.parametrize("rule", CASES)
+def test_a_rule_changes_what_is_decided(rule: str, tmp_path: Path) -> None:
+    assert decided(tmp_path, *CASES[rule]) != decided(tmp_path, *CASES[rule], without=rule)
+
+
+def test_every_rule_has_a_case() -> None:
+    assert set(CASES) == {rule.__name__ for rule in RULES} | set(TEXT_RULES)
+    assert all(hasattr(text_evidence, name) for name in TEXT_RULES)
+
+
+@pytest.mark.parametrize("rule", CASES)
+def test_the_order_of_rules_does_not_matter(
+    rule: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    forwards = decided(tmp_path, *CASES[rule])
+    monkeypatch.setattr(f"{__name__}.RULES", RULES[::-1])
+    assert decided(tmp_path, *CASES[rule]) == forwards
+
+
+def test_names_are_tried_together_and_not_one_after_the_other(tmp_path: Path) -> None:
+    # either cell may be either force; the one that is named leaves the other to the second
+    columns = decided(tmp_path, "", {"Force [N]": TURNS, "Normal force [N]": 5 + 0.1 * T})
+    assert [column.quantity for column in columns] == ["friction_force", "normal_force"]
+    assert not columns[0].guessed and columns[0].used
+    assert evidence.NEAR < 0.1
