@@ -57,8 +57,8 @@ CASES = {
     "by_size": ("", {"Fx [N]": 0.1 * TURNS, "Ft [N]": 0.0 * T, "Fr [N]": 3 * TURNS}),
     "by_row_count": ("", {"n": np.arange(N), "Fx [N]": TURNS}),
     "by_path": ("", {"Position [mm]": BACK_AND_FORTH, "Sliding distance [mm]": T}),
-    "by_motion": ("", {"Displacement [mm]": 0.1 * T, "Speed [mm/s]": 5.0, "Fx [N]": TURNS}),
-    "by_torque": ("", {"Torque [N m]": TURNS, "Force [N]": 5.0}),
+    "by_motion": ("", {"LVDT [mm]": 0.1 * T, "Speed [mm/s]": 5.0, "Fx [N]": TURNS}),
+    "by_torque": ("", {"Torque [N m]": TURNS, "Load cell [N]": 5.0}),
     "by_strokes": ("", {"Stroke [mm]": 5.0, "Frequency [Hz]": 2.0, "Fx [N]": TURNS}),
     "by_axes": ("", {"Stage.X [mm]": 0 * T + 3, "Rotation speed [rpm]": 60.0, "Fx [N]": TURNS}),
     "by_rotation": ("", {"Position [mm]": T**2, "Rotation speed [rpm]": 60.0, "Fx [N]": TURNS}),
@@ -89,7 +89,7 @@ def test_the_order_of_rules_does_not_matter(
 
 def test_names_are_tried_together_and_not_one_after_the_other(tmp_path: Path) -> None:
     # either cell may be either force; the one that is named leaves the other to the second
-    columns = decided(tmp_path, "", {"Force [N]": TURNS, "Normal force [N]": 5 + 0.1 * T})
+    columns = decided(tmp_path, "", {"Load cell [N]": TURNS, "Normal force [N]": 5 + 0.1 * T})
     assert [column.quantity for column in columns] == ["friction_force", "normal_force"]
     assert not columns[0].guessed and columns[0].used
     assert evidence.NEAR < 0.1
