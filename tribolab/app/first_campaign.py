@@ -15,6 +15,7 @@ from tribolab.campaign.store.ledger import Ledger
 from tribolab.errors import ConfigError, TribolabError
 from tribolab.io.kinds import kind_of
 from tribolab.io.logs import group_files
+from tribolab.reading.moduli import holds_modulus
 
 NAME, RESULTS = "campaign.toml", "results"
 _ABOUT = (
@@ -62,6 +63,12 @@ def campaign_file(
             what = "there is no such file" if not path.exists() else "it is no raw file"
             raise ConfigError(
                 f"{path}: {what}", cure="name one campaign file or folder, or raw files alone"
+            )
+        if instrument is None and _holds_modulus(path):
+            raise ConfigError(
+                f"{path}: it holds a modulus over frequency, no run and no scan",
+                cure=f'name it as modulus_file = "{path.name}" in [contact] of a campaign file; '
+                f"`tribolab info {path.name}` shows how it is read",
             )
     whole = [path.resolve() for path in paths]
     file = folder / NAME
@@ -189,6 +196,13 @@ def _said(instrument: str | None, folder: Path) -> list[str]:
         inside = whole.is_relative_to(folder)
         instrument = (whole.relative_to(folder) if inside else whole).as_posix()
     return [f"instrument = {quoted(instrument)}"]
+
+
+def _holds_modulus(path: Path) -> bool:
+    try:
+        return kind_of(path) == "unknown" and holds_modulus(path)
+    except TribolabError:
+        return False  # the run says what is wrong with it
 
 
 def _holds_run(path: Path, instrument: str | None) -> bool:

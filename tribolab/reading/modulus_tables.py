@@ -1,0 +1,248 @@
+"""Where the table of a modulus stands in a text or workbook: its columns, units and rows."""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import re
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.errors import ReadError, shown
+from tribolab.reading.lexicon.lexicon import known_words, names, normalise_label
+from tribolab.reading.raw.opening import damage_told, isolated
+from tribolab.reading.raw.source import check_regular
+
+HEAD = 200  # rows among which the names stand
+_LARGEST = 32 << 20  # bytes of a table in text
+_LONGEST, _WIDEST = 80, 300  # letters of a name, and columns
+_WORKBOOKS = (".xls", ".xlsx", ".xlsm", ".ods")
+_PRIMES = str.maketrans({"\u2032": "'", "\u2019": "'", "\u00b4": "'", "\u2033": '"', "\u201d": '"'})
+_UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]\s*$")  # behind "G' in"
+_IN = re.compile(r"\b(?:in|en)$")
+_BARE_UNIT = re.compile(r"(.+?)(?:/|\s(?:in|en)\s)\s*([^\s/][^\s]*)")  # E'/MPa, G' in Pa
+_COMMENT = re.compile(r"^\s*[#%]+\s?")
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_COMMA, _POINT = (re.compile(rf"(?<![\d{s}])\d+{s}\d+(?![\d{s}])") for s in (",", r"\."))
+_SHEAR = re.compile(r"\bshear|schub|scher|torque|drehmoment", re.IGNORECASE)
+Row = list[str]
+
+
+class Column(NamedTuple):
+    """A column of the table: its place in a row, its name, what that means, and its unit."""
+
+    place: int
+    label: str
+    concept: str
+    unit: str
+
+
+class Table(NamedTuple):
+    """The columns by their meaning, the rows of numbers as text, and how these are written."""
+
+    columns: dict[str, Column]
+    rows: list[Row]
+    shear: bool
+    decimal: str
+
+
+def find_table(path: Path, sheet: str | None, longest: int | None = None) -> Table:
+    """Return the first table that has a frequency and a modulus with its loss.
+
+    Parameters
+    ----------
+    path, sheet
+        As for `read_modulus_table`.
+    longest
+        How many lines of a text are looked at; all if not given.
+
+    Raises
+    ------
+    ReadError
+        If there is none.
+    """
+    check_regular(path)
+    seen: dict[str, None] = {}
+    workbook = path.suffix.lower() in _WORKBOOKS
+    for rows, decimal in _workbook(path, sheet) if workbook else _text(path, longest):
+        for place, row in enumerate(rows[:HEAD]):
+            if len(row) > _WIDEST:
+                continue
+            columns = _columns(row)
+            seen |= dict.fromkeys(cell.strip() for cell in row if _concept(_bare(cell)[0]))
+            if needed := _needed(columns):
+                return _table_below(rows, place, needed, decimal)
+    # what a file that is no such table holds is not told: it may be anything
+    said = shown(", ".join(seen), 200) or "none of them"
+    raise ReadError(
+        f"{path.name}: columns for frequency, storage and loss modulus are wanted, e.g. f, E', "
+        f"E''; it has {said}"
+    )
+
+
+def _columns(row: Row) -> dict[str, Column]:
+    """Return the first column for each concept that a row names."""
+    found: dict[str, Column] = {}
+    for place, cell in enumerate(row):
+        label, unit = _bare(cell)
+        if (concept := _concept(label)) and concept not in found:
+            found[concept] = Column(place, cell.strip(), concept, unit)
+    return found
+
+
+def _bare(cell: str) -> tuple[str, str]:
+    """Separate a name from a unit in brackets behind it.
+
+    >>> _bare("G' in [Pa]"), _bare('E" (MPa)'), _bare("Tan(delta)"), _bare("E'/MPa")
+    (("G'", 'Pa'), ('E"', 'MPa'), ('Tan(delta)', ''), ("E'", 'MPa'))
+    """
+    cell = cell.strip()
+    if len(cell) > _LONGEST:
+        return cell, ""
+    match = _UNIT.search(cell)
+    if match is not None and normalise_label(match[1]) not in ("d", "delta", "δ"):
+        return _IN.sub("", cell[: match.start()].strip()).strip(), match[1].strip()
+    # NETZSCH writes "E'/MPa", RheoWin "G' in Pa"; "E''/E'" has no unit
+    bare = _BARE_UNIT.fullmatch(cell)
+    if bare and _concept(bare[1]) and not _concept(bare[2]):
+        return bare[1].strip(), bare[2]
+    return cell, ""
+
+
+def _concept(label: str) -> str:
+    """Return what of a modulus a name stands for; "" if nothing.
+
+    >>> [_concept(label) for label in ("f", 'E"', "G'", "Tan(delta)", "|G*|", "Step time")]
+    ['modulus_frequency', 'loss_modulus', 'storage_modulus', 'loss_factor', 'complex_modulus', '']
+    """
+    if len(label) > _LONGEST:
+        return ""
+    text = label.translate(_PRIMES).replace("''", "pp").replace('"', "pp").replace("'", "p")
+    words = text.replace("*", "star").split()
+    whole, without_symbol = (normalise_label(" ".join(part)) for part in (words, words[:-1]))
+    for word in known_words("modulus"):
+        if whole in word.symbols or {whole, without_symbol} & names(word.quantity):
+            return word.quantity  # "Storage modulus E'" is its name and its symbol
+    return "temperature" if whole in ("t", "temp", "ts", *names("temperature")) else ""
+
+
+def _needed(columns: dict[str, Column]) -> dict[str, Column]:
+    """Return the columns that make a modulus over frequency, and the temperature; {} if none."""
+    frequency = [name for name in ("angular_frequency", "modulus_frequency") if name in columns]
+    pair = next((pair for pair in _PAIRS if set(pair) <= set(columns)), ())
+    if not frequency or not pair:
+        return {}
+    wanted = {frequency[0], *pair, "temperature"}
+    return {name: column for name, column in columns.items() if name in wanted}
+
+
+_PAIRS = (
+    ("storage_modulus", "loss_modulus"),
+    ("storage_modulus", "loss_factor"),
+    ("complex_modulus", "phase_angle"),
+    ("complex_modulus", "loss_factor"),
+)
+
+
+def _table_below(rows: Sequence[Row], place: int, columns: dict[str, Column], dec: str) -> Table:
+    """Return the columns with their units, and all rows of numbers below, also of later blocks."""
+    numeric = [
+        n for n in range(place + 1, len(rows)) if numbers_of(rows[n], columns, dec) is not None
+    ]
+    first = numeric[0] if numeric else len(rows)
+    below = (row for row in rows[place + 1 : first] if any(cell.strip() for cell in row))
+    units = next((row for row in below if not all(map(_NUMBER.fullmatch, row))), [])
+    told = {
+        concept: column
+        if column.unit or column.place >= len(units)
+        # a unit may stand in brackets, or bare
+        else column._replace(unit=units[column.place].strip().strip("[]()").strip())
+        for concept, column in columns.items()
+    }
+    labels = " ".join(rows[place])
+    gs = normalise_label(told.get("storage_modulus", told.get("complex_modulus", _NONE)).label)
+    tensile = gs.startswith("e") or "tensile" in labels.lower()
+    shear = not tensile and (gs.startswith("g") or _SHEAR.search(labels) is not None)
+    return Table(told, [rows[n] for n in numeric], shear, dec)
+
+
+_NONE = Column(0, "", "", "")
+
+
+def numbers_of(row: Row, columns: dict[str, Column], decimal: str) -> list[float] | None:
+    """Return the numbers of a row in the order of the columns, or None of another row."""
+    result = []
+    for concept, column in columns.items():
+        cell = row[column.place].strip() if column.place < len(row) else ""
+        text = cell.replace(",", ".") if decimal == "," else cell
+        if _NUMBER.fullmatch(text):
+            result.append(float(text))
+        elif concept == "temperature":
+            result.append(np.nan)
+        else:
+            return None
+    return result
+
+
+def _text(path: Path, longest: int | None) -> Iterator[tuple[list[Row], str]]:
+    """Yield the rows of a text for each delimiter that may be its own."""
+    try:
+        with path.open("rb") as file:
+            raw = file.read(_LARGEST + 1 if longest is None else 400 * longest)
+    except OSError as error:
+        raise ReadError(f"{path}: the file cannot be opened: {error}") from error
+    if len(raw) > _LARGEST:
+        raise ReadError(f"{path.name}: {path.stat().st_size >> 20} MB are no table of a modulus")
+    lines = [_COMMENT.sub("", line) for line in _decoded(raw).splitlines()[:longest]]
+    for delimiter in ("\t", ";", ",", "  ", " "):
+        if delimiter.isspace() and delimiter != "\t":  # columns are aligned
+            rows = [re.split(rf"\s{{{len(delimiter)},}}", line.strip()) for line in lines]
+        else:
+            try:
+                rows = list(map(_apart, csv.reader(lines, delimiter=delimiter)))
+            except csv.Error:
+                continue
+        comma = delimiter != "," and any(map(_COMMA.search, lines))
+        yield rows, "," if comma and not any(map(_POINT.search, lines)) else "."
+
+
+def _apart(row: Row) -> Row:
+    """Separate numbers aligned with blanks, which RepTate writes below names between tabs."""
+    cells = row[0].split() if len(row) == 1 else row
+    return cells if all(map(_NUMBER.fullmatch, cells)) else row
+
+
+def _decoded(raw: bytes) -> str:
+    for mark, encoding in (
+        (codecs.BOM_UTF8, "utf-8-sig"),
+        (codecs.BOM_UTF16_LE, "utf-16"),
+        (codecs.BOM_UTF16_BE, "utf-16"),
+    ):
+        if raw.startswith(mark):
+            return raw.decode(encoding, errors="replace")
+    try:
+        return raw.decode("utf-8")
+    except UnicodeDecodeError:
+        return raw.decode("cp1252", errors="replace")
+
+
+def _workbook(path: Path, sheet: str | None) -> Iterator[tuple[list[Row], str]]:
+    for cells in _sheets(path, sheet):
+        yield cells, "."
+
+
+@isolated("pandas", "python_calamine")
+def _sheets(path: Path, sheet: str | None) -> list[list[Row]]:
+    # late: a library that takes long to load, in the child alone
+    import pandas as pd
+
+    wanted = None if sheet is None else [sheet]
+    with damage_told(path, "workbook"):
+        found = pd.read_excel(path, sheet_name=wanted, dtype=object, header=None, engine="calamine")
+    return [
+        [["" if c is None or c != c else str(c) for c in row] for row in one.to_numpy(dtype=object)]
+        for one in found.values()
+    ]
