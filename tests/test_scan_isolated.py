@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tribolab.draft.scans import read_scans
-from tribolab.io.scans.isolated import take_isolated
+from tribolab.reading.scans.isolated import take_isolated
 from tribolab.surface.form import remove_form
 
 

@@ -6,7 +6,8 @@ import pytest
 
 from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError
-from tribolab.io.scans.matrix_header import header_of
+from tribolab.reading.lexicon.lexicon import known_words
+from tribolab.reading.scans.header import map_header
 
 ROWS, COLUMNS = 9, 14
 HEIGHTS = np.round(np.random.default_rng(11).normal(0, 1e-6, (ROWS, COLUMNS)), 9)
@@ -120,10 +121,10 @@ def test_what_may_be_no_matrix_of_heights_is_not_taken_for_one(tmp_path):
 
 def test_a_pitch_goes_before_the_extent_and_counts_are_no_lengths():
     lines = ["Scan size X: 10 um", "Scan size Y: 5 um", "Pixel size: 0.99 um", "X size: 10"]
-    said = header_of(lines, (10, 10), ".")
+    said = map_header(lines, (10, 10), ".")
     assert (said.dx, said.dy) == pytest.approx((0.99e-6, 0.99e-6))
     assert (said.columns, said.rows, said.height) == (10, None, None)
-    narrow = header_of(lines[:2], (10, 10), ".")
+    narrow = map_header(lines[:2], (10, 10), ".")
     assert (narrow.dx, narrow.dy) == pytest.approx((1e-6, 0.5e-6))
 
 
@@ -239,3 +240,53 @@ def test_a_map_may_have_its_positions_along_two_sides(
         bare.write_text("map\n" + "\n".join(path.read_text("utf-8").splitlines()[-13:]), "utf-8")
         with pytest.raises(ReadError, match="does not say the unit of its positions and heights"):
             read_scans(bare)
+
+
+@pytest.mark.parametrize(
+    "above",
+    [
+        "WSxM ASCII Matrix file\nX Amplitude: 7 um\nY Amplitude: 4.5 um\nZ Amplitude: {reach} um\n",
+        "Lateral resolution,0.5 um/pixel\nZ unit,um\n",
+        "Step size: 0.5 um\nHeight unit: um\n",
+        "Point spacing [um]: 0.5\nLine spacing [um]: 0.5\nHeights in um\n",
+    ],
+)
+def test_what_afm_and_stylus_programs_write_above_a_map_is_understood(tmp_path, above):
+    path = tmp_path / "map.csv"
+    heights = np.round(HEIGHTS, 9)
+    path.write_text(above.format(reach=f"{1e6 * np.ptp(heights):.3f}") + rows(heights))
+    scan = read_scans(path)
+    np.testing.assert_allclose(scan.height, heights, atol=1e-15)
+    np.testing.assert_allclose(np.diff(scan.x), 0.5e-6)
+    np.testing.assert_allclose(np.diff(scan.y), 0.5e-6)
+
+
+def test_a_stated_range_that_is_not_that_of_the_heights_states_no_unit(tmp_path):
+    path = tmp_path / "map.csv"
+    path.write_text("Step: 1 um\nZ Amplitude: 300 nm\n" + rows())
+    with pytest.raises(ReadError, match="in which unit its heights are"):
+        read_scans(path)
+
+
+def test_every_word_for_a_pitch_is_understood_above_a_map_as_above_a_profile(tmp_path):
+    [pitch] = [word for word in known_words() if word.quantity == "pitch"]
+    terms = [term for language in pitch.terms.values() for term in language]
+    assert len(terms) > 80
+    profile = "Z [um]\n" + "\n".join(f"{1e6 * z:.3f}" for z in HEIGHTS.ravel()) + "\n"
+    path = tmp_path / "scan.csv"
+    for term in terms:
+        for body in (f"Height unit: um\n{rows()}", profile):
+            path.write_text(f"{term}: 2 um\n{body}", "utf-8")
+            scan = read_scans(path)
+            assert np.diff(scan.x)[0] == pytest.approx(2e-6), term
+            assert scan.height.size == HEIGHTS.size, term
+
+
+def test_a_pitch_along_x_alone_is_taken_along_y_and_doubted(tmp_path):
+    path = tmp_path / "map.csv"
+    path.write_text("X increment: 2 um\nHeight unit: um\n" + rows())
+    scan = read_scans(path)
+    np.testing.assert_allclose(np.diff(scan.y), 2e-6)
+    assert "along y" in scan.attrs["doubtful"]
+    path.write_text("X increment: 2 um\nY range: 18 um\nHeight unit: um\n" + rows())
+    assert "doubtful" not in read_scans(path).attrs

@@ -8,8 +8,8 @@ from real_runs import mitutoyo
 from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError
 from tribolab.io.netcdf import read_netcdf, write_netcdf
-from tribolab.io.scans.grid import even
 from tribolab.io.scans.results import read_tester_results
+from tribolab.reading.scans.grid import even
 from tribolab.rig.files import scan_file
 
 HEAD = "# Surftest profile\n# tip radius: 2 um\n# pitch: 0.5 um\n# length: 25 mm\nx [mm],z [um]\n"

@@ -81,6 +81,25 @@ def plain_unit(unit: str) -> str:
     return _NAME.sub(lambda name: _in_full(unit_in_words(name[0])), text)
 
 
+_LENGTHS = {
+    **{unit: unit for unit in ("m", "cm", "mm", "um", "nm", "pm", "angstrom", "inch", "thou")},
+    **{"\u00c5": "angstrom", "in": "inch", "microinch": "microinch", "meter": "m"},
+    **{"centimeter": "cm", "millimeter": "mm", "micrometer": "um", "nanometer": "nm"},
+}
+
+
+def unit_of_length(text: str) -> str:
+    """Return the unit of length that a text is and nothing else; or "".
+
+    >>> unit_of_length("[nm]"), unit_of_length("Mikrometer"), unit_of_length("MM")
+    ('nm', 'um', 'mm')
+    >>> unit_of_length("nm per step"), unit_of_length("N"), unit_of_length("Å")
+    ('', '', 'angstrom')
+    """
+    bare = text.strip(" \t[](){}.,;\"'").replace("\u212b", "\u00c5")
+    return next((_LENGTHS[u] for u in map(plain_unit, (bare, bare.lower())) if u in _LENGTHS), "")
+
+
 def _in_full(name: str) -> str:
     """Return a unit that is written out, in whatever letters, as the library of units has it.
 

@@ -111,7 +111,7 @@ def _undirected(run: xr.Dataset, segments: xr.Dataset) -> bool:
 def _scan_said(file: Path, dialect: Path) -> str:
     # late: starting stays quick
     from tribolab.draft.scans import read_scans
-    from tribolab.io.scans.extent import doubt_about_heights
+    from tribolab.reading.scans.extent import doubt_about_heights
 
     scan = read_scans(file, dialect)
     height = scan["height"]

@@ -178,7 +178,7 @@ def _is_text(path: Path) -> bool:
 
 def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
     # late: starting stays quick
-    from tribolab.io.scans.extent import doubt_about_heights
+    from tribolab.reading.scans.extent import doubt_about_heights
 
     traces = list(read_scan(path, instrument).values())
     scan = traces[0]

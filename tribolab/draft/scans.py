@@ -19,11 +19,11 @@ from tribolab.draft.on_the_fly import DRAFTED, draft_of, lacks_distance
 from tribolab.errors import ReadError
 from tribolab.io.dialects.find import Dialect, Instrument
 from tribolab.io.scans.column_map import UnclearOrderError
-from tribolab.io.scans.extent import doubt_about_heights
 from tribolab.io.scans.read import files_of, read_known_scans, stacked
 from tribolab.io.scans.undescribed import is_own_text
 from tribolab.reading import cures
 from tribolab.reading.raw.source import read_unchanged
+from tribolab.reading.scans.extent import doubt_about_heights
 from tribolab.stamping import stamp
 
 _TRACE = ", trace "

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ConfigError, nearest, shown
-from tribolab.io.scans.grid import even
+from tribolab.reading.scans.grid import even
 from tribolab.rig.profiles import scans as simulate
 from tribolab.rig.profiles import touch
 from tribolab.stamping import stamp

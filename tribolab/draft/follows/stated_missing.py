@@ -11,7 +11,7 @@ from tribolab.draft.follows.sensor import lost_values
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.settings import numeric_settings
 from tribolab.io.dialects.cells import split_row
-from tribolab.io.scans.stated_missing import take_stated
+from tribolab.reading.scans.stated_missing import take_stated
 
 
 def take_stated_missing(

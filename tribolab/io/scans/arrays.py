@@ -13,11 +13,11 @@ from tribolab.errors import ReadError, shown
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.scans.array_units import LENGTHS, UNITS, scaled, stated_unit, tokens, unit_of_scale
 from tribolab.io.scans.formats import NotSaidError
-from tribolab.io.scans.grid import even
 from tribolab.io.scans.held_arrays import HeldArray, HeldArrays, read_arrays
-from tribolab.io.scans.matrix_header import header_of
 from tribolab.io.scans.named_units import unsaid
 from tribolab.reading.raw.missing_marks import measurable, take_marks
+from tribolab.reading.scans.grid import even
+from tribolab.reading.scans.header import map_header
 from tribolab.units import conversion
 from tribolab.untyped import Json
 
@@ -211,7 +211,7 @@ def _steps(
         if array.values.ndim == 0 and (unit := _unit_of(array, "x", held) or x_unit)
     ]
     lines += [f"{key.replace('_', ' ')}: {text}" for key, text in held.texts.items()]
-    header = header_of(lines, (rows, columns), ".")
+    header = map_header(lines, (rows, columns), ".")
     steps: dict[str, np.ndarray | None] = {}
     for axis, number, pitch in (("x", columns, header.dx), ("y", rows, header.dy)):
         array = along[axis]

@@ -13,8 +13,8 @@ import xarray as xr
 
 from tribolab.errors import ReadError, shown
 from tribolab.io.scans.matrix import texts_of, value_of
-from tribolab.io.scans.matrix_header import MatrixHeader, header_of
 from tribolab.reading.raw.missing_marks import measurable, take_marks
+from tribolab.reading.scans.header import MapHeader, map_header
 
 _HEAD = 1 << 16  # bytes in which a column begins
 _HEAD_LINES = 500  # above it
@@ -105,9 +105,10 @@ def _goes_by_columns(path: Path, above: list[str]) -> bool:
     return False
 
 
-def _map(heights: np.ndarray, header: MatrixHeader) -> xr.Dataset:
+def _map(heights: np.ndarray, header: MapHeader) -> xr.Dataset:
     assert header.dx and header.dy and header.height  # else `_header` gives none
     attrs = {"instrument": "map in one column, by its header"}
+    attrs |= {"doubtful": header.doubt} if header.doubt else {}
     if marks := take_marks([heights.reshape(-1)]):
         attrs["taken_for_missing"] = "; ".join(f"height: {mark.words}" for mark in marks)
     rows, columns = heights.shape
@@ -118,12 +119,12 @@ def _map(heights: np.ndarray, header: MatrixHeader) -> xr.Dataset:
     )
 
 
-def _header(above: list[str], mark: str) -> MatrixHeader | None:
+def _header(above: list[str], mark: str) -> MapHeader | None:
     """Return what stands above, if it says all that is needed."""
-    counts = header_of(above, (1, 1), mark)
+    counts = map_header(above, (1, 1), mark)
     if counts.rows is None or counts.columns is None or min(counts.rows, counts.columns) < _FEWEST:
         return None
-    told = header_of(above, (counts.rows, counts.columns), mark)
+    told = map_header(above, (counts.rows, counts.columns), mark)
     return told if told.dx and told.dy and told.height else None
 
 

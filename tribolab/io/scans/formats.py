@@ -14,11 +14,11 @@ import xarray as xr
 
 from tribolab.errors import ReadError, TribolabError, brief
 from tribolab.io.dialects.signature import peek
-from tribolab.io.scans.grid import even
 from tribolab.io.scans.safety import formats_to_try
 from tribolab.reading import cures
 from tribolab.reading.raw.missing_marks import measurable, take_marks
 from tribolab.reading.raw.opening import isolated
+from tribolab.reading.scans.grid import even
 from tribolab.units import conversion, to_si
 from tribolab.untyped import Arguments, Json
 

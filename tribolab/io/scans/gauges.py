@@ -13,8 +13,8 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, UnitError, brief
-from tribolab.io.scans.grid import even
 from tribolab.reading.raw.missing_marks import measurable
+from tribolab.reading.scans.grid import even
 from tribolab.units import conversion
 
 _AXIS = re.compile(

@@ -5,7 +5,6 @@ So spreadsheets and mathematics programs write maps: x across the top, y down th
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from itertools import islice, starmap
 from pathlib import Path
@@ -16,22 +15,17 @@ import xarray as xr
 
 from tribolab.io.scans.formats import NotSaidError
 from tribolab.io.scans.matrix import GRAMMARS, cells_of, texts_of, value_of
-from tribolab.io.scans.matrix_header import UNIT, header_of
 from tribolab.io.scans.named_units import unsaid
 from tribolab.reading.raw.containers.workbook import sheets_of
 from tribolab.reading.raw.missing_marks import measurable, take_marks
 from tribolab.reading.raw.unpacked import ZIP, is_workbook
+from tribolab.reading.scans.header import map_header
 from tribolab.units import conversion
 
 _HEAD_LINES = 60  # above the positions
 _FEWEST = 8  # rows, and heights of each
 _HEAD = 1 << 20  # bytes in which a map begins
 _EVEN = 1e-2  # of a step, by which positions may be rounded
-_AND = r"(?:e|y|and|und|et|i|og|och|en|ja|és|ve|a|и|和|と)?"
-_ALONG = re.compile(  # "X e Y em mm", "x/y [um]", "XY unit: mm", "Y \ X (mm)"
-    rf"(?<![^\W\d_])[xy]\W{{0,3}}{_AND}\W{{0,3}}[xy](?![^\W\d_])[^\d,;]{{0,20}}?(?<![^\W\d_])(?P<unit>{UNIT})",
-    re.IGNORECASE,
-)
 
 
 class _Map(NamedTuple):
@@ -71,26 +65,24 @@ def read_labelled_map(
     if found is None:
         return None
     lines = [*found.above, found.corner]
-    said = {match["unit"] for line in lines if (match := _ALONG.search(line))}
-    along = x_unit or (said.pop() if len(said) == 1 else "")
-    header = header_of(lines, found.heights.shape, found.mark)
+    header = map_header(lines, found.heights.shape, found.mark)
+    along = conversion(x_unit, "m")[0] if x_unit else header.along
     height = conversion(height_unit, "m")[0] if height_unit else header.height
-    lacking = ["positions"] * (not along) + ["heights"] * (height is None)
-    if lacking or height is None:
+    lacking = ["positions"] * (along is None) + ["heights"] * (height is None)
+    if along is None or height is None:
         raise NotSaidError(
             "a map with positions along two sides that does not say the unit of its "
             f"{' and '.join(lacking)}",
             where=path,
-            cure=unsaid(path, along=not along, up=height is None),
+            cure=unsaid(path, along=along is None, up=height is None),
         )
-    step = conversion(along, "m")[0]
     heights = height * found.heights
     attrs = {"instrument": "map with positions along two sides, by its header"}
     if marks := take_marks([heights.reshape(-1)]):
         attrs["taken_for_missing"] = "; ".join(f"height: {mark.words}" for mark in marks)
     scan = xr.Dataset(
         {"height": (("y", "x"), measurable(heights))},
-        {"y": step * found.y, "x": step * found.x},
+        {"y": along * found.y, "x": along * found.x},
         attrs,
     )
     return scan.sortby(["y", "x"])

@@ -14,11 +14,11 @@ import xarray as xr
 
 from tribolab.errors import ReadError, shown
 from tribolab.io.scans.formats import NotSaidError
-from tribolab.io.scans.matrix_header import MatrixHeader, header_of
 from tribolab.io.scans.named_units import unsaid
-from tribolab.io.scans.stated_missing import take_stated
 from tribolab.reading import cures
 from tribolab.reading.raw.missing_marks import Marked, measurable, take_marks
+from tribolab.reading.scans.header import MapHeader, map_header, unit_of_range
+from tribolab.reading.scans.stated_missing import take_stated
 from tribolab.units import conversion
 
 _HEAD = 1 << 20  # bytes in which a matrix begins
@@ -92,14 +92,14 @@ def read_matrix(
         head = file.read(_HEAD)
     if not any(_matrix(text.splitlines()) for text in texts_of(head)):
         return None
-    told: tuple[_Matrix, MatrixHeader] | None = None
+    told: tuple[_Matrix, MapHeader] | None = None
     for text in texts_of(path.read_bytes()):
         matrix = _matrix(text.splitlines())
         if matrix is None:
             continue
         shape = len(matrix.rows), matrix.columns
         commas = matrix.delimiter == ","
-        header = header_of(
+        header = map_header(
             matrix.above, shape, matrix.mark, commas_part=commas, x_unit=x_unit or ""
         )
         if header.height is None and height_unit is not None:
@@ -121,9 +121,12 @@ def read_matrix(
     whole = (heights == np.round(heights)) | np.isnan(heights)
     if header.gauge_step not in (None, header.height) and whole.all():
         header = header._replace(height=None)  # counts of that step, perhaps
+    if header.height is None:
+        header = header._replace(height=unit_of_range(header, heights))
     _refuse(path, matrix, header)
     assert header.dx and header.dy and header.height  # else refused
     attrs = {"instrument": "matrix of heights, by its header"}
+    attrs |= {"doubtful": header.doubt} if header.doubt else {}
     if missing := _without_missing(heights, header):
         attrs["taken_for_missing"] = missing
     rows, columns = heights.shape
@@ -134,7 +137,7 @@ def read_matrix(
     )
 
 
-def _without_missing(heights: np.ndarray, header: MatrixHeader) -> str:
+def _without_missing(heights: np.ndarray, header: MapHeader) -> str:
     """Put NaN where a number stands for no height, and say which it was."""
     stated = take_stated(heights, header.stated)
     told = [
@@ -241,7 +244,7 @@ def _even(values: np.ndarray) -> bool:
     return bool(steps.size > 1 and (np.abs(steps - steps[0]) < 1e-3 * abs(steps[0])).all())
 
 
-def _refuse(path: Path, matrix: _Matrix, header: MatrixHeader) -> None:
+def _refuse(path: Path, matrix: _Matrix, header: MapHeader) -> None:
     """Refuse a matrix that is not whole, or of which too little is said."""
     rows, columns = len(matrix.rows), matrix.columns
     apart = "how far its points lie apart along x and y"

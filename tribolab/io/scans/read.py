@@ -22,14 +22,14 @@ from tribolab.io.dialects.find import (
 )
 from tribolab.io.dialects.signature import File, is_results, peek
 from tribolab.io.patterns import is_pattern, matching
-from tribolab.io.scans.extent import measured_part, refuse_impossible
-from tribolab.io.scans.grid import even, gridded
-from tribolab.io.scans.isolated import take_isolated
-from tribolab.io.scans.passes import find_passes
 from tribolab.io.scans.undescribed import read_undescribed
 from tribolab.provenance import as_text, made, sha256_of_file
 from tribolab.reading import cures
 from tribolab.reading.raw.source import check_regular
+from tribolab.reading.scans.extent import measured_part, refuse_impossible
+from tribolab.reading.scans.grid import even, gridded
+from tribolab.reading.scans.isolated import take_isolated
+from tribolab.reading.scans.passes import find_passes
 from tribolab.stamping import stamp
 from tribolab.units import positive
 from tribolab.untyped import Json

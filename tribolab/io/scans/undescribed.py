@@ -15,13 +15,13 @@ from tribolab.io.scans.held_arrays import holds_arrays, is_npz
 from tribolab.io.scans.labelled_map import read_labelled_map
 from tribolab.io.scans.matrix import read_matrix
 from tribolab.io.scans.named_units import units_in_name
-from tribolab.io.scans.sdf import as_standard, is_sdf_draft
-from tribolab.io.scans.sur import is_sur, plain_sur
 from tribolab.io.scans.surfer import is_surfer, read_surfer
 from tribolab.io.scans.x3p import is_iso_xml, main_of, read_iso_xml, read_x3p
 from tribolab.io.scans.xml_values import is_xml, read_xml_values
 from tribolab.io.scans.zygo_xyz import is_zygo_xyz, read_zygo_xyz
 from tribolab.reading.raw.unpacked import ZIP, of_the_file, unpacked
+from tribolab.reading.scans.sdf import as_standard, is_sdf_draft
+from tribolab.reading.scans.sur import is_sur, plain_sur
 
 _HEAD = 1 << 14  # bytes that tell a format
 

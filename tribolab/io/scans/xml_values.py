@@ -13,10 +13,10 @@ import xarray as xr
 
 from tribolab.errors import ReadError, UnitError, brief, shown
 from tribolab.io.scans.formats import NotSaidError
-from tribolab.io.scans.grid import even
 from tribolab.io.scans.safety import refuse_deep
 from tribolab.reading import cures
 from tribolab.reading.raw.missing_marks import measurable
+from tribolab.reading.scans.grid import even
 from tribolab.units import conversion
 
 _FEWEST = 16  # numbers of a list that may be a profile

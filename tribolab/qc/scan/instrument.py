@@ -9,9 +9,9 @@ import xarray as xr
 
 from tribolab.core.limit import Limit
 from tribolab.errors import AnalysisError
-from tribolab.io.scans.extent import doubt_about_heights
 from tribolab.qc.register import Check, Result
 from tribolab.qc.scan.subject import ScanSubject
+from tribolab.reading.scans.extent import doubt_about_heights
 from tribolab.surface.roughness import roughness_parameters
 
 _COMPARED = ("Ra", "Rq")

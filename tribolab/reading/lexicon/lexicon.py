@@ -111,6 +111,15 @@ def keys_of(kind: Literal["unit", "name", "value", "count"]) -> tuple[str, ...]:
     return tuple(_toml("roles")["key"][kind])
 
 
+def words_of(name: str) -> list[str]:
+    """Return the words of a name in small letters; a capital begins one.
+
+    >>> words_of("PixelSizeX"), words_of("Step size (X)"), words_of("dx")
+    (['pixel', 'size', 'x'], ['step', 'size', 'x'], ['dx'])
+    """
+    return [word.lower() for word in _TOKENS.findall(name[:LONGEST_NAME])]
+
+
 def role_of(name: str) -> Role:
     """Tell by a column's name how its numbers came about.
 

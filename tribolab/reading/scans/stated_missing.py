@@ -7,29 +7,11 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
+
 _SAME = 2e-7  # relative: a number with single precision
 _TWICE = 2
-# what such an entry is called; an unknown word does, too, where the number lies far outside
-_NAMED = re.compile(
-    r"(?i)missing|no[\s_-]*(?:data|value)|invalid|\bbad\b|\bvoid\b|undefined|not[\s_-]*measured"
-    r"|fehl(?:end|wert|stell)|ung(?:ü|ue)ltig|nicht[\s_-]*gemessen|manquant|non[\s_-]*mesur|invalide"
-    r"|falt[ae]|ausente|perdid|inv[aá]lid|no[\s_-]*v[aá]lid|mancant|non[\s_-]*valid|ontbrek|ongeldig"
-    r"|puuttu|saknad|ogiltig|mangl|ugyldig|chyb[eě]j|neplatn|\bbrak\b|hi[aá]nyz|eksik|ge[cç]ersiz"
-    r"|пропу|отсутств|недейств|无效|無效|缺失|欠損|欠測|無効|결측|누락"
-)
-# a value, which may lie among the heights, and not how many are missing
-_AS_VALUE = re.compile(
-    r"(?i)no[\s_-]*data|value|wert|valeur|valor|arvo|värde|verdi|værdi|hodnota|warto|érték|de[ğg]er|знач|[値值]"
-)
-_COUNTS = re.compile(
-    r"(?i)points?|pixels?|count|number|anzahl|zahl|punkt|nombre|n[uú]mero|quant|liczba|po[čc]et|antal|aantal"
-    r"|say[ıi]s|числ|колич|点数|個数|个数|%|ratio|share|anteil"
-)
-# results, and what lies far outside without being no height
-_RESULTS = re.compile(
-    r"(?i)min|max|lowest|highest|peak|valley|pit|range|offset|origin|mean|average|mittel|tief|h(?:ö|oe)ch"
-    r"|hoogst|laagst|moyen|pico|picco|最[大小高低]|平均|\bR\w{1,2}\b|\bS\w{1,2}\b"
-)
+_PARAMETER = re.compile(r"\b[RS]\w{1,2}\b")  # of roughness: Ra, Sq
 
 
 def take_stated(
@@ -77,6 +59,9 @@ def _is_mark(values: np.ndarray, here: np.ndarray, name: str, number: float) -> 
         return False
     low, high = float(rest.min()), float(rest.max())
     outside = max(low - number, number - high)
-    if _NAMED.search(name):
-        return outside > 0 or bool(_AS_VALUE.search(name) and not _COUNTS.search(name))
-    return outside > high - low and int(here.sum()) >= _TWICE and not _RESULTS.search(name)
+    key = normalise_label(name)
+    if key_pattern("no_height").search(key):
+        counted = "%" in name or key_pattern("how_many").search(key)
+        return outside > 0 or bool(key_pattern("as_value").search(key) and not counted)
+    result = _PARAMETER.search(name) or key_pattern("of_heights").search(key)
+    return outside > high - low and int(here.sum()) >= _TWICE and not result

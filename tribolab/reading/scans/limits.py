@@ -22,3 +22,9 @@ MAX_SHARE_OF_MARK = Limit(0.5, "1", "beyond it the number is a level of the surf
 MIN_OTHER_HEIGHTS = Limit(
     16.0, "1", "different heights beside the mark: a scan of fewer is a drawing", "judgement"
 )
+SAME_RANGE = Limit(
+    1e-3,
+    "1",
+    "a stated range is that of the heights within so much of itself: it is written with few digits",
+    "WSxM writes 'Z Amplitude: 41.20 nm'",
+)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribolab.io.scans.limits import (
+from tribolab.reading.raw.missing_marks import Marked
+from tribolab.reading.scans.limits import (
     MAX_DIGITS_OF_MARK,
     MAX_SHARE_OF_MARK,
     MIN_DISTANCE_OF_MARK,
     MIN_DISTANCE_OF_SINGLE_MARK,
     MIN_OTHER_HEIGHTS,
 )
-from tribolab.reading.raw.missing_marks import Marked
 
 
 def take_isolated(height: np.ndarray) -> list[Marked]:

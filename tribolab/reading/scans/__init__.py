@@ -1,0 +1,1 @@
+"""Scans that no dialect describes: profiles and maps of heights."""

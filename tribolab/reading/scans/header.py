@@ -1,0 +1,325 @@
+"""What the lines above a map of heights state: distances of its points, sizes, units, counts."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.reading.lexicon.lexicon import (
+    key_pattern,
+    normalise_label,
+    part_pattern,
+    words_of,
+)
+from tribolab.reading.scans.limits import SAME_RANGE
+from tribolab.reading.scans.unit_words import (
+    AXES,
+    IN_BRACKETS,
+    WORD,
+    axes_of,
+    height_unit,
+    is_about_heights,
+    metres,
+    only_one,
+    stated_units,
+)
+from tribolab.unit_names import unit_of_length
+
+_LONGEST = 300  # characters of a line that are looked at
+_MOST_NUMBERS = 2  # of an entry; more are a date, a time, a row of results
+_NUMBER = r"(?<![\w.])[-+]?\d+(?:[{marks}]\d+)?(?:[eE][-+]?\d+)?"
+_CELL_NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
+_BEHIND = re.compile(r"[\s,;]*[(\[]?(?P<unit>[^\W\d_]+)?(?P<per>\s*(?:/|per)\s*[^\W\d_]+)?")
+_WORD = re.compile(r"[^\W\d_]+")
+
+
+class MapHeader(NamedTuple):
+    """What is stated above a map: pitch along x and y [m], unit of heights [m], rows and columns.
+
+    None is what is not stated, or in two ways. `along` [m] is the unit of positions. `stated` are
+    names and numbers that have no unit; `gauge_step` [m] is what whole numbers may be counted in;
+    `without_unit` is a pitch or extent that has none: "cellsize 0.005". `doubt` says what is taken
+    for granted. `sizes` are numbers about the heights with their unit [m], such as their range.
+    """
+
+    dx: float | None
+    dy: float | None
+    height: float | None
+    rows: int | None
+    columns: int | None
+    along: float | None = None
+    stated: tuple[tuple[str, float], ...] = ()
+    gauge_step: float | None = None
+    without_unit: str = ""
+    doubt: str = ""
+    sizes: tuple[tuple[float, float], ...] = ()
+
+
+class _Entry(NamedTuple):
+    """A name with its numbers and their units of length ("" without), and the axes it names."""
+
+    key: str
+    numbers: tuple[float, ...]
+    units: tuple[str, ...]
+    per_point: bool
+
+    def means(self, concept: str) -> bool:
+        """Whether the name stands for a concept of the lexicon, with or without its axis."""
+        pattern = key_pattern(concept)
+        return any(pattern.search(name) for name in _names(self.key))
+
+    @property
+    def bare(self) -> str:
+        """The name as it is shown."""
+        return " ".join(self.key.strip(" #%;,:=\t").split())
+
+
+def map_header(
+    lines: Iterable[str],
+    shape: tuple[int, int],
+    mark: str,
+    *,
+    commas_part: bool = False,
+    x_unit: str = "",
+) -> MapHeader:
+    """Understand the lines above a map.
+
+    Parameters
+    ----------
+    lines
+        The lines.
+    shape
+        Rows and columns of the map, by which an extent becomes a pitch.
+    mark
+        Decimal mark of the map; the lines above may have the other one.
+    commas_part
+        Whether commas part cells, and are no decimal marks.
+    x_unit
+        Unit of a pitch or an extent that states none.
+
+    Examples
+    --------
+    >>> header = map_header(["Field of view: 20 x 10 um", "Heights [nm]"], (5, 10), ".")
+    >>> round(header.dx * 1e6, 9), round(header.dy * 1e6, 9), header.height
+    (2.0, 2.0, 1e-09)
+    """
+    texts = [
+        part
+        for line in lines
+        for part in _parts(line[:_LONGEST].replace('"', " ").strip(), commas_part=commas_part)
+    ]
+    entries = [e for text in texts if (e := _entry(text, mark, commas_part=commas_part))]
+    bare = [entry for entry in entries if _lacks_unit(entry)]
+    if x_unit:
+        entries = [
+            e._replace(units=(x_unit,) * len(e.numbers)) if e in bare else e for e in entries
+        ]
+    pitch = _alongaxes_of([e for e in entries if _is_pitch(e)], (1, 1))
+    extent = _alongaxes_of([e for e in entries if _is_extent(e)], shape, parted=True)
+    dx, dy = (first or second for first, second in zip(pitch, extent, strict=True))
+    doubt = ""
+    if dx and dy is None and not any(_names_axis(e, "y") for e in entries if any(e.units)):
+        dy, doubt = dx, "only the distance of points along x is stated: taken along y, too"
+    rows, columns = _counts(entries)
+    steps = [e.numbers[0] * metres(e.units[0]) for e in entries if _is_gauge_step(e)]
+    units = [unit for text in texts for unit in stated_units(text)]
+    scaled = any(_is_factor(entry) for entry in entries)
+    return MapHeader(
+        dx,
+        dy,
+        None if scaled else height_unit(units),
+        rows,
+        columns,
+        only_one({metres(u.unit) for u in units if axes_of(u.words) & {"x", "y"}}),
+        tuple((e.bare, e.numbers[0]) for e in entries if len(e.numbers) == 1 and not e.units[0]),
+        max(steps, default=None),
+        f"{bare[0].bare} {bare[0].numbers[0]:g}" if bare else "",
+        doubt,
+        () if scaled else tuple((e.numbers[0], metres(e.units[0])) for e in entries if _is_size(e)),
+    )
+
+
+def unit_of_range(header: MapHeader, heights: np.ndarray) -> float | None:
+    """Return the unit [m] in which a stated range is that of the heights.
+
+    WSxM states it so: "Z Amplitude: 41.2 nm" above a matrix without a unit.
+    """
+    known = heights[np.isfinite(heights)]
+    reach = float(np.ptp(known)) if known.size else 0.0
+    fitting = {unit for size, unit in header.sizes if abs(reach - size) <= SAME_RANGE.value * size}
+    return only_one(fitting)
+
+
+def _parts(text: str, *, commas_part: bool) -> list[str]:
+    """Return the entries of a line about one axis, each with its name; any other line as it is.
+
+    >>> _parts("Axe X;Points;256;Pas;3,2;um", commas_part=False)
+    ['x Points: 256', 'x Pas: 3,2 um']
+    >>> _parts("Axe Z;Unit;um;Step;0,1;nm", commas_part=False)
+    ['z Unit: um', 'z Step: 0,1 nm']
+    """
+    cells = [cell.strip() for cell in re.split(r"[;\t,]" if commas_part else r"[;\t]", text)]
+    words = words_of(cells[0])
+    about = [word for word in words if word in ("x", "y", "z")]
+    if len(about) != 1 or len(words) > 2 or len(cells) < 4:
+        return [text]
+    entries: list[list[str]] = []
+    for cell in cells[1:]:
+        is_value = _CELL_NUMBER.fullmatch(cell) or unit_of_length(cell)
+        if not entries or (len(entries[-1]) > 1 and not is_value):
+            entries.append([cell])
+        else:
+            entries[-1].append(cell)
+    return [f"{about[0]} {key}: {' '.join(said)}" for key, *said in entries if said]
+
+
+def _entry(text: str, mark: str, *, commas_part: bool) -> _Entry | None:
+    """Return the name and the numbers of a line; None of one without, or with many."""
+    number = _NUMBER.format(marks="." if commas_part else ".,")
+    found = list(re.finditer(number, text))
+    if not found or len(found) > _MOST_NUMBERS:
+        return None
+    key = text[: found[0].start()]
+    behind = [_BEHIND.match(text, match.end()) for match in found]
+    units = [unit_of_length(match["unit"] or "") if match else "" for match in behind]
+    in_key = [stated.unit for stated in stated_units(key)]
+    usual = units[-1] or (in_key[-1] if in_key else "")
+    per = part_pattern("pixel"), part_pattern("points_at_end")
+    per_point = any(
+        match
+        and unit
+        and match["per"]
+        and any(p.search(normalise_label(match["per"])) for p in per)
+        for match, unit in zip(behind, units, strict=True)
+    )
+    numbers = tuple(_number(match[0], mark) for match in found)
+    return _Entry(key, numbers, tuple(unit or usual for unit in units), per_point)
+
+
+def _number(text: str, mark: str) -> float:
+    """Return a number; NaN where its mark is not the table's and may part thousands: 1,024.
+
+    >>> _number("2,5", "."), _number("1,024", ","), _number("1,024", ".")
+    (2.5, 1.024, nan)
+    """
+    thousands = re.fullmatch(r"[-+]?[1-9]\d{0,2}[.,]\d{3}", text) and mark not in text
+    return float("nan") if thousands else float(text.replace(",", "."))
+
+
+def _names(key: str) -> Iterator[str]:
+    """Give a name without its unit, normalised: as a whole, and without the axes in it."""
+    name = WORD.sub(lambda word: "" if _is_bracketed(key, word) else word[0], key)
+    yield normalise_label(name)
+    if words := [word for word in words_of(name) if word not in AXES]:
+        yield normalise_label(" ".join(words))
+        if unit_of_length(words[-1]) and len(words) > 1:  # "pitch_um", "Pas um"
+            yield normalise_label(" ".join(words[:-1]))
+
+
+def _is_bracketed(text: str, word: re.Match[str]) -> bool:
+    """Whether a word is a unit in brackets."""
+    opened = IN_BRACKETS.search(text[: word.start()]) is not None
+    return opened and bool(unit_of_length(word[0]))
+
+
+def _names_axis(entry: _Entry, axis: str) -> bool:
+    letters = axes_of(entry.key) & {"x", "y"}
+    return axis in letters if letters else entry.means(f"{'across' if axis == 'x' else 'down'}_map")
+
+
+def _is_pitch(entry: _Entry) -> bool:
+    """Whether an entry is the distance of neighbouring points across the surface."""
+    axes = axes_of(entry.key)
+    if "z" in axes or entry.means("vertical"):
+        return entry.means("pitch") and bool(axes & {"x", "y"})
+    bare = axes and not any(word in AXES for word in words_of(entry.key))  # "dx"
+    return entry.per_point or bool(bare) or entry.means("pitch") or entry.means("lines_pitch")
+
+
+def _is_extent(entry: _Entry) -> bool:
+    """Whether an entry is the size of the map."""
+    axes = axes_of(entry.key)
+    if "z" in axes or _is_pitch(entry):
+        return False
+    return entry.means("map_extent") or bool(axes and entry.means("side"))
+
+
+def _lacks_unit(entry: _Entry) -> bool:
+    """Whether an entry is a pitch or an extent across the surface without a unit."""
+    whole = all(map(float.is_integer, entry.numbers)) and entry.means("map_points")
+    return not any(entry.units) and not whole and (_is_pitch(entry) or _is_extent(entry))
+
+
+def _is_gauge_step(entry: _Entry) -> bool:
+    """Whether an entry is what one count of a gauge is worth: "dz: 0.01 um", "LSB: 2 nm"."""
+    step = entry.means("gauge_step") or "z" in axes_of(entry.key) - set(words_of(entry.key))
+    return bool(entry.units[0]) and step and (is_about_heights(entry.key) or entry.means("lsb"))
+
+
+def _is_size(entry: _Entry) -> bool:
+    """Whether an entry is a length along the heights."""
+    single = len(entry.numbers) == 1 and bool(entry.units[0]) and entry.numbers[0] > 0
+    return single and is_about_heights(entry.key)
+
+
+def _is_factor(entry: _Entry) -> bool:
+    """Whether the heights still have to be multiplied by an entry's number."""
+    if entry.numbers[0] == 1.0:
+        return False
+    if is_about_heights(entry.key) and entry.means("height_factor"):
+        return True
+    across = axes_of(entry.key) & {"x", "y"} or entry.means("along") or entry.means("of_pixel")
+    return not entry.units[0] and not across and entry.means("any_factor")
+
+
+def _alongaxes_of(
+    entries: Iterable[_Entry], shape: tuple[int, int], *, parted: bool = False
+) -> tuple[float | None, float | None]:
+    """Return the pitch along x and y [m] that entries state; one of both axes counts last."""
+    rows, columns = (max(number, 1) for number in shape)
+    own: dict[str, set[float]] = {"x": set(), "y": set()}
+    both: set[float] = set()
+    for entry in entries:
+        if not all(entry.units):
+            continue
+        lengths = [n * metres(u) for n, u in zip(entry.numbers, entry.units, strict=True)]
+        if not min(lengths) > 0:
+            continue
+        x, y = (_names_axis(entry, axis) for axis in "xy")
+        if len(lengths) == 2:
+            own["x"].add(_part(lengths[0], columns, parted))
+            own["y"].add(_part(lengths[1], rows, parted))
+        elif x != y:
+            own["x" if x else "y"].add(_part(lengths[0], columns if x else rows, parted))
+        elif rows == columns:  # of a field that is not square one length may be either side
+            both.add(_part(lengths[0], columns, parted))
+    dx, dy = (only_one(stated or both) for stated in own.values())
+    return dx, dy
+
+
+def _part(length: float, points: int, parted: bool) -> float:
+    """Return the distance of points over a length, whose last one is its end or one step before."""
+    pitches = [length / points, length / max(points - 1, 1)] if parted else [length]
+    return min(pitches, key=lambda pitch: len(f"{pitch:.7g}"))
+
+
+def _counts(entries: Iterable[_Entry]) -> tuple[int | None, int | None]:
+    """Return the numbers of rows and columns."""
+    rows: set[float] = set()
+    columns: set[float] = set()
+    for entry in entries:
+        whole = all(n > 0 and n == round(n) for n in entry.numbers) and not any(entry.units)
+        of_row = entry.means("per_line")
+        if not whole or not (of_row or entry.means("map_points")):
+            continue
+        x, y = (_names_axis(entry, axis) for axis in "xy")
+        if len(entry.numbers) == 2:
+            columns.add(entry.numbers[0])
+            rows.add(entry.numbers[1])
+        elif of_row or x != y:
+            (columns if of_row or x else rows).add(entry.numbers[0])
+    both = (only_one(rows), only_one(columns))
+    return (None if both[0] is None else int(both[0]), None if both[1] is None else int(both[1]))
