@@ -138,9 +138,77 @@ def test_damaged_archives_say_so(tmp_path):
         read_scans(archive(tmp_path / "n.x3p", described(link())))
     with pytest.raises(ReadError, match="no heights"):
         read_scans(archive(tmp_path / "e.x3p", described("")))
-    endless = b'<?xml version="1.0"?><!DOCTYPE a [<!ENTITY b "c">]><ISO5436_2>&b;</ISO5436_2>'
-    with pytest.raises(ReadError, match="entities"):
-        read_scans(archive(tmp_path / "x.x3p", endless))
+
+
+LIST = (
+    "<DataList>"
+    + "".join(f"<Datum>{z!r}</Datum>" for z in HEIGHTS.ravel().tolist())
+    + "</DataList>"
+)
+DTD = (
+    "<!ELEMENT p:ISO5436_2 ANY>\n<!ELEMENT Datum (#PCDATA)>\n"
+    "<!ATTLIST p:ISO5436_2 xmlns:p CDATA #IMPLIED>\n<!-- ISO 25178-72 -->\n"
+)
+
+
+def with_dtd(declarations, used="", outside=""):
+    head, root = described(LIST).decode().split("\n", 1)
+    text = f"{head}\n<!DOCTYPE p:ISO5436_2 {outside}[\n{declarations}]>\n{root}"
+    return text.replace("Maker", f"Maker{used}").encode()
+
+
+@pytest.mark.parametrize("inside", [True, False])
+@pytest.mark.parametrize(
+    ("declarations", "used"),
+    [
+        (DTD, ""),
+        (DTD + '<!ENTITY mu "&#181;">\n', "&mu;"),
+        (DTD + '<!ENTITY % kind "CDATA">\n', ""),
+    ],
+)
+def test_a_soft_gauge_with_an_internal_dtd_is_read(tmp_path, inside, declarations, used):
+    path, text = tmp_path / "gauge.x3p", with_dtd(DTD + declarations, used)
+    if inside:
+        archive(path, text)
+    else:
+        path = tmp_path / "gauge.xml"
+        path.write_bytes(text)
+    scan = read_scans(path)
+    np.testing.assert_allclose(scan.height, HEIGHTS, rtol=1e-12)
+    assert scan.attrs["instrument_vendor"] == ("Maker\u00b5" if used else "Maker")
+
+
+LAUGHS = '<!ENTITY e0 "ha">' + "".join(
+    f'<!ENTITY e{n} "{f"&e{n - 1};" * 10}">' for n in range(1, 10)
+)
+HARMFUL = {
+    "outside": ('<!ENTITY e9 SYSTEM "file:///etc/hostname">', "from outside the file"),
+    "laughs": (LAUGHS, "that expands to more"),
+    "long": (f'<!ENTITY e9 "{"ha" * 5000}">', "that expands to more"),
+    "attribute": (f'<!ATTLIST Datum a CDATA "{"ha" * 5000}">', "that each element takes"),
+    "parameter": ('<!ENTITY % e9 SYSTEM "file:///etc/hostname"> %e9;', "from outside the file"),
+}
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+@pytest.mark.parametrize("harm", HARMFUL)
+def test_xml_with_entities_that_take_in_files_or_expand_is_refused(tmp_path, harm, encoding):
+    declarations, says = HARMFUL[harm]
+    text = with_dtd(
+        DTD + declarations, "" if harm in ("parameter", "attribute") else "&e9;"
+    ).decode()
+    if encoding == "utf-16":
+        text = text.replace("UTF-8", "UTF-16")
+    path = archive(tmp_path / "gauge.x3p", text.encode(encoding))
+    with pytest.raises(ReadError, match=says) as refused:
+        read_scans(path)
+    assert "\n" not in str(refused.value) and len(str(refused.value)) < 400
+
+
+def test_the_dtd_of_another_file_is_not_opened(tmp_path):
+    text = with_dtd(DTD, outside='SYSTEM "file:///etc/hostname" ')
+    scan = read_scans(archive(tmp_path / "gauge.x3p", text))
+    np.testing.assert_allclose(scan.height, HEIGHTS, rtol=1e-12)
 
 
 def test_a_map_longer_than_any_instrument_is_refused(tmp_path):

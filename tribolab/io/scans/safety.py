@@ -6,18 +6,18 @@ import contextlib
 import re
 import zipfile
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
 import numpy as np
 
-from tribolab.errors import ReadError, shown
+from tribolab.errors import ReadError
 from tribolab.reading.raw.hdf5_safety import check_self_contained
 from tribolab.reading.raw.opening import largest_unpacked
+from tribolab.reading.raw.xml_safety import refuse_deep
 
 _MEGABYTE = 1 << 20
-_DEEPEST = 500  # elements of XML within one another; office files have a dozen
 DAMAGE = (
     *(zipfile.BadZipFile, zlib.error, OSError, EOFError, NotImplementedError, RuntimeError),
     ValueError,
@@ -109,40 +109,6 @@ def _shallow(path: Path) -> None:
 def _blocks(file: IO[bytes]) -> Iterator[bytes]:
     while block := file.read(_MEGABYTE):
         yield block
-
-
-def refuse_deep(path: Path, name: str, blocks: Iterable[bytes]) -> None:
-    """Refuse XML, given in blocks, whose elements lie too deep in one another.
-
-    Raises
-    ------
-    ReadError
-        If they do.
-    """
-    depth = 0
-    for block in blocks:
-        steps = _steps(block)
-        if depth + steps.cumsum().max(initial=0) > _DEEPEST:
-            raise ReadError(
-                f"{path}: in '{shown(name)}' more than {_DEEPEST} elements lie in one another, as "
-                "no office program writes it; export the profile as text (csv)"
-            )
-        depth += int(steps.sum())
-
-
-def _steps(block: bytes) -> np.ndarray:
-    """Down (1) and up (-1) of each tag whose first two letters stand in a block."""
-    letters = np.frombuffer(block, dtype=np.uint8)
-    starts = np.flatnonzero(letters[:-1] == ord("<"))
-    second = letters[starts + 1]
-    steps = np.ones(starts.size, dtype=np.int64)
-    steps[second == ord("/")] = -1
-    steps[(second == ord("?")) | (second == ord("!"))] = 0
-    ends = np.flatnonzero(letters[1:] == ord(">"))
-    ends = ends[letters[ends] == ord("/")]  # of an empty element: <a/>
-    empty = np.searchsorted(starts, ends) - 1
-    steps[empty[empty >= 0]] = 0
-    return steps
 
 
 def _arrays_only(path: Path) -> None:

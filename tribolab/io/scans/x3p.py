@@ -19,9 +19,9 @@ import xarray as xr
 
 from tribolab.errors import ReadError, brief, shown
 from tribolab.io.scans.safety import DAMAGE, refuse_bomb
-from tribolab.io.scans.xml_values import parsed
 from tribolab.reading.raw.missing_marks import measurable
 from tribolab.reading.raw.opening import isolated
+from tribolab.reading.raw.xml_safety import parsed
 from tribolab.reading.scans.grid import even, gridded
 
 _MAIN = "main.xml"

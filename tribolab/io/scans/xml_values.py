@@ -11,11 +11,11 @@ from xml.etree import ElementTree
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError, UnitError, brief, shown
+from tribolab.errors import ReadError, UnitError, shown
 from tribolab.io.scans.formats import NotSaidError
-from tribolab.io.scans.safety import refuse_deep
 from tribolab.reading import cures
 from tribolab.reading.raw.missing_marks import measurable
+from tribolab.reading.raw.xml_safety import parsed
 from tribolab.reading.scans.grid import even
 from tribolab.units import conversion
 
@@ -56,27 +56,6 @@ class _Leaf(NamedTuple):
 def is_xml(head: bytes) -> bool:
     """Whether a file's first bytes are those of XML."""
     return head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<?xml")
-
-
-def parsed(path: Path, text: bytes) -> ElementTree.Element:
-    """Parse XML; names lose their spaces, which makers choose freely.
-
-    Raises
-    ------
-    ReadError
-        If it is damaged, or made to be endless.
-    """
-    if b"<!ENTITY" in text or b"<!DOCTYPE" in text:
-        raise ReadError(f"{path}: its XML defines entities, as no instrument writes them")
-    refuse_deep(path, path.name, [text])
-    try:
-        root = ElementTree.fromstring(text)
-    except (ElementTree.ParseError, ValueError, LookupError) as error:
-        raise ReadError(f"{path}: its XML is damaged: {brief(error)}; export it again") from error
-    for element in root.iter():
-        if isinstance(element.tag, str):
-            element.tag = element.tag.rpartition("}")[2]
-    return root
 
 
 def read_xml_values(

@@ -38,3 +38,10 @@ HDF5_OBJECTS = Limit(
     "measured with h5py 3 on empty groups",
 )  # fmt: skip
 HDF5_DEPTH = Limit(100.0, "1", "groups in one another: 3000 take half a minute to look at")
+XML_DEPTH = Limit(500.0, "1", "elements of XML in one another; office files have a dozen")
+LETTERS_OF_ENTITY = Limit(
+    100.0, "1", "letters of an entity: a sign or a name; so no text grows to more than 25 times"
+)
+LETTERS_OF_DEFAULTS = Limit(
+    200.0, "1", "letters of attributes that a DTD gives to each element: some namespaces"
+)
