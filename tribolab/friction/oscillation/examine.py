@@ -8,7 +8,7 @@ import numpy as np
 
 from tribolab.friction.oscillation.components import Component, components
 from tribolab.friction.oscillation.events import Events, find_events, loading_rate, without_spikes
-from tribolab.friction.oscillation.few_periods import slow_wave
+from tribolab.friction.oscillation.few_periods import slow_wave, without_slow_wave
 from tribolab.friction.oscillation.mean_cycle import abrupt_drop, abrupt_rise, smooth_drop
 from tribolab.friction.oscillation.noise import noise_level, quantisation_step
 from tribolab.friction.oscillation.oscillation import Oscillation, oscillation
@@ -105,7 +105,9 @@ def examine_record(
     surveyed = survey(record)
     if surveyed is None:
         return "too short for a spectrum"
-    view = _settled(record, surveyed, noise, limits)
+    view, slow = _settled(record, surveyed, noise, limits), slow_wave(record)
+    if slow is None and not view.oscillation.false_alarm < CHANCE:
+        record, surveyed, view = _beside_slow_wave(record, surveyed, view, noise, limits)
     oscillation, part, events = view.oscillation, view.record, view.events
     lag = max(1, int(round(1 / (oscillation.frequency * 16 * part.spacing))))
     form = describe_waveform(part.values, lag, events, view.regularity.periods)
@@ -116,7 +118,6 @@ def examine_record(
         drop, rise = (np.minimum(x - excess, swing) for x in (events.drop, events.rise))
         events = events._replace(drop=drop, rise=rise)
     lines = components(surveyed)
-    slow = slow_wave(record)
     seen = period_verdict(
         probability, oscillation, view.regularity, slow, lines, surveyed.duration, form
     )
@@ -151,6 +152,25 @@ def _settled(record: EvenRecord, surveyed: Survey, noise: float, limits: EventLi
             if less and not at_odds(again.oscillation, again.regularity):
                 view = again
     return view
+
+
+def _beside_slow_wave(
+    record: EvenRecord, surveyed: Survey, view: View, noise: float, limits: EventLimits
+) -> tuple[EvenRecord, Survey, View]:
+    """Take a slow wave off if a larger regular oscillation is left; else change nothing.
+
+    What is left of a wave of few periods is its harmonics, which are smaller.
+    """
+    rest = without_slow_wave(record)
+    found = survey(rest[0]) if rest else None
+    if rest is None or found is None:
+        return record, surveyed, view
+    again = _settled(rest[0], found, noise, limits)
+    sure = again.oscillation.false_alarm < CHANCE and again.oscillation.swing > rest[1]
+    regular = again.regularity.kind == SLIP_KINDS[0]
+    if sure and regular and not at_odds(again.oscillation, again.regularity):
+        return rest[0], found, again
+    return record, surveyed, view
 
 
 def _without_drift(record: EvenRecord, frequency: float) -> EvenRecord:

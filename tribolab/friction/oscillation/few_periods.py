@@ -15,6 +15,9 @@ _HARMONICS = 2
 _DEGREE = 4  # of the polynomial that is to explain less: drifts of any kind
 _EXPLAINED = 0.75  # part of the variance beside a straight line that the wave has to hold
 _ALIKE = 1.2  # misfits that differ by less: of a wave and its half, the faster counts
+_FEWEST_SAMPLES = 32
+_SINE = 4  # first columns of a wave's basis: straight line, cosine, sine
+_COUNTS = 0.1  # part of the variance: a smaller slow sine hides no larger oscillation
 _BETTER = 0.4  # of the polynomial's misfit that the wave's may be at most
 
 
@@ -60,22 +63,9 @@ def slow_wave(record: EvenRecord) -> SlowWave | None:
     >>> round(wave.periods, 1), slow_wave(EvenRecord(t, np.exp(-t / 100), 1.0, True))
     (3.0, None)
     """
-    if record.values.size < 32:
+    if record.values.size < _FEWEST_SAMPLES:
         return None
-    if record.even:
-        means = block_means(record.values, max(record.values.size // (4 * _POINTS), 1))
-        x = (np.arange(means.size) + 0.5) / means.size
-    else:
-        means, x = record.values, (record.time - record.time[0]) / np.ptp(record.time)
-    at = (np.arange(_POINTS) + 0.5) / _POINTS
-    if means.size > 2 * _POINTS:
-        place = np.minimum((x * _POINTS).astype(int), _POINTS - 1)
-        count = np.bincount(place, minlength=_POINTS)
-        known = count > 0
-        sums = np.bincount(place, means, _POINTS)
-        values = np.interp(at, at[known], sums[known] / count[known])
-    else:
-        values = np.interp(at, x, means)
+    values, _ = _averaged(record)
     line, polynomial, waves = _bases()
     rest = values - line @ (line.T @ values)
     total = float(rest @ rest)
@@ -96,3 +86,55 @@ def slow_wave(record: EvenRecord) -> SlowWave | None:
         return None
     fitted = waves[best] @ parts[best]
     return SlowWave(float(_CYCLES[best]), 1 - left, float(np.ptp(fitted)))
+
+
+def without_slow_wave(record: EvenRecord) -> tuple[EvenRecord, float] | None:
+    """Take the slow sine off that explains most, return its swing, too; None if it is small.
+
+    Beside a slow oscillation the spectrum does not tell a faster one from a wander.
+
+    Parameters
+    ----------
+    record
+        From `tribolab.friction.oscillation.spectra.make_record`.
+
+    Examples
+    --------
+    >>> t = np.arange(600.0)
+    >>> fast = np.sin(2 * np.pi * 20 * t / 600)
+    >>> both = EvenRecord(t, fast + np.sin(2 * np.pi * 3 * t / 600), 1.0, True)
+    >>> rest, swing = without_slow_wave(both)
+    >>> round(swing, 1), bool(np.std(rest.values - fast) < 0.1)
+    (2.0, True)
+    """
+    if record.values.size < _FEWEST_SAMPLES:
+        return None
+    values, at = _averaged(record)
+    line, _, waves = _bases()
+    rest = values - line @ (line.T @ values)
+    parts = np.einsum("kpt,p->kt", waves[:, :, :_SINE], rest)
+    explained = (parts**2).sum(axis=1)
+    best = int(np.argmax(explained))
+    if not explained[best] > _COUNTS * float(rest @ rest):
+        return None
+    x = (record.time - record.time[0]) / np.ptp(record.time)
+    wave = np.interp(x, at, waves[best, :, :_SINE] @ parts[best])
+    swing = float(np.ptp(waves[best, :, 2:_SINE] @ parts[best, 2:]))
+    return record._replace(values=record.values - wave), swing
+
+
+def _averaged(record: EvenRecord) -> tuple[np.ndarray, np.ndarray]:
+    """Return means over parts of the record, and where they are in it (0 to 1)."""
+    if record.even:
+        means = block_means(record.values, max(record.values.size // (4 * _POINTS), 1))
+        x = (np.arange(means.size) + 0.5) / means.size
+    else:
+        means, x = record.values, (record.time - record.time[0]) / np.ptp(record.time)
+    at = (np.arange(_POINTS) + 0.5) / _POINTS
+    if means.size > 2 * _POINTS:
+        place = np.minimum((x * _POINTS).astype(int), _POINTS - 1)
+        count = np.bincount(place, minlength=_POINTS)
+        known = count > 0
+        sums = np.bincount(place, means, _POINTS)
+        return np.interp(at, at[known], sums[known] / count[known]), at
+    return np.interp(at, x, means), at

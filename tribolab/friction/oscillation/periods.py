@@ -27,6 +27,7 @@ _STRONG = 0.25  # of the strongest line's swing, that makes another one beat wit
 _SHARP = 0.7  # part of the faster variance, above which a line is sharp however periods scatter
 _MAINS = 0.03  # relative; an oscillation so near to a line of the mains is not told from it
 _UNLIKELY = 0.03  # probability of smooth sliding, below which something is there
+_SURE_LINE = 1e-6  # chance of a line in noise: many bands may show one
 _FASTER = 5.0  # than a slow wave: no harmonic of it
 _FEWEST = 4  # periods that tell how they scatter
 _SKEW = 0.15  # of a cycle, by which its fall is shorter or longer than half, of no sine ...
@@ -126,6 +127,10 @@ def period_verdict(
     repeats = seen.periods.size > 0 and not odd and seen.kind != SLIP_KINDS[2]
     if kind != CLASSES[0] and not (significant or repeats) and probability[0] > _UNLIKELY:
         kind = CLASSES[0]  # neither a line nor drops that go on repeating
+    if kind == CLASSES[0] and lines and lines[0].false_alarm < _SURE_LINE:
+        return _withheld(
+            f"no drops repeat, but the spectrum has a line at {lines[0].frequency:.4g} Hz"
+        )
     if kind == CLASSES[0]:
         return PeriodVerdict(kind, np.nan, np.nan, np.nan)
     if kind == NOT_CLEAR:
@@ -150,6 +155,13 @@ def period_verdict(
         return PeriodVerdict(kind, frequency, error, count)  # noise hides the drops of a line
     if not seen.kind or (irregular and periods.size < _FEWEST):
         return _withheld("too few drops repeat to tell the period")
+    trains = seen.kind == SLIP_KINDS[2]  # they have lines of their own
+    strongest = lines[0].frequency if several and not trains else frequency
+    if abs(np.log(frequency / strongest)) > _AGREE:
+        return _withheld(
+            f"the drops repeat at {frequency:.4g} Hz, but the oscillation at {strongest:.4g} Hz is "
+            "larger: which of them is stick-slip is open"
+        )
     return PeriodVerdict(kind, frequency, error, count)
 
 
