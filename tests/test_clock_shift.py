@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import datetime as dt
+
 import numpy as np
 import pytest
 
 import tribolab as tl
 from tribolab import rig
 from tribolab.io.clocks.shift import estimate_clock_shift
+from tribolab.rig.files import force_file as force_file_of
+from tribolab.rig.files import motion_file as motion_file_of
 
 STROKES = tuple((way * speed, 2.0) for speed in (1e-3, 1e-2) for way in (1, -1)) * 2
 
@@ -162,6 +166,21 @@ def test_runs_of_the_rig_are_matched_to_what_the_fast_strokes_need(surface, medi
     middle = 0.5 * (time[0] + time[-1])
     error_at_fastest = error + (estimate.rate - run.facts["clock_rate"]) * (time[-1] - middle)
     assert abs(error_at_fastest) < 0.006  # segments there last 0.9 s and are trimmed by 0.09 s
+
+
+@pytest.mark.parametrize("seed", [6, 45, 76])
+def test_a_fit_by_the_motion_that_two_ways_contradict_does_not_count(seed, tmp_path):
+    """On the smooth surface in glycerol it lay 0.6 to 1.4 s off, and the run failed."""
+    few = rig.Rig(rig.Protocol(speeds=(4.64e-6, 1e-4, 2.15e-3)))
+    run = rig.simulate_run("Smooth", "glycerol", 31.0, seed=seed, rig=few)
+    date = dt.datetime(2026, 3, 2)  # noqa: DTZ001 - instruments know no time zone
+    files = [tmp_path / f"{run.name}_{log}.csv" for log in ("force", "motion")]
+    files[0].write_bytes(force_file_of(run.force_log, date))
+    files[1].write_bytes(motion_file_of(run.motion_log, date))
+    attrs = tl.read(files, instrument="linear_slider").attrs
+    assert attrs["clock_shift_source"] == "estimated"
+    error = abs(attrs["clock_shift_s"] - run.facts["clock_shift_at_middle_s"])
+    assert error < 3 * attrs["clock_shift_uncertainty_s"] < 0.06
 
 
 @pytest.fixture(scope="module")

@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 from tribolab.friction.oscillation.critical_stiffness import critical_stiffness
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.friction.segments.find import find_segments
+from tribolab.records.notices import distance_to_critical
 from tribolab.stamping import stamp
 
 A, MEMORY, SPEED, LOAD, DAMPING = 0.01, 1e-6, 1e-5, 10.0, 100.0
@@ -67,3 +68,32 @@ def test_a_rig_far_too_soft_has_no_upper_bound_and_few_cycles_have_none():
     low, high = critical_stiffness(np.array([0.1]), np.array([1e-4]), 1e4, 10.0, 20)
     assert 1e4 < low[0] < 1e5 and np.isinf(high[0])
     assert np.isnan(critical_stiffness(np.array([0.1]), np.array([1e-4]), 1e4, 10.0, 4)).all()
+
+
+@pytest.mark.parametrize("ratio", [0.3, 0.7])
+def test_the_distance_of_a_stated_rig_to_the_critical_stiffness_is_stated(ratio):
+    time, mu, true = slider(ratio, 2 * A)
+    run = forces(time, mu)
+    assert distance_to_critical(stick_slip(run, find_segments(run))) == ""
+    for factor in (1.0, 0.5):  # half of the true one contradicts the rise of the force
+        run.attrs = {"stiffness_N_m": factor * ratio * true, "moving_mass_kg": 0.1}
+        found = stick_slip(run, find_segments(run))
+        said = distance_to_critical(found)
+        if factor < 1:
+            assert "which no rig so soft allows" in said
+            continue
+        low, _, high, _ = said.split(": ")[1].split(maxsplit=3)
+        assert float(low) <= ratio <= float(high) < 1.05
+        length = 1e-6 * float(said.split()[-2])
+        lowest = found["critical_stiffness_low"].item()
+        assert 2 * 0.1 * (SPEED / length) ** 2 == pytest.approx(
+            0.05 * lowest, rel=0.1
+        )  # two digits
+
+
+def test_a_rig_on_which_friction_is_steady_is_stiffer_than_critical():
+    run = forces(np.arange(0, 100, 0.05), 0.4 + 1e-3 * np.random.default_rng(0).normal(size=2000))
+    run.attrs = {"stiffness_N_m": 1.2e4}
+    assert "above the critical stiffness" in distance_to_critical(
+        stick_slip(run, find_segments(run))
+    )

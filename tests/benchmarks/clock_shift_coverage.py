@@ -5,13 +5,13 @@
 
 Each seed makes one pair of every kind (see `tests/clock_pairs.py`): a force log and a motion log
 with clocks of their own, written to files and read back with `tl.read` (or only merged, with
-``--merge``). With ``--rig`` the pairs are sound runs of the virtual rig instead: 13 speeds over six
-decades, on four surfaces and media. A pair is answered if the run states a shift, else the run is
-`fail` until `clock_shift` is stated. Printed by kind: how many are answered, how often the 95 %
-interval includes the truth, the usual uncertainty in milliseconds and in parts of the shortest
-stroke's duration, and the greatest error in standard deviations. The exit code says whether the
-interval of all that are answered covers 93 % or more, and three quarters are answered (of the rig's
-runs all).
+``--merge``). With ``--rig`` the pairs are sound runs of the virtual rig instead: three speeds, on
+two surfaces in two media; 100 seeds make 400 runs. A pair is answered if the run states a shift,
+else the run is `fail` until `clock_shift` is stated. Printed by kind: how many are answered, how
+often the 95 % interval includes the truth, the usual uncertainty in milliseconds and in parts of
+the shortest stroke's duration, and the greatest error in standard deviations. The exit code says
+whether the interval of all that are answered covers 93 % or more, and three quarters are answered
+(of the rig's runs all).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from tribolab.draft.read import read
 from tribolab.errors import ReadError
 from tribolab.io.clocks.merge import merge
 from tribolab.io.signals import signals_of
-from tribolab.rig import simulate_run
+from tribolab.rig import Protocol, Rig, simulate_run
 from tribolab.rig.files import force_file, motion_file
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
@@ -41,13 +41,10 @@ from clock_pairs import KINDS, make_pair, write_pair  # noqa: E402  the path has
 
 RIG_RUNS = {
     f"{surface} {medium}": (surface, medium, 31.0)
-    for surface, medium in (
-        ("Smooth", "glycerol"),
-        ("Smooth", "dry"),
-        ("Sb-S", "glycerol"),
-        ("Sb-R", "glycerol"),
-    )
+    for surface in ("Smooth", "Sb-R")
+    for medium in ("glycerol", "dry")
 }
+FEW_SPEEDS = Rig(Protocol(speeds=(4.64e-6, 1e-4, 2.15e-3)))  # of a small simulated campaign
 _DATE = dt.datetime(2026, 3, 2)  # noqa: DTZ001 - instruments know no time zone
 
 
@@ -81,7 +78,7 @@ def examine(task: tuple[str, int, bool]) -> Row:
 def examine_rig_run(task: tuple[str, int, bool]) -> Row:
     """Simulate, read and judge one run of the virtual rig."""
     kind, seed, _ = task
-    run = simulate_run(*RIG_RUNS[kind], seed=seed)
+    run = simulate_run(*RIG_RUNS[kind], seed=seed, rig=FEW_SPEEDS)
     with tempfile.TemporaryDirectory() as folder:
         paths = [Path(folder) / f"{run.name}_{log}.csv" for log in ("force", "motion")]
         paths[0].write_bytes(force_file(run.force_log, _DATE))

@@ -3,5 +3,6 @@
 from __future__ import annotations
 
 OUTSIDE = "what lies outside "  # of strokes of which a part counts
+RIG_STIFFNESS = "stiffness of the rig"
 STEPS_DIFFER = "friction at one speed differs from step to step"
 TRENDS = ("friction rises along", "friction falls along")

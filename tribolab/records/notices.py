@@ -9,9 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribolab.friction.coefficient.steadiness import chance_limit
+from tribolab.friction.oscillation.critical_stiffness import MASS_COUNTS, STEEPER, STIFFNESS
+from tribolab.friction.oscillation.waveform import CLASSES, NOT_LOOKED_AT
 from tribolab.friction.segments.find import why_no_segment
+from tribolab.medians import median
 from tribolab.records.decision_rows import decision_notices
-from tribolab.records.notice_words import OUTSIDE
+from tribolab.records.notice_words import OUTSIDE, RIG_STIFFNESS
 from tribolab.records.parts import Notice
 from tribolab.records.run_facts import (
     counting,
@@ -46,6 +49,7 @@ def notices_of(
     segments: xr.Dataset,
     friction: xr.Dataset,
     decisions: Sequence[DecisionRow] = (),
+    slip: xr.Dataset | None = None,
 ) -> list[Notice]:
     """Return what a reader should know of a run, from decisions, its checks and its results."""
     notices = decision_notices(name, decisions)
@@ -104,6 +108,8 @@ def notices_of(
         say("note", "left out", f"{entry.reason}: {text}")
     if inertia := inertia_said(run.attrs):
         say("note", "inertia", inertia)
+    if slip is not None and (distance := distance_to_critical(slip)):
+        say("note", "stick-slip", distance)
     if unused := str(run.attrs.get("columns_not_used", "")):
         say("note", "columns", f"not used: {unused}")
     if segments.attrs.get("rows_are") == "points":
@@ -133,3 +139,48 @@ def _of_check(name: str, row: Mapping[str, Any]) -> Notice:
         return Notice("note", name, where, f"{decision}: {row['status']}: {row['message']}.")
     severity = "note" if row["status"] in ("pass", "skipped") else row["status"]
     return Notice(severity, name, where, f"{row['message']}. {row['cure']}".strip(". ") + ".")
+
+
+def distance_to_critical(slip: xr.Dataset) -> str:
+    """Say how far the stated stiffness of the rig is from the critical one; "" if none is stated.
+
+    Parameters
+    ----------
+    slip
+        From `tribolab.friction.oscillation.stick_slip.stick_slip`, with the attributes of the run.
+
+    Notes
+    -----
+    Bounds are medians over the segments. With a moving mass m, ``k_c`` is higher by up to
+    ``2 m v^2/D_c^2`` (b up to 3 a): the memory length D_c [m] below which this matters is stated.
+    """
+    rig = float(slip.attrs.get(STIFFNESS, np.nan))
+    kinds = slip["waveform"].values.astype(str)
+    kinds = kinds[kinds != NOT_LOOKED_AT]
+    if np.isnan(rig) or not kinds.size:
+        return ""
+    said = f"{RIG_STIFFNESS} {rig:.4g} N/m"
+    if (kinds == CLASSES[0]).all():
+        return f"{said}: above the critical stiffness, as friction is steady at all speeds"
+    steepest = slip["loading_stiffness"].values
+    if (steepest > STEEPER.value * rig).any():
+        return (
+            f"{said}, but the force rises by {np.nanmax(steepest):.4g} N/m during sticks, which no "
+            "rig so soft allows. Check stiffness, and the gain of the force"
+        )
+    low, high = (slip[f"critical_stiffness_{end}"].values for end in ("low", "high"))
+    known = np.isfinite(low)
+    if not known.any():
+        return f"{said}; too few cycles of regular stick-slip to compare it with the critical one"
+    ends = float(median(low[known])), float(median(high[known]))
+    if np.isfinite(ends[1]):
+        shares, upper = f"{rig / ends[1]:.2g} to {rig / ends[0]:.2g}", f"to {ends[1]:.3g} N/m"
+    else:
+        shares, upper = f"less than {rig / ends[0]:.2g}", "N/m or more"
+    text = f"{said}: {shares} of the critical stiffness ({ends[0]:.3g} {upper})"
+    mass = float(slip.attrs.get("moving_mass_kg", np.nan))
+    if np.isnan(mass):
+        return text
+    fastest = float(slip["sliding_speed"].values[known].max())
+    length = 1e6 * fastest * np.sqrt(2 * mass / (MASS_COUNTS.value * ends[0]))
+    return f"{text}; {mass:.3g} kg raise it if the memory length is below {length:.2g} um"

@@ -166,6 +166,11 @@ def _with_set_points(run: PlannedRun, read: xr.Dataset) -> xr.Dataset:
         )
     if run.normal_force is not None:
         signals.attrs["set_normal_force_N"] = run.normal_force
+    if run.stiffness is not None:
+        # late: starting stays quick
+        from tribolab.friction.oscillation.critical_stiffness import STIFFNESS
+
+        signals.attrs[STIFFNESS] = run.stiffness
     if run.sliding_speed is not None:
         signals.attrs |= _stated_speed(signals, run.sliding_speed)
     return _under_stated_load(signals)

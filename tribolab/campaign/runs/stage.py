@@ -219,7 +219,7 @@ def process_run(task: RunTask) -> RunAnswer:
         write_data(root | analysed.groups, task.folder / task.data_file)
         facts = facts_of(signals, segments, friction, slip, analysed.friction_as_found)
         facts = _with_dead_weight(facts, run, signals)
-        notices = notices_of(run.name, signals, segments, friction, facts.decisions)
+        notices = notices_of(run.name, signals, segments, friction, facts.decisions, slip)
         trace, why = _trace(task, signals, segments, friction)
         rows = plain_rows(stick_slip_columns(slip))
         starts = _starts(signals, segments, friction)

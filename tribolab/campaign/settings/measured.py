@@ -134,6 +134,9 @@ class RunEntry(Table):
     "1.5 s to 3 s", or "file blank.csv", a run without contact in the raw folder."""
     moving_mass: Annotated[float, PositiveSi("kg", "1.2 kg")] | None = None
     """Mass between the contact and the force sensor, whose inertia is taken out of the force."""
+    stiffness: Annotated[float, PositiveSi("N/m", "12 kN/m")] | None = None
+    """Stiffness of the rig between drive and contact, in the direction of sliding: stick-slip says
+    how far it is from the critical stiffness."""
     rectified: bool | None = None
     """Whether friction was recorded without its sign; left out, the reversals tell."""
     operator: SomeText | None = None

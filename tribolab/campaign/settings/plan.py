@@ -55,6 +55,8 @@ class PlannedRun:
         Where the zero of the friction signal is read, see `tribolab.read`.
     moving_mass
         Between contact and force sensor [kg], if the campaign file gives it.
+    stiffness
+        Of the rig in the direction of sliding [N/m], if the campaign file gives it.
     dead_weight
         Of the reference that it is a run of [N], where one is stated.
     segments, friction
@@ -82,6 +84,7 @@ class PlannedRun:
     instrument: str | None
     zero: str | None = None
     moving_mass: float | None = None
+    stiffness: float | None = None
     dead_weight: float | None = None
     segments: Arguments = field(default_factory=dict)
     friction: Arguments = field(default_factory=dict)
@@ -244,6 +247,7 @@ def _settings(campaign: Campaign, entry: RunEntry) -> Json:
         "clock_shift": entry.clock_shift,
         "zero": zero,
         "moving_mass": entry.moving_mass,
+        "stiffness": entry.stiffness,
         "segments": campaign.segment_options(entry),
         "friction": campaign.friction_options(entry),
         "quality": campaign.quality_options(entry),

@@ -6,9 +6,14 @@ import numpy as np
 
 from tribolab.core.limit import Limit
 
+STIFFNESS = "stiffness_N_m"  # attribute of a run: of the rig in the direction of sliding
 FEWEST_CYCLES = Limit(8.0, "1", "cycles, of which mean drop and distance are known to 5 %")
 ERROR_OF_CREEP = Limit(
     0.05, "1", "error of the creep share: a mean drop is known to some 5 % at a third of noise"
+)
+MASS_COUNTS = Limit(0.05, "1", "rise of k_c by the mass, about the error of creep, that matters")
+STEEPER = Limit(
+    1.1, "1", "rise of the force over the rig's stiffness: the rise is known to some 3 %"
 )
 # creep share and k/k_c of settled cycles of the ageing law (slider of test_critical_stiffness)
 # and measured as `stick_slip` does: the rise is less steep than the rig near k_c

@@ -11,7 +11,7 @@ import xarray as xr
 from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import belong, friction_signal, trimmed_slices
 from tribolab.friction.decisions.rejected import REJECTED
-from tribolab.friction.oscillation.critical_stiffness import critical_stiffness
+from tribolab.friction.oscillation.critical_stiffness import STIFFNESS, critical_stiffness
 from tribolab.friction.oscillation.examine import EventLimits, Examined, examine_record
 from tribolab.friction.oscillation.regularity import SLIP_KINDS
 from tribolab.friction.oscillation.rig_waves import RigMotion, RigWave, motion_of, rig_wave
@@ -116,7 +116,8 @@ def stick_slip(
         ``sample_noise``, ``harmonic_content``; ``events`` (their number), mean and scatter of
         ``drop``, ``stick_duration``, ``slip_duration``, ``recurrence_time`` [s],
         ``recurrence_distance`` [m], ``loading_slope`` [1/m], ``loading_stiffness`` [N/m],
-        ``critical_stiffness_low`` and ``_high`` [N/m] (bounds, of regular sawtooth stick-slip; see
+        ``critical_stiffness_low`` and ``_high`` [N/m] (bounds, of regular sawtooth stick-slip, with
+        the attribute ``stiffness_N_m`` of the run if there is one; see
         `tribolab.friction.oscillation.critical_stiffness`);
         ``fall_share``, ``asymmetry_p_value``, ``derivative_skewness``, ``period_scatter``,
         ``drop_scatter``; ``mains_frequency``, ``mains_amplitude``, ``rig_swing``
@@ -187,8 +188,10 @@ def stick_slip(
         remarks.append(_remark(seen, _cut_off(signal.raw), v))
     data = slip_columns(examined, speed, np.array(loads))
     saw = (data["waveform"] == CLASSES[1]) & (data["regularity"] == SLIP_KINDS[0])
+    rig = np.full(saw.size, run.attrs.get(STIFFNESS, np.nan))  # stated, else the steepest rise
     bounds = critical_stiffness(
-        data["drop"], data["recurrence_distance"], data["loading_stiffness"],
+        data["drop"], data["recurrence_distance"],
+        np.where(np.isnan(rig), data["loading_stiffness"], rig),
         1.0 if force else np.array(loads), np.where(saw, data["events"], 0),
     )  # fmt: skip
     data["critical_stiffness_low"], data["critical_stiffness_high"] = bounds
