@@ -142,7 +142,7 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
         raise GuessedError(path, asked, cures.SURFACE, unsaid) from error
     if asked or lacks_friction(draft):
         raise GuessedError(path, asked, lacks=missing_words(draft)) from error
-    if draft.kind == "scan" and draft.layout and draft.layout.held:
+    if draft.kind == "scan" and peek(path).format != "text":
         raise error
     if draft.kind == "scan":
         what = "no known instrument writes such a file; it looks like a profile or map"

@@ -19,7 +19,7 @@ from tribolab.draft.stated.traces import find_stated
 from tribolab.errors import ReadError, TribolabError
 from tribolab.io.dialects.column_rule import Column
 from tribolab.io.dialects.dates import has_day
-from tribolab.io.dialects.layout import Header, Text
+from tribolab.io.dialects.layout import TEXT_CONTAINERS, Header, Text
 from tribolab.io.dialects.model import Derived, Dialect
 from tribolab.io.dialects.time_rule import Time
 from tribolab.io.dialects.value_rule import Value
@@ -111,6 +111,8 @@ def dialect_of(name: str, described: Described) -> Dialect:
     """
     layout, understood, follows, stated, _ = described
     held = layout.held
+    form = held.form if held is not None else "text"
+    text = {"arrangement": form} if form in TEXT_CONTAINERS else {}
     formulas = [
         formula_content(formula.quantity, formula.formula, formula.zero, formula.way)
         for formula in follows.formulas
@@ -120,9 +122,9 @@ def dialect_of(name: str, described: Described) -> Dialect:
     content = {
         "name": name,
         "title": plain(f"files like {layout.file.path.name}"),
-        "format": held.form if held is not None and held.form != "text" else None,
+        "format": None if text or form == "text" else form,
         "recognise": _recognise(described),
-        "text": set_keys(Text, {} if held is not None else _text(layout, understood)),
+        "text": set_keys(Text, text if held is not None else _text(layout, understood)),
         "header": set_keys(Header, _header(layout) if held is None else _sheet(layout)),
         "tables": {"steps": held.steps} if held is not None and held.steps else None,
         "time": set_keys(Time, _time(understood)),

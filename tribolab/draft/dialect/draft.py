@@ -91,13 +91,13 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
 
 
 def _understood(file: File) -> tuple[Layout, Understood]:
-    if file.format == "text":
+    if not file.container:
         layout = find_layout(file)
         return layout, understand(layout)
     # late: starting stays quick
     from tribolab.draft.file.held import DRAFTED_FROM, as_held, layout_of_columns
 
-    if file.format not in DRAFTED_FROM:
+    if file.container not in DRAFTED_FROM:
         raise ReadError(
             f"this is {file.format}; a dialect can be drafted from text and from columns with "
             "names only, for other formats follow an example in raw_data_schema/instruments",

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from tribolab.draft.file.header import names_any
 from tribolab.draft.file.marks import Block
 from tribolab.io.dialects.arranged import (
@@ -15,7 +13,6 @@ from tribolab.io.dialects.arranged import (
     listed_columns,
 )
 from tribolab.io.dialects.cells import split_name, split_row
-from tribolab.io.dialects.declared_records import records_as_text
 from tribolab.io.dialects.explained import explained
 from tribolab.io.dialects.long_table import is_long
 from tribolab.io.dialects.turned import (
@@ -27,7 +24,6 @@ from tribolab.io.dialects.turned import (
 )
 
 _FRICTION = ("friction_force", "friction_coefficient")
-_RECORDS = 20_000  # rows that are looked at
 _FIRST = 400  # lines that tell
 
 
@@ -48,29 +44,6 @@ def arranged(lines: tuple[str, ...]) -> tuple[tuple[str, ...], Arrangement]:
     if fields_that_touch(lines):
         return _anew(lines, "touching", "whitespace")
     return lines, "below names"
-
-
-def from_json(path: Path, encoding: str) -> tuple[tuple[str, ...], Arrangement]:
-    """Return the lines of text that say what a file of JSON does.
-
-    Parameters
-    ----------
-    path, encoding
-        The file, which is read as a whole.
-    """
-    text = path.read_text(encoding, errors="replace").removeprefix("\ufeff")
-    return tuple(below_names(text, "json", ";").split("\n")), "json"
-
-
-def from_records(path: Path) -> tuple[str, ...]:
-    """Return the lines of text that binary numbers are of which a header says how they are written.
-
-    Parameters
-    ----------
-    path
-        The file, of which some thousand rows are looked at.
-    """
-    return tuple(records_as_text(path.read_bytes(), _RECORDS))
 
 
 def arranged_table(

@@ -52,14 +52,16 @@ def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
     """
     try:
         held, raw = _opened(file)
-        steps = find_steps(raw) if file.format in IN_GROUPS | {"excel"} else None
-        if steps is None and file.format == "excel":
+        steps = find_steps(raw) if held.form in IN_GROUPS | {"excel"} else None
+        if held.form == "json" and len(raw.tables) > 1:
+            steps = HeldSteps(raw.tables, "", ())
+        if steps is None and held.form == "excel":
             raw = read_sheet(file.path, held.sheet, held.line, units_below=held.units_below)
             raw = _without_units(raw)
     except (ReadError, ImportError):
         raise
     except Exception as error:  # each of these libraries has its own ways to say "damaged"
-        raise ReadError(f"this {file.format} file cannot be read", where=file.path) from error
+        raise ReadError(f"this {file.container} file cannot be read", where=file.path) from error
     if steps is not None:
         return _layout_of_steps(file, held, raw, steps)
     placed, settings, clocks, guesses = _whole(raw)
@@ -80,9 +82,9 @@ def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
 
 
 def _opened(file: File) -> tuple[Held, RawFile]:
-    if file.format != "excel":
-        form = {"netcdf": "hdf5"}.get(file.format, file.format)  # both begin alike
-        return Held(form), _without_units(read_container(file.path, file.format))
+    if file.container != "excel":
+        form = {"netcdf": "hdf5"}.get(file.container, file.container)  # both begin alike
+        return Held(form), _without_units(read_container(file.path, form))
     held, names = main_sheet(file.path)
     wanted = [split_name(name)[0] for name in names]
     sheets = read_sheets(file.path, wanted, held.line, units_below=held.units_below)
@@ -128,7 +130,7 @@ def _whole(raw: RawFile) -> tuple[_Placed, list[Setting], OneClock | None, tuple
 def _held(column: RawColumn, table: str, text: str, form: str, *, step: bool = False) -> HeldColumn:
     """Return a column with the unit that settings say, and moments as seconds from the first."""
     label, unit, values = column.label, column.unit, column.values
-    name = label if step or form == "tdms" else column.path
+    name = label if step or form == "tdms" else column.path or label
     if values.dtype.kind in "Mm":
         seconds = seconds_of(values)
         known = seconds[np.isfinite(seconds)]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.draft.file.arrangement import arranged, arranged_table, from_json, from_records
+from tribolab.draft.file.arrangement import arranged, arranged_table
 from tribolab.draft.file.blocks import find_blocks, main_blocks
 from tribolab.draft.file.header import Heading
 from tribolab.draft.file.lines import (
@@ -190,13 +190,7 @@ def find_layout(file: File) -> Layout:
     if thousands := find_thousands(lines):
         apart = any("\t" in line or ";" in line for line in lines[-_FEW:])
         lines = tuple(without_thousands(x, thousands, ";" if apart else ",") for x in lines)
-    if file.is_json:
-        lines, arrangement = from_json(file.path, encoding)
-    elif file.is_declared:
-        lines, arrangement, encoding = from_records(file.path), "declared records", "utf-8"
-        notes = []
-    else:
-        lines, arrangement = arranged(lines)
+    lines, arrangement = arranged(lines)
     grammar = find_grammar(lines)
     if grammar is None:
         raise ReadError(
@@ -256,7 +250,7 @@ def find_layout(file: File) -> Layout:
         step=step_pattern(lines, main) if repeats else None,
         end=end,
         skip_lines=skip_lines,
-        whole=file.size <= HEAD or arrangement in ("json", "a signal to a row"),
+        whole=file.size <= HEAD or arrangement == "a signal to a row",
         notes=tuple(notes),
         guesses=tuple(guesses),
         thousands=thousands,

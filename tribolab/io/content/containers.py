@@ -52,6 +52,7 @@ def read_columns(path: Path, dialect: Dialect) -> Content:
     own: dict[str, str] = {}
     scales: dict[str, tuple[float, float]] = {}
     notes = dict(file.notes)
+    several = dialect.tables is not None or len(tables) > 1
     for number, table in enumerate(tables, start=1):
         signals, not_used = _resolved(path, table, dialect)
         clocks = _one_clock(path, table, signals) if dialect.time.rate_pattern else None
@@ -59,9 +60,9 @@ def read_columns(path: Path, dialect: Dialect) -> Content:
         if clocks is not None and clocks.others:
             notes["interpolated"] = _interpolated(signals, clocks)
         said = [clocks.setting, *table.settings] if clocks else table.settings
-        parts = [text_of(file.settings)] if dialect.tables else []
+        parts = [text_of(file.settings)] if several else []
         before = "\n".join(filter(None, [*parts, text_of(said)]))
-        step = number if dialect.tables else None
+        step = number if several else None
         pieces.append(Piece(columns, step, started(before, path, dialect), before))
         labels |= {s.quantity: f"{s.label} [{s.unit}]" for s in signals}
         unused |= dict.fromkeys(not_used)
@@ -108,7 +109,8 @@ def _opened(path: Path, dialect: Dialect) -> RawFile:
     except (ReadError, ImportError):
         raise
     except Exception as error:  # each of these libraries has its own ways to say "damaged"
-        what = f"this {dialect.format} file cannot be read: {shown(str(error), 200)}"
+        form = dialect.text.container or dialect.format
+        what = f"this {form} file cannot be read: {shown(str(error), 200)}"
         raise ReadError(what, where=path) from error
 
 

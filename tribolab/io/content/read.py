@@ -55,7 +55,7 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
             f"{dialect.format}"
         )
     dialect = as_written(file, dialect)
-    if dialect.format != "text":
+    if dialect.format != "text" or dialect.text.container:
         # late: starting stays quick
         from tribolab.io.content.containers import read_columns
 

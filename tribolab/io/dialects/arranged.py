@@ -9,7 +9,6 @@ from typing import Literal
 
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.explained import explained
-from tribolab.io.dialects.json_tables import tables_as_text
 from tribolab.io.dialects.long_table import one_channel_to_a_column
 from tribolab.io.dialects.turned import on_one_clock, parted, turned, with_joined_names
 
@@ -87,8 +86,8 @@ def below_names(text: str, arrangement: Arrangement, delimiter: str) -> str:
         How the numbers stand: each column is listed on a line of its own above them, each number
         stands behind its name, tables of the same columns stand side by side, short names are
         explained above the table or told apart by the row above, each row holds a moment, a
-        channel's name and its number, or a whole signal, columns have clocks of their own or touch
-        one another, or all is JSON.
+        channel's name and its number, or a whole signal, or columns have clocks of their own or
+        touch one another.
     delimiter
         What parts the cells; of "names in rows" it is the semicolon thereafter.
 
@@ -99,8 +98,6 @@ def below_names(text: str, arrangement: Arrangement, delimiter: str) -> str:
     """
     if arrangement == "below names":
         return text
-    if arrangement == "json":
-        return "\n".join(tables_as_text(text))
     lines = text.split("\n")
     if arrangement == "columns listed":
         return "\n".join(_headed(lines, delimiter))

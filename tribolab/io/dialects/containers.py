@@ -29,7 +29,7 @@ def open_as(path: Path, dialect: Dialect) -> RawFile:
     if dialect.binary is not None:
         return read_records(path, dialect.binary.record, dialect.binary.offset)
     if dialect.format != "excel":
-        return read_container(path, dialect.format)
+        return read_container(path, dialect.text.container or dialect.format)
     # late: starting stays quick
     from tribolab.reading.raw.containers.workbook import read_sheet, read_sheets
 
@@ -41,10 +41,15 @@ def open_as(path: Path, dialect: Dialect) -> RawFile:
 
 
 def tables_of(file: RawFile, dialect: Dialect) -> list[RawTable]:
-    """Return the tables that a dialect reads: the steps of a run, or the whole file as one."""
+    """Return the tables that a dialect reads: the steps of a run, or the whole file as one.
+
+    Tables of JSON are of one kind, and steps.
+    """
     if dialect.tables is not None:
         pattern = guarded(dialect.tables.steps)
         return [table for table in file.tables if pattern.search(table.name)]
+    if len(file.tables) > 1 and file.container == "json":
+        return list(file.tables)
     if dialect.format != "tdms":
         return [file.as_one_table()]
     groups = {column.group for column in dialect.column}

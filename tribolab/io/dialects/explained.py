@@ -5,9 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tribolab.errors import TribolabError
 from tribolab.io.dialects.cells import split_name
-from tribolab.units import conversion
+from tribolab.reading.raw.unit_endings import is_unit
 
 _LONGEST = 400  # characters of a line that are looked at
 _MOST_LINES = 200  # above a table
@@ -30,26 +29,6 @@ _FURTHER = re.compile(
     r"|\s(?:der|des|vom|im|am|du|della|del|dello|na|van)\s",
     re.IGNORECASE,
 )
-# SI units of what instruments record
-_MEASURED = (
-    "s",
-    "m",
-    "N",
-    "m/s",
-    "Pa",
-    "K",
-    "V",
-    "1/s",
-    "rad/s",
-    "rad",
-    "N m",
-    "m/s**2",
-    "ohm",
-    "A",
-)
-_WEIGHTS = frozenset(("g", "kg", "gf", "kgf", "kp", "p"))
-_SMALL = {"hz": "Hz", "khz": "kHz", "n": "N", "mn": "mN", "kn": "kN"}  # in keys
-_NO_UNIT = frozenset(("percent", "%", "-", "1"))
 
 
 def explained(lines: Sequence[str], names: Sequence[str]) -> list[str]:
@@ -142,39 +121,3 @@ def _label(text: str) -> str:
             if is_unit(unit):
                 return f"{text[: min(said.start(), len(what))].strip() or what} [{unit}]"
     return what
-
-
-def is_unit(text: str) -> bool:
-    """Whether a text is a unit of something that instruments record.
-
-    >>> is_unit("mm/s"), is_unit("degC"), is_unit("raw"), is_unit("3")
-    (True, True, False, False)
-    """
-    if text in _WEIGHTS or text.lower() in _NO_UNIT:
-        return True
-    if not re.fullmatch(r"[^\W\d_µμ°]*[\w/*^.·°%²³µμ-]*", text) or text.isdigit():
-        return False
-    for unit in _MEASURED:
-        try:
-            conversion(text, unit)
-        except TribolabError:
-            continue
-        return True
-    return False
-
-
-def without_unit(key: str) -> tuple[str, str]:
-    """Separate a unit at the end of a key.
-
-    >>> without_unit("contact_radius_mm"), without_unit("speed_mm_s"), without_unit("stroke")
-    (('contact_radius', 'mm'), ('speed', 'mm/s'), ('stroke', ''))
-    >>> without_unit("sample_rate_hz")
-    ('sample_rate', 'Hz')
-    """
-    words = key.split("_")
-    for count, mark in ((2, "/"), (1, "")):
-        unit = mark.join(words[-count:])
-        unit = _SMALL.get(unit, unit)
-        if len(words) > count and is_unit(unit):
-            return "_".join(words[:-count]), unit
-    return key, ""

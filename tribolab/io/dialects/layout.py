@@ -10,6 +10,8 @@ from pydantic import Field, NonNegativeInt, PositiveInt, model_validator
 from tribolab.io.dialects.arranged import Arrangement
 from tribolab.io.dialects.checked_text import BinaryField, Encoding, Pattern, Strict
 
+TEXT_CONTAINERS = ("json", "declared records")  # files that begin as text and name their columns
+
 
 class Recognise(Strict):
     """Rules that must all hold for a file to be taken for this instrument's; none: never."""
@@ -67,6 +69,11 @@ class Text(Strict):
         if self.thousands == self.decimal:
             raise ValueError(f"decimal mark and mark of thousands are both '{self.decimal}'")
         return self
+
+    @property
+    def container(self) -> str:
+        """What holds the columns by name, of text that does; "" of lines of text."""
+        return self.arrangement if self.arrangement in TEXT_CONTAINERS else ""
 
     @property
     def is_quoted(self) -> bool:

@@ -10,7 +10,6 @@ from typing import AnyStr
 
 from tribolab.errors import ReadError
 from tribolab.io.dialects.arranged import below_names
-from tribolab.io.dialects.declared_records import records_as_text
 from tribolab.io.dialects.headers import compiled, header_starts, is_wide, table_encoding
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File
@@ -18,7 +17,6 @@ from tribolab.io.dialects.spelling import is_unusual, usual, without_commas_in_q
 from tribolab.io.dialects.thousands import without_thousands
 from tribolab.io.dialects.wrapped import unwrapped
 
-_FEW = 1000  # rows of binary records that tell what a file is
 _ODD_ENDS = 3  # a line end that went through two programs is CR CR LF; more were not seen
 
 
@@ -40,16 +38,11 @@ def _with_usual_lines(file: File, dialect: Dialect, head_only: bool) -> bytes | 
     if not (wide or odd_ends or spaced):
         return None
     try:
-        if dialect.text.arrangement == "declared records":
-            return "\n".join(
-                records_as_text(file.path.read_bytes(), _FEW * head_only or None)
-            ).encode()
-        cut = head_only and dialect.text.arrangement != "json"  # which is read as a whole or not
-        content = head if cut else file.path.read_bytes()
+        content = head if head_only else file.path.read_bytes()
         if wide:
             marked = head[:2] in (b"\xff\xfe", b"\xfe\xff")
             decoder = codecs.getincrementaldecoder("utf-16" if marked else dialect.text.encoding)()
-            told = line_feeds(decoder.decode(content, final=not cut))
+            told = line_feeds(decoder.decode(content, final=not head_only))
             text = dialect.text
             content = below_names(told, text.arrangement, text.delimiter).encode()
     except (OSError, UnicodeDecodeError) as error:

@@ -123,7 +123,7 @@ class Dialect(Strict):
         without_header = self.header.line is None and self.header.pattern is None
         if without_header and self.text.delimiter == "any":
             raise ValueError("text.delimiter = 'any' needs header.line or header.pattern")
-        if self.format == "text" and without_header:
+        if self.format == "text" and without_header and not self.text.container:
             for column in self.column:
                 if column.position is None or column.unit is None:
                     raise ValueError(

@@ -49,7 +49,7 @@ def mismatch(file: File, dialect: Dialect) -> str | None:
         from tribolab.reading.raw.containers.tdms import channel_names
 
         return _names_missing(rules, channel_names(file.path))
-    if dialect.format != "text":
+    if dialect.format != "text" or dialect.text.container:
         # late: starting stays quick
         from tribolab.io.dialects.containers import column_names
 

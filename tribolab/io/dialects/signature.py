@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 from tribolab.errors import ReadError
 from tribolab.io.dialects.arranged import holds_names
-from tribolab.io.dialects.declared_records import declares_records
 from tribolab.io.patterns import why_missing
 from tribolab.reading import cures
+from tribolab.reading.raw.containers.declared_records import declares_records
 from tribolab.reading.raw.containers.xml_workbook import is_xml_workbook
 from tribolab.reading.raw.hdf5_safety import refuse_outside
 from tribolab.reading.raw.source import check_regular
@@ -53,15 +53,16 @@ class File(NamedTuple):
     head: bytes
 
     @property
-    def is_json(self) -> bool:
-        """Whether text is JSON as a whole, and no record to a line."""
-        return self.format == "text" and _is_json(self.head)
+    def container(self) -> str:
+        """What holds columns by name: the format, JSON as a whole, or binary records; "" of lines.
 
-    @property
-    def is_declared(self) -> bool:
-        """Whether it is binary behind a text that says how."""
-        wide = bool(wide_encoding(self.head))
-        return self.format == "text" and b"\0" in self.head and not wide
+        Binary numbers stand behind a text that says how they are to be read.
+        """
+        if self.format != "text":
+            return self.format
+        if _is_json(self.head):
+            return "json"
+        return "declared records" if b"\0" in self.head and not wide_encoding(self.head) else ""
 
 
 def peek(path: str | Path, *, binary: bool = False) -> File:
@@ -195,7 +196,7 @@ def _holds_columns(path: Path) -> bool:
 @functools.lru_cache(maxsize=16)  # a file is looked at more than once
 def _holds_tables(path: Path, size: int, changed: int) -> bool:
     # late: starting stays quick
-    from tribolab.io.dialects.json_tables import holds_tables
+    from tribolab.reading.raw.containers.json_tables import holds_tables
 
     try:
         return holds_tables(path.read_text("utf-8-sig"))

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from tribolab.io.dialects.cells import split_name, split_row
-from tribolab.io.dialects.explained import is_unit
+from tribolab.reading.raw.unit_endings import is_unit
 
 _MARKS = ("\t", ";", ",", "whitespace")
 _NUMBER = re.compile(r"[-+]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][-+]?\d+)?")

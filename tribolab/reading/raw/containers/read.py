@@ -16,9 +16,11 @@ _READERS = {
     "npz": ("npz", "read_npz"),
     "parquet": ("arrow", "read_arrow"),
     "feather": ("arrow", "read_arrow"),
+    "json": ("json_tables", "read_json"),
+    "declared records": ("declared_records", "read_declared_records"),
 }
 CONTAINERS = frozenset(_READERS)
-IN_GROUPS = CONTAINERS - {"parquet", "feather"}  # those that may hold several tables
+IN_GROUPS = CONTAINERS - {"parquet", "feather", "json"}  # tables that may be steps, by their names
 
 
 def read_container(path: Path, form: str) -> RawFile:

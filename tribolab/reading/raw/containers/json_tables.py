@@ -1,4 +1,4 @@
-"""JSON that holds columns of numbers, as text: settings, and a table for each of its parts."""
+"""JSON that holds columns of numbers: settings, and a table for each of its parts."""
 
 from __future__ import annotations
 
@@ -7,10 +7,15 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterator
+from pathlib import Path
 from typing import NamedTuple
 
-from tribolab.io.dialects.explained import is_unit, without_unit
+import numpy as np
+
+from tribolab.errors import ReadError
 from tribolab.reading.lexicon.lexicon import keys_of
+from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, Setting
+from tribolab.reading.raw.unit_endings import is_unit, without_unit
 from tribolab.untyped import Json
 
 _JSON = re.compile(r"\ufeff?\s*(?:\{\s*\"[^\"]*\"\s*:|\[\s*[\[{])")
@@ -19,16 +24,15 @@ _ROWS = 5  # of a table of records
 _DEEPEST = 12  # objects within one another that are looked into
 _MOST_SETTINGS = 60
 _LONGEST = 200  # characters of a setting
-_MARK = ";"
 _SET = re.compile(r"set[_ -]?(?:point)?s?|target|soll\w*|commanded|programmed", re.IGNORECASE)
 
 
 class _Table(NamedTuple):
-    """Columns by name, their units, and what is said beside them, as lines."""
+    """Columns by name, their units, and the settings next to them."""
 
     columns: dict[str, list[float]]
     units: dict[str, str]
-    said: list[str]
+    said: list[Setting]
 
 
 def holds_tables(text: str) -> bool:
@@ -42,48 +46,54 @@ def holds_tables(text: str) -> bool:
     return _JSON.match(text) is not None and bool(_tables(text)[0])
 
 
-def tables_as_text(text: str) -> list[str]:
-    r"""Return lines of text that say what JSON does: settings, then the tables of one kind.
+def read_json(path: Path) -> RawFile:
+    r"""Read the settings of a JSON file, and its tables of one kind.
 
     Parameters
     ----------
-    text
-        The whole file.
+    path
+        The file.
+
+    Raises
+    ------
+    ReadError
+        If it holds no columns of numbers.
 
     Notes
     -----
     Columns are lists of as many numbers in one object, lists of records, rows below their names,
-    or objects with a name and values. Of several kinds of tables that which holds most numbers is
-    taken, each as a step with what is said beside it above.
+    or objects with a name and values. Of several kinds of tables that with most numbers is taken.
 
     Examples
     --------
-    >>> tables_as_text('{"r_mm": 5, "units": {"t": "s"}, "t": [0, 1, 2], "F": [3, 4, null]}')
-    ['r: 5 mm', 't [s];F', '0;3', '1;4', '2;']
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "a.json"
+    >>> _ = path.write_text('{"r_mm": 5, "units": {"t": "s"}, "t": [0, 1, 2], "F": [3, 4, null]}')
+    >>> table = read_json(path).tables[0]
+    >>> table.settings[0].line, [(column.label, column.unit) for column in table.columns]
+    ('r: 5 mm', [('t', 's'), ('F', None)])
     """
-    tables, said, units = _tables(text)
+    tables, said, units = _tables(path.read_text("utf-8-sig"))
     if not tables:
-        return text.split("\n")
+        raise ReadError("no columns of numbers are in the file", where=path)
     sizes: Counter[tuple[str, ...]] = Counter()
     for table in tables:
-        names = tuple(sorted(table.columns))
-        sizes[names] += sum(map(len, table.columns.values()))
+        sizes[tuple(sorted(table.columns))] += sum(map(len, table.columns.values()))
     kind = sizes.most_common(1)[0][0]
     chosen = [table for table in tables if tuple(sorted(table.columns)) == kind]
-    order = list(chosen[0].columns)
-    lines = said[:_MOST_SETTINGS]
+    found = []
     for number, table in enumerate(chosen, 1):
-        if len(chosen) > 1:
-            lines += ["", f"Step {number}"]
-        lines += _with_units(table.said, units)
         own = units | table.units
-        lines.append(_MARK.join(f"{n} [{own[n]}]" if own.get(n) else _clean(n) for n in order))
-        columns = [table.columns[name] for name in order]
-        lines += [_MARK.join(map(_number, row)) for row in zip(*columns, strict=True)]
-    return lines
+        columns = tuple(
+            RawColumn(_clean(name), own.get(name) or None, np.array(table.columns[name]))
+            for name in chosen[0].columns
+        )
+        name = f"Step {number}" if len(chosen) > 1 else ""
+        found.append(RawTable(name, columns, tuple(_with_units(table.said, units))))
+    return RawFile(path, "json", tuple(found), tuple(said[:_MOST_SETTINGS]))
 
 
-def _tables(text: str) -> tuple[list[_Table], list[str], dict[str, str]]:
+def _tables(text: str) -> tuple[list[_Table], list[Setting], dict[str, str]]:
     try:
         document = json.loads(text.removeprefix("\ufeff"))
     except (ValueError, RecursionError):
@@ -95,7 +105,7 @@ def _tables(text: str) -> tuple[list[_Table], list[str], dict[str, str]]:
     return tables, _with_units(said, units), units
 
 
-def _walk(part: Json | list[object], key: str, tables: list[_Table], depth: int) -> list[str]:
+def _walk(part: Json | list[object], key: str, tables: list[_Table], depth: int) -> list[Setting]:
     """Collect tables; return the settings of a part that holds none further down."""
     if depth > _DEEPEST:
         return []
@@ -116,7 +126,7 @@ def _walk(part: Json | list[object], key: str, tables: list[_Table], depth: int)
     if columns:
         tables.append(_Table(columns, units, []))
         return []
-    said = []
+    said: list[Setting] = []
     for inner in part:
         if isinstance(inner, dict | list):
             said += _walk(inner, key, tables, depth + 1)
@@ -202,25 +212,25 @@ def _of_rows(names: list[str], rows: list[object]) -> dict[str, list[float]]:
     return {k: listed for k, v in columns.items() if (listed := _listed(v)) is not None}
 
 
-def _simple(part: Json, key: str) -> list[str]:
-    """Return what an object says of itself, a line for each: "radius: 15 mm"."""
+def _simple(part: Json, key: str) -> list[Setting]:
+    """Return what an object says of itself, a setting for each value: "radius: 15 mm"."""
     before = f"{_clean(key)} " if _SET.fullmatch(key) else ""
-    lines = [f"{before}{line}" for name, v in part.items() if (line := _setting(name, v))]
-    return [line[:_LONGEST] for line in lines]
+    found = (said for name, value in part.items() if (said := _setting(name, value)))
+    return [s._replace(key=f"{before}{s.key}", text=s.text[:_LONGEST]) for s in found]
 
 
-def _setting(name: str, value: object) -> str | None:
+def _setting(name: str, value: object) -> Setting | None:
     if isinstance(value, dict):
         told = {k.lower(): v for k, v in value.items()}
         number = next((told[k] for k in keys_of("value") if k in told), None)
         unit = next((told[k] for k in keys_of("unit") if k in told), "")
         if number is None or isinstance(number, dict | list):
             return None
-        return f"{_clean(name)}: {_clean(str(number))} {_clean(str(unit))}".rstrip()
+        return Setting(_clean(name), f"{_clean(str(number))} {_clean(str(unit))}".rstrip())
     if _is_number(value):
         plain, unit = without_unit(_clean(name))
-        return f"{plain}: {value} {unit}".rstrip()
-    return f"{_clean(name)}: {_clean(value)}" if isinstance(value, str) and value else None
+        return Setting(plain, f"{value} {unit}".rstrip())
+    return Setting(_clean(name), _clean(value)) if isinstance(value, str) and value else None
 
 
 def _units(part: object, names: set[str], key: str, depth: int) -> Iterator[tuple[str, str]]:
@@ -235,22 +245,17 @@ def _units(part: object, names: set[str], key: str, depth: int) -> Iterator[tupl
         yield from _units(inner, names, name, depth + 1)
 
 
-def _with_units(said: list[str], units: dict[str, str]) -> list[str]:
+def _with_units(said: list[Setting], units: dict[str, str]) -> list[Setting]:
     """Add the units of columns to settings of the same name, and leave out units themselves."""
-    lines = []
-    for line in said:
-        name, _, value = line.partition(": ")
-        unit = units.get(name.split(" ")[-1], "")
-        if unit == value:
+    found = []
+    for setting in said:
+        unit = units.get(setting.key.split(" ")[-1], "")
+        if unit == setting.text:
             continue
-        bare = re.fullmatch(r"[-+\d.eE]+", value) is not None
-        lines.append(f"{line} {unit}" if unit and bare else line)
-    return lines
+        bare = unit and re.fullmatch(r"[-+\d.eE]+", setting.text) is not None
+        found.append(setting._replace(text=f"{setting.text} {unit}") if bare else setting)
+    return found
 
 
 def _clean(text: str) -> str:
-    return re.sub(rf"[\r\n{_MARK}]+", " ", text).strip()
-
-
-def _number(value: float) -> str:
-    return "" if math.isnan(value) else f"{value:.15g}"
+    return " ".join(text.split())

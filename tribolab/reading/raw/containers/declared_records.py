@@ -1,18 +1,19 @@
-"""Binary numbers behind a header of text that declares them, put as a table of text."""
+"""Binary numbers behind a header of text that declares them."""
 
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.io.dialects.cells import split_name
-from tribolab.io.dialects.explained import is_unit, without_unit
+from tribolab.errors import ReadError
 from tribolab.reading.lexicon.lexicon import keys_of
+from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, Setting
+from tribolab.reading.raw.unit_endings import is_unit, without_unit
 
 _LONGEST = 1 << 16  # bytes of a header
-_MARK = ";"
 _SETTING = re.compile(r"^[\s#;*%/!]*(?P<key>[^\W\d][\w .\-/]{0,40}?)\s*[=:]\s*(?P<value>\S.*?)\s*$")
 _OFFSET = re.compile(r"(?:header|head|data)[ _-]?(?:bytes|size|length|offset|start)|offset")
 _TYPE = re.compile(r"(?:data|sample|number|value|num)?[ _-]?(?:type|format)|dtype|datatype")
@@ -62,9 +63,9 @@ class _Channel(NamedTuple):
 
 
 class _Records(NamedTuple):
-    """Text of the header as lines, where the numbers begin, their type, how they lie."""
+    """Settings of the header, where the numbers begin, their type, how they lie."""
 
-    said: list[str]
+    said: list[Setting]
     offset: int
     kind: np.dtype[np.generic]
     channels: list[_Channel]
@@ -82,41 +83,47 @@ def declares_records(head: bytes) -> bool:
     return _declared(head) is not None
 
 
-def records_as_text(content: bytes, most: int | None = None) -> list[str]:
-    """Return what a header declares as lines of text: settings, names with units, numbers.
+def read_declared_records(path: Path) -> RawFile:
+    """Read what a header declares: settings, names with units, numbers.
 
     Parameters
     ----------
-    content
-        The whole file.
-    most
-        Rows that are wanted; None for all.
+    path
+        The file.
+
+    Raises
+    ------
+    ReadError
+        If its header declares no records.
 
     Notes
     -----
-    A counter of parts of a turn that starts anew is counted on, in turns: it moves less than half
-    of what it holds from row to row.
+    A counter of parts of a turn that starts again is counted on, in turns: it moves less than half
+    of its range from row to row.
     """
-    told = _declared(content[:_LONGEST])
+    with path.open("rb") as file:
+        told = _declared(file.read(_LONGEST))
+        size = file.seek(0, 2)
     if told is None:
-        return []
-    count = (len(content) - told.offset) // told.kind.itemsize
-    rows = count // len(told.channels)
-    raw = np.frombuffer(content, told.kind, rows * len(told.channels), told.offset)
-    table = raw.reshape(rows, -1) if told.interleaved else raw.reshape(-1, rows).T
-    columns = [_in_units(table[:most, k], c) for k, c in enumerate(told.channels)]
-    head = _MARK.join(f"{c.name} [{c.unit}]" if c.unit else c.name for c in told.channels)
-    lines = [_MARK.join(row) for row in zip(*columns, strict=True)]
-    return [*told.said, head, *lines]
+        raise ReadError("no header says how its binary numbers are to be read", where=path)
+    rows = (size - told.offset) // told.kind.itemsize // len(told.channels)
+    shape = (rows, len(told.channels)) if told.interleaved else (len(told.channels), rows)
+    raw = np.memmap(path, told.kind, "r", told.offset, shape) if rows else np.empty(shape)
+    table = raw if told.interleaved else raw.T
+    columns = tuple(
+        RawColumn(channel.name, channel.unit or None, _in_units(table[:, place], channel))
+        for place, channel in enumerate(told.channels)
+    )
+    return RawFile(path, "declared records", (RawTable("", columns),), tuple(told.said))
 
 
-def _in_units(raw: np.ndarray, channel: _Channel) -> list[str]:
-    values = raw.astype(float)
+def _in_units(raw: np.ndarray, channel: _Channel) -> np.ndarray:
+    values = np.asarray(raw, dtype=float)
     if channel.turn and channel.wrap:
         values = np.unwrap(values, period=channel.wrap)
     with np.errstate(over="ignore", invalid="ignore"):  # damaged numbers may be anything
         values = values / channel.turn if channel.turn else values * channel.scale + channel.bias
-    return ["" if not np.isfinite(value) else repr(value) for value in values.tolist()]
+    return np.where(np.isfinite(values), values, np.nan)
 
 
 def _declared(head: bytes) -> _Records | None:
@@ -187,9 +194,9 @@ def _channel(said: str, inside: str) -> _Channel:
     pairs = {m["key"].lower(): m["value"] for m in _PAIR.finditer(said)}
     start = _PAIR.search(said)
     plain = (said[: start.start()] if start else said).strip(" ,;\t\"'")
-    name, unit = split_name(plain)
+    name, unit = _split_name(plain)
     words = [word.strip() for word in re.split(r"[,;\t]", name)]
-    unit = next((pairs[k] for k in _UNIT if k in pairs), unit or "")
+    unit = next((pairs[k] for k in _UNIT if k in pairs), unit)
     if not unit and len(words) > 1 and is_unit(words[1]):
         unit = words[1]
     scale = _number(next((pairs[k] for k in _SCALE if k in pairs), ""), 1.0)
@@ -201,7 +208,13 @@ def _channel(said: str, inside: str) -> _Channel:
         counts = float(turn["counts"])
         wrap = float(at["at"]) if at else counts
         return _Channel("angle", "turn", 1.0, 0.0, counts, wrap)
-    return _Channel(words[0].replace(_MARK, " "), "" if unit == "-" else unit, scale, bias)
+    return _Channel(words[0], "" if unit == "-" else unit, scale, bias)
+
+
+def _split_name(text: str) -> tuple[str, str]:
+    """Separate a name from the unit in its brackets."""
+    found = re.fullmatch(r"(?P<name>.*?)\s*[\[(](?P<unit>[^\[\]()]*)[\])]", text)
+    return (found["name"], found["unit"].strip()) if found else (text, "")
 
 
 def _number(text: str, otherwise: float) -> float:
@@ -211,16 +224,16 @@ def _number(text: str, otherwise: float) -> float:
         return otherwise
 
 
-def _said(text: str) -> list[str]:
-    """Return the lines of a header, units of keys behind their numbers; no channels."""
-    lines: list[str] = []
+def _said(text: str) -> list[Setting]:
+    """Return the lines of a header as settings, units of keys behind their numbers; no channels."""
+    found: list[Setting] = []
     for line in text.replace("\r", "").split("\n"):
         said = _SETTING.match(line)
         if said and _CHANNEL.fullmatch(said["key"].lower()):
             continue
         if said and re.fullmatch(r"[-+]?[\d.]+(?:e[-+]?\d+)?", said["value"], re.IGNORECASE):
             key, unit = without_unit(said["key"])
-            line = f"{key}: {said['value']} {unit}".rstrip()
-        if line.strip():
-            lines.append(line)
-    return lines
+            found.append(Setting(key, f"{said['value']} {unit}".rstrip()))
+        elif line.strip():
+            found.append(Setting("", line))
+    return found
