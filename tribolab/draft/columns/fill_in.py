@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from typing import NamedTuple
 
 import numpy as np
 
@@ -47,70 +48,95 @@ def filled_in(
     several
         Whether other columns' names suit the quantity as well.
     """
-    _, unit, say_unit = bare
-    si_unit = quantity(option.quantity).unit
-    guessed = []
-    options: tuple[str, ...] = ()
-    if option.score < KNOWN_WORD and option.quantity not in _ASIDE:
-        guessed.append(f"the name means {quantity(option.quantity).long_name}")
-    if several and option.quantity not in _ASIDE:
-        guessed.append(f"of several columns for {option.quantity} it is the one meant")
-    written = unit if say_unit else None
-    if option.unit:
-        written = option.unit
-    if option.unit and kind != "scan":
-        guessed.append(f"'{shown(unit)}' means {option.unit}")
-    fill_in = unsaid = ""
-    dated = normalise_label(bare[0]) in DATES
-    counted = (
-        counted_from(values, unit, dated=dated)
-        if option.quantity == "time" and not column.counted
-        else None
-    )
-    if role_of(bare[0]) == "extreme" and option.quantity in FORCES:
-        guessed.append("by its name it is not the signal but its extremes or scatter")
-    factor = _FACTOR.search(column.label)
-    if factor and factor[0].lstrip("x×*· ") not in (unit or ""):  # the unit's own is read
-        guessed.append(f"'{factor[0]}' in its name changes no number")
-    if unit is not None and is_count(unit):
-        fill_in = f"what one count of '{shown(column.label)}' ({option.quantity}) is, e.g. "
-        fill_in += f'"0.5 m{si_unit}"'
-    elif unit is None and si_unit not in ("", "1"):
-        stands = _BRACKETS.search(column.label)
-        why = f", for '{shown(stands[1])}' is no unit that is known" if stands else ""
-        if counted is not None:
-            written = counted.unit
-        elif option.quantity == "time":
-            written = time_unit(values)
-            guessed.append(f"time is in {written}{why}")
-            options = other_units("s", written)
-        elif kind == "scan":
-            written = "mm" if option.quantity in ("x", "y") else "um"
-            guessed.append(f"{option.quantity} is in {written}{why}")
-            options = other_units("height" if option.quantity == "height" else "m", written)
-        elif option.quantity in _ASIDE and kind == "run":
-            written, unsaid = None, f"{option.quantity}? its unit is not said"
-        else:
-            fill_in = f"the unit of '{shown(column.label)}' ({option.quantity}), e.g. \"{si_unit}\""
-            options = other_units(si_unit)
+    name = option.quantity
+    reading = _unit_reading(column, bare, option, values, kind)
     finite = values[np.isfinite(values)]
-    sign = 1
-    # noise about zero before the contact is loaded may have the other sign
-    pressed = finite.size and finite.min() < 0 and finite.max() < _NOISE * -finite.min()
-    if option.quantity == "normal_force" and pressed:
-        sign = -1  # no contact slides under a pull all along
-    used, note = not (fill_in or unsaid), unsaid
-    if option.quantity == "position" and finite.size > 2 and np.ptp(finite) == 0:
-        used, note, fill_in = False, "it stands still", ""
+    used, note, fill_in = not (reading.fill_in or reading.note), reading.note, reading.fill_in
+    if name == "position" and finite.size > 2 and np.ptp(finite) == 0:
+        used, note, fill_in = False, "it is constant", ""
     return column._replace(
-        quantity=option.quantity,
-        unit=written,
-        sign=sign,
-        optional=not finite.size and option.quantity != "time",
-        used=used and (bool(finite.size) or option.quantity != "time"),
-        guessed=tuple(guessed),
-        options=options,
+        quantity=name,
+        unit=reading.unit,
+        sign=-1 if name == "normal_force" and _is_pressed_negatively(finite) else 1,
+        optional=not finite.size and name != "time",
+        used=used and (bool(finite.size) or name != "time"),
+        guessed=(*_doubts_of_name(column, bare, option, kind, several=several), *reading.guessed),
+        options=reading.options,
         note=note or ("" if finite.size else "no value in this file"),
         fill_in=fill_in,
-        epoch=counted.epoch if counted is not None else "",
+        epoch=reading.epoch,
     )
+
+
+class _Reading(NamedTuple):
+    """The unit in which a column is read, what of it is a guess, and what is missing."""
+
+    unit: str | None
+    guessed: tuple[str, ...] = ()
+    options: tuple[str, ...] = ()
+    fill_in: str = ""
+    note: str = ""
+    epoch: str = ""
+
+
+def _is_pressed_negatively(values: np.ndarray) -> bool:
+    """Whether a load is recorded with the opposite sign, apart from noise before contact."""
+    return bool(values.size) and values.min() < 0 and values.max() < _NOISE * -values.min()
+
+
+def _doubts_of_name(
+    column: DraftColumn, bare: Bare, option: Match, kind: Kind, *, several: bool
+) -> list[str]:
+    """List what a person has to confirm about the name of a column."""
+    name, unit, _ = bare
+    aside, doubts = option.quantity in _ASIDE, []
+    if option.score < KNOWN_WORD and not aside:
+        doubts.append(f"the name means {quantity(option.quantity).long_name}")
+    if several and not aside:
+        doubts.append(f"of several columns for {option.quantity} it is the one meant")
+    if option.unit and kind != "scan":
+        doubts.append(f"'{shown(unit)}' means {option.unit}")
+    if role_of(name) == "extreme" and option.quantity in FORCES:
+        doubts.append("by its name it is not the signal but its extremes or scatter")
+    factor = _FACTOR.search(column.label)
+    if factor and factor[0].lstrip("x×*· ") not in (unit or ""):  # the unit's own is read
+        doubts.append(f"'{factor[0]}' in its name changes no number")
+    return doubts
+
+
+def _unit_reading(
+    column: DraftColumn, bare: Bare, option: Match, values: np.ndarray, kind: Kind
+) -> _Reading:
+    """Return in which unit a column is read, or what has to be said of it."""
+    name, unit, say_unit = bare
+    si_unit, label = quantity(option.quantity).unit, shown(column.label)
+    timed = option.quantity == "time"
+    counted = None
+    if timed and not column.counted:
+        counted = counted_from(values, unit, dated=normalise_label(name) in DATES)
+    epoch = counted.epoch if counted is not None else ""
+    written = option.unit or (unit if say_unit else None)
+    if unit is not None and is_count(unit):
+        what = f"what one count of '{label}' ({option.quantity}) is, e.g. \"0.5 m{si_unit}\""
+        return _Reading(written, fill_in=what, epoch=epoch)
+    if unit is not None or si_unit in ("", "1"):
+        return _Reading(written, epoch=epoch)
+    if counted is not None:
+        return _Reading(counted.unit, epoch=epoch)
+    stands = _BRACKETS.search(column.label)
+    why = f", for '{shown(stands[1])}' is no unit that is known" if stands else ""
+    if timed or kind == "scan":
+        written = _likely_unit(option.quantity, values)
+        of = "s" if timed else "height" if option.quantity == "height" else "m"
+        guess = f"{option.quantity} is in {written}{why}"
+        return _Reading(written, (guess,), other_units(of, written))
+    if option.quantity in _ASIDE and kind == "run":
+        return _Reading(None, note=f"{option.quantity}? its unit is not said")
+    what = f"the unit of '{label}' ({option.quantity}), e.g. \"{si_unit}\""
+    return _Reading(written, options=other_units(si_unit), fill_in=what)
+
+
+def _likely_unit(name: str, values: np.ndarray) -> str:
+    if name == "time":
+        return time_unit(values)
+    return "mm" if name in ("x", "y") else "um"
