@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import re
+import itertools
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -12,7 +12,7 @@ from tribolab.io.content.newest_first import is_newest_first
 from tribolab.io.dialects.cells import split_name
 from tribolab.medians import median
 from tribolab.quantities import unit_conversion
-from tribolab.reading.lexicon.lexicon import normalise_label
+from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern
 
 if TYPE_CHECKING:
     from tribolab.draft.file.layout import Layout
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 _FEW_AT_FAULT = 0.01  # of the rows
 _DAY, _HOUR = 86400.0, 3600.0  # [s]
-_REMAINING = re.compile(r"left|remain|rest|countdown|togo|verbleib|restante|剩余|残り")
 _INTERVALS = {"dt", "deltat", "δt", "interval", "intervall"}
 OnRepeat = Literal["", "drop", "interpolate"]
 
@@ -58,44 +57,58 @@ def find_clock(
         return "", False, columns
     time = numbers[:, column.place - 1] * unit_conversion(column.read_unit or "s", "time")[0]
     if len(layout.blocks) == 1 and is_newest_first(time):
-        counts_down = _REMAINING.search(normalise_label(split_name(column.label)[0])) is not None
-        told = "the newest row comes first, and the rows are turned round"
-        column = column._replace(
-            note="" if counts_down else told, guessed=(told,) if counts_down else column.guessed
-        )
-        return "", False, [column if c.place == column.place else c for c in columns]
+        return "", False, _replaced(columns, _reversed(column))
     edges = np.cumsum([0, *(len(block.rows) for block in layout.blocks)])
-    parts = list(zip(edges[:-1], edges[1:], strict=True))
-    ends = [(time[b - 1], time[b]) for b in edges[1:-1]]
-    restart = any(not later > earlier for earlier, later in ends)
-    bad, notes, wraps = np.zeros(len(time), dtype=bool), [], []
-    for first, last in parts:
+    restart = any(not time[b] > time[b - 1] for b in edges[1:-1])
+    bad, wraps = np.zeros(len(time), dtype=bool), []
+    for first, last in itertools.pairwise(edges):
         faults = find_faults(time[first:last])
-        # a time of day begins anew at midnight, minutes and seconds at the hour
+        # a time of day starts again at midnight, minutes and seconds at the hour
         starts = [s for s in faults.starts if not (column.form and s.period in (_DAY, _HOUR))]
         restart |= bool(starts)
         bad[first:last] = rows_at_fault(time[first:last] + faults.offsets(), faults)
-        periods = {start.period for start in starts if start.period}
-        wraps += [f"its counter wraps every {period:.9g} s" for period in sorted(periods)]
+        wraps += sorted({start.period for start in starts if start.period})
     on_repeat: OnRepeat = ""
     if bad.any():
-        others = np.delete(numbers, column.place - 1, axis=1)
-        twin = np.zeros(len(time), dtype=bool)
-        twin[1:] = ((numbers[1:] == numbers[:-1]) | np.isnan(numbers[1:])).all(axis=1)
-        lossless = (twin | np.isnan(others).all(axis=1))[bad].all()
+        lossless = _loses_nothing(np.delete(numbers, column.place - 1, axis=1), numbers, bad)
         on_repeat = "drop" if lossless else "interpolate"
-        told = f"{int(bad.sum())} rows whose time is not later than before"
-        if lossless:  # no guess: nothing else could be done with them
-            column = column._replace(note=f"{told} are left out: they say nothing new")
-        elif _fill_one_interval(time, bad):  # no guess: one even time fits between the others
-            column = column._replace(note=f"{told} get times between the others'")
-        else:
-            notes.append(f"{told} get times between the others'")
+        column = _with_repeats(column, time, bad, lossless=lossless)
     if wraps:  # no guess: it falls by exactly what such a counter holds
-        told = "; ".join(dict.fromkeys(wraps))
-        column = column._replace(note=f"{column.note}; {told}" if column.note else told)
-    column = column._replace(guessed=(*column.guessed, *dict.fromkeys(notes)))
-    return on_repeat, restart, [column if c.place == column.place else c for c in columns]
+        note = "; ".join(f"its counter wraps every {p:.9g} s" for p in dict.fromkeys(wraps))
+        column = column._replace(note=f"{column.note}; {note}" if column.note else note)
+    return on_repeat, restart, _replaced(columns, column)
+
+
+def _replaced(columns: list[DraftColumn], column: DraftColumn) -> list[DraftColumn]:
+    return [column if c.place == column.place else c for c in columns]
+
+
+def _reversed(column: DraftColumn) -> DraftColumn:
+    """Return a clock whose newest row comes first; one that may count down is a guess."""
+    note = "the newest row comes first, and the rows are turned round"
+    if part_pattern("time_left").search(normalise_label(split_name(column.label)[0])):
+        return column._replace(note="", guessed=(note,))
+    return column._replace(note=note)
+
+
+def _loses_nothing(others: np.ndarray, numbers: np.ndarray, bad: np.ndarray) -> bool:
+    """Whether rows at fault repeat the row before, or are empty but for their time."""
+    twin = np.zeros(len(numbers), dtype=bool)
+    twin[1:] = ((numbers[1:] == numbers[:-1]) | np.isnan(numbers[1:])).all(axis=1)
+    return bool((twin | np.isnan(others).all(axis=1))[bad].all())
+
+
+def _with_repeats(
+    column: DraftColumn, time: np.ndarray, bad: np.ndarray, *, lossless: bool
+) -> DraftColumn:
+    """Say what becomes of rows whose time does not increase; a guess unless one time fits."""
+    rows = f"{int(bad.sum())} rows whose time is not later than before"
+    if lossless:
+        return column._replace(note=f"{rows} are left out: they say nothing new")
+    note = f"{rows} get times between the others'"
+    if _fill_one_interval(time, bad):
+        return column._replace(note=note)
+    return column._replace(guessed=(*column.guessed, note))
 
 
 def _fill_one_interval(time: np.ndarray, bad: np.ndarray) -> bool:

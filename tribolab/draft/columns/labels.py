@@ -13,7 +13,7 @@ from tribolab.draft.stated.settings import text_settings
 from tribolab.io.dialects.cells import split_name
 from tribolab.reading.interpret.names import COUNTS, is_count, matches, split_unit
 from tribolab.reading.interpret.unit_texts import is_unit, measures_something
-from tribolab.reading.lexicon.lexicon import normalise_label
+from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern
 from tribolab.unit_names import unit_in_words
 
 _LONGEST = 300  # characters of a line that are looked at
@@ -27,24 +27,13 @@ def labelled(layout: Layout) -> list[DraftColumn]:
     if heading is None and layout.width == 1:
         cells = [_named_above(layout)]
     cells += [""] * (layout.width - len(cells))
-    row = list(heading.unit_cells if heading else ()) + [""] * layout.width
-    columns: list[DraftColumn] = []
+    units_row = list(heading.unit_cells if heading else ()) + [""] * layout.width
     above = _stated_units(layout, cells) | units_above(layout)
+    columns: list[DraftColumn] = []
     seen: dict[str, int] = {}
     for place, cell in enumerate(cells, start=1):
-        name, unit = split_name(cell)
-        said = ""
-        if unit == "A" and matches(name, unit, scan=True):
-            said = unit = "angstrom"  # of heights, as profilometers write it
-        if unit is not None and not is_unit(unit) and unit.isupper() and is_unit(unit.lower()):
-            said = unit = unit.lower()  # TIME (S), POSITION (MM)
-        if unit in _PURE or not (unit is None or measures_something(unit) or is_count(unit)):
-            unit = None  # brackets around something else
-        if heading and heading.units is not None:
-            name, unit = cell, row[place - 1].strip("[]() ") or None
-            unit = None if unit in _PURE else unit
-            if unit and unit.isupper() and not is_unit(unit) and is_unit(unit.lower()):
-                said = unit = unit.lower()
+        in_row = heading is not None and heading.units is not None
+        name, unit, spelt = _of_rows(cell, units_row[place - 1]) if in_row else _of_cell(cell)
         counted = unit is not None and is_count(unit)
         unit = None if counted else unit
         seen[name] = seen.get(name, 0) + 1
@@ -55,12 +44,38 @@ def labelled(layout: Layout) -> list[DraftColumn]:
                 cell,
                 known,
                 seen[name] if known else 1,
-                file_unit=None if said else unit,
-                unit=above.get(place) if unit is None else said or None,
+                file_unit=None if spelt else unit,
+                unit=above.get(place) if unit is None else spelt or None,
                 counted=counted,
             )
         )
     return columns
+
+
+def _of_cell(cell: str) -> tuple[str, str | None, str]:
+    """Return name and unit of a cell such as "POSITION (MM)", and the unit as it has to be read."""
+    name, unit = split_name(cell)
+    spelt = ""
+    if unit == "A" and matches(name, unit, scan=True):
+        unit = spelt = "angstrom"  # of heights, as profilometers write it
+    spelt = spelt or _in_small_letters(unit)
+    unit = spelt or unit
+    if unit in _PURE or not (unit is None or measures_something(unit) or is_count(unit)):
+        return name, None, spelt  # brackets around something else
+    return name, unit, spelt
+
+
+def _of_rows(name: str, unit_cell: str) -> tuple[str, str | None, str]:
+    """Return name and unit if a row of its own states units, and how the unit has to be read."""
+    unit = unit_cell.strip("[]() ") or None
+    spelt = _in_small_letters(unit)
+    return name, None if unit in _PURE else spelt or unit, spelt
+
+
+def _in_small_letters(unit: str | None) -> str:
+    """Return a unit of capitals as it is usually written: MM as mm; "" if it needs no change."""
+    capitals = unit is not None and unit.isupper() and not is_unit(unit)
+    return unit.lower() if unit and capitals and is_unit(unit.lower()) else ""
 
 
 _MOST_NAMES = 64
@@ -97,11 +112,6 @@ def _stated_units(layout: Layout, cells: Sequence[str]) -> dict[int, str]:
     return found
 
 
-_SIGNAL = re.compile(
-    r"^(?:signal|segnale|senal|sinal|sygnal|signaal|channel|kanal|canal|canale|voie|column|spalte|colonna"
-    r"|columna|colonne|kolumna|measured|measurand|messgroesse|messwerte?|grandezza|magnitud|grandeur"
-    r"|quantity|data|daten|values?|信号|通道|測定量|データ|сигнал|канал)$"
-)
 _UNIT_IN = re.compile(r"[\[(]\s*([^\[\]()]+?)\s*[\])]")
 
 
@@ -112,7 +122,7 @@ def _named_above(layout: Layout) -> str:
     """
     for key, text in text_settings(layout, bare=True):
         unit = _UNIT_IN.search(text)
-        if unit is None or not is_unit(unit[1]) or not _SIGNAL.search(normalise_label(key)):
+        if unit is None or not is_unit(unit[1]) or not part_pattern("signal").fullmatch(normalise_label(key)):
             continue
         name = text[: unit.start()].strip()
         if name and matches(name, unit[1]):

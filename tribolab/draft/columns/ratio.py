@@ -12,6 +12,7 @@ from tribolab.io.force_ratio import doubt_about, doubt_about_coefficient
 from tribolab.quantities import unit_conversion
 from tribolab.reading.interpret.names import split_unit
 
+_RATIO = ("friction_coefficient", "friction_force", "normal_force")
 _APART = 1.5  # times: filters and zeros that the instrument took off make less
 _FEW = 20  # rows under load that tell
 _LOADED = 0.5  # of the largest load
@@ -34,30 +35,30 @@ def disagreement(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[st
         One guess, or none.
     """
     held = {column.quantity: column for column in columns if column.used and column.quantity}
-    names = ("friction_coefficient", "friction_force", "normal_force")
-    if "friction_coefficient" not in held and all(name in held for name in names[1:]):
-        doubt = doubt_about(*(_si(held[name], numbers) for name in names[1:]))
+    ratio, *forces = (held.get(name) for name in _RATIO)
+    friction, load = (None if column is None else _si(column, numbers) for column in forces)
+    if ratio is None:
+        doubt = "" if friction is None or load is None else doubt_about(friction, load)
         return [f"{doubt} they are read as named"] if doubt else []
-    if "friction_coefficient" in held and "friction_force" not in held:
-        doubt = doubt_about_coefficient(_si(held["friction_coefficient"], numbers))
+    stated = _si(ratio, numbers)
+    if friction is None:
+        doubt = doubt_about_coefficient(stated)
         return [f"{doubt} it is read as it stands"] if doubt else []
-    if any(name not in held for name in names):
+    if load is None:
         return []
-    stated, friction, load = (_si(held[name], numbers) for name in names)
     sound = np.isfinite(stated) & np.isfinite(friction) & np.isfinite(load) & (stated != 0)
     if sound.sum() < _FEW:
         return []
     sound &= np.abs(load) > _LOADED * np.abs(load[sound]).max()
     if sound.sum() < _FEW:
         return []
-    sizes = [
-        float(np.median(np.abs(x[sound]))) for x in (stated, friction / np.where(sound, load, 1))
-    ]
+    ratios = stated[sound], friction[sound] / load[sound]
+    sizes = [float(np.median(np.abs(x))) for x in ratios]
     if min(sizes) > 0 and max(sizes) / min(sizes) <= _APART:
         return []
     return [
-        f"the forces are right, whose ratio is {sizes[1]:.3g}; column "
-        f"{held['friction_coefficient'].place} states {sizes[0]:.3g}"
+        f"the forces are right, whose ratio is {sizes[1]:.3g}; column {ratio.place} states "
+        f"{sizes[0]:.3g}"
     ]
 
 
