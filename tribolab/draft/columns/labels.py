@@ -122,7 +122,11 @@ def _named_above(layout: Layout) -> str:
     """
     for key, text in text_settings(layout, bare=True):
         unit = _UNIT_IN.search(text)
-        if unit is None or not is_unit(unit[1]) or not part_pattern("signal").fullmatch(normalise_label(key)):
+        if (
+            unit is None
+            or not is_unit(unit[1])
+            or not part_pattern("signal").fullmatch(normalise_label(key))
+        ):
             continue
         name = text[: unit.start()].strip()
         if name and matches(name, unit[1]):
