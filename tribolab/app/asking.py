@@ -19,11 +19,11 @@ from tribolab.draft.follows.follows import what_follows
 from tribolab.draft.follows.lacking import lacking
 from tribolab.draft.follows.sums import ADDS
 from tribolab.draft.model import Agreed, DraftColumn, Understood, other_units
-from tribolab.draft.stated.settings import Amount
 from tribolab.draft.stated.stated_load import stated_number
 from tribolab.errors import ReadError, TribolabError, shown
 from tribolab.io.zero_reading import parse_zero
 from tribolab.quantities import QUANTITIES, quantity
+from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.unit_texts import converts, is_unit
 
 _NONE = "-"

@@ -297,9 +297,9 @@ def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[s
         names.add("set_speed")
     if facts["not_used"] and not names & {"sliding_velocity", "position", "set_speed"}:
         # late: starting stays quick
-        from tribolab.draft.words.strokes import is_frequency
+        from tribolab.reading.interpret.names import is_stroke_frequency
 
-        if any(is_frequency(*split_name(label)) for label in facts["not_used"]):
+        if any(is_stroke_frequency(*split_name(label)) for label in facts["not_used"]):
             names.add("stroke_frequency")
     if "drive" in facts["metadata"]:  # a draft keeps what it is where what turns is a crank
         names.add("crank")

@@ -15,9 +15,15 @@ import numpy as np
 from tribolab.draft.columns.fill_in import FORCES, Bare
 from tribolab.draft.columns.turning import angle_of, torque_of
 from tribolab.draft.model import DraftColumn, Kind
-from tribolab.draft.words.strokes import is_frequency, lengths_beside_frequencies
 from tribolab.quantities import QUANTITIES, quantity, unit_conversion
-from tribolab.reading.interpret.names import KNOWN_WORD, Match, is_axis, is_count
+from tribolab.reading.interpret.names import (
+    KNOWN_WORD,
+    Match,
+    is_axis,
+    is_count,
+    is_stroke_frequency,
+    is_stroke_length,
+)
 from tribolab.reading.lexicon.lexicon import Role, normalise_label, role_of
 
 RULED_OUT = -100.0
@@ -216,10 +222,10 @@ def by_torque(facts: Facts) -> Iterator[Evidence]:
 
 def by_strokes(facts: Facts) -> Iterator[Evidence]:
     """Rule out stroke lengths as positions, and stroke frequencies as rotation speeds."""
-    lengths = lengths_beside_frequencies([(name, unit) for name, unit, _ in facts.bare])
-    for place, (name, unit, _) in enumerate(facts.bare if lengths else ()):
-        if place in lengths or is_frequency(name, unit):
-            yield Evidence(place, "", RULED_OUT)
+    lengths = {place for place, (name, _, _) in enumerate(facts.bare) if is_stroke_length(name)}
+    often = {p for p, (name, unit, _) in enumerate(facts.bare) if is_stroke_frequency(name, unit)}
+    for place in lengths | often if lengths and often else ():
+        yield Evidence(place, "", RULED_OUT)
 
 
 def by_axes(facts: Facts) -> Iterator[Evidence]:

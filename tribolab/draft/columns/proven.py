@@ -8,9 +8,8 @@ import numpy as np
 
 from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.words.stated_words import is_radius
 from tribolab.quantities import QUANTITIES
-from tribolab.reading.interpret.names import Match, is_count, matches
+from tribolab.reading.interpret.names import Match, is_count, is_track_radius, matches
 from tribolab.reading.interpret.physics import Candidate, Proof, known_quantities, prove
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
@@ -56,7 +55,7 @@ def _candidate(name: str, unit: str | None, say: bool, values: np.ndarray) -> Ca
     near = {o.quantity for o in options if o.score >= options[0].score - _NEAR}
     quantities = near & known_quantities()
     quantities |= {concept for concept in _NAMED if key_pattern(concept).search(plain)}
-    if is_radius(plain):
+    if is_track_radius(plain):
         quantities = {"track_radius"}
     if "distance" in quantities and not converts(unit or "m", "m"):
         quantities.discard("distance")

@@ -12,10 +12,11 @@ from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import NO_NUMBERS, DraftColumn
 from tribolab.draft.stated.lengths import find_arm
-from tribolab.draft.stated.settings import Amount, numeric_settings
+from tribolab.draft.stated.settings import numeric_settings
 from tribolab.draft.stated.stated_load import find_load, stated_number
 from tribolab.errors import shown
 from tribolab.quantities import unit_conversion
+from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern, role_of

@@ -8,9 +8,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.words.stated_words import is_radius
 from tribolab.io.dialects.cells import split_name
-from tribolab.reading.interpret.names import is_count, split_unit
+from tribolab.reading.interpret.names import is_count, is_track_radius, split_unit
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
 
@@ -108,7 +107,7 @@ def radius_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
     columns
         The columns as they are understood.
     """
-    return _only_column(columns, is_radius, "m")
+    return _only_column(columns, is_track_radius, "m")
 
 
 def _said(columns: Sequence[DraftColumn], name: str) -> DraftColumn | None:

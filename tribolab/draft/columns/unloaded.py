@@ -13,8 +13,8 @@ from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.settings import numeric_settings
 from tribolab.draft.stated.stated_zero import find_zero, zero_in_doubt
-from tribolab.draft.words.stated_words import NOT_TAKEN_OFF
 from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.lexicon.lexicon import says
 from tribolab.unit_names import unit_in_words
 from tribolab.units import conversion
 
@@ -107,7 +107,7 @@ def with_zero(
     values = numeric_settings(layout)
     unit = "N" if force is not None else "N m"
     stated = find_zero(layout, values, unit) or zero_in_doubt(layout, values, unit)
-    if stated is not None and not NOT_TAKEN_OFF.search(line):
+    if stated is not None and not says("zero_not_taken_off", line):
         return list(columns)
     rows = _still_unloaded(numbers[:, signal.place - 1])
     time = next((c for c in columns if c.used and c.quantity == "time" and not c.form), None)

@@ -13,9 +13,8 @@ from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.follows import what_follows
 from tribolab.draft.follows.model import SAYS_FRICTION, SAYS_LOAD, Follows
 from tribolab.draft.model import DraftColumn, Understood
-from tribolab.draft.stated.lengths import find_pitch, find_profile_length
-from tribolab.draft.stated.settings import Amount, numeric_settings
-from tribolab.draft.stated.traces import find_stated
+from tribolab.draft.stated.profiles import find_pitch, find_profile_length, find_stated
+from tribolab.draft.stated.settings import numeric_settings
 from tribolab.errors import ReadError, TribolabError
 from tribolab.io.dialects.column_rule import Column
 from tribolab.io.dialects.dates import has_day
@@ -24,6 +23,7 @@ from tribolab.io.dialects.model import Derived, Dialect
 from tribolab.io.dialects.time_rule import Time
 from tribolab.io.dialects.value_rule import Value
 from tribolab.io.dialects.write import plain
+from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.unit_texts import converts
 
 _MOST = 12  # values that a long preamble states
@@ -278,8 +278,8 @@ def _values(
     """Return the single values that the file states, and those of them that are used."""
     used = list(follows.values)
     if understood.kind != "scan":
-        return numeric_settings(layout), used
-    values = numeric_settings(layout, bare=True)
+        return list(numeric_settings(layout)), used
+    values = list(numeric_settings(layout, bare=True))
     pitch = find_pitch(layout) if understood.pitch_pattern else None
     pitch = find_profile_length(layout) if understood.length_pattern else pitch
     if pitch is not None:

@@ -20,9 +20,9 @@ from tribolab.draft.follows.model import Follows
 from tribolab.draft.model import NO_NUMBERS, DraftColumn, Understood
 from tribolab.draft.stated.settings import lines_without_unit
 from tribolab.draft.stated.stated_zero import STILL
-from tribolab.draft.words.sentences import phrases
 from tribolab.errors import ReadError, shown
 from tribolab.reading import cures
+from tribolab.reading.interpret.phrases import phrases
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.raw.source import check_regular
 from tribolab.unit_names import WEIGHTS

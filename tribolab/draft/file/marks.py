@@ -8,12 +8,10 @@ from typing import NamedTuple
 
 from tribolab.draft.file.header import Heading
 from tribolab.draft.file.lines import Grammar
+from tribolab.reading.lexicon.lexicon import alternatives
 
 # what steps of a programme are called
-STEP_WORD = (
-    r"(?:step|stage|segment|block|interval|phase|schritt|stufe|abschnitt|intervall|[eé]tape|palier"
-    r"|phase|etapa|paso|fase|passo|krok|etap|stap|steg|trinn?|vaihe|askel|porras|l[eé]p[eé]s|l[eé]pcs[őo]|szakasz|gradino|patamar|degrau|ad[ıi]m|kademe|stupe[nň]|treapta|bieg|ступень|етап|крок|прогон|шаг|этап|режим|단계|步骤|步驟|阶段|段|ステップ)"
-)
+STEP_WORD = alternatives("step")
 _ENDED = r"(?:end(?:e|ed|s)?|begin\w*|start\w*|finished|done|fin|fine|结束|開始|开始|終了|完成)"
 _TITLE = re.compile(
     rf"\W*(?:(?:{_ENDED}\W{{1,3}}(?:of\W|der\W|de\W)?)?{STEP_WORD}\W{{0,4}}(?P<number>\d+)"

@@ -14,9 +14,8 @@ from typing import NamedTuple
 from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.settings import Amount
-from tribolab.draft.words.stated_words import ACROSS
 from tribolab.errors import shown
+from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label
 
@@ -166,7 +165,7 @@ def radius_of_ball(inclined: Inclined, values: Sequence[Amount]) -> Amount | Non
     sizes = [v for v in values if _is_size(v) and _ONE_BALL.search(v.key)]
     if len(sizes) != 1 or not inclined.sine:
         return None
-    half = 0.5 if ACROSS.search(sizes[0].key) or not re.search("radi|rayon", sizes[0].key) else 1.0
+    half = 0.5 if sizes[0].means("diameter") or not re.search("radi|rayon", sizes[0].key) else 1.0
     scale = float(f"{half * inclined.sine:.6g}")
     return sizes[0]._replace(name="track_radius", to="m", scale=scale)
 

@@ -10,7 +10,8 @@ from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.gains import with_unit
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.settings import Amount, numeric_settings
+from tribolab.draft.stated.settings import numeric_settings
+from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
 from tribolab.reading.interpret.unit_texts import converts
 

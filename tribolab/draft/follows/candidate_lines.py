@@ -7,12 +7,10 @@ from collections.abc import Sequence
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.model import Follows
 from tribolab.draft.model import Agreed
-from tribolab.draft.stated.settings import Amount, numeric_settings
+from tribolab.draft.stated.settings import numeric_settings
 from tribolab.draft.stated.stated_load import stated_number
-from tribolab.draft.words.stated_words import OTHER_RADIUS, STROKE
 from tribolab.errors import shown
-from tribolab.reading.interpret.unit_texts import converts
-from tribolab.unit_names import WEIGHTS
+from tribolab.reading.interpret.amounts import Amount
 
 _LACKS = {"the radius": "m", "the load": "N", "the sliding speed": "m/s"}
 _QUOTED = 3
@@ -76,8 +74,7 @@ def _perhaps(layout: Layout, follows: Follows, lack: str) -> list[Amount]:
     used = {value.text for value in follows.values}
     return [
         value
-        for value in numeric_settings(layout)
-        if unit and value.source != "file name" and value.text not in used
-        if converts(WEIGHTS.get(value.own_unit or "", value.own_unit or ""), unit)
-        if unit != "m" or not (OTHER_RADIUS.search(value.key) or STROKE.search(value.key))
+        for value in (numeric_settings(layout) if unit else ())
+        if value.source != "file name" and value.text not in used
+        if value.is_in(unit) and not (unit == "m" and value.means("other_radius", "stroke"))
     ]

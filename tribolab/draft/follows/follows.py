@@ -36,11 +36,12 @@ from tribolab.draft.model import Understood
 from tribolab.draft.stated.counts import zero_in_counts
 from tribolab.draft.stated.lengths import find_arm, find_radius, find_ring, is_at_arm, slides_on_rim
 from tribolab.draft.stated.programme import find_programme
-from tribolab.draft.stated.settings import Amount, numeric_settings, text_settings
+from tribolab.draft.stated.settings import numeric_settings, text_settings
 from tribolab.draft.stated.stated_load import find_load, lifted_on_return, stated_number
 from tribolab.draft.stated.stated_zero import find_zero, friction_column, zero_in_doubt
 from tribolab.draft.stated.stroke_settings import stated_strokes
 from tribolab.quantities import unit_conversion
+from tribolab.reading.interpret.amounts import Amount
 from tribolab.unit_names import WEIGHTS
 
 _SAYS_SPEED = {"sliding_velocity", "position", "set_speed"}
@@ -66,7 +67,7 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
         return Follows()
     # with a unit still to be filled in, a column is there all the same
     names = {c.quantity for c in understood.columns if c.quantity and (c.used or c.fill_in)}
-    values = numeric_settings(layout)
+    values = list(numeric_settings(layout))
     if "step" in names:
         values += find_programme(layout)
     told = _Told(layout, understood, names, values, find_inclined(layout))

@@ -13,10 +13,10 @@ from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.counts import COUNT_WORD, stated_offset
-from tribolab.draft.stated.settings import Amount
-from tribolab.draft.words.sentences import pattern_behind
 from tribolab.io.dialects.cells import split_name
+from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import COUNTS, matches
+from tribolab.reading.interpret.patterns import number_pattern
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label
 from tribolab.unit_names import WEIGHTS, unit_in_words
@@ -257,7 +257,7 @@ def _number(
     """Return a number as a formula has it, and the value that it is where a line states it."""
     if not said.line:  # the column's name: a file of another number has another column
         return f"'{match['number'].replace(',', '.')} {unit}'", ()
-    pattern = pattern_behind(said.line[: said.place + match.start("number")])
+    pattern = number_pattern(said.line[: said.place + match.start("number")])
     value = Amount(
         name, pattern, unit, to, said.line.strip(), own_unit=unit, key=normalise_label(name)
     )

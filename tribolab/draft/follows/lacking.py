@@ -12,10 +12,10 @@ from tribolab.draft.follows.two_bodies import has_turning_surfaces
 from tribolab.draft.model import NO_NUMBERS, WHICH_FORCE, DraftColumn, Understood
 from tribolab.draft.stated.lengths import is_at_arm
 from tribolab.draft.stated.stated_zero import friction_column
-from tribolab.draft.words.strokes import is_frequency
 from tribolab.errors import shown
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.missing import missing_of
+from tribolab.reading.interpret.names import is_stroke_frequency
 from tribolab.reversals import reversals
 
 
@@ -58,7 +58,7 @@ def lacking(understood: Understood, follows: Follows) -> list[str]:
         return [worth, *missing_of(names)]
     elif unknown_of(understood.columns):
         names.add("friction_force")  # it is asked whether one of them holds it
-    if any(is_frequency(*_named(c)) for c in understood.columns if not c.used):
+    if any(is_stroke_frequency(*_named(c)) for c in understood.columns if not c.used):
         names.add("stroke_frequency")
     signals = (c for c in understood.columns if c.used and c.quantity in SAYS_FRICTION)
     if any(reversals(understood.numbers[:, c.place - 1]) for c in signals):

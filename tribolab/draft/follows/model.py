@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.settings import Amount
+from tribolab.reading.interpret.amounts import Amount
 
 SAYS_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}

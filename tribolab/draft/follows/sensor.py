@@ -15,7 +15,7 @@ from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.counts import calibration_factor
-from tribolab.draft.stated.lengths import find_traverse_speed, pitch_of_clock, seconds_apart
+from tribolab.draft.stated.profiles import find_traverse_speed, pitch_of_clock, seconds_apart
 from tribolab.errors import shown
 from tribolab.reading.interpret.names import KNOWN_WORD, length_unit, matches
 from tribolab.reading.interpret.unit_texts import converts

@@ -11,7 +11,6 @@ from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.follows.model import CRANK, DraftedFormula, Follows, SpeedBy, Track, and_also
 from tribolab.draft.follows.two_bodies import Pair, Radii, along_friction, as_symbol, pair_of
 from tribolab.draft.model import DraftColumn, Understood
-from tribolab.draft.stated.settings import Amount
 from tribolab.draft.stated.slip import find_slide_roll_ratio
 from tribolab.draft.stated.stated_zero import friction_column
 from tribolab.draft.stated.stroke_settings import (
@@ -19,8 +18,9 @@ from tribolab.draft.stated.stroke_settings import (
     strokes_from_answer,
     strokes_of_turns,
 )
-from tribolab.draft.words.stated_words import PER_MINUTE, STROKE
+from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.patterns import escaped
+from tribolab.reading.interpret.unit_texts import is_per_minute
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
 
 _DRIVE = re.compile(
@@ -121,7 +121,9 @@ def with_speed(
     said = [text.lower() for key, text in words if _DRIVE.search(normalise_label(key))]
     modes = [text.lower() for key, text in words if _MODE.search(normalise_label(key))]
     # a constant load is a mode, too, and a stroke may be said to be a sine
-    lengths = [text.lower() for key, text in words if STROKE.search(normalise_label(key))]
+    lengths = [
+        text.lower() for key, text in words if key_pattern("stroke").search(normalise_label(key))
+    ]
     said += [text for text in (*modes, *lengths) if _SINE.search(text)]
     said += [value.text.lower() for value in of_strokes.values if value.source == "file name"]
     drive, guess = understood.drive or "crank", ""
@@ -190,7 +192,7 @@ def _crank(words: Sequence[tuple[str, str]]) -> Amount | None:
 def _is_rotation(value: Amount) -> bool:
     step = value.source == "step" and _STEP.search(value.key) is not None
     named = step or value.source == "programme" or _SPEED_OF_TURNS.search(value.key) is not None
-    return named and PER_MINUTE.fullmatch(value.own_unit or "") is not None
+    return named and is_per_minute(value.own_unit or "")
 
 
 def stated_turns(values: Sequence[Amount]) -> Amount | None:

@@ -11,8 +11,7 @@ import numpy as np
 from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.settings import Amount
-from tribolab.draft.words.stated_words import ACROSS, RADIUS
+from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label, role_of
@@ -182,9 +181,9 @@ def radii_of(pair: Pair, values: Sequence[Amount], said: str) -> Radii | None:
         return Radii((f"'{said}'", f"'{said}'"), ())
     sizes = [v._replace(to="m") for v in values if v.unit and converts(v.unit, "m")]
     sizes = [
-        v._replace(scale=0.5) if ACROSS.search(v.key) else v
+        v._replace(scale=0.5) if v.means("diameter") else v
         for v in sizes
-        if ACROSS.search(v.key) or RADIUS.search(v.key)
+        if v.means("diameter", "track_radius")
     ]
     told = [
         [v for v in sizes if own.search(v.key) and not other.search(v.key)]

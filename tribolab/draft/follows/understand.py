@@ -38,22 +38,21 @@ from tribolab.draft.model import NO_NUMBERS, DraftColumn, Kind, Understood
 from tribolab.draft.stated.columns_from_settings import columns_from_settings
 from tribolab.draft.stated.counts import apply_count_scale
 from tribolab.draft.stated.factors import unapplied_factors, unapplied_height_factors
-from tribolab.draft.stated.lengths import (
-    confirm_lever_arm_force,
+from tribolab.draft.stated.lengths import confirm_lever_arm_force
+from tribolab.draft.stated.profiles import (
     find_height_unit,
     find_pitch,
     find_point_density,
     find_profile_length,
     find_unit_along,
-    metres,
     pitch_of_clock,
 )
 from tribolab.draft.stated.sampling import find_pace, find_sampling
-from tribolab.draft.stated.settings import Amount
 from tribolab.draft.stated.slip import as_entrainment_speed
 from tribolab.errors import ReadError, brief, shown
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.dates import seconds
+from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import Match, matches
 from tribolab.reading.interpret.physics import Proof
 from tribolab.reading.interpret.unit_texts import converts
@@ -321,7 +320,7 @@ def _may_be_heights(column: DraftColumn) -> bool:
 def _likely_unit(layout: Layout, numbers: np.ndarray, pitch: Amount | None, density: str) -> str:
     """Return the unit that heights may be in: um, or nm where they were as large as the scan."""
     step = (
-        metres(pitch) if pitch is not None else positive(density, "m", "pitch") if density else 0.0
+        pitch.si("m") if pitch is not None else positive(density, "m", "pitch") if density else 0.0
     )
     reach = float(np.nanmax(numbers) - np.nanmin(numbers)) if np.isfinite(numbers).any() else 0.0
     return "nm" if 0 < step * len(numbers) * _REACH < 1e-6 * reach else "um"

@@ -1,6 +1,6 @@
 """A table of the steps to come, above the signals: how fast each turns or slides, under which load.
 
-It is used where a column counts the steps.
+It is used if a column counts the steps.
 """
 
 from __future__ import annotations
@@ -8,26 +8,26 @@ from __future__ import annotations
 import re
 
 from tribolab.draft.file.layout import Layout
-from tribolab.draft.file.marks import STEP_WORD
-from tribolab.draft.stated.settings import Amount
-from tribolab.draft.words.stated_words import ACROSS, LOAD, PER_MINUTE, RADIUS
-from tribolab.draft.words.strokes import is_frequency, is_length
 from tribolab.io.dialects.cells import split_name, split_row
-from tribolab.reading.interpret.names import matches, split_unit
+from tribolab.reading.interpret.amounts import Amount
+from tribolab.reading.interpret.names import (
+    is_stroke_frequency,
+    is_stroke_length,
+    matches,
+    split_unit,
+)
 from tribolab.reading.interpret.patterns import escaped
-from tribolab.reading.interpret.unit_texts import converts
-from tribolab.reading.lexicon.lexicon import normalise_label
+from tribolab.reading.interpret.unit_texts import converts, is_per_minute
+from tribolab.reading.lexicon.lexicon import alternatives, normalise_label
+from tribolab.reading.numbers import decimal
 from tribolab.unit_names import unit_in_words
 
 _LONGEST = 300  # characters of a line that are looked at
 _FEWEST = 2  # steps of a programme
 _FIRST = re.compile(
-    rf"^\W*(?:{STEP_WORD}|no|nr|n|#)\W*(?:no|nr|number|nummer|#)?\W*$", re.IGNORECASE
+    rf"^\W*(?:{alternatives('step')}|no|nr|n|#)\W*(?:no|nr|number|nummer|#)?\W*$", re.IGNORECASE
 )
-_NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
-_SAID = {"m/s": "set_speed", "N": "set_normal_force"}
-_TO = {"rad/s": "rotation", "m": "track_radius"}  # names of what is no quantity
-_NOTHING = re.compile(r"[-–—*/.]*|n/?a|none|off|無|无|なし", re.IGNORECASE)
+_NOTHING = re.compile(rf"[-–—*/.]*|{alternatives('nothing')}", re.IGNORECASE)
 _DELIMITERS = ("\t", ";", ",", "whitespace")
 
 
@@ -52,7 +52,10 @@ def find_programme(layout: Layout) -> list[Amount]:
             if len(names) < 2 or not _FIRST.match(names[0]):
                 continue
             if _steps_below(lines[index + 1 :], len(names), delimiter) >= _FEWEST:
-                return _values(line.strip(), names, delimiter)
+                cells = list(enumerate(names))[1:]
+                patterns = (_pattern(place, len(names), delimiter) for place, _ in cells)
+                found = map(_of_cell, (cell for _, cell in cells), patterns)
+                return [amount._replace(text=line.strip()) for amount in found if amount]
     return []
 
 
@@ -66,52 +69,45 @@ def _steps_below(lines: list[str], width: int, delimiter: str) -> int:
         cells = [cell.strip().strip('"') for cell in split_row(line, delimiter)]
         if len(cells) < width or not cells[0].isdigit() or not float(cells[0]) > before:
             break
-        own = cells[:width] if _NUMBER.fullmatch(cells[width - 1]) else cells[: width - 1]
-        if not all(_NUMBER.fullmatch(cell) or _NOTHING.fullmatch(cell) for cell in own):
+        own = cells[:width] if _is_number(cells[width - 1]) else cells[: width - 1]
+        if not all(_is_number(cell) or _NOTHING.fullmatch(cell) for cell in own):
             break
-        if not any(_NUMBER.fullmatch(cell) for cell in own[1:]):
+        if not any(_is_number(cell) for cell in own[1:]):
             break
         count, before = count + 1, float(cells[0])
     return count
 
 
-def _values(line: str, names: list[str], delimiter: str) -> list[Amount]:
-    found = []
-    for place, cell in enumerate(names[1:], start=1):
-        name, unit = split_name(cell)
-        name, unit = (name, unit) if unit is not None else split_unit(cell)
-        unit = unit_in_words(unit) if unit else None
-        turns = unit is not None and PER_MINUTE.fullmatch(unit)
-        unit = "rpm" if turns else unit
-        to = next((si for si in ("rad/s", "m/s", "N", "m") if unit and converts(unit, si)), None)
-        key = normalise_label(name)
-        if unit is None or to is None or (to == "N" and not LOAD.search(key)):
-            continue
-        kind = _TO.get(to, "")
-        if to == "rad/s" and not turns and is_frequency(name, unit):
-            to, kind = "Hz", "frequency"  # of strokes
-        elif to == "m" and is_length(name):
-            kind = "stroke"
-        elif to == "m" and not (RADIUS.search(key) or ACROSS.search(key)):
-            continue
+def _is_number(cell: str) -> bool:
+    return cell[-1:].isdigit() and decimal(cell) == decimal(cell)
+
+
+def _of_cell(cell: str, pattern: str) -> Amount | None:
+    """Return what a column of the programme is, if a run needs it."""
+    name, unit = split_name(cell)
+    name, unit = (name, unit) if unit is not None else split_unit(cell)
+    unit = unit_in_words(unit) if unit else None
+    if unit is None:
+        return None
+    turns = is_per_minute(unit)
+    unit = "rpm" if turns else unit
+    made = Amount("", pattern, unit, None, "", "programme", unit, key=normalise_label(name))
+    if converts(unit, "rad/s") and (turns or not is_stroke_frequency(name, unit)):
+        return made._replace(name="rotation", to="rad/s")
+    if converts(unit, "rad/s"):
+        return made._replace(name="frequency", to="Hz")
+    if converts(unit, "m/s"):
         options = matches(name, unit)
-        known = options[0].quantity if options else ""
-        if to == "m/s" and known not in ("sliding_velocity", "set_speed"):
-            continue
-        found.append(
-            Amount(
-                _SAID.get(to) or kind,
-                _pattern(place, len(names), delimiter),
-                unit,
-                None if to in _SAID else to,
-                line,
-                source="programme",
-                own_unit=unit,
-                scale=0.5 if kind == "track_radius" and ACROSS.search(key) else 1.0,
-                key=key,
-            )
-        )
-    return found
+        known = options and options[0].quantity in ("sliding_velocity", "set_speed")
+        return made._replace(name="set_speed") if known else None
+    if converts(unit, "N"):
+        return made._replace(name="set_normal_force") if made.means("load") else None
+    if converts(unit, "m") and is_stroke_length(name):
+        return made._replace(name="stroke", to="m")
+    if converts(unit, "m") and made.means("track_radius", "diameter"):
+        scale = 0.5 if made.means("diameter") else 1.0
+        return made._replace(name="track_radius", to="m", scale=scale)
+    return None
 
 
 def _pattern(place: int, width: int, delimiter: str) -> str:

@@ -12,55 +12,35 @@ from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.lvm import interval_above
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.settings import numeric_settings
-from tribolab.draft.words.stated_words import INTERVAL, RATE
 from tribolab.errors import shown
 from tribolab.reading.interpret.patterns import escaped
+from tribolab.reading.interpret.phrases import single_number
 from tribolab.reading.interpret.unit_texts import converts
-from tribolab.reading.lexicon.lexicon import normalise_label
+from tribolab.reading.lexicon.lexicon import alternatives, key_pattern, normalise_label
 
 # "# Cadence d'acquisition : 1000 pts/s", "Rate (kS/s) = 1"; "1000 samples per second" alone
 _GROUPS = r"[1-9]\d{0,2}(?:[ \u00a0\u202f']\d{3})+"  # 1 000
-_NUMBER = rf"(?P<number>{_GROUPS}|\d[\d.,]*(?:e[-+]?\d+)?)"
-_UNIT = r"[\[(]?(?P<unit>(?:1/)?[^\W\d][^\d;\t,\[\]()]*(?:\^?-1)?)?[\])]?"
 _STATES = re.compile(
-    rf"(?P<before>\W*(?P<key>[^\W\d][^:=\t;]*?)\s*[:=\t;]+\s*){_NUMBER}[\s;]*{_UNIT}[\s;,]*$",
+    r"(?P<before>\W*(?:(?P<key>[^\W\d][^:=\t;]*?)\s*[:=\t;]+\s*)?)"
+    rf"(?P<number>{_GROUPS}|\d[\d.,]*(?:e[-+]?\d+)?)[\s;]*"
+    r"[\[(]?(?P<unit>(?:1/)?[^\W\d][^\d;\t,\[\]()]*(?:\^?-1)?)?[\])]?[\s;,]*$",
     re.IGNORECASE,
-)
-_ALONE = re.compile(rf"(?P<before>\W*){_NUMBER}\s*{_UNIT}[\s;,]*$", re.IGNORECASE)
-_SOME_SAMPLES = re.compile(
-    r"\W*(?P<key>[^\W\d][^:=\t;,\d]{0,60}?)\s*[:=\t;, ]\s*[x×]?\s?(?P<number>\d{1,6})"
-    r"\s*(?:[x×]|[^\W\d]{1,12})?\W*$"
-)
-_AVERAGES = re.compile(
-    r"(?:data|signal|samples?)?(?:averag(?:e|es|ed|ing)|mittelung|mittelwerte|moyennage|promedios?"
-    r"|decimation|dezimierung|downsampling|oversampling|undersampling|subsampling|datareduction)"
-    r"(?:over|of|factor|faktor|facteur|samples?|points?|count|number|n)*"
 )
 _LONGEST = 200  # characters of a line that are looked at
 _BRACKET = re.compile(r"[\[(]([^\[\]()]+)[\])]\s*$")
-# a sample in the languages of laboratories, as it is written in a unit
-_SAMPLE = (
-    r"(?:s|sa|smp|smpl|spl|samples?|pts?|points?|punkte?|pkt|werte?|messwerte?|mesures?|ech|ech\w*"
-    r"|muestras?|puntos?|datos?|campion[ei]|punti|letture|amostras?|pontos?|punten|monsters"
-    r"|scans?|readings?|data(?:points?)?|probek|probki|punktow|vzork\w*|отсч\w*|точек|точки|выборок"
-    r"|点|个|样点|サンプル|データ)"
-)
-_TIME = (
-    r"(?:(?P<second>s|sec|secs|seconds?|sek|sekunden?|seconde|segundo|secondo|sekund\w*|с|сек|秒)"
-    r"|(?P<minute>min|minutes?|minuten?|minuto|мин|分))"
-)
+_SAMPLE, _PER = alternatives("sample"), alternatives("per")
 _PER_TIME = re.compile(
-    rf"(?P<many>[kmKM]?){_SAMPLE}\.?\s*(?:/|per|par|pro|por|al|p\.|na|в|每)\s*{_TIME}\.?"
+    rf"(?P<many>[kmKM]?)(?:{_SAMPLE}\.?\s*{_PER}\s*"
+    rf"(?:(?P<second>{alternatives('second')})|(?P<minute>{alternatives('minute')}))\.?|[sp]ps)"
 )
-_SHORT = re.compile(r"(?P<many>[kmKM]?)(?:sps|pps)", re.IGNORECASE)
-_PER_SAMPLE = re.compile(rf"(?P<time>[mµun]?s|sec|min)\s*(?:/|per|par|pro|por)\s*{_SAMPLE}\.?")
+_PER_SAMPLE = re.compile(rf"(?P<time>[mµun]?s|sec|min)\s*{_PER}\s*{_SAMPLE}\.?")
 _MANY = {"": "Hz", "k": "kHz", "m": "MHz"}  # nobody takes a sample in a thousand seconds
 
 
 class Sampling(NamedTuple):
     """What the text before the table says of the distance of samples, and what of it is guessed.
 
-    `pattern` finds the number; `unit` is one of frequency, or of time where it is an interval, and
+    `pattern` finds the number; `unit` is one of frequency, or of time if it is an interval, and
     may be taken for what a rate is usually in (`has_unit` False).
     """
 
@@ -80,31 +60,14 @@ def find_sampling(layout: Layout) -> Sampling | None:
     """
     if (above := interval_above(layout)) is not None:
         return Sampling(*above)
-    said = _stated(layout)
+    lines = layout.text_above(bare=layout.width == 1)
+    stated = [found for line in lines if (found := _of_line(line.rstrip(), layout.decimal))]
+    said = next((found for found in stated if found.has_unit), None)
+    said = said or _in_amounts(layout) or next(iter(stated), None)
     if said is None or not (fewer := _fewer_rows(layout)):
         return said
     doubt = f"every sample is taken for a row, although the file states '{fewer}'"
     return said._replace(guess=f"{said.guess}; {doubt}" if said.guess else doubt)
-
-
-def _fewer_rows(layout: Layout) -> str:
-    """Return the line that says that several samples are averaged or left out; "" if none does."""
-    for line in layout.text_above():
-        said = _SOME_SAMPLES.match(line.strip()[:_LONGEST])
-        if said and int(said["number"]) > 1 and _AVERAGES.fullmatch(normalise_label(said["key"])):
-            return shown(line.strip(), 40)
-    return ""
-
-
-def _stated(layout: Layout) -> Sampling | None:
-    guessed = None
-    for line in layout.text_above(bare=layout.width == 1):
-        if (said := _of_line(line.rstrip(), layout.decimal)) is None:
-            continue
-        if said.has_unit:
-            return said
-        guessed = guessed or said
-    return _in_values(layout) or guessed
 
 
 def find_pace(
@@ -136,20 +99,49 @@ def find_pace(
     goes = [np.diff(numbers[a:b, way.place - 1]) for a, b in parts]
     if not all(bool((steps > 0).all()) or bool((steps < 0).all()) for steps in goes):
         return None
-    speed = speeds[0]
-    return Sampling(speed.pattern, speed.unit or speed.own_unit or "")
+    return Sampling(speeds[0].pattern, speeds[0].unit or speeds[0].own_unit or "")
 
 
-def _in_values(layout: Layout) -> Sampling | None:
-    """Return what stands in a sentence or among other values of a line."""
-    for value in numeric_settings(layout):
-        interval = INTERVAL.search(value.key) is not None
-        if value.source != "preamble" or not (interval or RATE.search(value.key)):
-            continue
-        unit = value.unit or value.own_unit
-        if unit and any(converts(unit, si_unit) for si_unit in ("Hz", "s")):
-            return Sampling(value.pattern, unit)
-        if unit is None:
+def sample_rate_unit(text: str) -> str:
+    """Return the unit of frequency that a text of samples per time means; "" if it means none.
+
+    Parameters
+    ----------
+    text
+        A unit, or what a file calls a rate.
+
+    Examples
+    --------
+    >>> [sample_rate_unit(text) for text in ("pts/s", "kS/s", "échant./s", "Points per second")]
+    ['Hz', 'kHz', 'Hz', 'Hz']
+    >>> sample_rate_unit("samples/min"), sample_rate_unit("mm/s")
+    ('1/min', '')
+    """
+    # without accents and capitals, but with its signs
+    per = _PER_TIME.fullmatch("".join(normalise_label(sign) or sign for sign in text.strip()))
+    if per is None or (per["many"] and per["minute"]):
+        return ""
+    return "1/min" if per["minute"] else _MANY[per["many"].lower()]
+
+
+def _fewer_rows(layout: Layout) -> str:
+    """Return the line that says that several samples are averaged or left out; "" if none does."""
+    for line in layout.text_above():
+        said = single_number(line.strip()[:_LONGEST])
+        averaged = said and key_pattern("averaging").search(normalise_label(said[0]))
+        if said and averaged and said[1] > 1 and said[1] == round(said[1]):
+            return shown(line.strip(), 40)
+    return ""
+
+
+def _in_amounts(layout: Layout) -> Sampling | None:
+    """Return what stands in a sentence or among other numbers of a line."""
+    concepts = "sampling_interval", "sampling_rate"
+    for value in numeric_settings(layout).of(*concepts, source="preamble"):
+        if value.is_in("Hz") or value.is_in("s"):
+            return Sampling(value.pattern, value.unit or value.own_unit or "")
+        if value.own_unit is None:
+            interval = value.means("sampling_interval")
             return _without_unit(value.pattern, value.text, interval=interval)
     return None
 
@@ -161,13 +153,14 @@ def _without_unit(pattern: str, text: str, *, interval: bool) -> Sampling:
 
 def _of_line(line: str, decimal: str) -> Sampling | None:
     """Return what a line of one value states of the samples."""
-    said = _STATES.match(line) or _ALONE.match(line)
+    said = _STATES.match(line)
     if said is None:
         return None
-    key = said.groupdict().get("key") or ""
+    key = said["key"] or ""
     bracket = _BRACKET.search(key)
     unit = (said["unit"] or "").strip() or (bracket[1].strip() if bracket else "")
-    name = normalise_label(_BRACKET.sub("", key))
+    bare = _BRACKET.sub("", key)
+    name = normalise_label(bare)
     digits = rf"({_GROUPS}|[-+\d.,]+(?:[eE][-+]?\d+)?)"
     pattern = r"^\s*" + escaped(said["before"].strip()) + rf"\s*{digits}"
     if not said["before"].strip():  # a number alone is found by what stands behind it
@@ -175,45 +168,17 @@ def _of_line(line: str, decimal: str) -> Sampling | None:
     thousands = ""
     if decimal == "." and re.fullmatch(r"[1-9]\d{0,2}(?:,\d{3})+", said["number"]):
         thousands = f"the comma in '{line.strip()}' parts thousands"
-    by_key = sample_rate_unit(_BRACKET.sub("", key))
+    by_key = sample_rate_unit(bare)
     if rate := sample_rate_unit(unit) or ("" if unit else by_key):
         return Sampling(pattern, rate, thousands)
     if not name:
         return None
-    interval = INTERVAL.search(name) is not None
     if apart := _PER_SAMPLE.fullmatch(unit):
         return Sampling(pattern, apart["time"])
     unit = unit.rstrip(".")
-    if not (interval or by_key or RATE.search(name)):
+    interval = key_pattern("sampling_interval").search(name) is not None
+    if not (interval or by_key or key_pattern("sampling_rate").search(name)):
         return None
-    if unit and any(converts(unit, si_unit) for si_unit in ("Hz", "s")):
+    if converts(unit, "Hz") or converts(unit, "s"):
         return Sampling(pattern, unit, thousands)
     return None if unit else _without_unit(pattern, line.strip(), interval=interval)
-
-
-def sample_rate_unit(text: str) -> str:
-    """Return the unit of frequency that a text of samples per time means; "" if it means none.
-
-    Examples
-    --------
-    >>> [sample_rate_unit(text) for text in ("pts/s", "kS/s", "échant./s", "Points per second")]
-    ['Hz', 'kHz', 'Hz', 'Hz']
-    >>> sample_rate_unit("samples/min"), sample_rate_unit("mm/s")
-    ('1/min', '')
-    """
-    plain = squeezed_signs(text)
-    if short := _SHORT.fullmatch(plain):
-        return _MANY[short["many"].lower()]
-    per = _PER_TIME.fullmatch(plain)
-    if per is None or per["many"] and per["minute"]:
-        return ""
-    return _MANY[per["many"].lower()] if per["second"] else "1/min"
-
-
-def squeezed_signs(text: str) -> str:
-    """Return a text without accents and capitals, but with its signs.
-
-    >>> squeezed_signs("Échant./s")
-    'echant./s'
-    """
-    return "".join(normalise_label(sign) or sign for sign in text.strip())

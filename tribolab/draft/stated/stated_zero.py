@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
-from tribolab.draft.stated.settings import Amount
-from tribolab.draft.words.stated_words import NOT_TAKEN_OFF, OFF_ALREADY, TAKEN_OFF, ZERO
+from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.interpret.names import matches
-from tribolab.reading.interpret.unit_texts import converts
-from tribolab.reading.lexicon.lexicon import part_pattern
+from tribolab.reading.lexicon.lexicon import part_pattern, says
 
 _LONGEST = 300  # characters of a line that are looked at
 STILL = "it is still in the signal"
-_OF_LOAD = re.compile(
-    r"normal|load(?!cell)|last|belast|charge|carga|carico|vertical|verti[kc]al|axial|assial|nacisk"
-    r"|obci[aą]|нагруз|нормал|载荷|法向|荷重|垂直|하중|fz|fn"
-)
 _OTHER = {"normal_force", "set_normal_force", "temperature", "position"}
 
 
@@ -30,7 +23,7 @@ def find_zero(layout: Layout, values: Sequence[Amount], unit: str, said: str = "
     layout
         From `tribolab.draft.file.layout.find_layout`.
     values
-        From `tribolab.draft.stated.settings.numeric_settings`.
+        From `numeric_settings`.
     unit
         "N" of a force, "N m" of a torque.
     said
@@ -39,7 +32,7 @@ def find_zero(layout: Layout, values: Sequence[Amount], unit: str, said: str = "
     Returns
     -------
     Amount or None
-        None, too, where nothing says whether it was taken off: see `zero_in_doubt`.
+        None, too, if nothing says whether it was taken off: see `zero_in_doubt`.
     """
     zero = _stated(values, unit)
     in_it = said == "in it" or (not said and _is_still_in(layout, zero))
@@ -62,29 +55,8 @@ def zero_in_doubt(
     zero = _stated(values, unit)
     if zero is None or said or _is_still_in(layout, zero):
         return None
-    behind = zero.text[zero.text.find(":") + 1 :]
-    told = _says(layout, zero, TAKEN_OFF) or OFF_ALREADY.search(behind)
-    return None if told else zero
-
-
-def _is_still_in(layout: Layout, zero: Amount | None) -> bool:
-    own = zero is not None and NOT_TAKEN_OFF.search(zero.text)
-    return bool(own) or _says(layout, zero, NOT_TAKEN_OFF)
-
-
-def _stated(values: Sequence[Amount], unit: str) -> Amount | None:
-    fitting = [value for value in values if _is_zero(value, unit)]
-    if len(fitting) > 1:  # that of the load beside it is another
-        fitting = [value for value in fitting if not _OF_LOAD.search(value.key)]
-    return fitting[0] if len(fitting) == 1 and fitting[0].number else None
-
-
-def _says(layout: Layout, zero: Amount | None, words: re.Pattern[str]) -> bool:
-    """Whether another line above the table says something of zeros."""
-    others = (
-        line[:_LONGEST] for line in layout.text_above() if zero is None or line.strip() != zero.text
-    )
-    return any(words.search(line) for line in others)
+    taken_off = says("zero_taken_off", zero.text[zero.text.find(":") + 1 :])
+    return None if taken_off or _another_line_says("zero_is_taken_off", layout, zero) else zero
 
 
 def friction_column(columns: Sequence[DraftColumn]) -> DraftColumn | None:
@@ -99,10 +71,33 @@ def friction_column(columns: Sequence[DraftColumn]) -> DraftColumn | None:
     return held[0] if len(held) == 1 else None
 
 
+def _is_still_in(layout: Layout, zero: Amount | None) -> bool:
+    own = zero is not None and says("zero_not_taken_off", zero.text)
+    return own or _another_line_says("zero_not_taken_off", layout, zero)
+
+
+def _another_line_says(name: str, layout: Layout, zero: Amount | None) -> bool:
+    lines = (line for line in layout.text_above() if zero is None or line.strip() != zero.text)
+    return any(says(name, line[:_LONGEST]) for line in lines)
+
+
+def _stated(values: Sequence[Amount], unit: str) -> Amount | None:
+    fitting = [value for value in values if _is_zero(value, unit)]
+    if len(fitting) > 1:  # that of the load next to it is another
+        fitting = [value for value in fitting if not _is_of_load(value.key)]
+    zero = Amounts(fitting).only()
+    return zero if zero is not None and zero.number else None
+
+
+def _is_of_load(key: str) -> bool:
+    cell = part_pattern("load_cell").sub("", key)
+    return part_pattern("of_load").search(cell) is not None
+
+
 def _is_zero(value: Amount, unit: str) -> bool:
-    if value.source != "preamble" or not ZERO.search(value.key):
+    if value.source != "preamble" or not value.own_unit:
         return False
-    if not (value.own_unit and converts(value.own_unit, unit)):
+    if not (value.means("zero") and value._replace(unit=value.own_unit).is_in(unit)):
         return False
     bare = part_pattern("zero").sub("", value.key)
     options = matches(bare, value.own_unit) if bare else []

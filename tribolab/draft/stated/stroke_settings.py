@@ -9,21 +9,16 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.draft.model import DraftColumn, Understood
-from tribolab.draft.stated.settings import Amount
-from tribolab.draft.words.stated_words import FREQUENCY, HALF_STROKE, RATE, STROKE
-from tribolab.draft.words.strokes import END_TO_END, is_frequency, is_length
 from tribolab.errors import shown
 from tribolab.io.dialects.cells import split_name
-from tribolab.reading.interpret.names import split_unit
+from tribolab.reading.interpret.amounts import Amount, Amounts
+from tribolab.reading.interpret.names import is_stroke_frequency, is_stroke_length, split_unit
 from tribolab.reading.interpret.unit_texts import converts
-from tribolab.reading.lexicon.lexicon import role_of
+from tribolab.reading.lexicon.lexicon import alternatives, role_of, says
+from tribolab.reading.numbers import numbers_in
 
-_CYCLES = re.compile(
-    r"^(?:(?:number|no|nr|nombre|nb|numero|anzahl|total|liczba|pocet|antal|aantal)(?:of|de|dei|di|der)?)?"
-    r"(?:cycles?|zyklen|zykluszahl|ciclos|cicli|cykli|cyklu|cykler|cycli|循环次数|サイクル数)$"
-)
-_SEVERAL = 1.1  # times the lowest: a setting is no longer the same
-_LIST = re.compile(r"\d\s?(?:[/;|]|\b(?:and|then|und|dann|et|puis|y|e|luego|poi)\b)\s?\d")
+_CHANGED = 1.1  # times the lowest: a setting is no longer the same
+_LIST = re.compile(rf"\d\s?(?:[/;|]|\b{alternatives('then')}\b)\s?\d", re.IGNORECASE)
 _EITHER_WAY = re.compile(r"(?:\+/?-|±)\s?\d")  # from the middle
 
 
@@ -39,20 +34,20 @@ class Strokes(NamedTuple):
 def find_strokes(values: Sequence[Amount], understood: Understood) -> Strokes | None:
     """Return length and frequency of strokes, of the text above the table and of columns.
 
-    What a column holds goes before what the text states: it says when it changes.
+    A column takes precedence over the text: it says when the setting changes.
 
     Parameters
     ----------
     values
-        From `tribolab.draft.stated.settings.numeric_settings`.
+        From `numeric_settings`.
     understood
         What is known of the columns.
     """
     lengths, frequencies = _of_columns(understood)
     stroke, frequency, guess = _stated(values)
-    if stroke is not None and frequency is not None and not _change(understood, frequencies):
-        settings = (("stroke_value", stroke.name), ("frequency_value", frequency.name))
-        return Strokes(settings, (stroke, frequency), guess=guess)
+    above = find_strokes_above(values)
+    if above is not None and not _change(understood, frequencies):
+        return above
     symbols: list[tuple[str, DraftColumn]] = []
     kept: list[Amount] = []
     if len(lengths) == 1 and not lengths[0].used:
@@ -78,7 +73,7 @@ def strokes_from_answer(values: Sequence[Amount], said: tuple[str, str]) -> Stro
     Parameters
     ----------
     values
-        From `tribolab.draft.stated.settings.numeric_settings`.
+        From `numeric_settings`.
     said
         Length and frequency with their units; "" for what was not said.
     """
@@ -94,7 +89,13 @@ def strokes_from_answer(values: Sequence[Amount], said: tuple[str, str]) -> Stro
 
 
 def find_strokes_above(values: Sequence[Amount]) -> Strokes | None:
-    """Return the length and frequency of strokes that stand above the table."""
+    """Return the length and frequency of strokes that stand above the table.
+
+    Parameters
+    ----------
+    values
+        From `numeric_settings`.
+    """
     stroke, frequency, guess = _stated(values)
     if stroke is None or frequency is None:
         return None
@@ -108,7 +109,7 @@ def strokes_of_turns(values: Sequence[Amount], often: DraftColumn) -> Strokes | 
     Parameters
     ----------
     values
-        From `tribolab.draft.stated.settings.numeric_settings`.
+        From `numeric_settings`.
     often
         The column that says how fast the crank turns.
     """
@@ -119,13 +120,35 @@ def strokes_of_turns(values: Sequence[Amount], often: DraftColumn) -> Strokes | 
     return Strokes(settings, (stroke,), (("stroke_frequency", often),), guess)
 
 
+def stated_strokes(values: Sequence[Amount]) -> tuple[Amount, ...]:
+    """Return what stands above the table of strokes, to be held against a recorded position.
+
+    Parameters
+    ----------
+    values
+        From `numeric_settings`.
+    """
+    strokes = find_strokes_above(values)
+    if strokes is None or strokes.guess:
+        return ()
+    if any(value.source in ("step", "programme") for value in strokes.values):
+        return ()
+    length, frequency = strokes.values
+    cycles = Amounts(values).only("number_of_cycles", unit="")
+    return (
+        length._replace(name="stated_stroke"),
+        frequency._replace(name="stated_stroke_frequency"),
+        *(() if cycles is None else (cycles._replace(name="stated_cycles"),)),
+    )
+
+
 def _stated(values: Sequence[Amount]) -> tuple[Amount | None, Amount | None, str]:
     """Return the length and the frequency of strokes as the text has them, and what is guessed."""
-    stroke, frequency, guess = _only(values, STROKE, "m"), _only(values, FREQUENCY, "Hz"), ""
+    stroke, frequency, guess = _only(values, "stroke", "m"), _only(values, "frequency", "Hz"), ""
     if stroke is not None and _EITHER_WAY.search(stroke.text):
         stroke = stroke._replace(scale=2.0)
-    if stroke is None and (half := _only(values, HALF_STROKE, "m")) is not None:
-        whole = END_TO_END.search(half.text) is not None
+    if stroke is None and (half := _only(values, "half_stroke", "m")) is not None:
+        whole = says("end_to_end", half.text)
         stroke = half if whole else half._replace(scale=2.0)
         if not whole and "half" not in half.name and not _EITHER_WAY.search(half.text):
             guess = f"'{half.text}' is half of a stroke"
@@ -135,28 +158,19 @@ def _stated(values: Sequence[Amount]) -> tuple[Amount | None, Amount | None, str
     return stroke, frequency, guess
 
 
+def _only(values: Sequence[Amount], concept: str, unit: str) -> Amount | None:
+    """Return the one amount of a concept; a sample rate is no frequency of strokes."""
+    with_unit = Amounts(value for value in values if value.unit)
+    one = with_unit.only(concept, unit=unit, but=("sampling_rate",))
+    return None if one is None else one._replace(to=unit)
+
+
 def _says_several(value: Amount) -> bool:
     """Whether a line states more than one number of its unit: '2 Hz, then 5 Hz', '2 / 5 Hz'."""
     if value.source != "preamble" or not value.own_unit:
         return False
-    said = re.findall(rf"(\d+(?:[.,]\d+)?)\s?{re.escape(value.own_unit)}(?![^\W\d])", value.text)
-    return len(set(said)) > 1 or _LIST.search(value.text) is not None
-
-
-def stated_strokes(values: Sequence[Amount]) -> tuple[Amount, ...]:
-    """Return what stands above the table of strokes, to be held against a recorded position."""
-    strokes = find_strokes_above(values)
-    if strokes is None or strokes.guess:
-        return ()
-    if any(value.source in ("step", "programme") for value in strokes.values):
-        return ()
-    length, frequency = strokes.values
-    counts = [v for v in values if v.own_unit is None and _CYCLES.search(v.key)]
-    return (
-        length._replace(name="stated_stroke"),
-        frequency._replace(name="stated_stroke_frequency"),
-        *(count._replace(name="stated_cycles") for count in counts[:1] if len(counts) == 1),
-    )
+    said = {n.value for n in numbers_in(value.text) if n.unit == value.own_unit}
+    return len(said) > 1 or _LIST.search(value.text) is not None
 
 
 def _of_columns(understood: Understood) -> tuple[list[DraftColumn], list[DraftColumn]]:
@@ -168,11 +182,11 @@ def _of_columns(understood: Understood) -> tuple[list[DraftColumn], list[DraftCo
             name, unit = split_unit(column.label)
             column = column._replace(unit=column.unit or unit)
         unit = column.file_unit or column.unit or unit
-        if unit is not None and converts(unit, "m") and is_length(name):
+        if unit is not None and converts(unit, "m") and is_stroke_length(name):
             lengths.append(column)
-        elif is_frequency(name, unit) and not column.used:
+        elif is_stroke_frequency(name, unit) and not column.used:
             frequencies.append(column)
-    # what is measured, where what was set stands beside it
+    # what is measured, if what was set is recorded, too
     measured = [c for c in frequencies if role_of(c.label) != "set"]
     return lengths, measured if len(frequencies) > 1 else frequencies
 
@@ -183,17 +197,4 @@ def _change(understood: Understood, columns: Sequence[DraftColumn]) -> bool:
         return False
     values = understood.numbers[:, columns[0].place - 1]
     values = values[np.isfinite(values) & (values > 0)]
-    return bool(values.size) and float(values.max()) > _SEVERAL * float(values.min())
-
-
-def _only(values: Sequence[Amount], key: re.Pattern[str], unit: str) -> Amount | None:
-    """Return the one value of that name and kind; None if there is none, or several."""
-    fitting = [
-        value
-        for value in values
-        if value.unit
-        and converts(value.unit, unit)
-        and key.search(value.key)
-        and not RATE.search(value.key)  # how often samples are taken
-    ]
-    return fitting[0]._replace(to=unit) if len(fitting) == 1 else None
+    return bool(values.size) and float(values.max()) > _CHANGED * float(values.min())

@@ -7,9 +7,10 @@ import re
 from typing import NamedTuple
 
 from tribolab.quantities import quantity
-from tribolab.reading.interpret.unit_texts import converts, is_unit
+from tribolab.reading.interpret.unit_texts import converts, is_turns, is_unit
 from tribolab.reading.lexicon.lexicon import (
     Word,
+    key_pattern,
     keys_of,
     known_words,
     names,
@@ -48,10 +49,6 @@ COUNTS = "counts"
 # columns of time that are called by their unit, as the clocks of microcontrollers are
 _CLOCKS = {"millis": "ms", "msec": "ms", "msecs": "ms", "ms": "ms", "micros": "us", "usec": "us"}
 _CLOCKS |= {"usecs": "us", "mus": "us", "sec": "s", "secs": "s"}
-# units in which nothing else is measured, whatever the name
-_TURNS = re.compile(
-    r"rpm|(?:rev|r|U|tr|ot|obr|giri|omw|d|dev|devir)\.?/\s?(?:min|s|dk|dak)", re.IGNORECASE
-)
 _RPM = re.compile(r"(?<![^\W_])rpm(?![^\W_])", re.IGNORECASE)  # a name that is its unit: "rpm_set"
 _GLUED = re.compile(r"(?P<name>[^\W\d_]*[a-z]{2})(?P<unit>[A-Z]{1,2})")  # "tempC", "forceN"
 _NUMBERED = re.compile(r"#?\s*(?:N[°ºr]|No|№)\.?", re.IGNORECASE)  # rows, and not how fast it turns
@@ -200,6 +197,40 @@ def is_count(unit: str) -> bool:
     return unit.lower() in keys_of("count")
 
 
+def is_stroke_length(name: str) -> bool:
+    """Whether a name is that of a stroke's length.
+
+    >>> is_stroke_length("Stroke"), is_stroke_length("Set stroke length")
+    (True, True)
+    >>> is_stroke_length("Stroke No")
+    False
+    """
+    stroke = key_pattern("stroke")
+    return any(stroke.search(normalise_label(text)) for text in (name, without_role(name)))
+
+
+def is_stroke_frequency(name: str, unit: str | None) -> bool:
+    """Whether a name and a unit are those of how often strokes come.
+
+    >>> is_stroke_frequency("Frequency", "Hz"), is_stroke_frequency("Speed", "mm/s")
+    (True, False)
+    """
+    plain = normalise_label(without_role(name))
+    return bool(unit and converts(unit, "Hz") and key_pattern("frequency").search(plain))
+
+
+def is_track_radius(name: str) -> bool:
+    """Whether a column's name, normalised, is that of the radius of a track.
+
+    >>> is_track_radius("trackradius"), is_track_radius("radiomediodelapista")
+    (True, True)
+    >>> is_track_radius("ballradius")
+    False
+    """
+    other = key_pattern("other_radius").search(name)
+    return bool(key_pattern("track_radius").search(name) and not other)
+
+
 def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
     """Return the quantities that a column may hold, the likeliest first.
 
@@ -241,7 +272,7 @@ def matches(name: str, unit: str | None, *, scan: bool = False) -> list[Match]:
             score = KNOWN_WORD + (1 - KNOWN_WORD) * score if told else score
             held = _AS_SET.get(word.quantity, word.quantity) if role == "set" else word.quantity
             options.append(Match(held, score, read_as))
-    if not scan and role != "set" and _TURNS.fullmatch(unit or ""):
+    if not scan and role != "set" and is_turns(unit or ""):
         options.append(Match("rotation_speed", KNOWN_WORD, None))
     if not scan and _ACROSS.search(name):  # "Z position" lies across the motion
         options = [m._replace(quantity=_INSTEAD.get(m.quantity, m.quantity)) for m in options]

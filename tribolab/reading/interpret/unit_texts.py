@@ -20,6 +20,30 @@ _FURTHER = (
     *("ohm", "m**2", "m**3", "m**2/s", "m**3/s", "m**2/N", "W", "W/m**2", "A", "A s", "S"),
     *("farad", "kg", "kg/m**3", "S/m", "1/K", "T"),
 )
+_TURNS = re.compile(
+    r"rpm|(?P<own>1/min|min-1)|(?:rev|r|U|tr|ot|obr|giri|omw|d|dev|devir)\.?/\s?(?P<time>min|s|dk|dak)",
+    re.IGNORECASE,
+)
+
+
+def is_turns(unit: str) -> bool:
+    """Whether a unit counts revolutions, whatever the name: rpm, U/min.
+
+    >>> is_turns("U/min"), is_turns("1/min")
+    (True, False)
+    """
+    turns = _TURNS.fullmatch(unit)
+    return turns is not None and not turns["own"]
+
+
+def is_per_minute(unit: str) -> bool:
+    """Whether a unit counts something a minute.
+
+    >>> is_per_minute("1/min"), is_per_minute("rev/s")
+    (True, False)
+    """
+    turns = _TURNS.fullmatch(unit)
+    return turns is not None and (turns["time"] or "").lower() != "s"
 
 
 def is_unit(text: str) -> bool:

@@ -23,6 +23,10 @@ _SPELT = {
 _LETTERS = str.maketrans(_SPELT)
 _ACCENTS = re.compile("[\u0300-\u036f]")  # not the marks that make one kana of another
 _TOKENS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[^\W\d_A-Z]+")
+CLAUSE_END = r"[;:,=|()\[\]：；，（）、。]|\.\s+(?=[^\W\d_a-zа-яё])"  # a capital begins a sentence
+_CLAUSE = re.compile(CLAUSE_END)
+_SIGNS = re.compile(r"[^\w;]+|_")
+_FIRST_UNPARTED = "\u2e80"  # of the letters of languages that put no blanks between words
 _NO_LANGUAGE = ("of", "symbols", "stems", "vague")
 
 
@@ -103,6 +107,82 @@ def key_pattern(concept: str) -> re.Pattern[str]:
 def part_pattern(name: str) -> re.Pattern[str]:
     """Return a pattern for one part of settings.toml, wherever it stands in a normalised name."""
     return re.compile(_part(name))
+
+
+def plain_text(text: str) -> str:
+    """Return the words of a text as `normalise_label` does, with one blank between and around them.
+
+    A semicolon stands where a clause ends.
+
+    >>> plain_text("Nullpunkt-korrigiert; Prüfkraft: 20 N")
+    ' nullpunkt korrigiert ; pruefkraft ; 20 n '
+    """
+    words = _SIGNS.split(_CLAUSE.sub(" ; ", text[:LONGEST_NAME]))
+    return f" {' '.join(filter(None, (w if w == ';' else normalise_label(w) for w in words)))} "
+
+
+@functools.cache
+def text_pattern(name: str) -> re.Pattern[str]:
+    """Return a pattern for what `plain_text` gives, of the words and forms in sentences.toml.
+
+    Examples
+    --------
+    >>> bool(text_pattern("slides_on_rim").search(plain_text("Block-on-Ring test")))
+    True
+    """
+    block = _toml("sentences")[name]
+    forms = [
+        r"\w{0,3} ?".join(_text_part(part) for part in form.split())
+        for form in block.get("forms", ())
+    ]
+    return re.compile("|".join([*forms, *_stems(block)]))
+
+
+@functools.lru_cache(maxsize=4096)
+def says(name: str, text: str) -> bool:
+    """Whether a text holds one of the words or forms that sentences.toml has under a name.
+
+    >>> says("not", "not corrected"), says("not", "note: corrected")
+    (True, False)
+    """
+    return text_pattern(name).search(plain_text(text)) is not None
+
+
+def _text_part(part: str) -> str:
+    name, maybe = (part[:-1], "?") if part.endswith("?") else (part, "")
+    return f"(?:{'|'.join(_stems(_toml('sentences')['part'][name]))}){maybe}"
+
+
+def _stems(block: Mapping[str, Any]) -> list[str]:
+    """Return patterns of words: of languages that part them each begins one, and may go on."""
+    words = [word for key, line in block.items() if key != "forms" for word in line]
+    return [
+        (r"\b" if "*" not in word and plain[0] < _FIRST_UNPARTED else "")
+        + re.escape(plain)
+        + (r"\b" if word.endswith(" ") else "")
+        for word in sorted(dict.fromkeys(words), key=len, reverse=True)
+        if (plain := plain_text(word.strip()).strip())
+    ]
+
+
+@functools.cache
+def plain_words(name: str) -> frozenset[str]:
+    """Return the words under a name in sentences.toml, normalised."""
+    return frozenset(normalise_label(w) for line in _toml("sentences")[name].values() for w in line)
+
+
+@functools.cache
+def alternatives(name: str) -> str:
+    """Return a group of the words under a name in sentences.toml, for text as it is written.
+
+    A word that ends in ``~`` may go on by nine letters.
+    """
+    words = dict.fromkeys(word for line in _toml("sentences")[name].values() for word in line)
+    parts = (
+        re.escape(word.rstrip("~")) + (r"\w{0,9}" if word.endswith("~") else "")
+        for word in sorted(words, key=len, reverse=True)
+    )
+    return f"(?:{'|'.join(parts)})"
 
 
 @functools.cache

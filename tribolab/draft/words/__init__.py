@@ -1,1 +1,0 @@
-"""What words in names and texts of strangers mean."""

@@ -1,0 +1,170 @@
+"""Numbers with a unit inside sentences: "ring on disc, mean track radius 21.5 mm"."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from tribolab.reading.interpret.patterns import number_pattern
+from tribolab.reading.interpret.unit_texts import is_unit
+from tribolab.reading.lexicon.lexicon import (
+    CLAUSE_END,
+    alternatives,
+    key_pattern,
+    normalise_label,
+    plain_text,
+    plain_words,
+    says,
+    text_pattern,
+)
+from tribolab.reading.numbers import NUMBER, Number, decimal, numbers_in
+from tribolab.unit_names import WEIGHTS
+
+LONGEST_LINE = 300  # characters of a line that are looked at
+_MOST_OF_LINE = 8  # numbers of a line
+_CAPITALS = 3  # letters of a unit that may be written large
+_ENDS = " \t:=~≈＝：-–"
+_CLAUSES = re.compile(
+    rf"{CLAUSE_END}|\b(?:(?<!load )(?<!force )(?<!weight )on|{alternatives('clause')})\b"
+)
+_LABEL = re.compile(r"\W*(?P<label>[^\W\d][^:;=\t：；]{0,40}?)[\s\"]*[:;=\t：；]")
+_RATIO = re.compile(r"(?<![\d:.,/])(\d+(?:[.,]\d+)?)\s?([:/])\s?(\d+(?:[.,]\d+)?)(?![\d:/])")
+_TIMES_SIGNS = ("x", "X", "×")
+_SINGLE = re.compile(
+    rf"\W*(?P<key>[^\W\d][^:=\t;,\d]{{0,60}}?)\s*[:=\t;, ]\s*[x×]?\s?(?P<number>{NUMBER})"
+    r"\s?(?P<unit>[x×]|[^\W\d]{1,12})?\W*(?:[(（].{0,80})?$",
+    re.IGNORECASE,
+)
+
+
+class Ratio(NamedTuple):
+    """Two numbers with a colon or a stroke between them, and where they stand in the line."""
+
+    one: float
+    other: float
+    sign: str
+    start: int
+    end: int
+
+
+class Phrase(NamedTuple):
+    """A number with a unit inside a line; `key` are the words before it, in its own clause."""
+
+    key: str
+    number: str
+    unit: str
+    pattern: str
+    line: str
+
+
+def phrases(line: str) -> list[Phrase]:
+    """Return the numbers with a unit that stand inside a line of text, in its order.
+
+    Parameters
+    ----------
+    line
+        One line above the table.
+
+    Examples
+    --------
+    >>> [(said.key, said.number, said.unit) for said in phrases("mean radius 2 cm on a 50 mm disc")]
+    [('meanradius', '2', 'cm'), ('', '50', 'mm')]
+    >>> phrases("Comment: step 0 = head lifted")
+    []
+    """
+    said: list[Phrase] = []
+    done = 0
+    line = line[:LONGEST_LINE].strip()
+    for number in numbers_in(line):
+        unit = _unit_of(number)
+        if not unit or len(said) == _MOST_OF_LINE:
+            continue
+        before = line[done : number.start].rstrip(_ENDS)
+        clauses = [clause for clause in _CLAUSES.split(before) if clause.strip()]
+        words = (normalise_label(word) for word in clauses[-1].split()) if clauses else ()
+        key = "".join(word for word in words if word not in plain_words("little"))
+        if key_pattern("size_alone").search(key) and label_of(line):  # "Shaft: Ø 80 mm"
+            key = f"{label_of(line)}diameter"
+        behind = line[number.end :][:20]
+        if re.match(r"\s?o\.?d\b", behind, re.IGNORECASE):
+            key += "od"
+        elif text_pattern("diameter_behind").match(plain_text(behind).lstrip()):
+            key += "diameter"
+        pattern = number_pattern(line[: number.start])
+        said.append(Phrase(key, number.text, unit, pattern, line))
+        done = number.end
+    return said
+
+
+def _unit_of(number: Number) -> str:
+    """Return the unit of a number, small where it is written large: 30 LBF; "" without one."""
+    for unit in (number.unit, number.unit.partition("/")[0]):
+        unit = unit if len(unit) < _CAPITALS or is_unit(unit) else unit.lower()
+        if unit and is_unit(unit):
+            return unit
+    return ""
+
+
+def label_of(line: str) -> str:
+    """Return what stands before the first colon or cell of a line, normalised; "" if nothing does.
+
+    >>> label_of("Shaft: steel, Ø 80 mm"), label_of('"Anneau";"acier 4620"'), label_of("Ø 80 mm")
+    ('shaft', 'anneau', '')
+    """
+    label = _LABEL.match(line[:LONGEST_LINE])
+    return normalise_label(label["label"]) if label else ""
+
+
+def weight_on_lever(line: str) -> float:
+    """Return how many times a weight presses that one line states together with its lever; or 0.
+
+    Parameters
+    ----------
+    line
+        One line above the table.
+
+    Examples
+    --------
+    >>> weight_on_lever("Charge: masses 5 kg, rapport de levier 10:1")
+    10.0
+    >>> weight_on_lever("dead weight 2 kg on lever, ratio 1:5"), weight_on_lever("Lever 1:5")
+    (5.0, 0.0)
+    >>> weight_on_lever("Load 20 N (lever 1:5)")
+    0.0
+    """
+    line = line[:LONGEST_LINE]
+    numbers = numbers_in(line)
+    if sum(number.unit.lower() in WEIGHTS for number in numbers) != 1 or not says("lever", line):
+        return 0.0
+    if ratios := ratios_in(line):
+        sides = ratios[0].one, ratios[0].other
+        return max(sides) / min(sides) if min(sides) > 0 else 0.0
+    signs = re.compile(rf"{alternatives('ratio_sign')}\W{{0,3}}$", re.IGNORECASE)
+    times = (n.value for n in numbers if not n.unit and signs.search(line[: n.start]))
+    return next(times, 0.0)
+
+
+def ratios_in(line: str) -> list[Ratio]:
+    """Return the ratios such as 1:5 in a line.
+
+    >>> [(ratio.one, ratio.other) for ratio in ratios_in("Lever 1:5, at 12:01:05")]
+    [(1.0, 5.0)]
+    """
+    return [
+        Ratio(decimal(match[1]), decimal(match[3]), match[2], match.start(), match.end())
+        for match in _RATIO.finditer(line)
+    ]
+
+
+def single_number(line: str) -> tuple[str, float, str] | None:
+    """Return the words, the number and the word behind it of a line that holds one number.
+
+    >>> single_number("Gain x 2,5 (set)"), single_number("Averaging: 8 samples")
+    (('Gain', 2.5, ''), ('Averaging', 8.0, 'samples'))
+    >>> single_number("12:30 Gain 5")
+    """
+    match = _SINGLE.match(line)
+    if match is None:
+        return None
+    unit = match["unit"] or ""
+    return match["key"], decimal(match["number"]), "" if unit in _TIMES_SIGNS else unit

@@ -1,0 +1,262 @@
+"""Settings: each line of text parsed once, into amounts with a unit and texts with a key."""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Mapping
+
+from tribolab.reading.interpret.amounts import Amount, Amounts
+from tribolab.reading.interpret.names import matches, split_unit
+from tribolab.reading.interpret.patterns import escaped
+from tribolab.reading.interpret.phrases import (
+    LONGEST_LINE,
+    Phrase,
+    label_of,
+    phrases,
+    weight_on_lever,
+)
+from tribolab.reading.interpret.unit_texts import DIMENSIONS, converts, is_unit
+from tribolab.reading.lexicon.lexicon import (
+    alternatives,
+    key_pattern,
+    keys_of,
+    normalise_label,
+    part_pattern,
+    plain_text,
+    role_of,
+    text_pattern,
+    without_role,
+)
+from tribolab.reading.numbers import NUMBER
+from tribolab.unit_names import WEIGHTS, unit_in_words
+
+_LONGEST_ENTRY = 1000  # of a line with a key: searches take their square
+# "# rate: 10 Hz", "Set Force = -200", "Disc track radius used (mm)<tab>21.232"
+_SAYS, _IN_CELLS = (  # the latter: "Dead weight,500,g"
+    re.compile(
+        rf"(?P<before>\W*(?P<key>[^\W\d][^:：=\t;{mark}]*?)"
+        rf"(?:\"?\s*[:：=]?\s*[:：=\t;{mark}]\s*\"?|\s{{2,80}}))"
+        rf"(?:(?:\+/?-|±)\s?)?(?P<number>{number})[\s;{mark}\"]*"
+        r"(?P<unit>1/[^\W\d]\w*|[^\s\d;,\"][^\s;,\"]*)?"
+        r"(?:[\s;,\t\"]*(?:\(.*\))?|(?:[,;]| [-–—]) ?[^\W\d][^\d:：=]*)$"
+    )
+    for mark, number in (("", NUMBER), (",", NUMBER.replace(",", "")))
+)
+_TEXT = re.compile(
+    r"\W*(?P<key>[^\W\d][^:：=\t;]*?)(?:\"?\s*[:：=\t;]\s*|\s{2,80})[\"\[(]?(?P<text>[^\W\d].*)$"
+)
+_UNIT_ALONE = re.compile(  # "Units um", "単位,μm"
+    r"[\W_]*(?P<key>[^\W\d]\w{0,20}(?:\s[^\W\d]{1,10})?)(?P<gap>\s+|\"?\s*,\s*\"?)"
+    r"[\[(]?(?P<unit>[^\W\d]{1,20})[\])]?\W*$"
+)
+_BRACKETS = re.compile(r"[\[(]([^\[\]()]+)[\])]")
+_EITHER_WAY = re.compile(r"^\s*(?:\+/?-|±)")
+_STEP_TITLE = re.compile(rf"\W*{alternatives('step')}\W*\d", re.IGNORECASE)
+_STEP = re.compile(rf"{alternatives('step')}\d*n?")
+_SET = {"normal_force": "set_normal_force", "sliding_velocity": "set_speed"}
+# what a sentence may state in a unit of such a dimension
+_WANTED = {
+    "m": (
+        *("track_radius", "track_diameter", "diameter", "outer_size", "turning", "tip_radius"),
+        *("arm", "stroke", "half_stroke", "pitch", "profile_length"),
+    ),
+    "s": ("sampling_interval",),
+    "m/s": ("sliding_speed", "machine_speed"),
+    "rad/s": ("frequency", "rotation_speed"),
+    "1/s": ("sampling_rate", "frequency", "rotation_speed"),
+    "Hz": ("sampling_rate", "frequency", "rotation_speed"),
+    "N": ("load",),
+}
+
+
+@functools.lru_cache(maxsize=64)
+def amounts_of(lines: tuple[str, ...], most: int) -> Amounts:
+    """Return the amounts that lines of text state, each under a name of its own.
+
+    Parameters
+    ----------
+    lines
+        Above or below a table, or the attributes of a container as ``key: value``.
+    most
+        So many at most.
+
+    Examples
+    --------
+    >>> stated = amounts_of(("Track radius: 21,5 mm", "mean of 3, load of 2 kg on the arm"), 12)
+    >>> [(a.key, a.number, a.own_unit) for a in stated]
+    [('trackradius', 21.5, 'mm'), ('load', 2.0, 'kg')]
+    >>> stated.only("load").si("N")
+    19.6133
+    """
+    found: dict[str, Amount] = {}
+    units = _units_apart(lines)
+    for line in lines:
+        if len(found) >= most:
+            break
+        line = line[:_LONGEST_ENTRY]
+        entry = _entry(line.rstrip())
+        # a digit before the colon: a time of day, if it is not the number of a step
+        if entry and (not entry["key"][-1].isdigit() or _STEP_TITLE.match(entry["key"])):
+            _keep(found, _of_entry(entry, units))
+            continue
+        strokes = False
+        for phrase in phrases(line):
+            if strokes and not phrase.key:  # "stroke 5 mm at 2 Hz"
+                phrase = phrase._replace(key="frequency")
+            if amount := _of_phrase(phrase):
+                _keep(found, amount)
+            strokes = key_pattern("stroke").search(phrase.key) is not None
+    return Amounts(found.values())
+
+
+@functools.lru_cache(maxsize=64)
+def texts_of(lines: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
+    """Return what lines of text say in words, by key; of what drives strokes, under ``drive``.
+
+    >>> texts_of(("Drive: crank", "Units um", "an eccentric drive"))
+    (('Drive', 'crank'), ('Units', 'um'), ('drive', 'crank'), ('drive', 'eccentric drive'))
+    """
+    lines = tuple(line[:_LONGEST_ENTRY] for line in lines)
+    entries = (_TEXT.match(line.strip()) for line in lines)
+    found = [(match["key"], match["text"].rstrip('"; ,')) for match in entries if match]
+    alone = (_UNIT_ALONE.match(line.strip()) for line in lines)
+    found += [(match["key"], match["unit"]) for match in alone if match and _is_of_unit(match)]
+    drives = (_as_written("drive", line[:LONGEST_LINE]) for line in lines)
+    return (*found, *(("drive", text) for text in drives if text))
+
+
+def _as_written(name: str, line: str) -> str:
+    """Return the words of a line that sentences.toml has under a name; "" if it has none of them.
+
+    >>> _as_written("drive", "Tribómetro biela-manivela")
+    'biela-manivela'
+    """
+    match = text_pattern(name).search(plain_text(line))
+    words = list(re.finditer(r"[^\W_]+", line)) if match else []
+    for place in reversed(range(len(words))):
+        for last in words[place:]:
+            text = line[words[place].start() : last.end()]
+            if match and match[0].strip() in plain_text(text):
+                return text
+    return ""
+
+
+def _is_of_unit(alone: re.Match[str]) -> bool:
+    first, *more = alone["key"].lower().split()
+    return first in keys_of("unit") or ("," in alone["gap"] and not more)
+
+
+def _entry(line: str) -> re.Match[str] | None:
+    entry = _SAYS.match(line) or _IN_CELLS.match(line)
+    # "Scan length 1.5 mm, 3000 points": a sentence; "Load (steps 1 a 4);40 N": none
+    return None if entry and phrases(_BRACKETS.sub("", entry["key"])) else entry
+
+
+def _units_apart(lines: tuple[str, ...]) -> dict[str, str]:
+    """Return units that stand in lines of their own, by whose they are: "Stroke unit: mm"."""
+    unit = part_pattern("unit").pattern
+    of = part_pattern("of").pattern
+    apart = re.compile(rf"^(?P<key>.+?){unit}$|^{unit}(?:for|{of})?(?P<behind>.+)$")
+    found = ((apart.match(normalise_label(key)), text) for key, text in texts_of(lines))
+    return {match["key"] or match["behind"]: text.strip(" []()") for match, text in found if match}
+
+
+def _of_entry(entry: re.Match[str], units: Mapping[str, str]) -> Amount:
+    """Return the amount of a line that says nothing else."""
+    key, unit = _key_and_unit(entry, units)
+    digits = r"[-+\d.eE]+" if entry.re is _IN_CELLS else r"[-+\d.,eE]+"
+    before = escaped(entry["before"].strip())
+    if _STEP_TITLE.match(key):  # the next step has another number
+        before = re.sub(r"\d+", r"\\d+", before)
+    behind = entry.string[entry.end("before") :][:4]
+    signs = r"(?:\+/?-|±)?\s*" if _EITHER_WAY.search(behind) else ""
+    pattern = r"^\s*" + before + rf"\s*{signs}({digits})"
+    plain = normalise_label(_BRACKETS.sub("", key))
+    dimension = _dimension(unit)
+    line = entry.string.strip()
+    made = Amount(_name(key), pattern, unit, dimension, line, own_unit=unit, key=plain)
+    if unit is None or dimension is None:
+        return made._replace(unit=None, to=None)
+    if dimension == "m/s" and made.means("machine_speed"):
+        return made._replace(name="set_speed", to=None)
+    options = matches(key, unit)
+    if options and options[0].score > 0.5:
+        quantity = _SET.get(options[0].quantity, options[0].quantity)
+        bare = normalise_label(
+            _BRACKETS.sub("", without_role(key) if role_of(key) == "set" else key)
+        )
+        made = made._replace(key=bare) if made._replace(key=bare).means("load") else made
+        other = quantity == "set_normal_force" and not made.means("load")  # a preload is none
+        if quantity.startswith("set_") and not other:
+            return made._replace(name=quantity, unit=options[0].unit or unit, to=None)
+    return made
+
+
+def _key_and_unit(entry: re.Match[str], units: Mapping[str, str]) -> tuple[str, str | None]:
+    key, unit = entry["key"], unit_in_words((entry["unit"] or "").strip("[]()")) or None
+    bracket = _BRACKETS.search(key)
+    if unit is None and bracket and is_unit(bracket[1]):
+        unit, key = bracket[1], key[: bracket.start()]
+    unit = unit or units.get(normalise_label(key))
+    name, comma, behind = key.rpartition(",")
+    if unit is None and comma and is_unit(behind.strip()):  # "Step, um: 0.5"
+        return name, behind.strip()
+    return split_unit(key) if unit is None and "_" in key else (key, unit)  # "stroke_mm=8"
+
+
+def _of_phrase(phrase: Phrase) -> Amount | None:
+    """Return what a sentence states, if it is one of the things that a run or profile needs."""
+    dimension = _dimension(phrase.unit)
+    weight = phrase.unit in WEIGHTS
+    wanted = _WANTED.get("N" if weight else dimension or "", ())
+    label = label_of(phrase.line)
+    if "load" in wanted and key_pattern("load").search(label) and _is_one_force(phrase):
+        phrase = phrase._replace(key=label)  # "Load: dead weights of 5 kg"
+    if "tip_radius" in wanted and key_pattern("tip_radius").search(label + phrase.key):
+        phrase = phrase._replace(key=label + phrase.key)  # "Stylus: radius 2 um"
+    lever = weight_on_lever(phrase.line) if weight else 0.0
+    speed = dimension == "m/s"
+    made = Amount(
+        "set_speed" if speed else _name(phrase.key),
+        phrase.pattern,
+        None if weight else phrase.unit,
+        None if weight or speed else dimension,
+        phrase.line,
+        own_unit=phrase.unit,
+        scale=lever or 1.0,
+        key=phrase.key,
+    )
+    turns = "rotation_speed" in wanted and _STEP.fullmatch(phrase.key)  # "Step 2: 30 rpm"
+    return made if turns or made.means(*wanted) else None
+
+
+def _is_one_force(phrase: Phrase) -> bool:
+    """Whether the only force or weight of a line is the first number in it: no range of several."""
+    forces = [
+        said for said in phrases(phrase.line) if converts(said.unit, "N") or said.unit in WEIGHTS
+    ]
+    before = phrase.line[: phrase.line.find(phrase.number)]
+    return len(forces) == 1 and not re.search(r"\d", before)
+
+
+def _dimension(unit: str | None) -> str | None:
+    return next((d for d in DIMENSIONS if unit and converts(unit, d)), None)
+
+
+def _keep(found: dict[str, Amount], amount: Amount) -> None:
+    """Keep an amount, under a name of its own: letters of the east make none."""
+    if amount.name in found and amount.key == found[amount.name].key:
+        return
+    name, number = amount.name, 1
+    while name in found and not amount.name.startswith("set_"):
+        number += 1
+        name = f"{amount.name}_{number}"
+    found.setdefault(name, amount._replace(name=name))
+
+
+def _name(key: str) -> str:
+    words = (
+        normalise_label(word).encode("ascii", "ignore").decode() for word in re.split(r"\W+|_", key)
+    )
+    return "_".join(filter(None, words)) or "value"

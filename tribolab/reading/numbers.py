@@ -1,0 +1,73 @@
+"""What a number looks like in a text, whatever the language, and the unit behind it."""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from typing import NamedTuple
+
+NUMBER = r"[-+]?\d[\d.,]*(?:[eE][-+]?\d+)?"
+_A_PER = r"(?:/|\b(?:per|pro|par|por)\b)"
+_UNIT = (
+    rf"{_A_PER}\s?[^\W\d_]\w*|1/[^\W\d]\w*|%|°[A-Za-z]?"
+    rf"|[^\W\d_][^\s;,:()\[\]\"，；：（）、。=≙≈≅→]*(?:\s?{_A_PER}\s?[^\W\d_]\w*)?"
+)
+_NUMBER = re.compile(rf"(?<![\d.,A-Za-z_])(?P<number>{NUMBER})(?:\s{{0,3}}(?P<unit>{_UNIT}))?")
+_PER = re.compile(rf"\s?{_A_PER}\s?")
+
+
+class Number(NamedTuple):
+    """A number of a text: its digits, what stands where a unit would, and where both are."""
+
+    text: str
+    unit: str
+    start: int
+    end: int
+
+    @property
+    def stop(self) -> int:
+        """Where its digits end."""
+        return self.start + len(self.text)
+
+    @property
+    def value(self) -> float:
+        """The number; NaN if it is none, as 1.234,5."""
+        return decimal(self.text)
+
+
+def decimal(text: str) -> float:
+    """Return the number that digits with a point or a comma stand for; NaN if they are none.
+
+    >>> decimal("21,5"), decimal("-4.2e3,"), decimal("1.234,5")
+    (21.5, -4200.0, nan)
+    """
+    try:
+        return float(text.strip().rstrip(".,").replace(",", "."))
+    except ValueError:
+        return math.nan
+
+
+@functools.lru_cache(maxsize=4096)
+def numbers_in(text: str) -> tuple[Number, ...]:
+    """Return the numbers of a text, each with the word behind it.
+
+    Parameters
+    ----------
+    text
+        A line at most: no longer one should be looked at.
+
+    Examples
+    --------
+    >>> [(n.value, n.unit) for n in numbers_in("radius 21,5 mm, 4 points per um, 1:5")]
+    [(21.5, 'mm'), (4.0, 'points/um'), (1.0, ''), (5.0, '')]
+    """
+    return tuple(
+        Number(
+            match["number"].rstrip(".,"),
+            _PER.sub("/", (match["unit"] or "").rstrip(".!?")),
+            match.start(),
+            match.end(),
+        )
+        for match in _NUMBER.finditer(text)
+    )
