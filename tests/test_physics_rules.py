@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.reading.interpret.physics import Candidate, prove, to_si
+from tribolab.reading.interpret.physics import Candidate, prove
+from tribolab.reading.interpret.rules import to_si
 
 T = np.arange(400) * 0.5
 RPM = 60 + 40 * np.sin(T / 20)

@@ -1,47 +1,23 @@
 """Columns that prove each other: rules of physics tell what they hold, and in which units.
 
-The rules are data (physics.toml). A rule whose members may all be columns of a file is tested on
-the rows; where the ratio that it makes is constant, and some units make it one, the file has proven
-what those columns are.
+A rule whose members may all be columns of a file is tested on the rows; where the ratio that it
+makes is constant, and some units make it one, the file has proven what those columns are.
 """
 
 from __future__ import annotations
 
-import functools
 import itertools
 import math
-import tomllib
-from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.quantities import QUANTITIES, unit_conversion
 from tribolab.reading.interpret.limits import AGREEMENT, ROWS, SPREAD
-from tribolab.units import conversion
+from tribolab.reading.interpret.rules import Rule, plausible_sizes, rules, to_si, units_written
 
 _MOST_MEMBERS = 500  # ways in which columns may be members of one rule
 Units = dict[int, str]
-
-
-class Rule(NamedTuple):
-    """``gives = factor * product of needs``, in SI units; with `rate`, of the changes in time."""
-
-    gives: str
-    needs: tuple[str, ...]
-    factor: float = 1.0
-    rate: bool = False
-
-    @property
-    def members(self) -> tuple[str, ...]:
-        """Quantities of the columns that it joins."""
-        return (self.gives, *self.needs, *(("time",) if self.rate else ()))
-
-    def __str__(self) -> str:
-        """As it is said: "sliding velocity = rotation speed x track radius"."""
-        product = " x ".join(name.replace("_", " ") for name in self.needs)
-        return f"{self.gives.replace('_', ' ')} = {product}{' x time' if self.rate else ''}"
 
 
 class Candidate(NamedTuple):
@@ -90,6 +66,7 @@ def prove(candidates: Sequence[Candidate], numbers: np.ndarray) -> dict[int, Pro
     found = (
         fit
         for rule in rules()
+        if rule.proves
         for places in _members(rule, candidates)
         if (fit := _fit(rule, places, candidates, numbers)) is not None
     )
@@ -103,29 +80,9 @@ def prove(candidates: Sequence[Candidate], numbers: np.ndarray) -> dict[int, Pro
     }
 
 
-@functools.cache
-def rules() -> tuple[Rule, ...]:
-    """Return the rules of physics.toml."""
-    return tuple(
-        Rule(r["gives"], tuple(r["needs"]), r.get("factor", 1.0), r.get("rate", False))
-        for r in _toml()["rule"]
-    )
-
-
 def known_quantities() -> frozenset[str]:
-    """Return what the rules are about."""
-    return frozenset(name for rule in rules() for name in rule.members)
-
-
-@functools.cache
-def to_si(quantity: str, unit: str) -> float:
-    """Return the factor from a unit to the SI unit in which the rules hold."""
-    if quantity in QUANTITIES:
-        return unit_conversion(unit, quantity)[0]
-    return conversion(unit, _SI[quantity])[0]
-
-
-_SI = {"track_radius": "m", "distance": "m", "turns": "rad", "mass": "kg", "torque": "N m"}
+    """Return what rules may prove."""
+    return frozenset(name for rule in rules() if rule.proves for name in rule.members)
 
 
 def _members(rule: Rule, candidates: Sequence[Candidate]) -> Iterator[tuple[int, ...]]:
@@ -147,7 +104,7 @@ def _fit(
 ) -> _Fit | None:
     """Return in which units columns obey a rule; None if they do in none."""
     left = numbers[:, places[0]]
-    right = np.prod(numbers[:, places[1 : 1 + len(rule.needs)]], axis=1)
+    right = _product(rule, numbers[:, places[1 : 1 + len(rule.needs)]])
     if rule.rate:
         # what is summed must grow as its rate says, over tenths of the record
         edges = np.linspace(0, len(left) - 1, min(11, len(left))).astype(int)
@@ -172,8 +129,16 @@ def _fit(
 
 def _expected(rule: Rule, units: tuple[str, ...]) -> float:
     """Return the ratio that a rule makes of numbers in some units."""
+    factor, powers = rule.powers()
     scales = [to_si(n, u) for n, u in zip(rule.members, units, strict=True)]
-    return rule.factor * math.prod(scales[1:]) / scales[0]
+    right = (s ** powers.get(n, 1) for n, s in zip(rule.members[1:], scales[1:], strict=True))
+    return factor * math.prod(right) / scales[0]
+
+
+def _product(rule: Rule, columns: np.ndarray) -> np.ndarray:
+    powers = rule.powers()[1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.prod([c ** powers[n] for n, c in zip(rule.needs, columns.T, strict=True)], axis=0)
 
 
 def _units(
@@ -185,10 +150,10 @@ def _units(
     """Yield the units in which each member of a rule is of a plausible size."""
     for name, place in zip(rule.members, places, strict=True):
         own = candidates[place].unit
-        options = [own] if own is not None else _toml()["unit"][name]
+        options = [own] if own is not None else units_written()[name]
         values = np.abs(numbers[:, place])
         size = float(np.nanmax(values, initial=0.0))
-        least, most = _toml()["size"][name]
+        least, most = plausible_sizes()[name]
         yield [unit for unit in options if least <= size * to_si(name, unit) <= most]
 
 
@@ -214,8 +179,3 @@ def _only_units(fits: Sequence[_Fit]) -> Units:
     return (
         {place: min(units) for place, units in domains.items() if len(units) == 1} if fits else {}
     )
-
-
-@functools.cache
-def _toml() -> Mapping[str, Any]:
-    return tomllib.loads(Path(__file__).with_name("physics.toml").read_text(encoding="utf-8"))

@@ -1,0 +1,159 @@
+"""What follows by rules of physics from what is known, and what is missing for it.
+
+What is known are columns, amounts that the text states, and what a person said. The rules are
+those of physics.toml; a member that nothing fills is what has to be asked for.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Mapping
+from typing import Generic, NamedTuple, TypeVar
+
+from tribolab.reading.interpret.rules import Rule, rules
+
+_DOUBT = re.compile(r"(?P<over>\w+) / (?P<under>\w+) > (?P<most>[\d.]+)")
+_WORD = re.compile(r"'[^']*'|[a-z]\w*")
+_SIGN = re.compile(r" [-+*/] ")
+_Source = TypeVar("_Source")
+
+
+class Given(NamedTuple, Generic[_Source]):
+    """Something known: how a formula calls it, its number [SI] where it is one, where it is from."""
+
+    quantity: str
+    symbol: str
+    source: _Source
+    number: float | None = None
+
+
+class Derivation(NamedTuple, Generic[_Source]):
+    """A proof tree: a quantity is known, or follows by a rule from others."""
+
+    quantity: str
+    given: Given[_Source] | None = None
+    rule: Rule | None = None
+    needs: tuple[Derivation[_Source], ...] = ()
+
+    @property
+    def formula(self) -> str:
+        """The formula of what is known, as a dialect writes it."""
+        if self.given is not None or self.rule is None:
+            return self.given.symbol if self.given is not None else ""
+        parts = {need.quantity: need.formula for need in self.needs}
+        composed = {need.quantity for need in self.needs if _SIGN.search(parts[need.quantity])}
+
+        def written(word: re.Match[str]) -> str:
+            part = parts.get(word[0], word[0])
+            return f"({part})" if word[0] in composed else part
+
+        return _WORD.sub(written, self.rule.formula)
+
+    @property
+    def leaves(self) -> tuple[Given[_Source], ...]:
+        """What it is known from, each once."""
+        if self.given is not None:
+            return (self.given,)
+        return tuple(dict.fromkeys(leaf for need in self.needs for leaf in need.leaves))
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether a rule that it uses may not hold for these numbers."""
+        return any(need.is_doubtful for need in self.needs) or (
+            self.rule is not None and _in_doubt(self.rule, self.needs)
+        )
+
+
+Known = Mapping[str, Given[_Source]]
+
+
+def derive(
+    goal: str,
+    known: Known[_Source],
+    facts: Collection[str] = (),
+    *,
+    without: frozenset[str] = frozenset(),
+) -> Derivation[_Source] | None:
+    """Return how a quantity is known, or follows; None if it does not.
+
+    Parameters
+    ----------
+    goal
+        A quantity of physics.toml.
+    known
+        What is known, by quantity.
+    facts
+        What is known of the rig besides: "crank" of a drive that moves to and fro.
+    without
+        Quantities that are sought already.
+
+    Examples
+    --------
+    >>> known = {name: Given(name, name, None) for name in ("torque", "inner_radius", "outer_radius")}
+    >>> derive("friction_force", known).formula
+    'torque / ((inner_radius + outer_radius) / 2)'
+    """
+    if goal in known:
+        return Derivation(goal, known[goal])
+    if goal in without:
+        return None
+    for rule, wanted in rules_for(goal, facts):
+        needs = [derive(name, known, facts, without=without | {goal}) for name in wanted]
+        found = tuple(need for need in needs if need is not None)
+        if len(found) == len(needs):
+            return Derivation(goal, None, rule, found)
+    return None
+
+
+def missing_members(
+    goal: str, known: Known[_Source], facts: Collection[str] = ()
+) -> tuple[str, ...]:
+    """Return what has to be asked for, that a quantity follows; empty if it does.
+
+    Parameters
+    ----------
+    goal, known, facts
+        As for `derive`.
+
+    Returns
+    -------
+    tuple of str
+        Members of a rule of which all others are known; else the quantity itself.
+
+    Examples
+    --------
+    >>> missing_members("friction_force", {"torque": Given("torque", "torque", None)})
+    ('track_radius',)
+    >>> missing_members("friction_force", {})
+    ('friction_force',)
+    """
+    if derive(goal, known, facts) is not None:
+        return ()
+    for rule, wanted in rules_for(goal, facts):
+        without = frozenset({goal})
+        lost = [n for n in wanted if derive(n, known, facts, without=without) is None]
+        if lost and set(lost) <= set(rule.asks):
+            return tuple(lost)
+    return (goal,)
+
+
+def rules_for(goal: str, facts: Collection[str]) -> Iterator[tuple[Rule, tuple[str, ...]]]:
+    """Yield the rules that give a quantity, and what they need: a rate is that of what it changes."""
+    for rule in rules():
+        if rule.use == "proof" or (rule.condition and rule.condition not in facts):
+            continue
+        if rule.rate and rule.formula == goal:
+            yield rule, (rule.gives,)
+        elif rule.gives == goal and not rule.rate:
+            yield rule, rule.needs
+
+
+def _in_doubt(rule: Rule, needs: tuple[Derivation[_Source], ...]) -> bool:
+    ratio = _DOUBT.fullmatch(rule.doubt)
+    if ratio is None:
+        return rule.doubt == "always"
+    numbers = {need.quantity: need.given.number for need in needs if need.given is not None}
+    over, under = numbers.get(ratio["over"]), numbers.get(ratio["under"])
+    if over is None or under is None:
+        return True
+    return over > float(ratio["most"]) * under

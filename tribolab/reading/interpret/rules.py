@@ -1,0 +1,117 @@
+"""The rules of physics.toml, and the SI units in which they hold."""
+
+from __future__ import annotations
+
+import functools
+import re
+import tomllib
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+from tribolab.quantities import QUANTITIES, quantity, unit_conversion
+from tribolab.units import conversion
+
+_WORD = re.compile(r"'(?P<amount>[\d.]+)[^']*'|(?P<name>[a-z]\w*)|(?P<number>\d[\d.]*)|(?P<sign>[*/])")
+
+
+class Rule(NamedTuple):
+    """``gives = formula``, in SI units; with `rate`, the formula is the change of it in time."""
+
+    gives: str
+    formula: str
+    rate: bool = False
+    use: Literal["both", "proof", "derivation"] = "both"
+    condition: str = ""  # a fact about the rig
+    asks: tuple[str, ...] = ()
+    doubt: str = ""
+    speed: str = ""
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Names in the formula."""
+        names = (word["name"] for word in _WORD.finditer(self.formula))
+        return tuple(dict.fromkeys(name for name in names if name not in (None, "pi")))
+
+    @property
+    def members(self) -> tuple[str, ...]:
+        """Quantities that it joins."""
+        return (self.gives, *self.needs, *(("time",) if self.rate else ()))
+
+    @property
+    def proves(self) -> bool:
+        """Whether columns can be tested by it: products of what is found in columns."""
+        known = units_written()
+        return (
+            self.use != "derivation"
+            and not set(self.formula) & set("+-(")
+            and all(name in known for name in self.members)
+        )
+
+    def powers(self) -> tuple[float, dict[str, int]]:
+        """Return the factor and the powers of the members of a product."""
+        factor, powers, sign = 1.0, dict[str, int](), 1
+        for word in _WORD.finditer(self.formula):
+            if word["sign"]:
+                sign = 1 if word["sign"] == "*" else -1
+            elif word["name"]:
+                powers[word["name"]] = sign
+            else:
+                factor *= float(word["amount"] or word["number"]) ** sign
+        return factor, powers
+
+    def __str__(self) -> str:
+        """As it is said: "sliding velocity = rotation speed x track radius"."""
+        text = self.formula.replace("_", " ").replace("*", "x")
+        return f"{self.gives.replace('_', ' ')} = {text}{' x time' if self.rate else ''}"
+
+
+@functools.cache
+def rules() -> tuple[Rule, ...]:
+    """Return the rules of physics.toml, in its order."""
+    return tuple(rule for block in _toml()["rule"] for rule in _rules(block))
+
+
+def _rules(block: Mapping[str, Any]) -> Iterator[Rule]:
+    for name in block.get("of", ("",)):
+        yield Rule(
+            block["gives"].replace("{of}", name),
+            block["formula"].replace("{of}", name),
+            block.get("rate", False),
+            block.get("use", "both"),
+            block.get("if", ""),
+            tuple(block.get("asks", ())),
+            block.get("doubt", ""),
+            block.get("speed", ""),
+        )
+
+
+def units_written() -> Mapping[str, list[str]]:
+    """Return the units that instruments write for members of rules, by what is measured."""
+    return _toml()["unit"]
+
+
+def plausible_sizes() -> Mapping[str, tuple[float, float]]:
+    """Return the smallest and the largest size [SI] in a friction test, by what is measured."""
+    return _toml()["size"]
+
+
+@functools.cache
+def si_unit(name: str) -> str:
+    """Return the SI unit of a member of a rule."""
+    if name in QUANTITIES:
+        return quantity(name).unit
+    return next(unit for unit, names in _toml()["si"].items() if name in names)
+
+
+@functools.cache
+def to_si(name: str, unit: str) -> float:
+    """Return the factor from a unit to the SI unit in which the rules hold."""
+    if name in QUANTITIES:
+        return unit_conversion(unit, name)[0]
+    return conversion(unit, si_unit(name))[0]
+
+
+@functools.cache
+def _toml() -> Mapping[str, Any]:
+    return tomllib.loads(Path(__file__).with_name("physics.toml").read_text(encoding="utf-8"))
