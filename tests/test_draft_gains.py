@@ -124,16 +124,10 @@ def test_what_turns_is_a_crank_where_the_text_says_so(tmp_path: Path) -> None:
         ("Friction: 12.5 N/V, zero 0.21 V", "Friction [V]", FRICTION / 12.5 + 0.21),
         ("Friction: 0.002 N/count, offset 118", "Friction [counts]", FRICTION / 0.002 + 118),
         ("Kanal 1: 0.002 N/enhet, nollvärde 118 enheter", "Kanal 1", FRICTION / 0.002 + 118),
-        ("Kanal 1: 0.002 N/enhet, nollvärde 0.236 N", "Kanal 1", FRICTION / 0.002 + 118),
         (
             "Friction: 100 N = 2.013 mV/V, 5 V, zero 0.4 mV",
             "Friction [mV]",
             FRICTION / 100 * 2.013 * 5 + 0.4,
-        ),
-        (
-            "Friction: 100 N = 2.013 mV/V, 5 V, zero 0.04 mV/V",
-            "Friction [mV]",
-            (FRICTION / 100 * 2.013 + 0.04) * 5,
         ),
     ],
 )
@@ -148,6 +142,15 @@ def test_a_zero_beside_a_factor_is_taken_off(
     done = _file(tmp_path, [f"{above} (subtracted)"], names, TIME, WAY, signal, LOAD, name="b")
     off = tl.read(done).friction_force - FRICTION
     assert float(off.min()) > 0.2 and float(off.max() - off.min()) < 0.01
+
+
+@pytest.mark.parametrize("zero", ["0.236 N", "0.04 mV/V"])
+def test_a_zero_in_another_unit_than_the_signal_is_asked_about(tmp_path: Path, zero: str) -> None:
+    names = "Time [s];Position [mm];Friction [mV];Normal force [N]"
+    above = f"Friction: 100 N = 2.013 mV/V, 5 V, zero {zero}"
+    file = _file(tmp_path, [above], names, TIME, WAY, FRICTION, LOAD)
+    with pytest.raises(TribolabError, match="what a volt of 'Friction .mV.' is worth"):
+        tl.read(file)
 
 
 def test_channels_with_numbers_for_names_are_what_the_text_says_of_them(tmp_path: Path) -> None:

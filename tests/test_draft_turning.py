@@ -295,26 +295,6 @@ def test_turns_a_minute_are_read_in_many_languages(unit, tmp_path):
     assert float(run.sliding_velocity.max()) == pytest.approx(8 * np.pi * 0.02)
 
 
-def test_a_turntable_has_its_radius_from_a_stage_its_angle_and_its_interval(tmp_path):
-    time, rpm, force, load = columns(friction=2.0, load=5.0, turns=(0.0, 6.0, 12.0, 24.0))
-    angle = np.cumsum(rpm) * 6 * 0.1  # degrees
-    lines = ["LabVIEW Measurement", "Separator\tTab", "X_Columns\tNo"]
-    lines += ["Description\tSpindle axis is at Xstage = 112.40 mm, ball sits at Xstage. L+R = load"]
-    lines += ["***End_of_Header***", "", "Channels\t5", "Y_Unit_Label\tN\tlbf\tlbf\tdeg\tmm"]
-    lines += ["X_Dimension\tTime\tTime\tTime\tTime\tTime", "X0\t0\t0\t0\t0\t0"]
-    lines += ["Delta_X\t0.1\t0.1\t0.1\t0.1\t0.1", "***End_of_Header***"]
-    header = "Friction\tLoad_L\tLoad_R\tEncoder\tXstage\tComment"
-    rows = (force, load / 2, load / 2, angle, 124.4 + 0 * time)
-    path = tmp_path / "a.lvm"
-    body = ["\t".join(f"{cell:.6g}" for cell in row) for row in zip(*rows, strict=True)]
-    path.write_text("\n".join([*lines, header, *body]) + "\n")
-    run = tl.read(path)
-    assert float(run.time[1]) == pytest.approx(0.1)
-    assert float(run.normal_force[5]) == pytest.approx(5 * 4.4482, rel=0.01)
-    fastest = float(run.position[-1] - run.position[-2]) / 0.1
-    assert fastest == pytest.approx(24 / 60 * 2 * np.pi * 0.012, rel=0.01)
-
-
 def test_steps_of_a_ring_have_loads_of_their_own_and_the_first_its_zero(tmp_path):
     lines = ["Tribómetro rotativo", "Radio medio de la pista;22,5 mm", "Frecuencia;50 Hz"]
     lines += [

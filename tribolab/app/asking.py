@@ -120,17 +120,17 @@ def _ask_for_lengths(
 ) -> Draft:
     """Ask for the radius of the track, where the file does not say it, and for a stated zero."""
     follows = what_follows(layout, understood)
-    lacks = " ".join(lacking(understood, follows))
+    lacks = {lack.member for lack in lacking(understood, follows)}
     if follows.zero_in_doubt is not None:
         text = follows.zero_in_doubt.text
         taken = ask(f"was '{text}' taken off the signal ({_NONE}: it is still in it)?", "yes")
         understood = understood._replace(zero="in it" if taken.strip() == _NONE else "taken off")
         follows = what_follows(layout, understood)
     guessed = [value for value in follows.values if value.guess]
-    if guessed or "the radius of the track" in lacks:
+    if guessed or "track_radius" in lacks:
         guess = f"{stated_number(guessed[0]):.6g} {guessed[0].unit}" if guessed else _NONE
-        said = candidate_lines(layout, follows, "the radius")
-        value = likely_value(layout, follows, "the radius")
+        said = candidate_lines(layout, follows, "track_radius")
+        value = likely_value(layout, follows, "track_radius")
         question = "what is the radius of the track, with its unit"
         question += f"; is it in {said}?" if said else "?"
         likely = amount_of(value)
@@ -314,11 +314,11 @@ def _with_line(draft: Draft, amount: str, value: Amount) -> Draft:
 def _may_say(draft: Draft, amount: str) -> tuple[str, Amount | None]:
     """Quote the lines of the file that may state an amount, and return what they state."""
     layout, understood = draft.layout, draft.understood
-    lack = {"load": "the load", "speed": "the sliding speed"}.get(amount, "")
+    lack = {"load": "normal_force", "speed": "sliding_velocity"}.get(amount, "")
     if layout is None or understood is None or not lack:
         return "", None
     follows = what_follows(layout, understood)
-    missing = any(said.startswith(lack) for said in lacking(understood, follows))
+    missing = any(said.member == lack for said in lacking(understood, follows))
     if not missing:
         return "", None
     return candidate_lines(layout, follows, lack), likely_value(layout, follows, lack)

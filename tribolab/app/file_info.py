@@ -20,10 +20,10 @@ from tribolab.io.dialects.signature import peek
 from tribolab.io.file_facts import FileFacts, file_facts
 from tribolab.io.force_ratio import doubt_about, doubt_about_coefficient
 from tribolab.io.kinds import kind_of
-from tribolab.io.missing import missing_of
 from tribolab.io.runs import read_log as known_log
 from tribolab.quantities import quantity
 from tribolab.reading import cures
+from tribolab.reading.interpret.missing import missing_inputs
 from tribolab.reading.moduli import holds_modulus, read_modulus_table
 from tribolab.reading.raw.source import check_regular
 from tribolab.reversals import reversals
@@ -300,12 +300,11 @@ def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[s
         from tribolab.reading.interpret.names import is_stroke_frequency
 
         if any(is_stroke_frequency(*split_name(label)) for label in facts["not_used"]):
-            names.add("stroke_frequency")
-    if "drive" in facts["metadata"]:  # a draft keeps what it is where what turns is a crank
-        names.add("crank")
-    if any(reversals(columns[name]) for name in ("friction_force",) if name in columns):
-        names.add("reversals")
-    return [f"  missing: {lack}" for lack in missing_of(names)]
+            names.add("frequency")
+    rig = {"crank"} if "drive" in facts["metadata"] else set()  # where what turns is a crank
+    if "friction_force" in columns and reversals(columns["friction_force"]):
+        rig.add("reversals")
+    return [f"  missing: {lack}" for lack in missing_inputs(names, rig)]
 
 
 def _doubts(signals: Mapping[str, np.ndarray]) -> list[str]:

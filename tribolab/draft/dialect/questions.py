@@ -15,13 +15,14 @@ from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import further_words, is_numbered
 from tribolab.draft.follows.candidate_lines import candidate_lines
 from tribolab.draft.follows.follows import what_follows
-from tribolab.draft.follows.lacking import lacking, unknown_of
+from tribolab.draft.follows.lacking import Uncalibrated, lacking, unknown_of
 from tribolab.draft.follows.model import Follows
 from tribolab.draft.model import NO_NUMBERS, DraftColumn, Understood
 from tribolab.draft.stated.settings import lines_without_unit
 from tribolab.draft.stated.stated_zero import STILL
 from tribolab.errors import ReadError, shown
 from tribolab.reading import cures
+from tribolab.reading.interpret.missing import MissingInput
 from tribolab.reading.interpret.phrases import phrases
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.raw.source import check_regular
@@ -183,7 +184,8 @@ def lacks_friction(draft: Drafted) -> bool:
     draft
         From `tribolab.draft.dialect.draft.draft_dialect`.
     """
-    return any(", for the friction" in lack for lack in missing_words(draft))
+    lacks = (lack for lack in _lacks(draft) if lack.member != "friction_force")
+    return any("friction" in lack.goals for lack in lacks)
 
 
 def missing_words(draft: Drafted) -> list[str]:
@@ -197,9 +199,9 @@ def missing_words(draft: Drafted) -> list[str]:
     lacks = _lacks(draft)
     unused = [f"the unit of '{line}', which is not used" for line in _unused(draft, lacks)]
     if draft.layout is None or draft.understood is None:
-        return lacks + unused
+        return [str(lack) for lack in lacks] + unused
     follows = what_follows(draft.layout, draft.understood)
-    told = [(lack, candidate_lines(draft.layout, follows, lack)) for lack in lacks]
+    told = [(str(lack), candidate_lines(draft.layout, follows, lack.member)) for lack in lacks]
     return [lack + (f"; is it {line}?" if line else "") for lack, line in told] + unused
 
 
@@ -214,13 +216,13 @@ def without_unit_and_missed(draft: Drafted) -> list[str]:
     return _unused(draft, _lacks(draft))
 
 
-def _lacks(draft: Drafted) -> list[str]:
+def _lacks(draft: Drafted) -> list[MissingInput | Uncalibrated]:
     if draft.layout is None or draft.understood is None or draft.kind != "run":
         return []
     return lacking(draft.understood, what_follows(draft.layout, draft.understood))
 
 
-def _unused(draft: Drafted, lacks: Sequence[str]) -> list[str]:
+def _unused(draft: Drafted, lacks: Sequence[object]) -> list[str]:
     lines = lines_without_unit(draft.layout) if draft.layout and lacks else []
     return [shown(line, 40) for line in lines]
 

@@ -12,7 +12,7 @@ from tribolab.draft.stated.stated_load import stated_number
 from tribolab.errors import shown
 from tribolab.reading.interpret.amounts import Amount
 
-_LACKS = {"the radius": "m", "the load": "N", "the sliding speed": "m/s"}
+_UNITS = {"track_radius": "m", "normal_force": "N", "sliding_velocity": "m/s"}
 _QUOTED = 3
 
 
@@ -26,7 +26,7 @@ def candidate_lines(layout: Layout, follows: Follows, lack: str) -> str:
     follows
         What was found out about the file: what it rests on is not quoted.
     lack
-        One of what `lacking` returns.
+        The quantity that is missing: "track_radius", "normal_force" or "sliding_velocity".
     """
     lines = [value.text for value in _perhaps(layout, follows, lack)]
     lines = [" ".join(line.split()) for line in lines]
@@ -70,7 +70,7 @@ def confirmed_value(
 
 def _perhaps(layout: Layout, follows: Follows, lack: str) -> list[Amount]:
     """Return what is stated above the table in a unit of what a run lacks."""
-    unit = next((unit for words, unit in _LACKS.items() if lack.startswith(words)), "")
+    unit = _UNITS.get(lack, "")
     used = {value.text for value in follows.values}
     return [
         value

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 from tribolab.draft.model import DraftColumn
 from tribolab.reading.interpret.amounts import Amount
+from tribolab.io.dialects.formula import names_in, parse_formula
+from tribolab.reading.interpret.derive import Derivation, Given
 
 SAYS_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
 CRANK = "drive"  # the value that says of a run what turns there
+Source = DraftColumn | Amount | None  # None of what a person said, or what is no amount
+Known = dict[str, Given[Source]]
+_WIDE_RING = "friction acts at the mean of the inner and the outer radius"
 
 
 class DraftedFormula(NamedTuple):
@@ -38,7 +42,8 @@ class SpeedBy(NamedTuple):
 class Follows(NamedTuple):
     """Formulas, the columns (with their symbols) and values that they need, and the speed.
 
-    `zero_in_doubt` is a stated zero of which nothing says whether it is still in the signal.
+    `zero_in_doubt` is a stated zero of which nothing says whether it is still in the signal;
+    `given` what is known by quantity of physics.toml, and `facts` of the rig.
     """
 
     formulas: tuple[DraftedFormula, ...] = ()
@@ -46,30 +51,39 @@ class Follows(NamedTuple):
     values: tuple[Amount, ...] = ()
     speed: SpeedBy | None = None
     zero_in_doubt: Amount | None = None
+    given: Known = {}
+    facts: frozenset[str] = frozenset()
 
+    def with_values(self, *values: Amount | None) -> Follows:
+        """Return this with values that a run keeps, or formulas need."""
+        known = (value for value in values if value is not None)
+        return self._replace(values=tuple(dict.fromkeys((*self.values, *known))))
 
-class Track(NamedTuple):
-    """A radius as it stands in a formula, and the value or the column that it rests on."""
+    def with_symbols(self, *symbols: tuple[str, DraftColumn]) -> Follows:
+        """Return this with columns that formulas or the speed need."""
+        return self._replace(symbols=tuple(dict.fromkeys((*self.symbols, *symbols))))
 
-    formula: str = ""
-    values: tuple[Amount, ...] = ()
-    symbols: tuple[tuple[str, DraftColumn], ...] = ()
-
-
-def of_value(value: Amount | None) -> Track:
-    """Return a value of the text as it stands in a formula."""
-    return Track() if value is None else Track(value.name, (value,))
-
-
-def and_also(
-    before: Follows,
-    formula: DraftedFormula,
-    values: Sequence[Amount] = (),
-    symbols: tuple[tuple[str, DraftColumn], ...] = (),
-) -> Follows:
-    """Add a formula, and the values and columns that it needs."""
-    return before._replace(
-        formulas=(*before.formulas, formula),
-        symbols=tuple(dict.fromkeys((*before.symbols, *symbols))),
-        values=tuple(dict.fromkeys((*before.values, *values))),
-    )
+    def with_derivation(
+        self, derived: Derivation[Source], about: str = "", way: str = ""
+    ) -> Follows:
+        """Return this with the formula of what follows by a rule, and all that it needs."""
+        leaves = derived.leaves
+        values = [leaf.source for leaf in leaves if isinstance(leaf.source, Amount)]
+        if derived.is_doubtful:
+            values = [
+                v._replace(guess=_WIDE_RING) if v.name == "outer_radius" else v for v in values
+            ]
+        columns = [
+            (name, leaf.source)
+            for leaf in leaves
+            if isinstance(leaf.source, DraftColumn)
+            for name in names_in(parse_formula(leaf.symbol)) - {leaf.source.quantity}
+        ]
+        stated_zero = any(leaf.quantity.endswith("_zero") for leaf in leaves)
+        zero = "" if stated_zero else next((c.zero for _, c in columns if c.zero), "")
+        if not about:
+            about = "; ".join([str(derived.rule), *(f"'{value.text}'" for value in values)])
+        formula = DraftedFormula(derived.quantity, derived.formula, about, zero, way)
+        symbols = ((name, column._replace(zero="")) for name, column in columns)
+        more = self.with_values(*values).with_symbols(*symbols)
+        return more._replace(formulas=(*self.formulas, formula))

@@ -27,13 +27,12 @@ from tribolab.draft.columns.text_evidence import by_legend, by_mean, by_stated_l
 from tribolab.draft.columns.turning import angle_of, torque_of
 from tribolab.draft.columns.unloaded import with_zero
 from tribolab.draft.file.layout import Layout
-from tribolab.draft.follows.axial import guesses_of_inclined
-from tribolab.draft.follows.bridges import calibrated_forces
-from tribolab.draft.follows.gains import stated_gains
+from tribolab.draft.follows.calibrations import find_calibrations
+from tribolab.draft.follows.inclined import guesses_of_inclined
 from tribolab.draft.follows.sensor import of_sensor
 from tribolab.draft.follows.stated_missing import take_stated_missing
 from tribolab.draft.follows.sums import adding_up, loads_that_add
-from tribolab.draft.follows.two_bodies import pair_of, without_surfaces
+from tribolab.draft.follows.surfaces import exclude_surface_speeds, find_surface_speeds
 from tribolab.draft.model import NO_NUMBERS, DraftColumn, Kind, Understood
 from tribolab.draft.stated.columns_from_settings import columns_from_settings
 from tribolab.draft.stated.counts import apply_count_scale
@@ -109,7 +108,7 @@ def understand(layout: Layout) -> Understood:
         guesses += behaving
     if kind == "run":
         columns = force_or_ratio(columns)
-        columns = without_surfaces(columns, pair_of(layout, columns, numbers))
+        columns = exclude_surface_speeds(columns, find_surface_speeds(layout, columns, numbers))
         columns = confirm_lever_arm_force(layout, columns)
         columns = adding_up(layout, columns, numbers)
         columns = as_entrainment_speed(layout, columns)
@@ -131,7 +130,9 @@ def understand(layout: Layout) -> Understood:
     from tribolab.draft.columns.clock import find_clock, summed
 
     if kind == "run":  # what a force is reckoned with is not left out
-        spoken_for = [shown(force.value.text, 40) for force in calibrated_forces(layout, columns)]
+        spoken_for = [
+            shown(made.text, 40) for made in find_calibrations(layout, columns) if made.text
+        ]
         guesses = [said for said in guesses if not any(text in said for text in spoken_for)]
     columns = _without_counter(layout, columns, numbers) if kind == "run" else columns
     period = summed(columns, numbers)
@@ -166,7 +167,7 @@ def understand(layout: Layout) -> Understood:
         # time alone is a run only if something can be filled in
         timed = any(c.quantity == "time" and c.used for c in columns)
         made = torque_of(columns) is not None or angle_of(columns) is not None
-        made = made or bool(stated_gains(layout, columns))
+        made = made or bool(find_calibrations(layout, columns))
         kind = "run" if timed or made or loads_that_add(columns) else "table"
     result = Understood(
         kind, tuple(columns), numbers, tuple(words), on_repeat, restart, tuple(guesses), period

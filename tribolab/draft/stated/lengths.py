@@ -12,7 +12,6 @@ from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, says
 
 _LONGEST = 200  # characters of a line that are looked at
-_WIDE_RING = 1.5  # times the inner radius: two thirds of a per cent of the mean radius
 
 
 def slides_on_rim(layout: Layout) -> bool:
@@ -67,22 +66,15 @@ def find_ring(values: Sequence[Amount]) -> tuple[Amount, Amount] | None:
     ----------
     values
         From `numeric_settings`.
-
-    Returns
-    -------
-    tuple or None
-        With a `guess` if the ring is so wide that friction need not act at the mean of both radii.
     """
     for concept, scale in (("track_radius", 1.0), ("diameter", 0.5)):
         sizes = _lengths(values).of(concept)
         inner, outer = sizes.only("inner_side"), sizes.only("outer_side")
         if inner is None or outer is None or not 0 < inner.si("m") < outer.si("m"):
             continue
-        wide = outer.si("m") > _WIDE_RING * inner.si("m")
-        guess = "friction acts at the mean of the inner and the outer radius" if wide else ""
         return (
             inner._replace(name="inner_radius", scale=scale),
-            outer._replace(name="outer_radius", scale=scale, guess=guess),
+            outer._replace(name="outer_radius", scale=scale),
         )
     return None
 

@@ -19,7 +19,7 @@ _Source = TypeVar("_Source")
 
 
 class Given(NamedTuple, Generic[_Source]):
-    """Something known: how a formula calls it, its number [SI] where it is one, where it is from."""
+    """Something known: its name in a formula, where it is from, its number [SI] if it is one."""
 
     quantity: str
     symbol: str
@@ -89,7 +89,8 @@ def derive(
 
     Examples
     --------
-    >>> known = {name: Given(name, name, None) for name in ("torque", "inner_radius", "outer_radius")}
+    >>> names = ("torque", "inner_radius", "outer_radius")
+    >>> known = {name: Given(name, name, None) for name in names}
     >>> derive("friction_force", known).formula
     'torque / ((inner_radius + outer_radius) / 2)'
     """
@@ -106,13 +107,17 @@ def derive(
 
 
 def missing_members(
-    goal: str, known: Known[_Source], facts: Collection[str] = ()
+    goal: str,
+    known: Known[_Source],
+    facts: Collection[str] = (),
+    *,
+    without: frozenset[str] = frozenset(),
 ) -> tuple[str, ...]:
     """Return what has to be asked for, that a quantity follows; empty if it does.
 
     Parameters
     ----------
-    goal, known, facts
+    goal, known, facts, without
         As for `derive`.
 
     Returns
@@ -127,18 +132,24 @@ def missing_members(
     >>> missing_members("friction_force", {})
     ('friction_force',)
     """
-    if derive(goal, known, facts) is not None:
+    if derive(goal, known, facts, without=without) is not None:
         return ()
+    sought = without | {goal}
     for rule, wanted in rules_for(goal, facts):
-        without = frozenset({goal})
-        lost = [n for n in wanted if derive(n, known, facts, without=without) is None]
-        if lost and set(lost) <= set(rule.asks):
-            return tuple(lost)
+        lost = [n for n in wanted if derive(n, known, facts, without=sought) is None]
+        members: list[str] = []
+        for name in lost:
+            deeper = (
+                (name,) if name in sought else missing_members(name, known, facts, without=sought)
+            )
+            members += deeper if deeper != (name,) or name in rule.asks else [""]
+        if members and "" not in members:
+            return tuple(dict.fromkeys(members))
     return (goal,)
 
 
 def rules_for(goal: str, facts: Collection[str]) -> Iterator[tuple[Rule, tuple[str, ...]]]:
-    """Yield the rules that give a quantity, and what they need: a rate is that of what it changes."""
+    """Yield the rules that give a quantity, and what they need; a rate needs what it changes."""
     for rule in rules():
         if rule.use == "proof" or (rule.condition and rule.condition not in facts):
             continue

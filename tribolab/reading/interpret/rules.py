@@ -12,7 +12,9 @@ from typing import Any, Literal, NamedTuple
 from tribolab.quantities import QUANTITIES, quantity, unit_conversion
 from tribolab.units import conversion
 
-_WORD = re.compile(r"'(?P<amount>[\d.]+)[^']*'|(?P<name>[a-z]\w*)|(?P<number>\d[\d.]*)|(?P<sign>[*/])")
+_WORD = re.compile(
+    r"'(?P<amount>[\d.]+)[^']*'|(?P<name>[a-z]\w*)|(?P<number>\d[\d.]*)|(?P<sign>[*/])"
+)
 
 
 class Rule(NamedTuple):

@@ -186,6 +186,15 @@ def alternatives(name: str) -> str:
 
 
 @functools.cache
+def pairs_of_bodies() -> tuple[tuple[re.Pattern[str], re.Pattern[str]], ...]:
+    """Return patterns for normalised names of one and of the other of two bodies that touch."""
+    return tuple(
+        (re.compile("|".join(pair["one"])), re.compile("|".join(pair["other"])))
+        for pair in _toml("roles")["bodies"]
+    )
+
+
+@functools.cache
 def keys_of(kind: Literal["unit", "name", "value", "count"]) -> tuple[str, ...]:
     """Return what files call a unit, a name, a value, or the counts of a converter."""
     return tuple(_toml("roles")["key"][kind])

@@ -1,0 +1,95 @@
+"""What a run lacks for a friction coefficient over the sliding speed, and how to state it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Literal, NamedTuple
+
+from tribolab.reading.interpret.derive import Given, Known, missing_members
+
+Goal = Literal["friction", "load", "speed"]
+_GOALS: dict[Goal, tuple[str, ...]] = {  # the first may follow by rules
+    "friction": ("friction_force", "friction_coefficient", "shear_stress"),
+    "load": ("normal_force", "normal_stress", "friction_coefficient"),
+    "speed": ("sliding_velocity", "position", "set_speed"),
+}
+_ORDER = ("track_radius", "arm", "stroke", "friction_force", "normal_force", "sliding_velocity")
+_SAME = {"first_radius": "track_radius", "second_radius": "track_radius"}
+_RADIUS = 'radius = "(a length)" under [speed] of a dialect'
+_FORMULA = "formula = \"torque / '(a length)'\" under [[derived]] of a dialect"
+_STROKE = (
+    'the length of the stroke, for the sliding speed: stroke = "(a length)" under [speed] of a '
+)
+_TEXTS = {
+    "arm": "the length of the arm, for the friction: a formula under [[derived]] of a dialect",
+    "friction_force": "the friction: no column is known to hold it",
+    "normal_force": 'the load: normal_force = "(a force)" in the [[run]] of a campaign file',
+    "sliding_velocity": (
+        'the sliding speed: sliding_speed = "(a speed)" in the [[run]] of a campaign'
+    ),
+}
+_SHUTTLES = (
+    "how long the strokes are and how often they come, for the sliding speed (the friction turns "
+    'over again and again): stroke = "(a length)" and frequency = "(e.g. 2 Hz)" under [speed] of a '
+    "dialect, with source = 'stroke'"
+)
+
+
+class MissingInput(NamedTuple):
+    """A quantity that has to be asked for, what it is for, and the facts of the rig."""
+
+    member: str
+    goals: tuple[Goal, ...]
+    facts: frozenset[str] = frozenset()
+
+    def __str__(self) -> str:
+        """Say what is missing, and how it is stated."""
+        if self.member == "track_radius":
+            formula = f": {_FORMULA}" if "friction" in self.goals else ""
+            if self.goals == ("friction",):
+                return f"the radius of the track, for the friction{formula}"
+            if formula:
+                what = "the friction and the sliding speed"
+                return f"the radius of the track, for {what}{formula}, and {_RADIUS}"
+            return f"the radius of the track, for the sliding speed: {_RADIUS}"
+        if self.member == "stroke":
+            turns = ", with source = 'stroke' and how often the crank turns"
+            return f"{_STROKE}dialect{turns if 'crank' in self.facts else ''}"
+        if self.member == "sliding_velocity" and "reversals" in self.facts:
+            return _SHUTTLES
+        return _TEXTS[self.member]
+
+
+def missing_inputs(
+    known: Known[object] | Collection[str], facts: Collection[str] = ()
+) -> list[MissingInput]:
+    """Return what is missing of friction, load and sliding speed, and not derived from others.
+
+    Parameters
+    ----------
+    known
+        What is known, by quantity of physics.toml, or only the names of that.
+    facts
+        What is known of the rig: "crank" where what turns drives strokes, "reversals" where the
+        friction turns over as that of strokes does.
+
+    Examples
+    --------
+    >>> str(missing_inputs({"friction_force", "rotation_speed", "normal_force"})[0])[:46]
+    'the radius of the track, for the sliding speed'
+    >>> missing_inputs({"friction_force", "normal_force", "position"})
+    []
+    """
+    given: Known[object] = (
+        known if isinstance(known, Mapping) else {name: Given(name, name, None) for name in known}
+    )
+    goals: dict[str, list[Goal]] = {}
+    for goal, (first, *others) in _GOALS.items():
+        if not any(name in given for name in others):
+            for member in missing_members(first, given, facts):
+                of_member = goals.setdefault(_SAME.get(member, member), [])
+                of_member += [] if goal in of_member else [goal]
+    return [
+        MissingInput(member, tuple(goals[member]), frozenset(facts))
+        for member in sorted(goals, key=_ORDER.index)
+    ]
