@@ -55,7 +55,8 @@ def read_run(
     -------
     xarray.Dataset
         As from `tribolab.read`. Of what was drafted, ``instrument`` says so, ``to_keep_it``
-        how to write it down, ``without_unit`` what could not be used for want of a unit, and
+        how to write it down, ``without_unit`` what could not be used for want of a unit,
+        ``left_out`` columns that are doubtful and not needed, and
         ``drafted_layout`` is one checksum for files of one layout.
 
     Raises
@@ -123,6 +124,7 @@ def _holds_signals(path: Path) -> bool:
 def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     """Return the dialect that a file's own header makes; else say what it leaves open."""
     # late: starting stays quick
+    from tribolab.draft.dialect.needed import leave_out_doubtful
     from tribolab.draft.dialect.questions import (
         COUNTED,
         HEIGHTS,
@@ -137,6 +139,7 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
         raise ReadError(draft.answer, where=path, cure=error.cure) from error
     if draft is None or draft.kind == "table":
         raise error
+    draft, _ = leave_out_doubtful(draft)
     asked = questions(draft)
     if unsaid := lacks_distance(draft):
         raise GuessedError(path, asked, cures.SURFACE, unsaid) from error
@@ -187,12 +190,15 @@ def _draft_as_it_was(path: Path, size: int, changed: int) -> Draft:
 
 def _told(path: Path) -> dict[str, str]:
     # late: starting stays quick
+    from tribolab.draft.dialect.needed import leave_out_doubtful
     from tribolab.draft.dialect.questions import how_to_keep, without_unit_and_missed
 
     told = {"instrument": DRAFTED, "to_keep_it": how_to_keep(path)}
     draft = draft_of(path)
     if draft is None:
         return told
+    draft, left = leave_out_doubtful(draft)
+    told |= {"left_out": "; ".join(left)} if left else {}
     missed = without_unit_and_missed(draft)
     told |= {"without_unit": "; ".join(missed)} if missed else {}
     return {**told, "drafted_layout": _checksum(draft)}

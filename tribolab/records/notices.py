@@ -112,6 +112,8 @@ def notices_of(
         say("note", "stick-slip", distance)
     if unused := str(run.attrs.get("columns_not_used", "")):
         say("note", "columns", f"not used: {unused}")
+    if doubtful := str(run.attrs.get("left_out", "")):
+        say("note", "columns", f"left out, as no result needs them: {doubtful}")
     if segments.attrs.get("rows_are") == "points":
         say("note", "rows", _RESULTS)
     return notices

@@ -12,7 +12,7 @@ from tribolab.draft.model import DraftColumn, Kind, other_units, time_unit
 from tribolab.errors import shown
 from tribolab.quantities import quantity
 from tribolab.reading.interpret.names import KNOWN_WORD, Match, is_count
-from tribolab.reading.lexicon.lexicon import normalise_label, role_of
+from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, role_of
 
 Bare = tuple[str, str | None, bool]  # a name without its unit, the unit, whether it is to be said
 FORCES = {"friction_force", "normal_force", "friction_coefficient"}  # what a coefficient is made of
@@ -94,7 +94,9 @@ def _doubts_of_name(
         doubts.append(f"the name means {quantity(option.quantity).long_name}")
     if several and not aside:
         doubts.append(f"of several columns for {option.quantity} it is the one meant")
-    if option.unit and kind != "scan":
+    # a load in grams is a mass that presses
+    weight = option.quantity == "normal_force" and key_pattern("load").search(normalise_label(name))
+    if option.unit and not weight and kind != "scan":
         doubts.append(f"'{shown(unit)}' means {option.unit}")
     if role_of(name) == "extreme" and option.quantity in FORCES:
         doubts.append("by its name it is not the signal but its extremes or scatter")

@@ -60,7 +60,8 @@ def _add_friction(result: Follows, known: KnownRun, understood: Understood) -> F
     """Add the formula of the friction force, where no column is it."""
     friction = derive("friction_force", known.given, known.facts)
     others = held_quantities(understood) & (SAYS_FRICTION - {"friction_force"})
-    wanted = not others or any(name in known.given for name in _MEASURED)
+    by_area = "contact_area" in known.given and "normal_force" in known.given
+    wanted = not others or by_area or any(name in known.given for name in _MEASURED)
     if friction is None or friction.rule is None or not wanted:
         return result
     return result.with_derivation(friction)

@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.columns.turning import angle_of, radius_of, torque_of, turns_of
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.file.marks import STEP_WORD
@@ -304,6 +305,9 @@ def _is_rotation(value: Amount) -> bool:
 
 def _add_load(known: _Facts) -> None:
     """Add what presses: cells that add up, an axial force, and what was said, set or stated."""
+    weights = [c for c in known.columns if not c.used and not c.quantity and _is_weight(c)]
+    if len(weights) == 1:
+        known.add("mass", "mass", weights[0]._replace(unit=bare_name(weights[0])[1]))
     loads = loads_that_add(known.columns)
     if len(loads) in (2, 3):
         for number, column in enumerate(loads, 1):
@@ -327,6 +331,11 @@ def _add_load(known: _Facts) -> None:
             known.add_value("axial_force", stated)
         return
     known.add_value("set_normal_force", stated)
+
+
+def _is_weight(column: DraftColumn) -> bool:
+    name, unit, _ = bare_name(column)
+    return converts(unit or "", "kg") and key_pattern("load").search(normalise_label(name)) is not None
 
 
 def find_stated_load(values: Sequence[Amount], understood: Understood) -> Amount | None:

@@ -14,6 +14,7 @@ SAYS_LOAD = {"normal_force", "normal_stress", "friction_coefficient"}
 CRANK = "drive"  # the value that says of a run what turns there
 Source = DraftColumn | Amount | None  # None of what a person said, or what is no amount
 Known = dict[str, Given[Source]]
+_BEFORE_FRICTION = ("torque", "torque_reading", "arm_force", "friction_reading")
 _WIDE_RING = "friction acts at the mean of the inner and the outer radius"
 
 
@@ -73,17 +74,18 @@ class Follows(NamedTuple):
             values = [
                 v._replace(guess=_WIDE_RING) if v.name == "outer_radius" else v for v in values
             ]
-        columns = [
-            (name, leaf.source)
+        columns = [  # of what friction follows from, the zero is that of the friction
+            (name, leaf.source, leaf.quantity in _BEFORE_FRICTION)
             for leaf in leaves
             if isinstance(leaf.source, DraftColumn)
             for name in names_in(parse_formula(leaf.symbol)) - {leaf.source.quantity}
         ]
         stated_zero = any(leaf.quantity.endswith("_zero") for leaf in leaves)
-        zero = "" if stated_zero else next((c.zero for _, c in columns if c.zero), "")
+        zeros = [column.zero for _, column, moved in columns if moved and column.zero]
+        zero = zeros[0] if zeros and not stated_zero else ""
         if not about:
             about = "; ".join([str(derived.rule), *(f"'{value.text}'" for value in values)])
         formula = DraftedFormula(derived.quantity, derived.formula, about, zero, way)
-        symbols = ((name, column._replace(zero="")) for name, column in columns)
+        symbols = ((name, c._replace(zero="" if moved else c.zero)) for name, c, moved in columns)
         more = self.with_values(*values).with_symbols(*symbols)
         return more._replace(formulas=(*self.formulas, formula))

@@ -16,7 +16,7 @@ from tribolab.reading.interpret.phrases import (
     phrases,
     weight_on_lever,
 )
-from tribolab.reading.interpret.unit_texts import DIMENSIONS, converts, is_unit
+from tribolab.reading.interpret.unit_texts import DIMENSIONS, converts, is_unit, measures_something
 from tribolab.reading.lexicon.lexicon import (
     alternatives,
     key_pattern,
@@ -196,7 +196,7 @@ def _of_entry(entry: re.Match[str], units: Mapping[str, str]) -> Amount:
 def _key_and_unit(entry: re.Match[str], units: Mapping[str, str]) -> tuple[str, str | None]:
     key, unit = entry["key"], unit_in_words((entry["unit"] or "").strip("[]()")) or None
     bracket = _BRACKETS.search(key)
-    if unit is None and bracket and is_unit(bracket[1]):
+    if unit is None and bracket and measures_something(bracket[1]):
         unit, key = bracket[1], key[: bracket.start()]
     unit = unit or units.get(normalise_label(key))
     name, comma, behind = key.rpartition(",")
