@@ -14,10 +14,10 @@ from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.counts import COUNT_WORD, stated_offset
-from tribolab.reading.interpret.amounts import Amount
-from tribolab.reading.interpret.patterns import number_pattern
 from tribolab.io.dialects.cells import split_name
+from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import COUNTS, matches
+from tribolab.reading.interpret.patterns import number_pattern
 from tribolab.reading.interpret.rules import si_unit
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label

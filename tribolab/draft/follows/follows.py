@@ -9,10 +9,10 @@ from tribolab.draft.follows.known import KnownRun, find_known, find_stated_load
 from tribolab.draft.follows.model import SAYS_FRICTION, SAYS_LOAD, Follows, Source
 from tribolab.draft.follows.speed import add_speed
 from tribolab.draft.model import DraftColumn, Understood
-from tribolab.reading.interpret.amounts import Amount
 from tribolab.draft.stated.stated_load import lifted_on_return, stated_number
 from tribolab.draft.stated.stroke_settings import stated_strokes
 from tribolab.quantities import unit_conversion
+from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.derive import Derivation, Given, derive
 
 _MEASURED = ("friction_reading", "arm_force", "friction_force_signal", "friction_force_raw")

@@ -15,8 +15,8 @@ from typing import NamedTuple
 from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
-from tribolab.reading.interpret.amounts import Amount
 from tribolab.errors import shown
+from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern
 

@@ -34,7 +34,6 @@ from tribolab.draft.stated.lengths import (
 )
 from tribolab.draft.stated.programme import find_programme
 from tribolab.draft.stated.settings import numeric_settings, text_settings
-from tribolab.reading.interpret.amounts import Amount
 from tribolab.draft.stated.slip import find_slide_roll_ratio
 from tribolab.draft.stated.stated_load import find_load
 from tribolab.draft.stated.stated_zero import find_zero, friction_column, zero_in_doubt
@@ -44,9 +43,10 @@ from tribolab.draft.stated.stroke_settings import (
     strokes_from_answer,
     strokes_of_turns,
 )
-from tribolab.reading.interpret.names import is_stroke_frequency
 from tribolab.io.dialects.cells import split_name
+from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.derive import Given, derive
+from tribolab.reading.interpret.names import is_stroke_frequency
 from tribolab.reading.interpret.patterns import escaped
 from tribolab.reading.interpret.unit_texts import converts, is_per_minute
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern
@@ -335,7 +335,9 @@ def _add_load(known: _Facts) -> None:
 
 def _is_weight(column: DraftColumn) -> bool:
     name, unit, _ = bare_name(column)
-    return converts(unit or "", "kg") and key_pattern("load").search(normalise_label(name)) is not None
+    return (
+        converts(unit or "", "kg") and key_pattern("load").search(normalise_label(name)) is not None
+    )
 
 
 def find_stated_load(values: Sequence[Amount], understood: Understood) -> Amount | None:

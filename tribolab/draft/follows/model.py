@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from tribolab.draft.model import DraftColumn
-from tribolab.reading.interpret.amounts import Amount
 from tribolab.io.dialects.formula import names_in, parse_formula
+from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.derive import Derivation, Given
 
 SAYS_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}

@@ -10,8 +10,8 @@ from tribolab.draft.follows.known import KnownRun, stated_rotation
 from tribolab.draft.follows.model import DraftedFormula, Follows, Source, SpeedBy
 from tribolab.draft.model import Understood
 from tribolab.draft.stated.settings import text_settings
-from tribolab.reading.interpret.amounts import Amount
 from tribolab.draft.stated.stroke_settings import Strokes
+from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.derive import Derivation, derive
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern
 
