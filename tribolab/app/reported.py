@@ -19,7 +19,7 @@ InstrumentOption = Annotated[
     typer.Option(
         "--instrument",
         "-i",
-        help="Name of an instrument, or the .toml file that describes it.",
+        help="Name of an instrument, or the .toml or .py file that describes or reads it.",
         show_default="the files tell",
     ),
 ]

@@ -14,7 +14,7 @@ from tribolab.campaign.engine.executor import workers
 from tribolab.campaign.engine.pool import LastingPool
 from tribolab.campaign.engine.stage import Progress
 from tribolab.campaign.settings.config import Campaign
-from tribolab.campaign.settings.files import inputs_of
+from tribolab.campaign.settings.files import inputs_of, own_python
 from tribolab.campaign.settings.load import load_and_plan
 from tribolab.campaign.settings.plan import planned_runs
 from tribolab.campaign.store.catalogue import Catalogue
@@ -40,6 +40,7 @@ def run_campaign(
     pdf: bool = False,
     verify: bool = False,
     outside: bool = False,
+    trust: bool = False,
 ) -> Outcome:
     r"""Analyse a campaign and write its results: data, tables, figures and the report.
 
@@ -73,6 +74,8 @@ def run_campaign(
         default raw files and large results by size, time and inode first.
     outside
         Whether ``output`` in the campaign file may lead out of the folder of that file.
+    trust
+        Whether readers in Python that the campaign names by their files may run.
 
     Returns
     -------
@@ -105,6 +108,8 @@ def run_campaign(
         campaign, runs = path_or_campaign, planned_runs(path_or_campaign)
     else:
         campaign, runs = load_and_plan(path_or_campaign)
+    if not trust:
+        _run_no_python(campaign)
     place = resolved(campaign.output if output is None else output)
     if output is None and not outside:
         _keep_inside(campaign, place)
@@ -177,6 +182,21 @@ def _reached(campaign: Campaign, raw: Path, place: Path) -> bool:
     patterns += [p for surface in campaign.surface for p in surface.scans or ()]
     wild = [pattern for pattern in patterns if not (raw / pattern).is_file()]
     return depth == 0 or any("**" in p or len(Path(p).parts) > depth for p in wild)
+
+
+def _run_no_python(campaign: Campaign) -> None:
+    """Refuse readers that come with the campaign: a file of others must not run programs here."""
+    for name in own_python(campaign):
+        raise ConfigError(
+            f"instrument = '{shown(name)}' is a program of the campaign's own, which runs only if "
+            "you trust it",
+            where=campaign.file,
+            cure=Cure(
+                notebook="look into it, then say trust=True",
+                terminal="look into it, then say --trust",
+                campaign="look into it, then say --trust",
+            ),
+        )
 
 
 def _keep_inside(campaign: Campaign, place: Path) -> None:

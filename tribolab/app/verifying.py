@@ -62,6 +62,7 @@ def recomputed(
     *,
     jobs: int | None = None,
     progress: Progress | None = None,
+    trust: bool = False,
 ) -> list[str]:
     """Compute results again from the raw files, and say which numbers differ.
 
@@ -71,7 +72,7 @@ def recomputed(
         The folder.
     campaign
         The campaign file, where it is not beside the results.
-    jobs, progress
+    jobs, progress, trust
         As in `run_campaign`.
 
     Raises
@@ -91,7 +92,7 @@ def recomputed(
     known = campaign_of(folder.path, folder.report, campaign)
     with tempfile.TemporaryDirectory() as temporary:
         again = Path(temporary) / "results"
-        run_campaign(known, output=again, jobs=jobs, progress=progress, figures="none")
+        run_campaign(known, output=again, jobs=jobs, progress=progress, figures="none", trust=trust)
         wrong = []
         for kind in ("tables/*.csv", "tables/*.parquet", "data/*.nc", "report.json"):
             paths = {p.relative_to(place) for place in (results, again) for p in place.glob(kind)}

@@ -77,7 +77,7 @@ def describe_companion(
 
 def _pairing(path: Path, instrument: str | Path | None) -> Dialect | None:
     """Return the dialect of a main log that has a second one."""
-    if peek(path).format == "netcdf":
+    if instrument is None and peek(path).format == "netcdf":
         return None
     dialect = load_dialect(instrument) if instrument else recognise(path)
     alone = dialect.pair is None or path.stem.endswith(dialect.pair.other)

@@ -21,6 +21,7 @@ from tribolab.io.dialects.as_written import as_written
 from tribolab.io.dialects.column_rule import FRICTION_SIGNALS
 from tribolab.io.dialects.find import Dialect
 from tribolab.io.dialects.formula import names_in, parse_formula
+from tribolab.io.dialects.python_reader import PythonReader
 from tribolab.io.dialects.signature import peek
 from tribolab.io.forces_agree import keep_forces_that_agree
 from tribolab.io.row_counts import row_attributes
@@ -54,7 +55,8 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     """
     logs = [(path, as_written(path, dialect)) for path, dialect in logs]
     dialect = logs[0][1]
-    size = sum(peek(path).size for path, _ in logs) if len(logs) > 1 else 0
+    several = len(logs) > 1 and not isinstance(dialect, PythonReader)
+    size = sum(peek(path).size for path, _ in logs) if several else 0
     contents = [read_content(path, dialect, size) for path, _ in logs]
     for content in contents:
         set_time(content, dialect)

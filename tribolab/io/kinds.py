@@ -8,6 +8,7 @@ from pathlib import Path
 
 from tribolab.errors import ReadError
 from tribolab.io.dialects.find import is_scan, load_dialect, recognise
+from tribolab.io.dialects.python_reader import PythonReader, with_columns
 from tribolab.io.dialects.signature import is_results, peek
 from tribolab.io.scans.held_arrays import holds_arrays
 from tribolab.io.seal import carries_seal
@@ -39,7 +40,10 @@ def kind_of(path: str | Path, instrument: str | Path | None = None) -> str:
     """
     path = Path(path)
     if instrument is not None:
-        return "scan" if is_scan(load_dialect(instrument)) else "run"
+        dialect = load_dialect(instrument)
+        if isinstance(dialect, PythonReader):
+            dialect = with_columns(dialect, path)
+        return "scan" if is_scan(dialect) else "run"
     if _holds_map(path):
         return "scan"
     try:

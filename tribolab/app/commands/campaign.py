@@ -120,6 +120,10 @@ def run(
             help="Let the campaign file write and read outside of its own folder.",
         ),
     ] = False,
+    trust: Annotated[
+        bool,
+        typer.Option("--trust", help="Run the readers in Python that the campaign file names."),
+    ] = False,
     verify: Annotated[
         bool,
         typer.Option(
@@ -171,6 +175,7 @@ def run(
                     pdf=pdf,
                     verify=verify,
                     outside=i_know,
+                    trust=trust or written,  # then it was named on the command line
                 )
         except BaseException:
             if written:

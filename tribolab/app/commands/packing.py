@@ -78,6 +78,10 @@ def verify(
         Path | None,
         typer.Option(help="The campaign file.", show_default="beside the results"),
     ] = None,
+    trust: Annotated[
+        bool,
+        typer.Option("--trust", help="Run the readers in Python that the campaign file names."),
+    ] = False,
     jobs: Jobs = None,
     quiet: Quiet = False,
     debug: Debug = False,
@@ -112,7 +116,7 @@ def verify(
         wrong = problems(results)
         if recompute:
             with progress_bars(quiet) as progress:
-                wrong += recomputed(results, campaign, jobs=jobs, progress=progress)
+                wrong += recomputed(results, campaign, jobs=jobs, progress=progress, trust=trust)
         for text in wrong:
             say(f"tribolab: {results}: {text}", to_stderr=True)
         if wrong:

@@ -47,7 +47,7 @@ def zero_of(attrs: Mapping[str, Any], run: Mapping[str, Any], stated: str | None
         Dialect that the campaign names: two files of one name may be two instruments.
     """
     recorded = f"{run.get('instrument', '')} {run.get('drafted_layout', '')}".strip()
-    instrument = stated if stated and stated.endswith(".toml") else recorded
+    instrument = stated if stated and stated.endswith((".toml", ".py")) else recorded
     own = attrs.get(_OWN)
     lent = attrs.get(_LENT)
     return RunZero(instrument, None if own is None else float(own), lent)

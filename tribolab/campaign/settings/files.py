@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
     from tribolab.campaign.settings.measured import Surface
 
+_OWN = (".toml", ".py")  # files that describe or read an instrument
+
 
 def scan_files(campaign: Campaign) -> list[Path]:
     """Return the topography scans of all surfaces."""
@@ -41,11 +43,10 @@ def inputs_of(campaign: Campaign) -> list[tuple[Path, str]]:
     inputs += [(file, "a scan") for file in scan_files(campaign)]
     if (name := campaign.contact.modulus_file) is not None:
         inputs.append((campaign.raw / name, "the modulus file"))
-    instruments = [entry.instrument for entry in campaign.run]
-    instruments += [surface.instrument for surface in campaign.surface]
-    for instrument in instruments:
-        if instrument and instrument.endswith(".toml"):
-            inputs.append((Path(instrument_of(campaign, instrument)), "a dialect"))
+    for instrument in _instruments(campaign):
+        if instrument.endswith(_OWN):
+            words = "a reader in Python" if instrument.endswith(".py") else "a dialect"
+            inputs.append((Path(instrument_of(campaign, instrument)), words))
     return inputs
 
 
@@ -65,8 +66,20 @@ def inputs_outside(campaign: Campaign) -> list[Path]:
 
 
 def instrument_of(campaign: Campaign, name: str) -> str:
-    """Name of a dialect as it is; a dialect's own file relative to the campaign file."""
-    return str(campaign.file.parent / name) if name.endswith(".toml") else name
+    """Name of an instrument as it is; a file of its own relative to the campaign file."""
+    return str(campaign.file.parent / name) if name.endswith(_OWN) else name
+
+
+def own_python(campaign: Campaign) -> list[str]:
+    """Return the readers in Python that a campaign names by their files."""
+    return [name for name in _instruments(campaign) if name.endswith(".py")]
+
+
+def _instruments(campaign: Campaign) -> list[str]:
+    """Return the instruments that a campaign names, each once."""
+    named = [entry.instrument for entry in campaign.run]
+    named += [surface.instrument for surface in campaign.surface]
+    return list(dict.fromkeys(name for name in named if name))
 
 
 def resolve_patterns(
@@ -150,8 +163,11 @@ def sha256_of_dialect(instrument: str) -> str:
     """Return the checksum of what describes an instrument."""
     # late: starting stays quick
     from tribolab.io.dialects.find import known_dialects
+    from tribolab.reading.raw.readers import is_reader, source_of
 
-    return sha256_of_file(known_dialects().get(instrument, instrument))
+    known = known_dialects()
+    own = source_of(instrument) if instrument not in known and is_reader(instrument) else instrument
+    return sha256_of_file(known.get(instrument, own))
 
 
 def label_of(campaign: Campaign, file: Path) -> str:

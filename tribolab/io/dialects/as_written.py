@@ -9,6 +9,7 @@ from tribolab.errors import ReadError
 from tribolab.io.dialects.cells import split_name, split_row
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import guarded
+from tribolab.io.dialects.python_reader import PythonReader, with_columns
 from tribolab.io.dialects.signature import File, peek
 
 _ANY = "any"
@@ -34,13 +35,15 @@ def as_written(path: str | Path | File, dialect: Dialect) -> Dialect:
     Dialect
         With the delimiter that parts the header's line into the most cells, the decimal mark and
         the encoding of what stands below it, and units from the next line where no name of the
-        header has one.
+        header has one. That of a reader in Python with the columns that it finds.
 
     Raises
     ------
     ReadError
         If the file has no such header.
     """
+    if isinstance(dialect, PythonReader):
+        return with_columns(dialect, Path(path.path if isinstance(path, File) else path))
     if dialect.text.delimiter != _ANY:
         return dialect
     file = path if isinstance(path, File) else peek(path)

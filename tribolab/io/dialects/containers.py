@@ -8,9 +8,11 @@ from tribolab.errors import shown
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.patterns import guarded
+from tribolab.io.dialects.python_reader import PythonReader
 from tribolab.reading.raw.containers.read import read_container
 from tribolab.reading.raw.containers.records import read_records
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable
+from tribolab.reading.raw.readers import read_with
 
 _NAMED = 8  # tables that a message names
 
@@ -26,6 +28,8 @@ def open_as(path: Path, dialect: Dialect) -> RawFile:
         If the library for it is not installed; other libraries' own errors if it is damaged.
     """
     header = dialect.header
+    if isinstance(dialect, PythonReader):
+        return read_with(dialect.reader, path)
     if dialect.binary is not None:
         return read_records(path, dialect.binary.record, dialect.binary.offset)
     if dialect.format != "excel":

@@ -14,6 +14,7 @@ from tribolab.io.dialects.model import Dialect
 from tribolab.io.dialects.signature import File, is_results, peek
 from tribolab.io.schema_folder import schema_folder
 from tribolab.reading import cures
+from tribolab.reading.raw.readers import installed_readers, is_reader
 from tribolab.reading.raw.source import check_regular
 from tribolab.untyped import Json
 
@@ -57,7 +58,8 @@ def load_dialect(name_or_path: Instrument) -> Dialect:
     Parameters
     ----------
     name_or_path
-        Name of a known instrument, path of a TOML file, or a dialect, which is returned as it is.
+        Name of a known instrument or of an installed reader, path of a TOML file or of a reader in
+        Python, or a dialect, which is returned as it is.
 
     Raises
     ------
@@ -74,6 +76,11 @@ def load_dialect(name_or_path: Instrument) -> Dialect:
     known = known_dialects()
     if str(name_or_path) in known:
         return _load(known[str(name_or_path)])
+    if is_reader(str(name_or_path)):
+        # late: starting stays quick
+        from tribolab.io.dialects.python_reader import python_reader
+
+        return python_reader(str(name_or_path))
     path = Path(name_or_path)
     if path.suffix == ".toml":
         if not path.exists():
@@ -85,7 +92,7 @@ def load_dialect(name_or_path: Instrument) -> Dialect:
         return _parse(path)
     raise ConfigError(
         f"no instrument is called '{shown(str(name_or_path))}'{nearest(str(name_or_path), known)}; "
-        "a description of your own is given by its path, ending in .toml"
+        "a description of your own is given by its path, ending in .toml, a reader by .py"
     )
 
 
@@ -104,6 +111,11 @@ def recognise(path: str | Path) -> Dialect:
     file = peek(path)
     named = file._replace(path=Path(path))  # what was unpacked lies elsewhere
     fitting = [dialect for dialect in every_dialect() if mismatch(file, dialect) is None]
+    if not fitting and installed_readers():
+        # late: few have any
+        from tribolab.io.dialects.python_reader import recognised_by
+
+        fitting = recognised_by(file.head)
     if len(fitting) == 1:
         return fitting[0]
     if fitting:

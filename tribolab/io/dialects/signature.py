@@ -15,6 +15,7 @@ from tribolab.reading import cures
 from tribolab.reading.raw.containers.declared_records import declares_records
 from tribolab.reading.raw.containers.xml_workbook import is_xml_workbook
 from tribolab.reading.raw.hdf5_safety import refuse_outside
+from tribolab.reading.raw.readers import answers, installed_readers
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.raw.unpacked import ZIP, holds_arrays, is_workbook, unpacked
 
@@ -174,6 +175,8 @@ def _format(path: Path, head: bytes, *, binary: bool) -> str:
     if b"\0" in head and not wide_encoding(head):
         if declares_records(head):
             return "text"
+        if installed_readers() and answers(head):
+            return "python"
         raise ReadError(
             "this is neither text nor a binary format that is known",
             where=path,

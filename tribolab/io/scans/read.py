@@ -20,6 +20,7 @@ from tribolab.io.dialects.find import (
     load_dialect,
     scan_dialects,
 )
+from tribolab.io.dialects.python_reader import PythonReader, with_columns
 from tribolab.io.dialects.signature import File, is_results, peek
 from tribolab.io.patterns import is_pattern, matching
 from tribolab.io.scans.undescribed import read_undescribed
@@ -68,6 +69,8 @@ def read_known_scans(
         If there is no such file, it cannot be understood, or it holds results only.
     """
     dialect = load_dialect(instrument) if instrument is not None else None
+    if isinstance(dialect, PythonReader) and files:
+        dialect = with_columns(dialect, Path(files[0]))
     if dialect is not None and not is_scan(dialect):
         scanning = ", ".join(d.name for d in scan_dialects())
         raise ReadError(
@@ -190,6 +193,8 @@ def _recognised(path: Path) -> Dialect | None:
 
 def _by_dialect(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
     """Return the scans of a file, of columns of heights side by side one for each."""
+    if isinstance(dialect, PythonReader):
+        dialect = with_columns(dialect, path)
     beside = [c for c in dialect.column if c.key == "height" and not c.optional]
     if len(beside) < 2:
         return _of_columns(path, dialect)
