@@ -51,13 +51,7 @@ def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
         If it holds no columns of numbers of one length, or is damaged.
     """
     try:
-        held, raw = _opened(file)
-        steps = find_steps(raw) if held.form in IN_GROUPS | {"excel"} else None
-        if held.form == "json" and len(raw.tables) > 1:
-            steps = HeldSteps(raw.tables, "", ())
-        if steps is None and held.form == "excel":
-            raw = read_sheet(file.path, held.sheet, held.line, units_below=held.units_below)
-            raw = _without_units(raw)
+        held, raw, steps = _workbook(file) if file.container == "excel" else _container(file)
     except (ReadError, ImportError):
         raise
     except Exception as error:  # each of these libraries has its own ways to say "damaged"
@@ -81,14 +75,27 @@ def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
     return layout._replace(held=held, guesses=guesses), tuple(columns)
 
 
-def _opened(file: File) -> tuple[Held, RawFile]:
-    if file.container != "excel":
-        form = {"netcdf": "hdf5"}.get(file.container, file.container)  # both begin alike
-        return Held(form), _without_units(read_container(file.path, form))
+def _container(file: File) -> tuple[Held, RawFile, HeldSteps | None]:
+    """Return where columns are in a container, its tables, and those of them that are steps."""
+    form = {"netcdf": "hdf5"}.get(file.container, file.container)  # both begin alike
+    raw = _without_units(read_container(file.path, form))
+    steps = find_steps(raw) if form in IN_GROUPS else None
+    if form == "json" and len(raw.tables) > 1:
+        steps = HeldSteps(raw.tables, "", ())
+    return Held(form), raw, steps
+
+
+def _workbook(file: File) -> tuple[Held, RawFile, HeldSteps | None]:
+    """Return the main sheet of a workbook, or all that are steps if others have its columns."""
     held, names = main_sheet(file.path)
-    wanted = [split_name(name)[0] for name in names]
-    sheets = read_sheets(file.path, wanted, held.line, units_below=held.units_below)
-    return held, _without_units(sheets)
+    if held.others:
+        wanted = [split_name(name)[0] for name in names]
+        sheets = read_sheets(file.path, wanted, held.line, units_below=held.units_below)
+        sheets = _without_units(sheets)
+        if (steps := find_steps(sheets)) is not None:
+            return held, sheets, steps
+    sheet = read_sheet(file.path, held.sheet, held.line, units_below=held.units_below)
+    return held, _without_units(sheet), None
 
 
 def _without_units(raw: RawFile) -> RawFile:
