@@ -187,6 +187,47 @@ def test_text_that_changes_numbers_is_asked_about(name, shared_data):
         tl.read(shared_data / f"cases/{name}.csv")
 
 
+@pytest.mark.parametrize(
+    ("said", "asked"),
+    [
+        ("Mean of 10 samples", "every sample is taken"),
+        ("Downsampling: every 10th sample", "every sample is taken"),
+        ("Decimation factor 5", "every sample is taken"),
+        ("Correction factor: 0.98", "not times"),
+        ("Tare load: 2 N", "was taken off the load"),
+        ("Friction offset: 0.5 N", "was taken off the signal"),
+    ],
+)
+def test_a_line_that_changes_numbers_is_never_ignored(said, asked, tmp_path):
+    names = "Friction force [N];Normal force [N];Position [mm]"
+    file = _file(tmp_path, ["Sampling rate: 10 Hz", said], names, FRICTION, LOAD, WAY)
+    with pytest.raises(GuessedError, match=asked):
+        tl.read(file)
+
+
+@pytest.mark.parametrize("said", ["Gear ratio: 10", "Pulley ratio: 2", "Getriebe i = 10"])
+def test_a_gear_between_motor_and_disc_is_asked_about(said, tmp_path):
+    names = "Time [s];Friction force [N];Normal force [N];Motor speed [rpm]"
+    file = _file(tmp_path, ["Track radius: 20 mm", said], names, TIME, FRICTION, LOAD, TIME)
+    with pytest.raises(GuessedError, match="not divided by"):
+        tl.read(file)
+
+
+@pytest.mark.parametrize(
+    ("zero", "off"),
+    [
+        ("Fx zero: 0.05 V (not subtracted)", 0.5),
+        ("Zero friction: 0.5 N (to be subtracted)", 0.5),
+        ("Fx zero: 0.05 V (subtracted)", 0.0),
+    ],
+)
+def test_a_zero_in_a_line_of_its_own_is_taken_off_a_signal_in_volts(zero, off, tmp_path):
+    names = "Time [s];Position [mm];Fx [V];Fz [V]"
+    head = ["Fx: 10 N/V", "Fz: 10 N/V", zero]
+    file = _file(tmp_path, head, names, TIME, WAY, FRICTION / 10 + off / 10, LOAD / 10)
+    np.testing.assert_allclose(tl.read(file).friction_force, FRICTION, atol=1e-3)
+
+
 def test_a_gain_that_is_stated_before_the_name_is_used(shared_data):
     run = tl.read(shared_data / "cases/gain_in_text_SOUND.csv")
     found = tl.friction_coefficient(run, tl.find_segments(run))

@@ -334,3 +334,57 @@ def test_a_force_of_friction_needs_no_article(tmp_path, name):
     rows = "\n".join(f"{n / 10:.1f};2.0;3.0;10" for n in range(200))
     (tmp_path / "a.csv").write_text(f"Time [s];Speed [mm/s];{name};Load [N]\n{rows}\n")
     assert float(tl.read(tmp_path / "a.csv").friction_force.mean()) == 3.0
+
+
+@pytest.mark.parametrize(
+    ("header", "left"),
+    [
+        ("Time [s];COF;Velocity [mm/s];Load", "Load"),
+        ("Time [s];Friction force [N];Velocity [mm/s];Position;Normal force [N]", "Position"),
+    ],
+)
+def test_a_doubtful_column_that_no_result_needs_is_left_out_and_reported(header, left, tmp_path):
+    width = header.count(";") + 1
+    rows = [[0.1 * n, 0.3, 2.0, 10.0, 10.0][:width] for n in range(200)]
+    path = tmp_path / "run.csv"
+    lines = [header, *(";".join(f"{x:.3f}" for x in row) for row in rows)]
+    path.write_text("\n".join(lines) + "\n", "utf-8")
+    run = tl.read(path)
+    assert left in run.attrs["left_out"] and left in run.attrs["columns_not_used"]
+    assert float(run.sliding_velocity[0]) == pytest.approx(2e-3)
+
+
+def test_a_doubtful_column_that_a_result_needs_is_asked_about(tmp_path):
+    rows = "\n".join(f"{0.1 * n:.1f};3.0;2.0;10.0" for n in range(200))
+    path = tmp_path / "run.csv"
+    path.write_text(f"Time [s];Friction force [N];Velocity [mm/s];Load\n{rows}\n", "utf-8")
+    with pytest.raises(GuessedError, match="in which unit"):
+        tl.read(path)
+
+
+def test_a_rock_friction_log_with_an_effective_stress_is_read_at_once(shared_data, tmp_path):
+    source = shared_data / "rock_velstep_MIT/velstep4_BRAVA_expb819_basalt.txt"
+    text = source.read_text("utf-8").replace("Normal_stress", "Effective_Normal_stress", 1)
+    (tmp_path / "rock.txt").write_text(text, "utf-8")
+    run = tl.read(tmp_path / "rock.txt")
+    assert float(run.normal_stress.median()) == pytest.approx(19.97e6, rel=1e-3)
+    assert float(run.friction_coefficient.median()) == pytest.approx(0.61, abs=0.01)
+
+
+def test_a_pressure_or_a_shear_stress_over_a_stated_area_is_a_force(tmp_path):
+    for names, column in (
+        ("Friction force [N];Normal stress [kPa]", "normal_force"),
+        ("Shear stress [kPa];Normal force [N]", "friction_force"),
+    ):
+        rows = "\n".join(f"{0.1 * n:.1f};3.0;100.0;2.0" for n in range(100))
+        head = f"Contact area (mm\u00b2): 100\nTime [s];{names};Velocity [mm/s]"
+        (tmp_path / f"{column}.csv").write_text(f"{head}\n{rows}\n", "utf-8")
+        size = {"normal_force": 10.0, "friction_force": 0.3}[column]
+        np.testing.assert_allclose(tl.read(tmp_path / f"{column}.csv")[column], size)
+
+
+def test_a_column_of_applied_masses_presses_with_their_weight(tmp_path):
+    rows = "\n".join(f"{0.1 * n:.1f};3.0;1000;2.0" for n in range(100))
+    head = "Time [s];Friction force [N];Applied mass [g];Velocity [mm/s]"
+    (tmp_path / "mass.csv").write_text(f"{head}\n{rows}\n", "utf-8")
+    np.testing.assert_allclose(tl.read(tmp_path / "mass.csv").normal_force, 9.80665)

@@ -15,7 +15,10 @@ from tribolab.quantities import unit_conversion
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.derive import Derivation, Given, derive
 
-_MEASURED = ("friction_reading", "arm_force", "friction_force_signal", "friction_force_raw")
+_MEASURED = (
+    *("friction_reading", "arm_force", "friction_force_signal", "friction_force_raw"),
+    *("friction_reading_signal",),
+)
 _PRESSED = 0.5  # of the largest load: what is less is no contact
 _HELD = 1.1  # times what was set, or as much less: a measured load that is held at it
 

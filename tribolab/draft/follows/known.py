@@ -107,7 +107,7 @@ def find_known(layout: Layout, understood: Understood) -> KnownRun:
     known = _Facts(layout, understood)
     doubt = _add_friction(known)
     _add_columns(known)
-    _add_calibrations(known)
+    doubt = _add_calibrations(known) or doubt
     pair = _pair_of(known)
     if pair is None:
         _add_track(known)
@@ -168,12 +168,24 @@ def _add_columns(known: _Facts) -> None:
         known.add_value("contact_area", area[0])
 
 
-def _add_calibrations(known: _Facts) -> None:
-    for quantity, column, members, _ in find_calibrations(known.layout, known.columns):
-        tared = any(role == "tare" for role, _, _ in members)
-        known.add(f"{quantity}_{'raw' if tared else 'signal'}", SYMBOLS[quantity], column)
+def _add_calibrations(known: _Facts) -> Amount | None:
+    """Add signals and what makes quantities of them; return a zero of the friction in doubt."""
+    layout, values, said, doubt = known.layout, known.values, known.understood.zero, None
+    for quantity, column, members, _ in find_calibrations(layout, known.columns):
+        name, tared = quantity, any(role == "tare" for role, _, _ in members)
+        if quantity == "friction_force" and not tared:  # its zero may be in a line of its own
+            in_volts = find_zero(layout, values, "V", said)
+            in_newtons = None if in_volts is not None else find_zero(layout, values, "N", said)
+            doubt = zero_in_doubt(layout, values, "V", said)
+            doubt = doubt or zero_in_doubt(layout, values, "N", said)
+            tared = in_volts is not None
+            name = quantity if in_newtons is None else "friction_reading"
+            known.add_value(f"{name}_tare", in_volts)
+            known.add_value("friction_zero", in_newtons)
+        known.add(f"{name}_{'raw' if tared else 'signal'}", SYMBOLS[quantity], column)
         for role, symbol, value in members:
-            known.add(f"{quantity}_{role}", symbol, value)
+            known.add(f"{name}_{role}", symbol, value)
+    return doubt
 
 
 def _pair_of(known: _Facts) -> Pair | None:

@@ -48,6 +48,7 @@ from tribolab.draft.stated.profiles import (
 )
 from tribolab.draft.stated.sampling import find_pace, find_sampling
 from tribolab.draft.stated.slip import as_entrainment_speed
+from tribolab.draft.stated.stated_zero import load_zeros_in_doubt
 from tribolab.errors import ReadError, brief, shown
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.dates import seconds
@@ -113,7 +114,7 @@ def understand(layout: Layout) -> Understood:
         columns = adding_up(layout, columns, numbers)
         columns = as_entrainment_speed(layout, columns)
         guesses += disagreement(columns, numbers)
-        guesses += guesses_of_inclined(layout, columns)
+        guesses += guesses_of_inclined(layout, columns) + load_zeros_in_doubt(layout, columns)
     columns = _dated(apply_count_scale(layout, columns, numbers), layout, numbers, text)
     columns = [
         column._replace(

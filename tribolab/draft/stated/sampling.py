@@ -33,6 +33,10 @@ _PER_TIME = re.compile(
     rf"(?P<many>[kmKM]?)(?:{_SAMPLE}\.?\s*{_PER}\s*"
     rf"(?:(?P<second>{alternatives('second')})|(?P<minute>{alternatives('minute')}))\.?|[sp]ps)"
 )
+_EVERY = re.compile(  # "every 10th sample"
+    rf"\b{alternatives('every')}\s(?!1\D)\d+(?:st|nd|rd|th|\.)\s?(?:{_SAMPLE}|points?|rows?|values?)",
+    re.IGNORECASE,
+)
 _PER_SAMPLE = re.compile(rf"(?P<time>[mµun]?s|sec|min)\s*{_PER}\s*{_SAMPLE}\.?")
 _MANY = {"": "Hz", "k": "kHz", "m": "MHz"}  # nobody takes a sample in a thousand seconds
 
@@ -127,6 +131,8 @@ def sample_rate_unit(text: str) -> str:
 def _fewer_rows(layout: Layout) -> str:
     """Return the line that says that several samples are averaged or left out; "" if none does."""
     for line in layout.text_above():
+        if _EVERY.search(line[:_LONGEST]):
+            return shown(line.strip(), 40)
         said = single_number(line.strip()[:_LONGEST])
         averaged = said and key_pattern("averaging").search(normalise_label(said[0]))
         if said and averaged and said[1] > 1 and said[1] == round(said[1]):

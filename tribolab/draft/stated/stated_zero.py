@@ -6,8 +6,11 @@ from collections.abc import Sequence
 
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import DraftColumn
+from tribolab.draft.stated.settings import numeric_settings
+from tribolab.io.dialects.cells import split_name
 from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.interpret.names import matches
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import part_pattern, says
 
 _LONGEST = 300  # characters of a line that are looked at
@@ -25,7 +28,7 @@ def find_zero(layout: Layout, values: Sequence[Amount], unit: str, said: str = "
     values
         From `numeric_settings`.
     unit
-        "N" of a force, "N m" of a torque.
+        "N" of a force, "N m" of a torque, "V" of a signal.
     said
         What a person said of it: "taken off", or "in it".
 
@@ -38,7 +41,7 @@ def find_zero(layout: Layout, values: Sequence[Amount], unit: str, said: str = "
     in_it = said == "in it" or (not said and _is_still_in(layout, zero))
     if zero is None or not in_it:
         return None
-    name = "torque_zero" if unit == "N m" else "friction_zero"
+    name = {"N m": "torque_zero", "V": "friction_signal_zero"}.get(unit, "friction_zero")
     return zero._replace(name=name, unit=zero.own_unit, to=unit)
 
 
@@ -57,6 +60,34 @@ def zero_in_doubt(
         return None
     taken_off = says("zero_taken_off", zero.text[zero.text.find(":") + 1 :])
     return None if taken_off or _another_line_says("zero_is_taken_off", layout, zero) else zero
+
+
+def load_zeros_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> list[str]:
+    """Say of stated zeros of the load that the numbers of its one column are read without them.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    columns
+        As they are understood.
+    """
+    forces = any(c.used and c.quantity == "normal_force" for c in columns)
+    volts = any(converts(c.file_unit or split_name(c.label)[1] or "", "V") for c in columns)
+    zeros = [
+        value
+        for value in numeric_settings(layout)
+        for read in [value._replace(unit=value.own_unit)]
+        if value.source == "preamble" and value.means("zero") and value.number
+        if (forces and read.is_in("N")) or (volts and read.is_in("V"))
+        if _is_of_load(part_pattern("zero").sub("", value.key))
+    ]
+    return [
+        f"'{zero.text}' was taken off the load"
+        for zero in zeros
+        if not says("zero_taken_off", zero.text[zero.text.find(":") + 1 :])
+        and not _another_line_says("zero_is_taken_off", layout, zero)
+    ]
 
 
 def friction_column(columns: Sequence[DraftColumn]) -> DraftColumn | None:
