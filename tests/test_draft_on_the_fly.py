@@ -345,7 +345,7 @@ def test_a_force_of_friction_needs_no_article(tmp_path, name):
 )
 def test_a_doubtful_column_that_no_result_needs_is_left_out_and_reported(header, left, tmp_path):
     width = header.count(";") + 1
-    rows = [[0.1 * n, 0.3, 2.0, 10.0, 10.0][:width] for n in range(200)]
+    rows = [[0.1 * n, 0.3, 2.0, 0.2 * n, 10.0][:width] for n in range(200)]
     path = tmp_path / "run.csv"
     lines = [header, *(";".join(f"{x:.3f}" for x in row) for row in rows)]
     path.write_text("\n".join(lines) + "\n", "utf-8")
