@@ -20,16 +20,6 @@ _EXCEL = (36_526.0, 54_789.0)  # [d] the same years
 _LONGEST_STEP = 5.0  # [s] beyond which a counter of something smaller is as likely
 _LONGEST_RUN = 400.0  # [d]
 _SMALLER = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
-DATES = frozenset(
-    "date datum datetime dateandtime datetimestamp fecha data fechahora fechayhora dataora "
-    "dataeora "
-    "datahora dataehora datenheure dateheure dateetheure horodatage datumuhrzeit datumzeit "
-    "zeitstempel "
-    "datumtijd datumochtid datumtid datoogtid datotid dataczas dataigodzina datacas "
-    "datumacas paivays "
-    "paivaysjaaika aika datumesido idopont tarih tarihsaat дата датавремя датаивремя 日期 日期时间 "
-    "日付 日時 날짜 일시".split()
-)
 
 
 class Counted(NamedTuple):

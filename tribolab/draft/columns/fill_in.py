@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.draft.columns.epochs import DATES, counted_from
+from tribolab.draft.columns.epochs import counted_from
 from tribolab.draft.model import DraftColumn, Kind, other_units, time_unit
 from tribolab.errors import shown
 from tribolab.quantities import quantity
-from tribolab.reading.interpret.names import KNOWN_WORD, Match, is_count
+from tribolab.reading.interpret.names import KNOWN_WORD, Match, is_count, is_date
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, role_of
 
 Bare = tuple[str, str | None, bool]  # a name without its unit, the unit, whether it is to be said
@@ -115,7 +115,7 @@ def _unit_reading(
     timed = option.quantity == "time"
     counted = None
     if timed and not column.counted:
-        counted = counted_from(values, unit, dated=normalise_label(name) in DATES)
+        counted = counted_from(values, unit, dated=is_date(name))
     epoch = counted.epoch if counted is not None else ""
     written = option.unit or (unit if say_unit else None)
     if unit is not None and is_count(unit):

@@ -8,18 +8,7 @@ from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.model import DraftColumn, other_units
 from tribolab.reading.interpret.names import KNOWN_WORD, matches
 from tribolab.reading.interpret.unit_texts import converts
-from tribolab.reading.lexicon.lexicon import normalise_label
-
-# of profiles side by side that are counted and nothing else
-_TRACES = re.compile(
-    r"^(?:trace|track|scan|line|profiles?|pass|meas\w*|spur|messung|linie|tastschnitt|trac[ée]|ligne"
-    r"|passage|trazo|linea|passata|traccia|slad|przejscie|stopa|mereni|трасса|след|линия|проход)$"
-)
-# what a single column is called that a pitch stands before: "Z-Werte in µm"
-_VALUES = re.compile(
-    r"^z?(?:values?|(?:mess)?werte?|valori|valeurs?|valores|waarden|wartosci|hodnoty|(?:vær|ver)dier|(?:maet|mat)?vae?rden|arvot"
-    r"|значения|数值|値|data|daten|dati|datos|donnees|gegevens|dane)$"
-)
+from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
 
 
 def in_stated_unit(columns: list[DraftColumn], unit: str, along: str = "") -> list[DraftColumn]:
@@ -62,7 +51,7 @@ def beside_x(columns: list[DraftColumn]) -> list[DraftColumn] | None:
     ]
     if not along or along[0].quantity != "x" or unit is None:
         return None
-    traces = all(_TRACES.search(normalise_label(name)) for name in numberless)
+    traces = all(key_pattern("trace_name").search(normalise_label(name)) for name in numberless)
     if not traces and not all(options and options[0].quantity == "height" for options in heights):
         return None
     if any(unit is None for _, unit, _ in bare):
@@ -116,7 +105,7 @@ def as_heights(column: DraftColumn, *, stated: bool, unit: str = "um") -> DraftC
     guess = "it is the height" + ("" if known else f" in {unit}")
     said = matches(name, own, scan=True)
     named = bool(said and said[0].quantity == "height" and said[0].score >= KNOWN_WORD)
-    named = bool(known and (named or _VALUES.search(normalise_label(name))))
+    named = bool(known and (named or key_pattern("values_name").search(normalise_label(name))))
     guessed = () if named or (stated and column.unit) else (guess,)
     return column._replace(
         quantity="height",

@@ -13,8 +13,10 @@ from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.settings import numeric_settings
 from tribolab.draft.stated.stated_zero import find_zero, zero_in_doubt
+from tribolab.reading.interpret.phrases import phrases
 from tribolab.reading.interpret.unit_texts import converts
-from tribolab.reading.lexicon.lexicon import says
+from tribolab.reading.lexicon.lexicon import key_pattern, says
+from tribolab.reading.numbers import decimal, numbers_in
 from tribolab.unit_names import unit_in_words
 from tribolab.units import conversion
 
@@ -22,46 +24,8 @@ _LONGEST = 300  # characters of a line that are looked at
 _FEWEST = 20  # samples that tell a zero
 _LEFT = 0.12  # of the highest signal: so far from its first level, and there is contact
 _SAFE = 0.9  # of the stretch: a load comes on gradually
-_UNLOADED = re.compile(
-    r"unloaded|\bno[\s-]?load(?!\s?cell)|without (?:a |any )?(?:load|contact)"
-    r"|not (?:yet )?(?:loaded|in contact)"
-    r"|no contact|out of contact|\blifted|lift(?:ed)?[\s-]?off|pin (?:is )?(?:up|off)"
-    r"|before (?:loading|contact)"
-    r"|unbelastet|ohne (?:last|kontakt|auflast|belastung)|lastfrei|abgehoben|leerlauf"
-    r"|vor (?:dem )?belast"
-    r"|[àa] vide|sans (?:charge|contact)|d[ée]gag[ée]|relev[ée]|soulev[ée]|sin (?:carga"
-    r"|contacto)|en vac[ií]o"
-    r"|levantad|a vuoto|senza (?:carico|contatto)|sollevat|sem (?:carga|contato|contacto)"
-    r"|utan (?:last|kontakt|belastning)"
-    r"|avlastad|obelastad|uden (?:last|belastning|kontakt)|uten (?:last|kontakt)"
-    r"|zonder (?:last|belasting|contact)|onbelast"
-    r"|ilman (?:kuormaa|kuormitusta)|bez (?:obci[ąa][żz]enia|kontaktu|zat[íi][žz]en[íi]"
-    r"|nacisku)|nieobci[ąa][żz]on"
-    r"|terhel[ée]s n[ée]lk[üu]l|y[üu]ks[üu]z|без (?:нагрузки|контакта)|до нагружения|холост"
-    # "load 0 N"
-    r"|(?:load|force|last|kraft|charge|carga|fuerza|carico|forza|belasting|belastning|kuorma"
-    r"|obci[ąa][żz]enie|zat[íi][žz]en[íi]|нагрузка|载荷|荷重|하중)"
-    r"\s{0,3}[:=]?\s{0,3}(?:of |de |di |von )?[-+]?0(?:[.,]0+)?\s{0,3}(?:m?N|k?gf?|kg)(?![^\W_])"
-    r"|未加载|未加載|无载|空载|无负载|无接触|抬起|無負荷|無荷重|非接触|無接触|무부하|비접촉",
-    re.IGNORECASE,
-)
-_START = re.compile(
-    r"\bfirst\b|\bstart|\bbegin|\binitial|\bbefore\b|\bat rest before|\berste|anfang|beginn"
-    r"|zu beginn|\bd[ée]but|premi[eè]r"
-    r"|au d[ée]part|inicio|primer|inizio|prim[ioa]\b|in[ií]cio|primeir|f[öo]rsta|b[öo]rjan"
-    r"|f[øo]rste|begynn|eerste"
-    r"|alussa|ensimm|pierwsz|pocz[ąa]t|prvn|za[čc][áa]t|els[őo]|ilk|ba[şs]lang|перв|начал|开始|開始|最初|先頭|前|처음|시작"
-    rf"|{STEP_WORD}\W{{0,3}}0(?!\d)",
-    re.IGNORECASE,
-)
-# "first 3 s at rest, string slack (zero of the cell)"
-_ZERO_THERE = re.compile(
-    r"\b(?:zero|zéro|cero|null\w*|nul|nolla|nula)\b|零|ゼロ|ноль|нул[ья]|영점", re.I
-)
+_STEP_ZERO = re.compile(rf"{STEP_WORD}\W{{0,3}}0(?!\d)", re.IGNORECASE)
 _ROW = re.compile(r"\s*\"?(?P<number>[01])\"?\s*[,;\t]")  # of a programme: its first step
-_LASTS = re.compile(
-    r"(?<![\d.,])(?P<number>\d+(?:[.,]\d+)?)\s?(?P<unit>ms|secs?|seconds?|sekund\w*|segundos|secondes|secondi|s|min(?:utes?|uten)?|秒|сек\w*|с)(?![^\W\d_]*/|[^\W\d_a-z])"
-)
 
 
 def unloaded_words(layout: Layout) -> str:
@@ -74,12 +38,25 @@ def unloaded_words(layout: Layout) -> str:
     """
     for line in layout.text_above():
         text = line.strip()[:_LONGEST]
-        begins = _START.search(text)
-        if _UNLOADED.search(text) and (begins or _ROW.match(text)):
+        begins = says("at_start", text) or _STEP_ZERO.search(text)
+        if _says_unloaded(text) and (begins or _ROW.match(text)):
             return text
-        if begins and _ZERO_THERE.search(text) and _lasts(text):
+        # "first 3 s at rest, string slack (zero of the cell)"
+        if begins and says("zero_word", text) and _lasts(text):
             return text
     return ""
+
+
+def _says_unloaded(text: str) -> bool:
+    """Whether a line says that nothing presses: in words, or as a load of zero.
+
+    >>> [_says_unloaded(line) for line in ("step 0: load 0 N", "no load cell", "no load")]
+    [True, False, True]
+    """
+    if says("without_contact", text.replace("load cell", "loadcell")):
+        return True
+    load = key_pattern("load")
+    return any(decimal(said.number) == 0 and load.search(said.key) for said in phrases(text))
 
 
 def with_zero(
@@ -127,13 +104,9 @@ def _lasts(line: str) -> float:
     >>> _lasts("first 10 s without load"), _lasts("begins unloaded")
     (10.0, 0.0)
     """
-    told = list(_LASTS.finditer(line))
-    if len(told) != 1:
-        return 0.0
-    unit = unit_in_words(told[0]["unit"])
-    if not converts(unit, "s"):
-        return 0.0
-    return float(told[0]["number"].replace(",", ".")) * conversion(unit, "s")[0]
+    said = [(n.value, unit_in_words(n.unit)) for n in numbers_in(line)]
+    told = [(number, unit) for number, unit in said if converts(unit, "s")]
+    return told[0][0] * conversion(told[0][1], "s")[0] if len(told) == 1 else 0.0
 
 
 def _still_unloaded(signal: np.ndarray) -> int:

@@ -8,7 +8,7 @@ import numpy as np
 
 from tribolab.draft.columns.against_motion import against_motion
 from tribolab.draft.columns.decide import SIGNALS, decide
-from tribolab.draft.columns.epochs import DATES, counted_from
+from tribolab.draft.columns.epochs import counted_from
 from tribolab.draft.columns.evidence import RULES, Facts
 from tribolab.draft.columns.fill_in import Bare
 from tribolab.draft.columns.heights import (
@@ -53,10 +53,9 @@ from tribolab.errors import ReadError, brief, shown
 from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.dates import seconds
 from tribolab.reading.interpret.amounts import Amount
-from tribolab.reading.interpret.names import Match, matches
+from tribolab.reading.interpret.names import Match, is_date, matches
 from tribolab.reading.interpret.physics import Proof
 from tribolab.reading.interpret.unit_texts import converts
-from tribolab.reading.lexicon.lexicon import normalise_label
 from tribolab.reading.raw.missing_marks import LARGEST, take_marks
 from tribolab.units import conversion, positive
 
@@ -362,7 +361,7 @@ def _timed(bare: list[Bare], run: list[list[Match]], numbers: np.ndarray) -> lis
     if any(options and options[0].quantity == "time" for options in run):
         return run
     for place, (name, unit, _) in enumerate(bare):
-        dated = normalise_label(name) in DATES and not run[place]
+        dated = is_date(name) and not run[place]
         if dated and counted_from(numbers[:, place], unit, dated=True):
             named = [Match("time", 1.0, None)]
             return [named if index == place else options for index, options in enumerate(run)]

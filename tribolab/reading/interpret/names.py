@@ -10,6 +10,7 @@ from tribolab.quantities import quantity
 from tribolab.reading.interpret.unit_texts import converts, is_turns, is_unit
 from tribolab.reading.lexicon.lexicon import (
     Word,
+    alternatives,
     key_pattern,
     keys_of,
     known_words,
@@ -114,6 +115,7 @@ def length_unit(text: str) -> str:
     return ""
 
 
+_GAPS = re.compile(rf"\s+{alternatives('in')}\s+|[\s_/,]+")
 _PER = re.compile(r"[\s_]+per[\s_]+|(?<=[mN°])_(?=(?:s|min|h)$)")  # mm_per_s, mm_s
 
 
@@ -145,7 +147,7 @@ def split_unit(label: str) -> tuple[str, str | None]:
         return label, "rpm"
     if normalise_label(label) in _SYMBOLS or _is_ratio(label):
         return _symbol_and_unit(label) or (label, None)
-    for gap in re.finditer(r"\s+(?:in|en|em|i|w|v|в)\s+|[\s_/,]+", label.strip()):
+    for gap in _GAPS.finditer(label.strip()):
         name, unit = label.strip()[: gap.start()], label.strip()[gap.end() :]
         unit = _PER.sub("/", unit)
         unit = unit_in_words(unit)
@@ -217,6 +219,15 @@ def is_stroke_frequency(name: str, unit: str | None) -> bool:
     """
     plain = normalise_label(without_role(name))
     return bool(unit and converts(unit, "Hz") and key_pattern("frequency").search(plain))
+
+
+def is_date(name: str) -> bool:
+    """Whether a name is that of dates, or of dates with times of day, and nothing else.
+
+    >>> is_date("Date and time"), is_date("Datum der Messung")
+    (True, False)
+    """
+    return key_pattern("date_name").search(normalise_label(name)) is not None
 
 
 def is_track_radius(name: str) -> bool:
