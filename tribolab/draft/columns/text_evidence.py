@@ -32,6 +32,8 @@ _STATED = 8.0  # log odds of what the text says outright
 _BY_LOAD = 3.0
 _LOADED = 0.4  # of the largest reading
 _MOST_READINGS = 0.98  # the few above are faults
+_MOTION = ("position", "sliding_velocity", "set_speed")
+_MOST_OF_SLED = 5.0  # times its weight: no dry contact has a higher coefficient of friction
 _READS_LOAD = (0.75, 1.33)  # times the stated load: a reading of the load itself
 
 
@@ -100,19 +102,26 @@ def _explained_force(about: str) -> str:
 
 
 def by_stated_load(layout: Layout) -> Rule:
-    """Return the rule that a cell reading the stated load presses, and one reading less drags."""
+    """Return the rule that a cell reading the stated load presses, and any other cell drags."""
 
     def rule(facts: Facts) -> Iterator[Evidence]:
         cells = _undecided_cells(facts) if facts.kind == "run" else []
-        stated = numeric_settings(layout) if len(cells) == 1 else []
-        load = find_load(stated)
-        if load is None:
+        if len(cells) != 1:
             return
         place = cells[0]
-        share = _share_of_load(facts, place, load)
-        if not 0 < share < _READS_LOAD[1]:
+        stated = numeric_settings(layout)
+        load = find_load(stated)
+        if load is None:
+            if _is_called_force(facts, place) and any(map(facts.places, _MOTION)):
+                why = "it is the only force on what slides; the load is not stated"
+                yield Evidence(place, "friction_force", _BY_LOAD, why, proposes=True, sure=True)
             return
-        presses = share > _READS_LOAD[0]
+        # no cell reads the weight of a sled
+        sled = part_pattern("sled").search(normalise_label(load.text)) is not None
+        share = _share_of_load(facts, place, load)
+        if not 0 < share < (_MOST_OF_SLED if sled else _READS_LOAD[1]):
+            return
+        presses = share > _READS_LOAD[0] and not sled
         if presses and not facts.is_either_force(place):
             return
         name, other = BOTH_FORCES[presses], BOTH_FORCES[not presses]
@@ -120,8 +129,7 @@ def by_stated_load(layout: Layout) -> Rule:
         doubt = f"it is the friction force: {why}"
         if presses:
             why = doubt = f"it is the normal force: it reads what '{load.text}' says"
-        # a sled of known weight is pulled by its friction; at a lever arm a cell reads otherwise
-        sled = part_pattern("sled").search(normalise_label(load.text)) is not None
+        # at a lever arm a cell reads otherwise
         only = _is_called_force(facts, place) and find_arm(stated) is None
         sure = not presses and (sled or only)
         yield Evidence(
