@@ -32,16 +32,22 @@ from tribolab.reading.numbers import NUMBER
 from tribolab.unit_names import WEIGHTS, unit_in_words
 
 _LONGEST_ENTRY = 1000  # of a line with a key: searches take their square
-# "# rate: 10 Hz", "Set Force = -200", "Disc track radius used (mm)<tab>21.232"
+# "# rate: 10 Hz", "Set Force = -200", "Disc track radius used (mm)<tab>21.232"; of testXpert
+# "Test speed";"mm/min";"100"
 _SAYS, _IN_CELLS = (  # the latter: "Dead weight,500,g"
     re.compile(
         rf"(?P<before>\W*(?P<key>[^\W\d][^:：=\t;{mark}]*?)"
-        rf"(?:\"?\s*[:：=]?\s*[:：=\t;{mark}]\s*\"?|\s{{2,80}}))"
+        rf"(?:\"?\s*[:：=]?\s*[:：=\t;{mark}]\s*\"?|\s{{2,80}})"
+        rf"(?:(?P<ahead>[^\W\d][^\s;,\"]{{0,9}})\"?\s*[\t;{mark}]\s*\"?)?)"
         rf"(?:(?:\+/?-|±)\s?)?(?P<number>{number})[\s;{mark}\"]*"
         r"(?P<unit>1/[^\W\d]\w*|[^\s\d;,\"][^\s;,\"]*)?"
         r"(?:[\s;,\t\"]*(?:\(.*\))?|(?:[,;]| [-–—]) ?[^\W\d][^\d:：=]*)$"
     )
     for mark, number in (("", NUMBER), (",", NUMBER.replace(",", "")))
+)
+# TE 77: "Load (N),100,Frequency (Hz),10,Stroke (mm),15"
+_PAIR = re.compile(
+    r"(?:(?<=[;,\t])|^)\s*([^\W\d][^;,\t]{0,60}[\])]\s*[;,\t]\s*[-+\d.]+)(?=[;,\t\s]|$)"
 )
 _TEXT = re.compile(
     r"\W*(?P<key>[^\W\d][^:：=\t;]*?)(?:\"?\s*[:：=\t;]\s*|\s{2,80})[\"\[(]?(?P<text>[^\W\d].*)$"
@@ -99,6 +105,12 @@ def amounts_of(lines: tuple[str, ...], most: int) -> Amounts:
         # a digit before the colon: a time of day, if it is not the number of a step
         if entry and (not entry["key"][-1].isdigit() or _STEP_TITLE.match(entry["key"])):
             _keep(found, _of_entry(entry, units))
+            continue
+        if pairs := _PAIR.findall(line):
+            for pair in filter(None, map(_entry, pairs)):
+                one = _of_entry(pair, units)
+                start = one.pattern.removeprefix(r"^\s*")
+                _keep(found, one._replace(pattern=start, text=line.strip()))
             continue
         strokes = False
         for phrase in phrases(line):
@@ -194,7 +206,8 @@ def _of_entry(entry: re.Match[str], units: Mapping[str, str]) -> Amount:
 
 
 def _key_and_unit(entry: re.Match[str], units: Mapping[str, str]) -> tuple[str, str | None]:
-    key, unit = entry["key"], unit_in_words((entry["unit"] or "").strip("[]()")) or None
+    key, unit = entry["key"], entry["unit"] or entry["ahead"] or ""
+    unit = unit_in_words(unit.strip("[]()")) or None
     bracket = _BRACKETS.search(key)
     if unit is None and bracket and measures_something(bracket[1]):
         unit, key = bracket[1], key[: bracket.start()]
