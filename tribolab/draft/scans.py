@@ -188,9 +188,9 @@ def _drafted(file: Path, error: ReadError) -> Dialect | None:
     if draft.kind != "scan":
         return None
     understood = draft.understood
-    if not draft.named and not (understood is not None and understood.pitched):
-        return None
     asked, lacks = questions(draft), lacks_distance(draft)
+    if asked and not draft.named and not (understood is not None and understood.pitched):
+        return None
     if asked or lacks:
         raise GuessedError(file, asked, cures.SURFACE, lacks) from error
     return draft.dialect

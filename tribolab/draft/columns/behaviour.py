@@ -22,7 +22,7 @@ _HIGHEST = 5.0  # mm, the range of a stylus gauge
 
 
 def by_behaviour(
-    columns: list[DraftColumn], numbers: np.ndarray
+    columns: list[DraftColumn], numbers: np.ndarray, units: tuple[str, str] = ("", "")
 ) -> tuple[Kind, list[DraftColumn], list[str]]:
     """Tell a map, a profile, a run or none of them by the numbers of its columns.
 
@@ -32,6 +32,8 @@ def by_behaviour(
         The columns, without names.
     numbers
         Their numbers (rows, columns) as written.
+    units
+        Of positions and of heights, as the text before the table states them; "" if it does not.
 
     Notes
     -----
@@ -42,10 +44,10 @@ def by_behaviour(
     part = numbers[:_ROWS]
     width = part.shape[1]
     if width == 3 and _is_grid(part):
-        return "scan", *_map(columns, part)
+        return "scan", *_scan(columns, part, units)
     rising = [i for i in range(width) if len(part) > 2 and (np.diff(part[:, i]) > 0).all()]
     if width == 2 and rising[:1] == [0] and _is_even(part[:, 0]):
-        return "scan", *_profile(columns, part)
+        return "scan", *_scan(columns, part, units)
     if not rising:
         rising = [i for i in range(width) if _is_clock(part[:, i])]
     if not rising:
@@ -88,33 +90,24 @@ def _scan_units(part: np.ndarray, height: int) -> tuple[str, str]:
     return "mm", "um" if reach > 0.1 * length or reach > _HIGHEST else "mm"
 
 
-def _map(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftColumn], list[str]]:
-    x_unit, z_unit = _scan_units(part, 2)
-    units = (x_unit, x_unit, z_unit)
-    axes = [
-        column._replace(
-            quantity=q,
-            unit=u,
-            used=True,
-            guessed=(f"it is {q} in {u}",),
-            options=other_units("height" if q == "height" else "m", u),
-        )
-        for column, q, u in zip(columns, ("x", "y", "height"), units, strict=True)
-    ]
-    return axes, ["it is a map: columns 1 and 2 fill a grid"]
-
-
-def _profile(columns: list[DraftColumn], part: np.ndarray) -> tuple[list[DraftColumn], list[str]]:
-    axes = [
-        column._replace(
-            quantity=q,
-            unit=u,
-            used=True,
-            guessed=(f"it is {q} in {u}",),
-            options=other_units("height" if q == "height" else "m", u),
-        )
-        for column, q, u in zip(columns, ("x", "height"), _scan_units(part, 1), strict=True)
-    ]
+def _scan(
+    columns: list[DraftColumn], part: np.ndarray, stated: tuple[str, str]
+) -> tuple[list[DraftColumn], list[str]]:
+    """Return positions with heights behind them; of what units the text states nothing is asked."""
+    names = ("x", "y", "height") if part.shape[1] == 3 else ("x", "height")
+    along, across = stated if all(stated) else _scan_units(part, len(names) - 1)
+    axes = []
+    for column, name in zip(columns, names, strict=True):
+        unit = across if name == "height" else along
+        axis = column._replace(quantity=name, unit=unit, used=True)
+        if not all(stated):
+            others = other_units("height" if name == "height" else "m", unit)
+            axis = axis._replace(guessed=(f"it is {name} in {unit}",), options=others)
+        axes.append(axis)
+    if all(stated):
+        return axes, []
+    if len(names) == 3:
+        return axes, ["it is a map: columns 1 and 2 fill a grid"]
     return axes, ["it is a profile: two columns, the first rises in even steps"]
 
 

@@ -37,7 +37,7 @@ _MARK = re.compile(
     r"|(?:header|data|header[\s_\-]*section)[\s_\-]*(?:end|start|begin)s?|(?:头|表头|数据)(?:结束|开始))\W*",
     re.IGNORECASE,
 )
-_STEMS = frozenset(stem for word in known_words("run") for stem in word.stems)
+_STEMS = frozenset(stem for word in known_words("run") for stem in (*word.stems, *word.vague))
 _SYMBOLS = frozenset(symbol for word in known_words("run") for symbol in word.symbols)
 
 

@@ -75,7 +75,8 @@ def understand(layout: Layout) -> Understood:
     """
     numbers, text, missing = _numbers(layout)
     unit = find_height_unit(layout)
-    columns = in_stated_unit(labelled(layout), unit, find_unit_along(layout))
+    along = find_unit_along(layout)
+    columns = in_stated_unit(labelled(layout), unit, along)
     proofs = proven(columns, numbers)
     columns = add_proven_units(columns, proofs)
     pitch = find_pitch(layout)
@@ -104,7 +105,7 @@ def understand(layout: Layout) -> Understood:
         # late: starting stays quick
         from tribolab.draft.columns.behaviour import by_behaviour
 
-        kind, columns, behaving = by_behaviour(columns, numbers)
+        kind, columns, behaving = by_behaviour(columns, numbers, (along, unit))
         guesses += behaving
     if kind == "run":
         columns = force_or_ratio(columns)
