@@ -17,7 +17,7 @@ from tribolab.campaign.settings.files import inputs_outside
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.errors import harmless
 from tribolab.provenance import as_text
-from tribolab.records.notice_words import OUTSIDE, RIG_STIFFNESS, STEPS_DIFFER, TRENDS
+from tribolab.records.notice_words import NOT_NEEDED, OUTSIDE, RIG_STIFFNESS, STEPS_DIFFER, TRENDS
 from tribolab.records.part_records import CurveRecord, SurfaceRecord
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome, SurfaceOutcome
 from tribolab.records.roughness_words import DOUBTFUL_FORM, roughness_in_words
@@ -216,7 +216,7 @@ def _told_of_runs(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
         for run in few
         if (entry := outcome.store.get("run", run.name, RunRecord)) is not None
         for notice in entry.record.notices
-        if notice.message.startswith((*TRENDS, OUTSIDE, STEPS_DIFFER, RIG_STIFFNESS))
+        if notice.message.startswith((*TRENDS, OUTSIDE, NOT_NEEDED, STEPS_DIFFER, RIG_STIFFNESS))
     ]
 
 

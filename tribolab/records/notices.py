@@ -14,7 +14,7 @@ from tribolab.friction.oscillation.waveform import CLASSES, NOT_LOOKED_AT
 from tribolab.friction.segments.find import why_no_segment
 from tribolab.medians import median
 from tribolab.records.decision_rows import decision_notices
-from tribolab.records.notice_words import OUTSIDE, RIG_STIFFNESS
+from tribolab.records.notice_words import NOT_NEEDED, OUTSIDE, RIG_STIFFNESS
 from tribolab.records.parts import Notice
 from tribolab.records.run_facts import (
     counting,
@@ -113,7 +113,7 @@ def notices_of(
     if unused := str(run.attrs.get("columns_not_used", "")):
         say("note", "columns", f"not used: {unused}")
     if doubtful := str(run.attrs.get("left_out", "")):
-        say("note", "columns", f"left out, as no result needs them: {doubtful}")
+        say("note", "columns", f"{NOT_NEEDED}: {doubtful}")
     if segments.attrs.get("rows_are") == "points":
         say("note", "rows", _RESULTS)
     return notices

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.model import Follows
-from tribolab.draft.model import Agreed
+from tribolab.draft.model import Agreed, Understood
 from tribolab.draft.stated.settings import numeric_settings
-from tribolab.draft.stated.stated_load import stated_number
+from tribolab.draft.stated.stated_load import find_load, stated_number
 from tribolab.errors import shown
 from tribolab.reading.interpret.amounts import Amount
+from tribolab.unit_names import WEIGHTS
 
 _UNITS = {"track_radius": "m", "normal_force": "N", "sliding_velocity": "m/s"}
 _QUOTED = 3
@@ -78,3 +79,20 @@ def _perhaps(layout: Layout, follows: Follows, lack: str) -> list[Amount]:
         if value.source != "file name" and value.text not in used
         if value.is_in(unit) and not (unit == "m" and value.means("other_radius", "stroke"))
     ]
+
+
+def find_stated_load(values: Sequence[Amount], understood: Understood) -> Amount | None:
+    """Return the load that the text states, or that a person took a line for.
+
+    Parameters
+    ----------
+    values
+        From `tribolab.draft.stated.settings.numeric_settings`.
+    understood
+        What was found out about the columns, and what was agreed to.
+    """
+    agreed = confirmed_value(values, understood.agreed, "load")
+    if agreed is None:
+        return find_load(values)
+    unit = WEIGHTS.get(agreed.own_unit or "", agreed.own_unit)
+    return agreed._replace(name="set_normal_force", unit=unit, to=None, guess="")

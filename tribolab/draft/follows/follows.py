@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from tribolab.draft.file.layout import Layout
-from tribolab.draft.follows.known import KnownRun, find_known, find_stated_load
+from tribolab.draft.follows.candidate_lines import find_stated_load
+from tribolab.draft.follows.known import KnownRun, find_known
 from tribolab.draft.follows.model import SAYS_FRICTION, SAYS_LOAD, Follows, Source
 from tribolab.draft.follows.speed import add_speed
 from tribolab.draft.model import DraftColumn, Understood

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
 from typing import NamedTuple
 
 from tribolab.draft.columns.labels import bare_name
 from tribolab.draft.columns.turning import angle_of, radius_of, torque_of, turns_of
 from tribolab.draft.file.layout import Layout
-from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.follows.calibrations import SYMBOLS, find_calibrations
-from tribolab.draft.follows.candidate_lines import confirmed_value
+from tribolab.draft.follows.candidate_lines import confirmed_value, find_stated_load
 from tribolab.draft.follows.inclined import axial_force_of, find_inclined, radius_of_ball
 from tribolab.draft.follows.model import CRANK, SAYS_FRICTION, Known, Source
 from tribolab.draft.follows.sums import loads_that_add
@@ -34,8 +31,7 @@ from tribolab.draft.stated.lengths import (
 )
 from tribolab.draft.stated.programme import find_programme
 from tribolab.draft.stated.settings import numeric_settings, text_settings
-from tribolab.draft.stated.slip import find_slide_roll_ratio
-from tribolab.draft.stated.stated_load import find_load
+from tribolab.draft.stated.slip import find_slide_roll_ratio, stated_rotation
 from tribolab.draft.stated.stated_zero import find_zero, friction_column, zero_in_doubt
 from tribolab.draft.stated.stroke_settings import (
     Strokes,
@@ -48,11 +44,9 @@ from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.derive import Given, derive
 from tribolab.reading.interpret.names import is_stroke_frequency
 from tribolab.reading.interpret.patterns import escaped
-from tribolab.reading.interpret.unit_texts import converts, is_per_minute
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern
-from tribolab.unit_names import WEIGHTS
 
-_STEP = re.compile(rf"^{STEP_WORD}\d*n?$")
 _SPEEDS = ("sliding_velocity", "rotation_speed")
 
 
@@ -296,25 +290,6 @@ def _add_speeds(known: _Facts, pair: Pair | None) -> None:
         known.add_value("set_rotation", stated_rotation(known.values))
 
 
-def stated_rotation(values: Sequence[Amount]) -> Amount | None:
-    """Return the one rotation speed that the text states, as a value of the dialect.
-
-    Parameters
-    ----------
-    values
-        From `tribolab.draft.stated.settings.numeric_settings`.
-    """
-    turns = [value for value in values if _is_rotation(value)]
-    return turns[0]._replace(unit="rpm", to="rad/s", name="rotation") if len(turns) == 1 else None
-
-
-def _is_rotation(value: Amount) -> bool:
-    step = value.source == "step" and _STEP.search(value.key) is not None
-    named = key_pattern("rotation_speed").search(value.key) is not None
-    named = named or step or value.source == "programme"
-    return named and is_per_minute(value.own_unit or "")
-
-
 def _add_load(known: _Facts) -> None:
     """Add what presses: cells that add up, an axial force, and what was said, set or stated."""
     weights = [c for c in known.columns if not c.used and not c.quantity and _is_weight(c)]
@@ -350,20 +325,3 @@ def _is_weight(column: DraftColumn) -> bool:
     return (
         converts(unit or "", "kg") and key_pattern("load").search(normalise_label(name)) is not None
     )
-
-
-def find_stated_load(values: Sequence[Amount], understood: Understood) -> Amount | None:
-    """Return the load that the text states, or that a person took a line for.
-
-    Parameters
-    ----------
-    values
-        From `tribolab.draft.stated.settings.numeric_settings`.
-    understood
-        What was found out about the columns, and what was agreed to.
-    """
-    agreed = confirmed_value(values, understood.agreed, "load")
-    if agreed is None:
-        return find_load(values)
-    unit = WEIGHTS.get(agreed.own_unit or "", agreed.own_unit)
-    return agreed._replace(name="set_normal_force", unit=unit, to=None, guess="")

@@ -6,10 +6,11 @@ import re
 
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.follows.candidate_lines import confirmed_value
-from tribolab.draft.follows.known import KnownRun, stated_rotation
+from tribolab.draft.follows.known import KnownRun
 from tribolab.draft.follows.model import DraftedFormula, Follows, Source, SpeedBy
 from tribolab.draft.model import Understood
 from tribolab.draft.stated.settings import text_settings
+from tribolab.draft.stated.slip import stated_rotation
 from tribolab.draft.stated.stroke_settings import Strokes
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.derive import Derivation, derive

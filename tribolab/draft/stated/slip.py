@@ -1,15 +1,20 @@
-"""A slide-to-roll ratio that the text above a table states, and whose speed it is of."""
+"""A slide-roll ratio or a rotation that the text above a table states, and of which speed."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from tribolab.draft.file.layout import Layout
+from tribolab.draft.file.marks import STEP_WORD
 from tribolab.draft.model import DraftColumn
 from tribolab.draft.stated.settings import numeric_settings
 from tribolab.io.dialects.cells import split_name
 from tribolab.reading.interpret.amounts import Amount, Amounts
-from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern, role_of
+from tribolab.reading.interpret.unit_texts import is_per_minute
+from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern, role_of
+
+_STEP = re.compile(rf"^{STEP_WORD}\d*n?$")
 
 
 def find_slide_roll_ratio(values: Sequence[Amount]) -> Amount | None:
@@ -57,3 +62,22 @@ def as_entrainment_speed(layout: Layout, columns: Sequence[DraftColumn]) -> list
         options=() if sure else ("sliding_velocity",),
     )
     return [mean if column is speeds[0] else column for column in columns]
+
+
+def stated_rotation(values: Sequence[Amount]) -> Amount | None:
+    """Return the one rotation speed that the text states, as a value of the dialect.
+
+    Parameters
+    ----------
+    values
+        From `tribolab.draft.stated.settings.numeric_settings`.
+    """
+    turns = [value for value in values if _is_rotation(value)]
+    return turns[0]._replace(unit="rpm", to="rad/s", name="rotation") if len(turns) == 1 else None
+
+
+def _is_rotation(value: Amount) -> bool:
+    step = value.source == "step" and _STEP.search(value.key) is not None
+    named = key_pattern("rotation_speed").search(value.key) is not None
+    named = named or step or value.source == "programme"
+    return named and is_per_minute(value.own_unit or "")
