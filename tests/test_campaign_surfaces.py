@@ -52,7 +52,7 @@ def campaign(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def outcome(campaign):
-    return run_campaign(campaign, jobs=1)
+    return run_campaign(campaign, jobs=1, figures="all")
 
 
 @pytest.fixture(scope="module")
@@ -216,7 +216,7 @@ def test_report_json_fits_its_schema_and_the_page_shows_the_section(outcome, tmp
 @pytest.mark.slow
 def test_nothing_is_done_again_until_something_changes(campaign, outcome, tmp_path):
     mine = copied(campaign, tmp_path)
-    again = run_campaign(mine, jobs=1)
+    again = run_campaign(mine, jobs=1, figures="all")
     assert again.surfaces[0].reused and again.surfaces[0].parts == outcome.surfaces[0].parts
     assert again.sources == outcome.sources
 

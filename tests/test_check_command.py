@@ -108,7 +108,7 @@ def test_results_beside_their_profile_are_compared_with_it(scans, shared_data, t
     ],
 )
 def test_known_troubles_too_small_to_object_to_are_shown(shared_data, path, said):
-    done = tribolab_check(shared_data / path, "--notes")
+    done = tribolab_check(shared_data / path, "--verbose")
     assert done.exit_code == 0
     assert re.search(said, done.stdout)
 
@@ -188,7 +188,7 @@ def test_the_terminal_names_options_and_not_arguments_of_functions(
     squeezed.write_bytes(b"PK\x03\x04")
     done = CliRunner().invoke(cli.app, [command, str(unknown), str(squeezed)])
     assert done.exit_code == 3
-    assert f"'tribolab dialect {unknown}' drafts a description of it" in done.stderr
+    assert f"'tribolab info {unknown} --write my.toml' drafts a description of it" in done.stderr
     assert "name it with --instrument" in done.stderr
     assert all(len(line) < 300 for line in done.stderr.splitlines())
     assert not re.search(r"\w=[ ,;]|\w\(\)", done.stderr)
@@ -209,7 +209,7 @@ def test_of_a_map_without_units_the_terminal_says_how_to_describe_it(tmp_path, c
     done = CliRunner().invoke(cli.app, [command, file])
     assert done.exit_code == 3
     assert "taken for a profile or map, the file states no units (xyz); " in done.stderr
-    assert f"'tribolab dialect {file}' drafts a description of it" in done.stderr
+    assert f"'tribolab info {file} --write my.toml' drafts a description of it" in done.stderr
     assert not re.search(r"\w=|\w\(\)", done.stderr)
     assert CliRunner().invoke(cli.app, [command, file, "-i", "nanovea_map"]).exit_code == 0
 
@@ -225,7 +225,7 @@ def test_run_names_the_key_of_the_campaign_file_and_no_option_that_it_lacks(tmp_
     done = CliRunner().invoke(cli.app, ["run", str(tmp_path / "campaign.toml"), "-q", "-j", "1"])
     assert done.exit_code == 3
     of_run, of_surface = done.stderr.splitlines()[:2]
-    assert "'tribolab dialect odd.txt' drafts a description of it" in of_run
+    assert "'tribolab info odd.txt --write my.toml' drafts a description of it" in of_run
     assert of_run.endswith('name it with instrument = "..." in its [[run]]')
     assert 'says them with instrument = "..." in its [[surface]]' in of_surface
     page = (tmp_path / "results/report.html").read_text()

@@ -1,4 +1,4 @@
-"""`tribolab dialect`: answers of a person, several examples, and the trial on the files."""
+"""`tribolab info --write`: answers of a person, several examples, and the trial on the files."""
 
 import re
 import tomllib
@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 import tribolab as tl
 from tribolab import cli
 from tribolab.draft.dialect.answers import corrected
-from tribolab.draft.dialect.draft import draft_dialect
+from tribolab.draft.dialect.draft import dialect_name, draft_dialect
 from tribolab.draft.dialect.examples import draft_of_examples
 from tribolab.draft.dialect.sparks import BARS
 from tribolab.errors import ReadError, UnitError
@@ -40,11 +40,15 @@ def command(*words, typed=None):
     return CliRunner().invoke(cli.app, [str(word) for word in words], input=typed)
 
 
+def describe(name, *options, typed=None):
+    return command("info", name, "--write", f"{dialect_name(name)}.toml", *options, typed=typed)
+
+
 def test_answers_make_a_dialect_that_reads_the_file_without_mending(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     file = write(tmp_path / "odd.csv", log())
     typed = "1\nms\n2\nmN\nA3\nN\nyes\n\n"
-    done = command("dialect", file.name, "--ask", typed=typed)
+    done = describe(file.name, "--ask", typed=typed)
     assert (done.exit_code, done.stderr) == (0, "")
     assert re.search(r"tried:  odd\.csv: 400 rows over 39\.9 s, 1 segment, friction coefficient "
                      r"0\.(199|200|201|2)\d* \(± U95 at most ", done.stdout)  # fmt: skip
@@ -60,7 +64,7 @@ def test_a_wrong_answer_is_told_and_asked_for_again(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     file = write(tmp_path / "odd.csv", log())
     typed = "9\n1\nkg\n1\nms\n2\nmN\n3\nN\n\n\n"
-    done = command("dialect", file.name, "--ask", typed=typed)
+    done = describe(file.name, "--ask", typed=typed)
     assert done.exit_code == 0, done.stdout
     assert "there is no column '9'" in done.stdout
     assert "'kg' is no unit of time, e.g. 's', nor an amount of it" in done.stdout
@@ -72,7 +76,7 @@ def test_without_a_terminal_nothing_is_asked_and_the_guess_is_tried(tmp_path, mo
     columns = log(load=30.0)
     good = dict(zip(["Time [ms]", "Fx [mN]", "Fz [N]", "v [mm/s]"], columns.values(), strict=True))
     file = write(tmp_path / "good.csv", good)
-    done = command("dialect", file.name)
+    done = describe(file.name)
     assert done.exit_code == 0 and "which column" not in done.stdout
     assert "friction coefficient 0.2" in done.stdout
     assert re.search(r"friction_force N +[▁-█]{40} +5\.\d+ +6\.\d+", done.stdout)
@@ -86,7 +90,7 @@ def test_columns_that_differ_between_examples_are_optional(tmp_path, monkeypatch
     second = {name: values for name, values in first.items() if name != "v [mm/s]"}
     second["Temperature [degC]"] = np.full(400, 23.5)
     files = [write(tmp_path / "a.csv", first), write(tmp_path / "b.csv", second)]
-    done = command("dialect", *files, "--output", "both.toml")
+    done = command("info", *files, "--write", "both.toml")
     assert done.exit_code == 0
     both = tomllib.loads((tmp_path / "both.toml").read_text())
     rules = {column["quantity"]: column for column in both["column"]}
@@ -136,14 +140,14 @@ def test_heights_without_positions_are_read_once_their_pitch_is_said(tmp_path, m
     file = tmp_path / "line.txt"
     heights = np.sin(np.arange(200) / 9)
     file.write_text("Z\n" + "".join(f"{z:.4f}\n" for z in heights))
-    unasked = command("dialect", file.name, "--no-ask")  # and without a terminal
+    unasked = describe(file.name, "--no-ask")  # and without a terminal
     assert unasked.exit_code == 0 and "the distance of neighbouring heights" in unasked.output
     with pytest.raises(ReadError, match=r"pitch = \"0\.25 um\" in its first lines"):
         tl.read_scans(file, instrument="line.toml")
     toml = Path("line.toml")
     toml.write_text(toml.read_text().replace('# pitch = "? um"', 'pitch = "0.5 um"'))
     assert tl.read_scans(file, instrument="line.toml").attrs["pitch_m"] == pytest.approx(5e-7)
-    done = command("dialect", file.name, "--ask", "--force", typed="2 s\n0.25 um\nnm\n")
+    done = describe(file.name, "--ask", "--force", typed="2 s\n0.25 um\nnm\n")
     assert done.exit_code == 0, done.output
     scan = tl.read_scans(file, instrument="line.toml")
     assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
@@ -155,7 +159,7 @@ def test_a_torque_with_a_radius_is_a_force_and_a_load_may_be_a_weight(tmp_path, 
     file = tmp_path / "ring.txt"
     rows = "".join(f"{i / 10:.1f},{4 + i % 3},60,{100 + i % 2}\n" for i in range(400))
     file.write_text("Time [s],M9 [mN m],Disc [rpm],Q [V]\n" + rows)
-    done = command("dialect", file.name, "--ask", typed="\n2\n2 kg\n\n10 mm\n")
+    done = describe(file.name, "--ask", typed="\n2\n2 kg\n\n10 mm\n")
     assert done.exit_code == 0, done.output
     run = tl.read(file, "ring.toml")
     np.testing.assert_allclose(run.friction_force[:3], [0.4, 0.5, 0.6])
@@ -170,7 +174,7 @@ def test_yes_takes_the_radius_that_a_line_perhaps_states(answer, tmp_path, monke
     rows = "".join(f"{i / 10:.2f}\t{4 + i % 3}\t60\t{20 + i % 2}\n" for i in range(400))
     header = "Time [s]\tTorque [mN m]\tSpeed [rpm]\tLoad [N]\n"
     file.write_text("Rig 3\nHalf of it: 22.5 mm\n" + header + rows)
-    done = command("dialect", file.name, "--ask", typed=f"\n\n\n\n{answer}\n")
+    done = describe(file.name, "--ask", typed=f"\n\n\n\n{answer}\n")
     assert "is it in 'Half of it: 22.5 mm'? (yes: 22.5 mm; -: not known) [yes]" in done.output
     run = tl.read(file, "ring.toml")
     np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * 0.0225)
@@ -183,7 +187,7 @@ def test_an_angle_with_a_radius_is_a_way(tmp_path, monkeypatch):
     file = tmp_path / "table.txt"
     rows = "".join(f"{i / 10:.1f},{4 + i % 3},{i / 100:.2f}\n" for i in range(400))
     file.write_text("Time [s],Friction force [mN],E1\n" + rows)
-    done = command("dialect", file.name, "--ask", typed="\n\n2 N\n3\nturn\n10 mm\n")
+    done = describe(file.name, "--ask", typed="\n\n2 N\n3\nturn\n10 mm\n")
     assert done.exit_code == 0, done.output
     run = tl.read(file, "table.toml")
     np.testing.assert_allclose(np.diff(run.position), 2 * np.pi * 1e-4, rtol=1e-3)
@@ -197,7 +201,7 @@ def test_volts_and_counts_are_forces_by_what_one_is_less_what_stands_without_con
     rows = "".join(f"{0.5 + 0.1 * (i > 99):.2f},{1000 + 500 * (i > 99)}\n" for i in range(400))
     file.write_text("A [V],B\n" + rows)
     typed = "100 Hz\n1\nmV\n1\n8,0 N/V\nfirst 0.9 s\n2\n0.02 N\n1000\n6 mm/min\n"
-    done = command("dialect", file.name, "--ask", typed=typed)
+    done = describe(file.name, "--ask", typed=typed)
     assert done.exit_code == 0, done.output
     assert "column 1 is in V: how much is 1 V? (e.g. 8.2 N/V)" in done.output
     run = tl.read(file, "bridge.toml")
@@ -212,13 +216,13 @@ def test_loads_that_add_up_pulses_of_a_turn_and_a_weight_on_a_lever(tmp_path, mo
     file = tmp_path / "ring.txt"
     rows = "".join(f"{i / 10:.1f},{i},3,{4 + i % 2},{6 - i % 2}\n" for i in range(400))
     file.write_text("Time [s],P1,Friction force [N],C1,C2\n" + rows)
-    done = command("dialect", file.name, "--ask", typed="\n\n4+5\nN\nN\n2\n1/100 turn\n10 mm\n")
+    done = describe(file.name, "--ask", typed="\n\n4+5\nN\nN\n2\n1/100 turn\n10 mm\n")
     assert done.exit_code == 0, done.output
     run = tl.read(file, "ring.toml")
     np.testing.assert_allclose(run.normal_force, 10)
     np.testing.assert_allclose(np.diff(run.position), 2 * np.pi * 1e-4, rtol=1e-6)
     typed = "\n\n10 x 5 kg\n2\n1/100 turn\n10 mm\n"
-    done = command("dialect", file.name, "--ask", "--force", typed=typed)
+    done = describe(file.name, "--ask", "--force", typed=typed)
     assert done.exit_code == 0, done.output
     np.testing.assert_allclose(tl.read(file, "ring.toml").normal_force, 490.333, rtol=1e-5)
 
@@ -233,7 +237,7 @@ def test_a_set_speed_that_turns_over_tells_the_way_on_trial(tmp_path, monkeypatc
         for n, (w, e) in enumerate(zip(way, rng.standard_normal(way.size), strict=True))
     )
     file.write_text("Time [s],Speed set [mm/s],Friction force [N],Normal force [N]\n" + rows)
-    done = command("dialect", file.name, "--no-ask")
+    done = describe(file.name, "--no-ask")
     assert "8 segments, friction coefficient 0.3000 ± 0.0005 (U95, mean of 8;" in done.output, (
         done.output
     )
@@ -245,7 +249,7 @@ def test_lines_that_may_state_the_load_are_quoted(answer, tmp_path, monkeypatch)
     file = tmp_path / "stage.txt"
     rows = "".join(f"{n / 20:.2f},{3 + n % 3}\n" for n in range(200))
     file.write_text(f"Thing on top: 102 gf\nTime [s],Friction force [N]\n{rows}")
-    done = command("dialect", file.name, "--ask", typed=f"\n\n{answer}\n1 mm/s\n")
+    done = describe(file.name, "--ask", typed=f"\n\n{answer}\n1 mm/s\n")
     assert "does 'Thing on top: 102 gf' say it?" in done.output, done.output
     np.testing.assert_allclose(tl.read(file, "stage.toml").normal_force, 0.102 * 9.80665)
     file.write_text(file.read_text().replace("102 gf", "204 gf"))
@@ -257,7 +261,7 @@ def test_yes_to_the_line_of_a_speed_holds_for_other_files(tmp_path, monkeypatch)
     file = tmp_path / "pull.txt"
     rows = "".join(f"{n / 20:.2f},{3 + n % 3}\n" for n in range(200))
     file.write_text(f"Load: 10 N\nGoes: 6 mm/min\nTime [s],Friction force [N]\n{rows}")
-    done = command("dialect", file.name, "--ask", typed="\n\n\nyes\n")
+    done = describe(file.name, "--ask", typed="\n\n\nyes\n")
     assert "does 'Goes: 6 mm/min' say it?" in done.output, done.output
     assert float(tl.read(file, "pull.toml").set_speed[0]) == pytest.approx(1e-4)
     file.write_text(file.read_text().replace("6 mm/min", "60 mm/min"))
@@ -269,7 +273,7 @@ def test_a_force_without_a_load_is_tried(tmp_path, monkeypatch):
     rows = "".join(f"{i / 10:.1f},{4 + i % 3},{i}\n" for i in range(200))
     file = tmp_path / "bare.txt"
     file.write_text("Time [s],Fx [N],Position [um]\n" + rows)
-    done = command("dialect", file.name, "--no-ask")
+    done = describe(file.name, "--no-ask")
     assert done.exit_code == 0 and "no friction coefficient" in done.output, done.output
 
 
@@ -277,7 +281,7 @@ def test_questions_that_end_early_write_nothing(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     file = tmp_path / "x.txt"
     file.write_text("Time [s],Fx [N],Fy [N]\n" + "".join(f"{i},1,5\n" for i in range(50)))
-    done = command("dialect", file.name, "--ask", typed="")
+    done = describe(file.name, "--ask", typed="")
     assert done.exit_code == 130 and "nothing is written" in done.output
     assert not (tmp_path / "x.toml").exists()
 
@@ -287,7 +291,7 @@ def test_an_answer_stays_where_another_is_not_known_and_may_have_a_comma(tmp_pat
     file = tmp_path / "ring.txt"
     rows = "".join(f"{i / 10:.1f},{4 + i % 3},60\n" for i in range(200))
     file.write_text("Time [s],Torque [mN m],Rotation [rpm]\n" + rows)
-    done = command("dialect", file.name, "--ask", typed="\n\n46,0 N\n\n-\n")
+    done = describe(file.name, "--ask", typed="\n\n46,0 N\n\n-\n")
     assert "formula = \"'46.0 N'\"" in Path("ring.toml").read_text("utf-8"), done.output
     assert "a torque: with the radius at which it acts" in done.output
 
@@ -302,7 +306,7 @@ def test_numbers_alone_of_any_name_are_asked_about_as_heights(tmp_path, monkeypa
     rng = np.random.default_rng(6)
     lines = "\n".join(" ".join(f"{z:.3f}" for z in part) for part in rng.standard_normal((50, 8)))
     (tmp_path / "p.txt").write_text(f"Nombre de points: 400\n[VALEURS]\n{lines}\n")
-    done = command("dialect", "p.txt", "--ask", typed="0.5 um\num\n")
+    done = describe("p.txt", "--ask", typed="0.5 um\num\n")
     assert done.exit_code == 0, done.output
     assert tl.read_scans("p.txt", instrument="p.toml").attrs["pitch_m"] == pytest.approx(5e-7)
 
@@ -313,7 +317,7 @@ def test_strokes_may_be_typed_and_one_of_both_is_not_enough(tmp_path, monkeypatc
     force = 3 * np.tanh(30 * np.cos(4 * np.pi * time))
     columns = {"Time [s]": time, "Friction force [N]": force, "Load [N]": np.full(time.size, 15.0)}
     file = write(tmp_path / "pin.csv", columns)
-    done = command("dialect", file.name, "--ask", typed="\n\n\n2 Hz\nstroke 8 mm, 2 Hz\n\n")
+    done = describe(file.name, "--ask", typed="\n\n\n2 Hz\nstroke 8 mm, 2 Hz\n\n")
     assert (done.exit_code, done.stderr) == (0, "")
     assert "strokes need a length, such as 8 mm, too" in done.stdout
     assert done.stdout.count("sliding_velocity m/s") == 2  # once a row, once as a line of blocks
@@ -331,7 +335,7 @@ def test_turns_may_be_typed_with_the_radius_of_their_track(tmp_path, monkeypatch
     lines = "".join(f"{t:.2f}\t{3 + 0.01 * np.sin(t):.4f}\n" for t in time)
     Path("disc.txt").write_text(f"Load: 15 N\nTime [s]\tFriction force [N]\n{lines}", "utf-8")
     typed = "\n\n\n8 rpm\n8\n15,5\n8 rpm at 20 mm radius\n\n"
-    done = command("dialect", "disc.txt", "--ask", typed=typed)
+    done = describe("disc.txt", "--ask", typed=typed)
     assert (done.exit_code, done.stderr) == (0, "")
     assert "for none) [15 N]:" in done.stdout  # what the file states is the default
     assert "turns need the radius of their track: 8 rpm at 20 mm radius" in done.stdout
@@ -349,7 +353,7 @@ def test_a_description_that_was_drafted_of_a_file_is_named_where_it_lies(tmp_pat
     file = write(tmp_path / "odd.csv", log())
     told = command("info", file.name)
     assert told.exit_code == 3 and "is a description of it" not in told.output
-    assert command("dialect", file.name, "--ask", typed="1\nms\n2\nmN\n3\nN\n\n\n").exit_code == 0
+    assert describe(file.name, "--ask", typed="1\nms\n2\nmN\n3\nN\n\n\n").exit_code == 0
     told = command("info", file.name)
     assert told.exit_code == 3 and "--instrument odd.toml is a description of it" in told.output
 
@@ -359,7 +363,7 @@ def test_of_fast_strokes_the_first_are_shown(tmp_path, monkeypatch):
     time = np.arange(0, 60, 0.01)
     force = 3 * np.sign(np.sin(2 * np.pi * 1.0 * time + 0.1))
     file = write(tmp_path / "pin.csv", {"Time [s]": time, "Friction force [N]": force})
-    shown = command("dialect", file.name).stdout
+    shown = describe(file.name).stdout
     (lasts,) = re.findall(r"signals +first ([\d.]+) s", shown)
     assert float(lasts) == pytest.approx(6, abs=0.1)  # twelve strokes at 1 Hz
     (line,) = [line for line in shown.splitlines() if line.strip().startswith("friction_force N ")]
@@ -368,4 +372,4 @@ def test_of_fast_strokes_the_first_are_shown(tmp_path, monkeypatch):
     steady = write(
         tmp_path / "steady.csv", {"Time [s]": time, "Friction force [N]": 3 + force / 100}
     )
-    assert "first" not in command("dialect", steady.name).stdout.split("signals")[1].splitlines()[0]
+    assert "first" not in describe(steady.name).stdout.split("signals")[1].splitlines()[0]

@@ -1,4 +1,4 @@
-"""`tribolab dialect`: what it shows, writes, refuses and says comes next."""
+"""`tribolab info FILE --write`: what it shows, writes, refuses and says comes next."""
 
 import re
 import shlex
@@ -53,7 +53,7 @@ def test_the_command_shows_writes_and_tells_what_comes_next(tmp_path, monkeypatc
     monkeypatch.chdir(tmp_path)
     file = tmp_path / "odd one.csv"
     file.write_text("Zeit [s];Reibkraft;Weg [mm]\n0,0;1,5;0,1\n0,5;1,6;0,2\n")
-    done = command("dialect", file.name)
+    done = command("info", file.name, "--write", "odd_one.toml")
     assert (done.exit_code, done.stderr) == (0, "")
     assert "numbers parted by semicolon, decimal comma" in done.stdout
     rows = r"row +time s +position m\s[^\w]+1 +0 +0\.0001 *\n 2 +0\.5 +0\.0002"
@@ -69,7 +69,7 @@ def test_the_command_that_comes_next_reads_a_profile_too(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     rows = "".join(f"{n / 2000:.4f};{n % 7 / 10}\n" for n in range(200))
     (tmp_path / "odd profile.csv").write_text(f"x [mm];z [um]\n{rows}")
-    done = command("dialect", "odd profile.csv")
+    done = command("info", "odd profile.csv", "--write", "odd_profile.toml")
     assert (done.exit_code, done.stderr) == (0, "")
     [following] = re.findall(r"next:  tribolab (.*)", done.stdout)
     read = command(*shlex.split(following))
@@ -80,7 +80,8 @@ def test_the_command_that_comes_next_reads_a_profile_too(tmp_path, monkeypatch):
 def test_the_command_refuses_with_the_exit_codes_of_the_house(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "a.csv").write_text("Time [s],Fx [N]\n0,1\n1,2\n")
-    assert command("dialect", "a.csv", "--name", "Mine").exit_code == 0
+    done = command("dialect", "a.csv", "--name", "Mine")  # the old name of the command
+    assert done.exit_code == 0 and "write 'tribolab info FILE --write NAME.toml'" in done.stderr
     (tmp_path / "mine.toml").write_text("by hand")
     again = command("dialect", "a.csv", "--name", "mine")
     assert again.exit_code == 2 and "--force" in again.stderr

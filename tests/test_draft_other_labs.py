@@ -300,7 +300,7 @@ def test_a_zero_that_the_text_states_is_taken_off_where_it_is_still_in_the_signa
     (tmp_path / "disc.csv").write_text(head + ZERO_ROWS + "\n", "utf-8")
     if mu is None:
         with pytest.raises(
-            ReadError, match="was taken off the signal +or: it is still in the signal"
+            ReadError, match="was taken off the signal .or it is still in the signal"
         ):
             tl.read(tmp_path / "disc.csv")
         return

@@ -96,7 +96,7 @@ def test_all_that_is_missing_is_told_in_one_message_and_stands_in_the_draft(tmp_
 def test_a_load_cell_is_asked_about_unless_another_force_or_the_load_tells(tmp_path):
     head = "Time [s]\tSpeed [mm/s]\tLoad cell [N]"
     path = table(tmp_path / "a.txt", head, T, 5.0, LOAD)
-    assert "the name means friction force or: normal_force" in refusal(path)
+    assert "the name means friction force (or normal_force" in refusal(path)
     assert not tl.draft_dialect(path).understood.columns[2].used
     path = table(tmp_path / "b.txt", f"Load set: 12 N\n{head}", T, 5.0, LOAD)
     assert "it is the normal force: it reads what 'Load set: 12 N' says" in refusal(path)

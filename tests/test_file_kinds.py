@@ -61,8 +61,10 @@ def test_what_is_drafted_from_columns_is_written_down_and_reads_the_file(name, t
     (tmp_path / "kept.toml").write_text(toml)
     assert tl.read(path, tmp_path / "kept.toml").drop_attrs().identical(at_once.drop_attrs())
     if name == "feather":  # the command does the same with each
-        told = CliRunner().invoke(cli.app, ["dialect", str(path), "-o", str(tmp_path / "new.toml")])
-        assert told.exit_code == 0 and (tmp_path / "new.toml").read_text() == toml
+        told = CliRunner().invoke(
+            cli.app, ["info", str(path), "--write", str(tmp_path / "run.toml")]
+        )
+        assert told.exit_code == 0 and (tmp_path / "run.toml").read_text() == toml
 
 
 def test_a_sheet_with_units_below_its_names_is_told_from_one_of_words(tmp_path):
@@ -151,7 +153,7 @@ def test_what_drives_the_strokes_is_a_guess_unless_it_is_said(tmp_path):
     path = write_kind("stroke_settings", tmp_path).path
     text = path.read_text().replace("Drive: crank\n", "")
     path.write_text(text)
-    with pytest.raises(ReadError, match="a crank drives it: the speed is a sine  or: constant"):
+    with pytest.raises(ReadError, match="a crank drives it: the speed is a sine .or constant"):
         tl.read(path)
     path.write_text(text.replace("Stroke length: 10 mm", "Stroke length: 10 mm\nMotion: triangle"))
     speed = np.abs(tl.read(path)["sliding_velocity"].values)
@@ -178,7 +180,9 @@ def test_a_person_is_asked_for_the_radius_of_the_track(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     file = write_kind("radius_unsaid", tmp_path).path
     typed = "\n" * 4 + "25\n25 mm\n"
-    done = CliRunner().invoke(cli.app, ["dialect", file.name, "--ask"], input=typed)
+    done = CliRunner().invoke(
+        cli.app, ["info", file.name, "--write", f"{file.stem}.toml", "--ask"], input=typed
+    )
     assert done.exit_code == 0 and "what is the radius of the track" in done.stdout
     assert "3 segments, friction coefficient 0.38" in done.stdout
     assert 'radius = "25 mm"' in file.with_suffix(".toml").read_text()
@@ -187,5 +191,5 @@ def test_a_person_is_asked_for_the_radius_of_the_track(tmp_path, monkeypatch):
 def test_columns_of_unknown_names_are_asked_for_where_no_friction_is_known(tmp_path):
     file = tmp_path / "unnamed.csv"
     file.write_text("Time [s],Weg [mm],Kanal 7 [mV]\n" + "\n".join(f"{n},{n},1" for n in range(30)))
-    with pytest.raises(ReadError, match="no column is known to hold it  or: column 3 'Kanal 7"):
+    with pytest.raises(ReadError, match="no column is known to hold it .or column 3 'Kanal 7"):
         tl.read(file)

@@ -228,7 +228,7 @@ def archive(original, tmp_path_factory):
 
 @pytest.mark.slow
 def test_the_command_watches_an_archive_and_ends_with_one_on_a_signal(archive, tmp_path):
-    words = ["history", str(archive), "--baseline", "18", "-o", str(tmp_path / "out")]
+    words = ["lab", "history", str(archive), "--baseline", "18", "-o", str(tmp_path / "out")]
     done = CliRunner().invoke(cli.app, words)
     assert done.exit_code == 1, done.output
     assert "signals: zero of the friction force\n" in done.stdout
@@ -240,14 +240,16 @@ def test_the_command_watches_an_archive_and_ends_with_one_on_a_signal(archive, t
     [zero] = told.signalling
     assert zero.signals[0] == 20
     assert (tmp_path / "out/history.html").stat().st_size > 10_000
-    quiet = ["history", *map(str, sorted(archive.iterdir())[:20]), "-o", str(tmp_path / "b")]
+    quiet = ["lab", "history", *map(str, sorted(archive.iterdir())[:20]), "-o", str(tmp_path / "b")]
     assert CliRunner().invoke(cli.app, [*quiet, "--baseline", "18"]).exit_code == 0
 
 
 def test_a_folder_that_is_no_results_is_left_out_and_told(archive, tmp_path):
     told = tl.history([archive / "week_00", tmp_path])
     assert len(told.unread) == 1 and "no folder of results" in told.unread[0]
-    done = CliRunner().invoke(cli.app, ["history", str(tmp_path), "-o", str(tmp_path / "out")])
+    done = CliRunner().invoke(
+        cli.app, ["lab", "history", str(tmp_path), "-o", str(tmp_path / "out")]
+    )
     assert done.exit_code == 3
 
 

@@ -196,7 +196,7 @@ def test_nothing_and_too_much_recognised_name_the_way_out(tmp_path, monkeypatch)
     file.write_text("a,b\n1,2\n")
     with pytest.raises(
         ReadError,
-        match="'tribolab dialect .*' drafts a description of it: name it with instrument=",
+        match="'tribolab info .* --write my.toml' drafts a description.*: name it with instrument=",
     ):
         recognise(file)
     file.write_text("# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n0,1,1\n")
@@ -301,3 +301,30 @@ def test_a_dialect_is_written_as_it_was_read(name, tmp_path):
     file = tmp_path / "written.toml"
     file.write_text(dialect_toml(load_dialect(name)), "utf-8")
     assert load_dialect(file) == load_dialect(name)
+
+
+@pytest.mark.parametrize(
+    "key",
+    ["[rows]\nleft_out = 0.5", "[text]\narrangement = 'json'", "[header]\nline = 1\nonly = 'a'"],
+)
+def test_a_key_that_the_next_release_removes_works_and_warns(key, tmp_path):
+    table, name = re.match(r"\[(\w+)\].*\n(\w+) =", key, re.DOTALL).groups()
+    parts = dict(re.findall(r"(?ms)^\[(\w+)\]\n(.*?)(?=^\[|\Z)", BASE))
+    text = BASE.replace(f"[{table}]\n{parts.get(table, '')}", "") + f"{key}\n"
+    (tmp_path / "mine.toml").write_text(text)
+    with pytest.warns(FutureWarning, match=rf"{table}\.{name} will be removed"):
+        dialect = load_dialect(tmp_path / "mine.toml")
+    assert getattr(getattr(dialect, table), name)
+    assert name not in json_schema()["$defs"][table.capitalize()]["properties"]
+
+
+def test_a_run_says_where_no_file_of_its_instrument_was_seen(tmp_path):
+    file = tmp_path / "a.csv"
+    file.write_text("Imada ZT\nNo,Time [s],Force [N]\n" + "".join(f"{n},{n},1\n" for n in range(9)))
+    unseen = {n for n in known_dialects() if not load_dialect(n).from_file}
+    assert unseen == {"force_gauge", "optimol_srv", "pcs_hfrr", "tribox"}
+    assert "without a file of it" in tl.read(file, "force_gauge").attrs["instrument_note"]
+    assert (
+        "instrument_note"
+        not in tl.read(*write(tmp_path, BASE, "t [s];F [N]\n0,0;1,0\n1,0;1,0\n")).attrs
+    )

@@ -125,10 +125,13 @@ def test_a_plan_asks_for_one_precision_and_for_two_runs(tmp_path):
 
 
 def test_the_command_plans_after_a_campaign(original, tmp_path):
-    words = ["plan", str(original.parent / "results"), "-o", str(tmp_path / "out")]
-    done = CliRunner().invoke(cli.app, [*words, "--standard-error", "0.01"])
+    words = ["lab", "plan", str(original.parent / "results"), "-o", str(tmp_path / "out")]
+    done = CliRunner().invoke(cli.app, [*words, "--half-interval", "0.02"])
     assert done.exit_code == 0, done.output
     assert "as likely as not to reach it" in done.stdout
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"plan.html", "plan.csv"}
+    old = CliRunner().invoke(cli.app, [*words[1:], "--standard-error", "0.01"])
+    assert old.exit_code == 0 and "write 'tribolab lab plan'" in old.stderr
+    assert "--standard-error will be removed in the next release" in old.stderr
     done = CliRunner().invoke(cli.app, words)
-    assert done.exit_code == 2 and "--standard-error or --half-interval" in done.stderr
+    assert done.exit_code == 2 and "--half-interval" in done.stderr

@@ -230,7 +230,7 @@ def test_the_commands_exit_code_is_the_level_asked_for(checked):
     for status, options, code in (
         ("pass", ["--fail-on", "suspect"], 0),
         ("suspect", [], 0),
-        ("suspect", ["--fail-on", "suspect", "--all"], 1),
+        ("suspect", ["--fail-on", "suspect", "--verbose"], 1),
         ("fail", ["--fail-on", "fail"], 1),
         ("fail", ["--fail-on", "never"], 0),
     ):
@@ -239,7 +239,7 @@ def test_the_commands_exit_code_is_the_level_asked_for(checked):
         if status == "suspect":
             assert "spikes" in done.stdout and "Look for switching devices" in done.stdout
             assert "1 objected" in done.stdout
-            assert ("saturation" in done.stdout) == ("--all" in options)
+            assert ("saturation" in done.stdout) == ("--verbose" in options)
 
 
 def test_the_command_explains_wrong_use(faulty):

@@ -171,7 +171,7 @@ def test_labels_come_from_the_campaign_file_as_it_is_now(original, tmp_path):
     table = labelled_segments(file)
     assert set(table.mount) == {"01", "02"} and set(table.batch) == {"7"}
     done = CliRunner().invoke(
-        cli.app, ["repeatability", str(file), "--by", "mount", "-o", str(tmp_path / "out")]
+        cli.app, ["lab", "repeatability", str(file), "--by", "mount", "-o", str(tmp_path / "out")]
     )
     assert done.exit_code == 0 and "between levels of mount" in done.stdout, done.stderr
 
@@ -179,7 +179,7 @@ def test_labels_come_from_the_campaign_file_as_it_is_now(original, tmp_path):
 def test_the_command_writes_a_page_and_its_tables(tmp_path, monkeypatch):
     table = measured(np.random.default_rng(7))
     monkeypatch.setattr("tribolab.across.repeatability.labelled_segments", lambda place: table)
-    done = CliRunner().invoke(cli.app, ["repeatability", "x", "-o", str(tmp_path / "out")])
+    done = CliRunner().invoke(cli.app, ["lab", "repeatability", "x", "-o", str(tmp_path / "out")])
     assert done.exit_code == 0, done.stderr
     assert "between levels of mount" in done.stdout
     page = (tmp_path / "out/repeatability.html").read_text("utf-8")

@@ -149,7 +149,7 @@ def test_a_drafted_description_is_named_where_the_raw_file_is(tmp_path, monkeypa
     text = (tmp_path / "odd.csv").read_text()
     (tmp_path / "odd.csv").write_text(text.replace("Friction force [N]", "K17"))
     refused = CliRunner().invoke(cli.app, ["run", "odd.csv"])
-    assert refused.exit_code == 3 and "tribolab dialect odd.csv" in refused.output
+    assert refused.exit_code == 3 and "tribolab info odd.csv --write" in refused.output
     assert "no segment" not in refused.output  # nothing was read in which one could be
     asked = CliRunner().invoke(cli.app, ["dialect", "odd.csv", "--ask"], input="\n3\nN\n\n\n")
     assert "next:  tribolab run odd.csv --instrument odd.toml" in asked.output.replace(
@@ -175,7 +175,7 @@ def test_a_file_that_cannot_be_read_leaves_nothing_that_hinders_the_next(tmp_pat
     refused = CliRunner().invoke(cli.app, ["run", "odd.txt"])
     assert refused.exit_code == 3 and "is written" not in refused.output
     assert "it is the height in um" in refused.output
-    assert "tribolab dialect odd.txt" in refused.output and "[[surface]]" not in refused.output
+    assert "tribolab info odd.txt --write" in refused.output and "[[surface]]" not in refused.output
     assert sorted(path.name for path in tmp_path.iterdir()) == ["odd.txt", "raw"]
     done = CliRunner().invoke(cli.app, ["run", "raw/disc.csv", "--figures", "none"])
     assert done.exit_code == 0 and "campaign.toml is written" in done.output

@@ -50,7 +50,7 @@ def test_a_header_that_says_all_is_enough(tmp_path, kind):
     np.testing.assert_allclose(scan.height[0], 1e-6 * Z, rtol=0, atol=1e-15)
     assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
     assert scan.attrs["instrument"] == "drafted from the file"
-    assert scan.attrs["to_keep_it"] == "tribolab dialect line.txt"
+    assert scan.attrs["to_keep_it"] == "tribolab info line.txt --write my.toml"
     target = save_draft(draft_dialect(path), tmp_path / "own.toml")  # what is kept reads the same
     kept = read_scans(path, target)
     np.testing.assert_array_equal(kept.height, scan.height)
@@ -59,7 +59,7 @@ def test_a_header_that_says_all_is_enough(tmp_path, kind):
 
 def test_what_would_be_guessed_is_told_instead(tmp_path):
     path = written(tmp_path, f"Sampling interval = 0.25 um\nPoints = 200\n{COLUMN}\n")
-    with pytest.raises(ReadError, match=r"column 1.*it is the height in um.*or: nm, mm, m"):
+    with pytest.raises(ReadError, match=r"column 1.*it is the height in um.*or nm, mm, m"):
         read_scans(path)
     path = written(tmp_path, f"Evaluation length = 4 mm\nZ [um]\n{COLUMN}\n")
     with pytest.raises(ReadError, match="the heights lie evenly over 'Evaluation length = 4 mm'"):
@@ -391,7 +391,7 @@ def test_units_across_and_up_may_stand_above_the_table(tmp_path):
 @pytest.mark.parametrize("said", ["# lateral: nm", "# x unit: nm", "# cut-off unit: mm", "# id: m"])
 def test_a_unit_of_something_else_is_not_that_of_the_heights(tmp_path, said):
     path = written(tmp_path, f"# spacing: 0.25 um\n{said}\n{BARE}\n")
-    with pytest.raises(ReadError, match=r"it is the height in nm.*or: um, mm, m"):
+    with pytest.raises(ReadError, match=r"it is the height in nm.*or um, mm, m"):
         read_scans(path)
 
 
@@ -516,7 +516,7 @@ def test_a_ruler_below_heights_that_go_on_from_line_to_line_is_no_height(tmp_pat
     head = "Punktabstand     : 0,0008 mm\nEinheit Höhe     : µm\n-----------------\nProfilpunkte\n"
     text = head + "\n".join(lines) + "\n-----------------\nEnde\n"
     (tmp_path / "a.txt").write_text(text, "cp1252")
-    with pytest.raises(TribolabError, match="tribolab dialect"):  # no map of 49 x 8 and a rest
+    with pytest.raises(TribolabError, match="--write my.toml"):  # no map of 49 x 8 and a rest
         read_scans(tmp_path / "a.txt")
     (tmp_path / "a.txt").write_text(f"Anzahl Punkte    : 397\n{text}", "cp1252")
     scan = read_scans(tmp_path / "a.txt")

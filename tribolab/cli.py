@@ -7,9 +7,10 @@ from typing import Annotated
 import typer
 
 from tribolab.app.commands.across import compare, history, plan, repeatability
-from tribolab.app.commands.campaign import demo, reproduce, run, simulate
+from tribolab.app.commands.campaign import demo, figures, reproduce, run, simulate
 from tribolab.app.commands.files import check, dialect, info
 from tribolab.app.commands.packing import pack, verify
+from tribolab.app.reported import renamed
 from tribolab.app.streams import prepared, say
 
 app = typer.Typer(
@@ -47,12 +48,22 @@ def _options(
     """Take the options that stand before a command."""
 
 
-for _command in (
-    *(demo, reproduce, run, simulate),
-    *(check, info, dialect),
-    *(compare, repeatability, history, plan, pack, verify),
-):
-    app.command()(_command)
+lab = typer.Typer(
+    no_args_is_help=True,
+    help="How well coefficients repeat, how instruments change over months, how much to measure.",
+)
+_LAB = (repeatability, history, plan)
+_DAILY = (demo, run, check, info, compare, figures, pack, verify)
+for _in_lab in _LAB:
+    lab.command()(_in_lab)
+    _name = _in_lab.__name__
+    app.command(hidden=True)(renamed(_in_lab, _name, f"lab {_name}"))
+for _daily in _DAILY:
+    app.command()(_daily)
+app.add_typer(lab, name="lab")
+app.command(rich_help_panel="The reference paper and practice data")(reproduce)
+app.command(rich_help_panel="The reference paper and practice data")(simulate)
+app.command(hidden=True)(renamed(dialect, "dialect", "info FILE --write NAME.toml"))
 
 
 def main() -> None:

@@ -171,8 +171,8 @@ def page(rig: list[Line], others: list[Line], seeds: range) -> str:
 Made by `tests/benchmarks/file_kinds.py --write docs/file_kinds.md`; do not edit.
 
 *At once*: `tl.read(file)` and the friction coefficient, without a word. *After a draft*: what
-`tribolab dialect FILE` asks has been answered. *With a description*: a dialect was written by hand,
-because the file does not say what its columns are or how they are scaled.
+`tribolab info --write` asks has been answered. *With a description*: a dialect was written by
+hand, because the file does not say what its columns are or how they are scaled.
 
 ## Simulated files, whose truth is known
 

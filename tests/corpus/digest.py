@@ -33,6 +33,7 @@ _ASIDE = {
     "Conventions",
     "drafted_layout",
     "history",
+    "instrument_note",
     "source",
     "source_sha256",
     "to_keep_it",

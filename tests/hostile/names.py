@@ -99,7 +99,7 @@ for _name, _rest in (("| head -1", "| head -1"), ("> /dev/full", "> /dev/full"),
     def _(folder: Path, rest: str) -> Command:
         for n in range(5):
             (folder / f"a{n}.csv").write_text(FORCE)
-        return _shell([*TRIBOLAB, "check", "--all", *(f"a{n}.csv" for n in range(5))], rest)
+        return _shell([*TRIBOLAB, "check", "--verbose", *(f"a{n}.csv" for n in range(5))], rest)
 
 
 for _command in ("info", "check", "dialect", "run"):

@@ -25,7 +25,7 @@ for _command in ("info", "check"):
     @case(
         f"words 12 and 13: {_command} of an unknown file",
         _command,
-        says=r"tribolab dialect odd\.txt",
+        says=r"tribolab info odd\.txt --write",
         never=f"{PYTHON}|linear_slider",
     )
     def _(folder, command: str) -> Command:

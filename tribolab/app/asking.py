@@ -1,4 +1,4 @@
-"""What `tribolab dialect` asks: which column is what, and what no column holds."""
+"""What `tribolab info FILE --write` asks: which column is what, and what no column holds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `tribolab dialect` does with a draft that is written: it is tried on the files."""
+"""Try a dialect that `tribolab info FILE --write` has written on its files."""
 
 from __future__ import annotations
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
-from typing import Annotated, NoReturn
+import functools
+from collections.abc import Callable, Iterator
+from typing import Annotated, Any, NoReturn, TypeVar
 
 import typer
 
@@ -31,6 +32,42 @@ Jobs = Annotated[
         "--jobs", "-j", min=1, help="Number of processes.", show_default="one per processor"
     ),
 ]
+_Given = TypeVar("_Given")
+
+
+def leaving(name: str, instead: str) -> Any:
+    """Return an option that --help no longer shows: it works for one more release, and says so.
+
+    Parameters
+    ----------
+    name
+        The option; a switch by both its names: ``--repeats/--no-repeats``.
+    instead
+        What to write instead.
+    """
+
+    def warned(context: typer.Context, option: typer.CallbackParam, given: _Given) -> _Given:
+        source = context.get_parameter_source(option.name or "")
+        if source is not None and source.name == "COMMANDLINE":
+            _warn_of(name, instead)
+        return given
+
+    return typer.Option(name, hidden=True, callback=warned)
+
+
+def renamed(command: Callable[..., None], old: str, new: str) -> Callable[..., None]:
+    """Return a command under its old name, which says the new one."""
+
+    @functools.wraps(command)
+    def under_old_name(**given: Any) -> None:
+        _warn_of(f"'tribolab {old}'", f"write 'tribolab {new}'")
+        command(**given)
+
+    return under_old_name
+
+
+def _warn_of(old: str, instead: str) -> None:
+    say(f"tribolab: {old} will be removed in the next release: {instead}", to_stderr=True)
 
 
 @contextlib.contextmanager

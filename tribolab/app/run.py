@@ -36,7 +36,7 @@ def run_campaign(
     scheduler: str | None = None,
     progress: Progress | None = None,
     finish: Callable[[Outcome], None] | None = None,
-    figures: str = "all",
+    figures: str = "curves",
     pdf: bool = False,
     verify: bool = False,
     outside: bool = False,
@@ -66,7 +66,7 @@ def run_campaign(
         what it writes to ``outcome.folder`` appears with them. Not called if nothing at all
         has changed since the last time: then the results that are there stay.
     figures
-        Which are drawn for publication: ``"all"``, ``"curves"`` (measured curves only), ``"none"``.
+        Which are drawn for publication: ``"curves"`` (measured curves), ``"all"`` or ``"none"``.
     pdf
         Whether figures are written as PDF, too.
     verify

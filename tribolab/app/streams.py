@@ -90,6 +90,7 @@ def prepared() -> Iterator[None]:
     codecs.register_error(_ERRORS, _plain)
     # what arithmetic does with damaged numbers is found by checks, and told in words
     warnings.filterwarnings("ignore", category=RuntimeWarning)
+    warnings.formatwarning = lambda message, *_, **__: f"tribolab: {message}\n"
     pipes = {}
     for name, number in (("stdout", 1), ("stderr", 2)):
         stream = getattr(sys, name)

@@ -132,6 +132,7 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
         lacks_friction,
         missing_words,
         questions,
+        understood_columns,
     )
 
     draft = draft_of(path)
@@ -141,10 +142,11 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
         raise error
     draft, _ = leave_out_doubtful(draft)
     asked = questions(draft)
+    known = understood_columns(draft)
     if unsaid := lacks_distance(draft):
-        raise GuessedError(path, asked, cures.SURFACE, unsaid) from error
+        raise GuessedError(path, asked, cures.SURFACE, unsaid, known) from error
     if asked or lacks_friction(draft):
-        raise GuessedError(path, asked, lacks=missing_words(draft)) from error
+        raise GuessedError(path, asked, cures.RUN, missing_words(draft), known) from error
     if draft.kind == "scan" and peek(path).format != "text":
         raise error
     if draft.kind == "scan":

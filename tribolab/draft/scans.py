@@ -14,7 +14,12 @@ import xarray as xr
 
 from tribolab.aliases import PathLike
 from tribolab.draft.dialect.draft import holds_counts, holds_heights
-from tribolab.draft.dialect.questions import GuessedError, how_to_keep, questions
+from tribolab.draft.dialect.questions import (
+    GuessedError,
+    how_to_keep,
+    questions,
+    understood_columns,
+)
 from tribolab.draft.on_the_fly import DRAFTED, draft_of, lacks_distance
 from tribolab.errors import ReadError
 from tribolab.io.dialects.find import Dialect, Instrument
@@ -192,5 +197,6 @@ def _drafted(file: Path, error: ReadError) -> Dialect | None:
     if asked and not draft.named and not (understood is not None and understood.pitched):
         return None
     if asked or lacks:
-        raise GuessedError(file, asked, cures.SURFACE, lacks) from error
+        known = understood_columns(draft)
+        raise GuessedError(file, asked, cures.SURFACE, lacks, known) from error
     return draft.dialect

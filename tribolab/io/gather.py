@@ -37,6 +37,8 @@ from tribolab.untyped import Json
 
 LogDialects = list[tuple[Path, Dialect]]
 
+_WITHOUT_A_FILE = "described without a file of it: compare the columns with what you know"
+
 
 def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     """Make the signals of one run of the files of one instrument.
@@ -226,6 +228,7 @@ def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> Jso
         "history": history_line(f"read as {dialect.name}"),
         "Conventions": CONVENTIONS,
         "instrument": dialect.name,
+        **({} if dialect.from_file else {"instrument_note": _WITHOUT_A_FILE}),
         "columns_used": labels,
         "columns_not_used": "; ".join(unused),
         "time_origin_s": origin,

@@ -35,7 +35,7 @@ def name_instrument(table: str = "", say: str = "say which with") -> Cure:
 
 def unknown_instrument(path: Path, table: str) -> Cure:
     """Cure for a file of an instrument that is not known, and where to name what is drafted."""
-    command = "'tribolab dialect {}' drafts a description of it"
+    command = "'tribolab info {} --write my.toml' drafts a description of it"
     name = name_instrument(table, say="name it with")
     bare = shlex.quote(path.name)
     return Cure(

@@ -20,7 +20,7 @@ class Fault:
     Attributes
     ----------
     name
-        As in ``tribolab simulate --fault NAME``.
+        As in ``tribolab.rig.simulate_campaign(folder, faults=[NAME])``.
     what
         What it does, in a sentence.
     severity

@@ -13,7 +13,7 @@ from tribolab.rig.faults import FAULTS, Fault
 from tribolab.rig.files import scan_file
 from tribolab.rig.scan_faults import SCAN_FAULTS, ScanFault, exported
 
-# As in ``tribolab simulate --fault NAME``: a name that runs have too means the fault of runs.
+# Of `simulate_campaign(faults=...)`: a name that runs have too means the fault of runs.
 SCAN_FAULTS_BY_NAME: dict[str, ScanFault] = {
     f"scan_{name}" if name in FAULTS else name: fault for name, fault in SCAN_FAULTS.items()
 }

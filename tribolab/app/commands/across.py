@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from tribolab.app.reported import Debug, reported
+from tribolab.app.reported import Debug, leaving, reported
 from tribolab.app.streams import say
 from tribolab.errors import ConfigError
 
@@ -85,7 +85,7 @@ def repeatability(
     ] = "mount",
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder of the page and its tables.")
-    ] = Path("repeatability"),
+    ] = Path("lab"),
     debug: Debug = False,
 ) -> None:
     """Tell how well a coefficient repeats: within a mount, between mounts, days, operators.
@@ -93,7 +93,7 @@ def repeatability(
     Components of variance at each speed and pooled, with the limits r and R of ISO 5725. The
     campaign file says in its runs who measured them, when, and on which mount.
 
-        tribolab repeatability campaign.toml --by mount,day,operator
+        tribolab lab repeatability campaign.toml --by mount,day,operator
     """
     with reported(debug, audience="campaign"):
         # late: starting stays quick
@@ -114,24 +114,14 @@ def history(
         typer.Argument(help="Results folders, or folders below which they lie, in any order."),
     ],
     rule: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Rule by which points signal, may be given again: '3 sigma', EWMA, CUSUM, "
-            "'Western Electric'.",
-            show_default="3 sigma and EWMA",
-        ),
+        list[str] | None, leaving("--rule", "choose rules with tl.history(..., rules=...)")
     ] = None,
     baseline: Annotated[
-        int | None,
-        typer.Option(
-            min=5,
-            help="How many of the first campaigns are what is usual.",
-            show_default="20, or half of them",
-        ),
+        int | None, leaving("--baseline", "choose it with tl.history(..., baseline=...)")
     ] = None,
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder of the page and its table.")
-    ] = Path("history"),
+    ] = Path("lab"),
     debug: Debug = False,
 ) -> None:
     """Follow instruments over months: control charts of zeros, noise, tilt, set points, reference.
@@ -139,9 +129,7 @@ def history(
     Exits with 1 where a point signals. `[reference]` in the campaign files names runs on a
     reference sample, `[calibration]` when the instrument was calibrated.
 
-        tribolab history campaigns/*/results
-
-        tribolab history archive --rule EWMA --baseline 30
+        tribolab lab history campaigns/*/results
     """
     with reported(debug):
         # late: starting stays quick
@@ -167,12 +155,13 @@ def history(
 def plan(
     results: Annotated[Path, typer.Argument(help="Results folder of a pilot.")],
     standard_error: Annotated[
-        float | None,
-        typer.Option(min=0, help="Of the mean coefficient, e.g. 0.001.", show_default=False),
+        float | None, leaving("--standard-error", "state --half-interval, U95 of the mean")
     ] = None,
     half_interval: Annotated[
         float | None,
-        typer.Option(min=0, help="Instead: half the 95 % interval.", show_default=False),
+        typer.Option(
+            min=0, help="U95 of the mean coefficient to reach, e.g. 0.005.", show_default=False
+        ),
     ] = None,
     assurance: Annotated[
         float,
@@ -181,7 +170,7 @@ def plan(
     setup_time: Annotated[str, typer.Option(help="What each run costs beside sliding.")] = "10 min",
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder of the page and its table.")
-    ] = Path("plan"),
+    ] = Path("lab"),
     debug: Debug = False,
 ) -> None:
     """Tell how long to slide and how often to repeat, from what a pilot scatters.
@@ -189,9 +178,7 @@ def plan(
     Runs at each speed that reach a precision as likely as not, and with assurance, at the pilot's
     sliding times and at those that cost least in all.
 
-        tribolab plan results --standard-error 0.001
-
-        tribolab plan results --half-interval 0.005 --assurance 0.95 --setup-time "20 min"
+        tribolab lab plan results --half-interval 0.005 --assurance 0.95 --setup-time "20 min"
     """
     with reported(debug):
         # late: starting stays quick
@@ -200,7 +187,7 @@ def plan(
         from tribolab.units import to_si
 
         if (standard_error is None) == (half_interval is None):
-            raise ConfigError("say one precision: --standard-error or --half-interval")
+            raise ConfigError("state the precision to reach, e.g. --half-interval 0.005")
         made = measuring_plan(
             results,
             standard_error=standard_error,

@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tribolab.app.progress import progress_bars
-from tribolab.app.reported import UNREADABLE, Debug, InstrumentOption, Jobs, Quiet, reported
+from tribolab.app.reported import (
+    UNREADABLE,
+    Debug,
+    InstrumentOption,
+    Jobs,
+    Quiet,
+    leaving,
+    reported,
+)
 from tribolab.app.streams import say
 
 if TYPE_CHECKING:
@@ -110,8 +118,10 @@ def run(
     ] = False,
     figures: Annotated[
         str,
-        typer.Option(help="Figures for publication: all, curves (measured curves only) or none."),
-    ] = "all",
+        typer.Option(
+            help="Figures for publication: curves, none, or all, as `tribolab figures` draws."
+        ),
+    ] = "curves",
     pdf: Annotated[bool, typer.Option("--pdf", help="Write figures as PDF, too.")] = False,
     i_know: Annotated[
         bool,
@@ -197,6 +207,30 @@ def run(
     raise typer.Exit(code)
 
 
+def figures(
+    campaign: Annotated[
+        Path, typer.Argument(help="The campaign file (TOML), or the folder with campaign.toml.")
+    ],
+    pdf: Annotated[bool, typer.Option("--pdf", help="Write them as PDF, too.")] = False,
+    jobs: Jobs = None,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Draw all figures for publication: surfaces, models and sliding, too.
+
+    `tribolab run` draws the measured curves. What it has computed is not computed again.
+
+        tribolab figures campaign.toml --pdf
+    """
+    with reported(debug, audience="campaign"):
+        # late: starting stays quick
+        from tribolab.app.run import run_campaign
+
+        with progress_bars(quiet) as progress:
+            outcome = run_campaign(campaign, jobs=jobs, progress=progress, figures="all", pdf=pdf)
+        say(f"figures: {outcome.folder / 'figures'}")
+
+
 def simulate(
     folder: Annotated[Path, typer.Argument(help="Where to; must be new or empty.")],
     seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same files.")] = 0,
@@ -206,12 +240,7 @@ def simulate(
     ] = False,
     fault: Annotated[
         list[str] | None,
-        typer.Option(
-            help="Put this fault into one run, or into the scans of one surface (dropouts and "
-            "saturation: of a run, with scan_ before them of scans); may be given again. A wrong "
-            "name lists them.",
-            show_default=False,
-        ),
+        leaving("--fault", "use tl.rig.simulate_campaign(folder, faults=[...])"),
     ] = None,
     jobs: Jobs = None,
     quiet: Quiet = False,
@@ -224,8 +253,6 @@ def simulate(
         tribolab simulate practice --small
 
         tribolab run practice/campaign.toml
-
-        tribolab simulate faulty --small --fault spikes --fault sign
     """
     with reported(debug):
         # late: starting stays quick

@@ -12,7 +12,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tribolab.app.progress import progress_bars
-from tribolab.app.reported import UNREADABLE, Debug, InstrumentOption, Jobs, Quiet, fail, reported
+from tribolab.app.reported import (
+    UNREADABLE,
+    Debug,
+    InstrumentOption,
+    Jobs,
+    Quiet,
+    fail,
+    leaving,
+    reported,
+)
 from tribolab.app.streams import say
 
 if TYPE_CHECKING:
@@ -30,12 +39,15 @@ def check(
         str, typer.Option(help="Exit with 1 from which status on: suspect, fail or never.")
     ] = "fail",
     instrument: InstrumentOption = None,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="Show notes, and what passed, too.")
+    ] = False,
     repeats: Annotated[
         bool | None,
-        typer.Option(help="Compare scans as repeats.", show_default="by names but the last number"),
+        leaving("--repeats/--no-repeats", "names but for the last number say what is repeated"),
     ] = None,
-    notes: Annotated[bool, typer.Option("--notes", help="Show notes on sound files.")] = False,
-    everything: Annotated[bool, typer.Option("--all", help="Show what passed, too.")] = False,
+    notes: Annotated[bool, leaving("--notes", "write --verbose")] = False,
+    everything: Annotated[bool, leaving("--all", "write --verbose")] = False,
     jobs: Jobs = None,
     quiet: Quiet = False,
     debug: Debug = False,
@@ -66,24 +78,51 @@ def check(
         if as_json:
             say(checks.as_json(checked, fail_on))
         else:
-            checks.show(checked, notes=notes, everything=everything)
+            checks.show(checked, notes=notes, everything=verbose or everything)
     raise typer.Exit(code)
 
 
 def info(
     files: Annotated[list[Path], typer.Argument(help="Raw files.")],
     instrument: InstrumentOption = None,
+    write: Annotated[
+        Path | None,
+        typer.Option(
+            help="Write a description (TOML) of the unknown instrument that wrote the files.",
+            show_default=False,
+        ),
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace the .toml file if there is one.")
+    ] = False,
+    ask: Annotated[
+        bool | None,
+        typer.Option(
+            "--ask/--no-ask",
+            help="With --write: ask which column is what; Enter takes the guess.",
+            show_default="in a terminal",
+        ),
+    ] = None,
     jobs: Jobs = None,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Show how raw files are understood, before anything is computed.
 
-    tribolab info raw/friction/*.csv
+    With --write it asks what the files do not say, describes their instrument in a TOML file, tries
+    that on the files, and says which of its lines are to be filled in. Columns that are missing in
+    some of the files are optional. The raw files are only read.
 
-    tribolab info odd.txt --instrument my_tribometer.toml
+        tribolab info raw/friction/*.csv
+
+        tribolab info odd.txt --write my_tribometer.toml
+
+        tribolab info odd.txt --instrument my_tribometer.toml
     """
     with reported(debug):
+        if write is not None:
+            _describe(files, write, write.stem, force=force, ask=ask)
+            return
         # late: starting stays quick
         from tribolab.app.quick import importing
 
@@ -109,81 +148,54 @@ def info(
 
 
 def dialect(
-    files: Annotated[
-        list[Path], typer.Argument(help="Raw text files of one instrument that is not known yet.")
-    ],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output",
-            "-o",
-            help="The .toml file to write.",
-            show_default="the dialect's name, in this folder",
-        ),
-    ] = None,
-    name: Annotated[
-        str | None,
-        typer.Option(
-            help="Name of the dialect: small letters, digits, _.",
-            show_default="from the file's name",
-        ),
-    ] = None,
-    force: Annotated[
-        bool, typer.Option("--force", help="Replace the .toml file if there is one.")
-    ] = False,
-    ask: Annotated[
-        bool | None,
-        typer.Option(
-            "--ask/--no-ask",
-            help="Ask which column is what; Enter takes the guess.",
-            show_default="in a terminal",
-        ),
-    ] = None,
+    files: Annotated[list[Path], typer.Argument(help="Raw files of one unknown instrument.")],
+    output: Annotated[Path | None, typer.Option("--output", "-o")] = None,
+    name: Annotated[str | None, typer.Option()] = None,
+    force: Annotated[bool, typer.Option("--force")] = False,
+    ask: Annotated[bool | None, typer.Option("--ask/--no-ask")] = None,
     debug: Debug = False,
 ) -> None:
-    """Draft the description of an unknown instrument's files from one or several of them.
-
-    Shows the file as it was understood and what was guessed, asks about it in a terminal, writes
-    the description (TOML), tries it on the files, and says which of its lines want to be filled
-    in. What is not in all of the files is optional. The raw files are only read.
-
-        tribolab dialect odd.txt
-
-        tribolab dialect raw/*.csv --output instruments/my_tribometer.toml
-    """
+    """Describe an unknown instrument: as `tribolab info FILE --write NAME.toml`."""
     with reported(debug):
-        # late: starting stays quick
-        from tribolab.app.asking import ask_about
-        from tribolab.app.dialect import try_on
-        from tribolab.app.terminal import console
-        from tribolab.draft.dialect.draft import (
-            as_profile,
-            check_target,
-            holds_heights,
-            save_draft,
-        )
-        from tribolab.draft.dialect.examples import draft_of_examples
-        from tribolab.draft.dialect.show import print_draft, print_next, print_signals
+        _describe(files, output, name, force=force, ask=ask)
 
-        draft = draft_of_examples(files, name)
-        target = output or Path(f"{draft.name}.toml")
-        asking = ask or (ask is None and sys.stdin.isatty() and sys.stdout.isatty())
-        print_draft(draft, console(), rows=not asking)
-        if draft.toml:
-            check_target(target, force=force)
-        if asking:
-            before = draft
-            draft = ask_about(draft, _prompt, say)
-            print_signals(draft, console(), blocks=draft.toml != before.toml)
-        if holds_heights(draft) and not draft.toml:
-            check_target(target, force=force)
-            draft = as_profile(draft)
-        if not draft.toml:
-            fail(f"{files[0]}: no dialect is written: {draft.answer}", UNREADABLE, debug=False)
-        written = save_draft(draft, target, force=force)
-        for line in try_on(files, written, draft.kind):
-            say(line)
-        print_next(draft, written, console())
+
+def _describe(
+    files: Sequence[Path], target: Path | None, name: str | None, *, force: bool, ask: bool | None
+) -> None:
+    """Describe the unknown instrument of some files, asking in a terminal, and try that on them."""
+    # late: starting stays quick
+    from tribolab.app.asking import ask_about
+    from tribolab.app.dialect import try_on
+    from tribolab.app.terminal import console
+    from tribolab.draft.dialect.draft import (
+        as_profile,
+        check_target,
+        holds_heights,
+        save_draft,
+    )
+    from tribolab.draft.dialect.examples import draft_of_examples
+    from tribolab.draft.dialect.show import print_draft, print_next, print_signals
+
+    draft = draft_of_examples(files, name)
+    target = target or Path(f"{draft.name}.toml")
+    asking = ask or (ask is None and sys.stdin.isatty() and sys.stdout.isatty())
+    print_draft(draft, console(), rows=not asking)
+    if draft.dialect is not None:
+        check_target(target, force=force)
+    if asking:
+        before = draft
+        draft = ask_about(draft, _prompt, say)
+        print_signals(draft, console(), blocks=draft.dialect != before.dialect)
+    if holds_heights(draft) and draft.dialect is None:
+        check_target(target, force=force)
+        draft = as_profile(draft)
+    if draft.dialect is None:
+        fail(f"{files[0]}: no dialect is written: {draft.answer}", UNREADABLE, debug=False)
+    written = save_draft(draft, target, force=force)
+    for line in try_on(files, written, draft.kind):
+        say(line)
+    print_next(draft, written, console())
 
 
 def _prompt(question: str, default: str) -> str:

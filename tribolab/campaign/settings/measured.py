@@ -140,7 +140,7 @@ class RunEntry(Table):
     rectified: bool | None = None
     """Whether friction was recorded without its sign; left out, the reversals tell."""
     operator: SomeText | None = None
-    """Who measured these runs: for `tribolab repeatability`, as are the next five."""
+    """Who measured these runs: for `tribolab lab repeatability`, as are the next five."""
     mount: SomeText | None = None
     """Which mounting of the specimen they belong to."""
     day: SomeText | None = None
@@ -159,7 +159,7 @@ class RunEntry(Table):
 
 
 class Reference(Table):
-    """Runs on a reference sample, by which `tribolab history` tells whether the rig changed."""
+    """Runs on a reference sample, by which `tribolab lab history` tells whether the rig changed."""
 
     files: Patterns | None = None
     """Their raw files, as in [[run]]."""
@@ -169,7 +169,7 @@ class Reference(Table):
 
 
 class CalibrationTable(Table):
-    """The last calibration of the instrument, for `tribolab history` and `tribolab pack`."""
+    """The last calibration of the instrument, for `tribolab lab history` and `tribolab pack`."""
 
     date: dt.date | None = None
     """When it was, e.g. 2026-03-02."""

@@ -84,7 +84,9 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
         known=_known(file),
     )
     if draft.dialect is None and holds_counts(draft):
-        return replace(draft, answer=f"{COUNTED} ('tribolab dialect' asks for it in a terminal)")
+        return replace(
+            draft, answer=f"{COUNTED} ('tribolab info FILE --write my.toml' asks for it)"
+        )
     if draft.dialect is None and holds_heights(draft):
         return replace(draft, answer=unsaid_distance(draft))
     return draft

@@ -21,6 +21,8 @@ from tribolab.draft.model import NO_NUMBERS, DraftColumn, Understood
 from tribolab.draft.stated.settings import lines_without_unit
 from tribolab.draft.stated.stated_zero import STILL
 from tribolab.errors import ReadError, shown
+from tribolab.io.dialects.cells import split_name
+from tribolab.quantities import quantity
 from tribolab.reading import cures
 from tribolab.reading.interpret.missing import MissingInput
 from tribolab.reading.interpret.phrases import phrases
@@ -36,7 +38,10 @@ HEIGHTS = (
 _OF_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 _WANTED = {*_OF_FRICTION, "normal_force", "normal_stress", "sliding_velocity", "position", "time"}
 _LIKE_NUMBER = re.compile(r"[<>~]?\s*[+-]?\d[\d.,' ]*(?:[eE][+-]?\d+)?\s*[A-Za-z%µ°/]{0,6}")
-_TOLD = 12  # questions of one file that are told
+_TOLD = 12  # questions of one file that are told in a line
+_LINES = 3  # of five, that say what is unclear or missing
+_LISTED = 6  # columns that are listed as understood
+_UNKNOWN = "no known instrument writes such a file, and it does not say all itself"
 _MOST_BESIDE = 50  # descriptions in the file's folder that are looked at
 _RADII = ("another length",)
 _RATE = ("a sample rate, e.g. 100 Hz", "a column of time")
@@ -241,9 +246,9 @@ def unsaid_distance(draft: Drafted) -> str:
 
 
 class GuessedError(ReadError):
-    """A file could be read only by guessing; all guesses stand in the message.
+    """A file could be read only by guessing: at most five lines say what is open.
 
-    In a campaign they stand in one line, else in a table.
+    In a campaign everything stands in one line.
     """
 
     def __init__(
@@ -252,27 +257,54 @@ class GuessedError(ReadError):
         asked: Sequence[Question],
         table: str = cures.RUN,
         lacks: Sequence[str] = (),
+        understood: Sequence[str] = (),
     ) -> None:
-        what = "no known instrument writes such a file, and it does not say all itself"
-        super().__init__(what, where=path, cure=cures.unknown_instrument(path, table))
-        self.args = (path, tuple(asked), table, tuple(lacks))
+        super().__init__(_UNKNOWN, where=path, cure=cures.unknown_instrument(path, table))
+        self.args = (path, tuple(asked), table, tuple(lacks), tuple(understood))
         self.asked = tuple(asked)
         self.lacks = tuple(lacks)
+        self.understood = tuple(understood)
 
     def told(self, audience: str) -> str:
         """Return the message for an audience."""
-        listed = [question.line for question in self.asked[:_TOLD]]
-        if len(self.asked) > _TOLD:
-            listed.append(f"and {len(self.asked) - _TOLD} more")
         cure = self.cure if isinstance(self.cure, str) else self.cure.told(audience)
+        unclear = [f"Unclear: {question.line}" for question in self.asked]
+        missing = [f"Missing: {lack}" for lack in self.lacks]
+        told = f"Understood: {', '.join(self.understood) or 'nothing yet'}"
         if audience == "campaign":
-            lacks = f"; missing: {'; '.join(self.lacks)}" if self.lacks else ""
-            guessed = f"; guessed: {'; '.join(listed)}" if listed else ""
-            return f"{self.where}: {self.what}{guessed}{lacks}; {cure}"
-        rows = ["Guesses:", *_aligned(self.asked[:_TOLD]), *listed[_TOLD:]] if listed else []
-        rows += [f"Missing: {lack}" for lack in self.lacks]
+            lines = [question.line for question in self.asked[:_TOLD]]
+            lines += _and_more(len(self.asked) - _TOLD)
+            said = [f"unclear: {'; '.join(lines)}"] if lines else []
+            said += [f"missing: {'; '.join(self.lacks)}"] if self.lacks else []
+            return "; ".join([f"{self.where}: {self.what}", *said, cure])
         kept = [f"--instrument {name} is a description of it" for name in _drafts_of(self.where)]
-        return "\n".join([f"{self.where}: {self.what}. {rows[0]}", *rows[1:], cure, *kept])
+        first = unclear[: max(_LINES - len(missing), _LINES - 1)]
+        lines = [*first, *missing[: _LINES - len(first)]]
+        more = " ".join(_and_more(len(unclear) + len(missing) - len(lines)))
+        lines[-1:] = [f"{line} ({more})" if more else line for line in lines[-1:]]
+        return "\n".join([f"{self.where}: {self.what}. {told}", *lines, *(kept or [cure])])
+
+
+def _and_more(count: int) -> list[str]:
+    return [f"and {count} more"] if count > 0 else []
+
+
+def understood_columns(draft: Drafted) -> list[str]:
+    """Return the columns that are understood: quantity, name in the file, unit.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.draft.dialect.draft.draft_dialect`.
+    """
+    said = []
+    for column in draft.understood.columns if draft.understood else ():
+        if column.used and column.quantity and not column.guessed:
+            name = split_name(column.label)[0]
+            label = f"'{shown(name, 20)}'" if name else f"in column {column.place}"
+            unit = column.read_unit or quantity(column.quantity).unit
+            said.append(f"{column.quantity} {label}" + ("" if unit == "1" else f" ({unit})"))
+    return said[:_LISTED] + _and_more(len(said) - _LISTED)
 
 
 def _drafts_of(path: object) -> list[str]:
@@ -290,23 +322,13 @@ def _drafts_of(path: object) -> list[str]:
     return found[:1]
 
 
-def _aligned(asked: Sequence[Question]) -> list[str]:
-    """Return lines of a table: about what, the guess, what else it may be."""
-    first = max((len(question.about) for question in asked), default=0)
-    second = max((len(question.guess) for question in asked), default=0)
-    lines = []
-    for about, guess, options in asked:
-        others = f"  or: {', '.join(options)}" if options else ""
-        lines.append(f"  {about:<{first}}  {guess:<{second}}{others}".rstrip())
-    return lines
-
-
 def how_to_keep(path: Path | str) -> str:
     """Return the command that writes down what is drafted from a file, by its name or as given.
 
     >>> how_to_keep(Path("raw/odd one.csv"))
-    "tribolab dialect 'odd one.csv'"
+    "tribolab info 'odd one.csv' --write my.toml"
     >>> how_to_keep("raw/odd one.csv")
-    "tribolab dialect 'raw/odd one.csv'"
+    "tribolab info 'raw/odd one.csv' --write my.toml"
     """
-    return f"tribolab dialect {shlex.quote(path.name if isinstance(path, Path) else path)}"
+    file = shlex.quote(path.name if isinstance(path, Path) else path)
+    return f"tribolab info {file} --write my.toml"

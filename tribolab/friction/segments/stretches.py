@@ -56,7 +56,7 @@ def velocity_source(run: xr.Dataset) -> str:
         raise AnalysisError(
             f"{name_of(run)}: the radius of the track is missing: how fast it turns is recorded, "
             'and no sliding speed; say radius = "(a length)" under [speed] of a description, for '
-            "which 'tribolab dialect' asks in a terminal"
+            "which 'tribolab info FILE --write my.toml' asks in a terminal"
         )
     raise AnalysisError(
         f"{name_of(run)}: nothing tells the sliding speed; the run needs one of 'sliding_velocity',"

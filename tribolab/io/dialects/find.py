@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import functools
+import multiprocessing
 import tomllib
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +37,13 @@ __all__ = [
 
 Instrument = str | Path | Dialect  # a name, a TOML file, or what it says
 _SHOWN = 5  # mistakes of a dialect that are told at once
+_LEAVING = {  # keys by table: no instrument needs them, and the next release will not know them
+    "tables": ("steps",),
+    "text": ("arrangement", "wrapped"),
+    "derived": ("way",),
+    "header": ("only",),
+    "rows": ("left_out",),
+}
 
 
 class UnknownFileError(ReadError):
@@ -177,6 +186,10 @@ def every_dialect() -> list[Dialect]:
 def json_schema() -> Json:
     """Return the JSON Schema of a dialect file, for editors and other programs."""
     schema = Dialect.model_json_schema()
+    for table, keys in _LEAVING.items():
+        for key in keys:
+            del schema["$defs"][table.capitalize()]["properties"][key]
+    del schema["$defs"]["Tables"], schema["properties"]["tables"]
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 
@@ -196,13 +209,31 @@ def _parse(path: Path) -> Dialect:
     except (OSError, ValueError) as error:
         raise ConfigError(f"{path}: the dialect cannot be read: {brief(error)}") from error
     try:
-        return Dialect.model_validate(content)
+        dialect = Dialect.model_validate(content)
+        _warn_of_keys(path, content)
+        return dialect
     except ValidationError as error:
         said = [_explain(fault) for fault in error.errors()]
         more = [f"and {len(said) - _SHOWN} more"] if len(said) > _SHOWN else []
         raise ConfigError("; ".join(said[:_SHOWN] + more), where=path) from error
     except TribolabError as error:  # of a unit or number: it says of which key
         raise ConfigError(error, where=path) from error
+
+
+def _warn_of_keys(path: Path, content: Json) -> None:
+    """Warn of keys that the next release will not know; once, not in every worker."""
+    if multiprocessing.parent_process() is not None:
+        return
+    for table, keys in _LEAVING.items():
+        said = content.get(table, [])
+        for key in keys:
+            if any(key in one for one in (said if isinstance(said, list) else [said])):
+                warnings.warn(
+                    f"{path}: {table}.{key} will be removed from dialects in the next release; "
+                    "read such files without a dialect",
+                    FutureWarning,
+                    stacklevel=2,
+                )
 
 
 def _explain(problem: Any) -> str:

@@ -61,6 +61,11 @@ class Dialect(Strict):
         description="hdf5 is MATLAB 7.3, too; npz an archive of NumPy's arrays; files of all "
         "formats may be compressed (gz, zip)",
     )
+    from_file: bool = Field(
+        True,
+        description="false: written after a maker's description or a standard, without a file of "
+        "the instrument; runs say so",
+    )
     recognise: Recognise = Recognise()
     text: Text = Text()
     header: Header = Header()
