@@ -46,8 +46,8 @@ def dialect_toml(dialect: Dialect, remarks: Remarks | None = None) -> str:
     Examples
     --------
     >>> from tribolab.io.dialects.find import load_dialect
-    >>> print(dialect_toml(load_dialect("reciprocating_csv"))[:26])
-    name = "reciprocating_csv"
+    >>> print(dialect_toml(load_dialect("linear_slider"))[:22])
+    name = "linear_slider"
     """
     remarks = remarks or Remarks()
     content = dialect.model_dump(mode="json", by_alias=True, exclude_unset=True)
