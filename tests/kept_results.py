@@ -2,9 +2,10 @@
 
     python tests/kept_results.py tests/kept_results
 
-Writes ``VERSION.tar.xz`` with two results folders: two runs of which one has a decision, and one
-run with a scanned surface and models. The pages and the binary copies of the tables are left
-out, as they are large, and so are the raw files, which `raw_campaign` simulates again.
+Writes ``VERSION.tar.xz`` with three results folders: two repeats of one condition, two runs of
+which one has a decision, and one run with a scanned surface and models. The pages and the binary
+copies of the tables are left out, as they are large, and so are the raw files, which `raw_campaign`
+simulates again.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from tribolab.campaign.settings.review import REVIEW_FILE
 from tribolab.rig import Protocol, Rig, simulate_campaign
 from tribolab.version import __version__
 
-KINDS = ("decisions", "surfaces_and_models")
+KINDS = ("repeats", "decisions", "surfaces_and_models")
 REVIEWED = "sb-r_glycerol_31N_01"
 PAGE = "report.html"
 _POINTS = 1200  # of the profile, which is the largest part of the results
@@ -37,14 +38,16 @@ date = 2026-11-20
 def raw_campaign(folder: Path, kind: str) -> Path:
     """Simulate the raw files of a kept results folder; returns campaign.toml."""
     rate = 1.0 if kind == "surfaces_and_models" else 0.4  # Hz, at rest; gaps leave no model
+    repeats = 2 if kind == "repeats" else 1
     rig = Rig()
     protocol = replace(Protocol(speeds=(4.64e-4, 2.15e-3)), unloaded_rest=3.0, loading=2.0)
     rig = replace(rig, protocol=protocol, loggers=replace(rig.loggers, force_rate=rate))
-    file = simulate_campaign(folder, rig=rig, small=True, surfaces=("Sb-R",), n_repeats=1)
+    file = simulate_campaign(folder, rig=rig, small=True, surfaces=("Sb-R",), n_repeats=repeats)
     head, *runs = re.split(r"(?m)^(?=\[\[run\]\])", file.read_text("utf-8"))
+    if kind != "decisions":
+        runs = [run for run in runs if '"glycerol"' in run]
     text = head + "".join(runs)
     if kind == "surfaces_and_models":
-        text = head + "".join(run for run in runs if '"glycerol"' in run)
         text += '\n[model]\nuncertainty = "none"\n'
         [scan] = file.parent.glob("raw/profiles/*.csv")
         lines = scan.read_text("utf-8").replace("length: 25 mm", "length: 0.6 mm").splitlines()

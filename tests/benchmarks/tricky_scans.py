@@ -181,14 +181,9 @@ def objections(height: np.ndarray) -> dict[str, str]:
     return {r["check"]: r["message"] for r in rows if r["status"] in ("suspect", "fail", "error")}
 
 
-def main() -> None:
-    """Print both tables."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--sets", type=int, default=1)
-    parser.add_argument("--tell", action="store_true", help="print each miss and false alarm")
-    given = parser.parse_args()
-    sets = range(given.first, given.first + given.sets)
+def print_scans(sets: range, tell: bool = False) -> int:
+    """Print both tables; return how many faults no check objects to."""
+    missed = 0
     print(f"{'fault':<16}{'check':<13}{'named':>6}{'other':>6}{'missed':>7}{'of':>5}")
     for number, (name, (make, check)) in enumerate(FAULTS.items()):
         count: Counter[str] = Counter()
@@ -197,8 +192,9 @@ def main() -> None:
                 found = objections(make(np.random.default_rng([seed, number, nth])))
                 verdict = "named" if check in found else "other" if found else "missed"
                 count[verdict] += 1
-                if given.tell and verdict != "named":
+                if tell and verdict != "named":
                     print("   ", name, seed, nth, found)
+        missed += count["missed"]
         columns = f"{count['named']:>6}{count['other']:>6}{count['missed']:>7}"
         print(f"{name:<16}{check:<13}{columns}{count.total():>5}")
     print(f"\n{'sound surface':<16}{'pass':>6}{'of':>5}  objections")
@@ -212,9 +208,20 @@ def main() -> None:
                 found = objections(exported(make(rng), rng) if profile else make(rng))
                 scans, quiet = scans + 1, quiet + (not found)
                 objected.update(list(found))
-                if given.tell and found:
+                if tell and found:
                     print("   ", name, seed, nth, found)
         print(f"{name:<16}{quiet:>6}{scans:>5}  {dict(objected) or ''}")
+    return missed
+
+
+def main() -> None:
+    """Print both tables."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--sets", type=int, default=1)
+    parser.add_argument("--tell", action="store_true", help="print each miss and false alarm")
+    given = parser.parse_args()
+    print_scans(range(given.first, given.first + given.sets), given.tell)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from tricky import (  # noqa: F401 - the kinds register themselves
     kinds_clocks,
+    kinds_load,
     kinds_oscillation,
     kinds_reading,
     kinds_segments,
@@ -12,4 +13,6 @@ from tricky import (  # noqa: F401 - the kinds register themselves
 from tricky.trial import SOUND, TRICKY
 
 KINDS = TRICKY | SOUND
-__all__ = ["KINDS", "SOUND", "TRICKY"]
+_NEW = (kinds_load.__name__, kinds_small.__name__)
+NEW = [name for name, kind in TRICKY.items() if kind.make.__module__ in _NEW]
+__all__ = ["KINDS", "NEW", "SOUND", "TRICKY"]

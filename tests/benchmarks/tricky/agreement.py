@@ -32,7 +32,7 @@ def as_campaign(trials: Mapping[str, Trial], folder: Path) -> dict[str, Ran]:
     for name, trial in trials.items():
         place = folder / "raw" / name
         place.mkdir(parents=True)
-        filed = trial if not isinstance(trial.data, xr.Dataset) else _as_file(trial.data, name)
+        filed = trial if not isinstance(trial.data, xr.Dataset) else as_file(trial.data, name)
         for file, text in filed.data.items():
             (place / file).write_text(text, "utf-8")
         try:
@@ -56,7 +56,7 @@ def as_campaign(trials: Mapping[str, Trial], folder: Path) -> dict[str, Ran]:
     return ran
 
 
-def _as_file(run: xr.Dataset, name: str) -> Trial:
+def as_file(run: xr.Dataset, name: str) -> Trial:
     """Write a dataset as a table that loses no digit."""
     columns = [
         Column(str(name), str(name), run[name].attrs["units"], run[name].values, ".17g")

@@ -1,10 +1,11 @@
 """What a user gets for a trial, and whether it is right, unsure or wrong.
 
-A run is judged by its segments. With k independent estimates (a half loop is one) in a run, one of
-them lies beyond z standard errors by chance more often than a single one does. So that a run of
-any length is called wrong by chance as rarely as one number beyond three standard errors (0.27 %),
-the bound is z(k) = Phi^-1(1 - 0.00135/k): 3 for one, 3.6 for ten, 4.2 for a hundred. How many
-runs have a segment beyond 3 is counted beside it.
+A run is judged by its segments; their standard error is U95, which the page shows, over 1.96. With
+k independent estimates (a half loop is one) in a run, one of them lies beyond z standard errors by
+chance more often than a single one does. So that a run of any length is called wrong by chance as
+rarely as one number beyond three standard errors (0.27 %), the bound is z(k) = Phi^-1(1 -
+0.00135/k): 3 for one, 3.6 for ten, 4.2 for a hundred. How many runs have a segment beyond 3 is
+counted beside it.
 """
 
 from __future__ import annotations
@@ -108,8 +109,8 @@ def compare(trial: Trial, run: xr.Dataset, friction: xr.Dataset, status: str) ->
     mu = friction["friction_coefficient"].values if known else nothing
     sem = nothing  # the page and the points of a curve show the wider of the two errors
     if known:
-        errors = (friction[f"friction_coefficient{end}_sem"].values for end in ("", "_beyond"))
-        sem = np.fmax(*errors)
+        errors = (friction[f"friction_coefficient{end}_U95"].values for end in ("", "_beyond"))
+        sem = np.fmax(*errors) / norm.isf(0.025)
     reported = np.flatnonzero(np.isfinite(mu))
     truths = np.full(mu.size, np.nan)
     for i in reported:

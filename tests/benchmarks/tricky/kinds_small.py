@@ -45,6 +45,15 @@ def unsigned_sharp(rng) -> Trial:
     return Trial(run.assign(friction_force=abs(run.friction_force)), made.truth)
 
 
+@tricky("8")
+def unsigned_coefficient(rng) -> Trial:
+    """A coefficient without its sign that turns over within one sample, with an offset."""
+    trial = unsigned_sharp(rng)
+    ratio = trial.data.friction_force / trial.data.normal_force
+    run = trial.data.assign(friction_coefficient=ratio.assign_attrs(units="1"))
+    return Trial(run.drop_vars(["friction_force", "normal_force"]), trial.truth)
+
+
 @tricky("5")
 def stage_stops(rng) -> Trial:
     """A set speed beside the position of a stage that stops for half of some strokes."""

@@ -1,43 +1,21 @@
 """Faults of the zero and of the load reading that look like friction, and their sound twins.
 
-    python tests/benchmarks/zero_and_load.py --seeds 0:20 --verbose
-
-Every run is drawn by its seed: coefficients of 0.15 to 1, loads of 1 N to 100 N, white noise, one
-way or both ways, rests with and without load. A run is
-
-right    status pass, and no segment is further off than its error allows (U95; wider for runs of
-         several segments, see `tricky.judge`)
-unsure   a finding of status suspect or fail
-wrong    status pass, and a segment is off by more: "worst" is the largest such deviation
-
-`U95` is the median of U95 over the coefficient of the runs that pass. Sound runs (`sound_*`) should
-all pass: the exit code says whether none is wrong and at most 2 % of the sound runs are unsure.
+Coefficients of 0.15 to 1, loads of 1 N to 100 N, white noise, one way or both ways, rests with and
+without load.
 """
 
 from __future__ import annotations
 
-import argparse
-import sys
-import warnings
-import zlib
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from dataclasses import replace
 
 import numpy as np
 import xarray as xr
-from scipy.stats import norm
 
-import tribolab as tl
 from tribolab.stamping import stamp
+from tricky.trial import Trial, Truth, sound, tricky
 
 Leg = tuple[float, int, float]  # duration [s], direction, share of the load
-CHANCE, MAX_UNSURE = 0.00135, 0.02
-KINDS: dict[str, Callable[[np.random.Generator], xr.Dataset]] = {}
-
-
-def kind(make: Callable[[np.random.Generator], xr.Dataset]) -> None:
-    """Register a kind of run."""
-    KINDS[make.__name__] = make
 
 
 def record(
@@ -51,8 +29,8 @@ def record(
     zero: float = 0.0,
     gain: Callable[[np.ndarray], np.ndarray] = np.ones_like,
     exponent: float = 0.0,
-) -> xr.Dataset:
-    """Record a run; variable `truth` is the friction coefficient (time).
+) -> Trial:
+    """Record a run and its truth.
 
     `leak` is the share of friction in the load reading, `tilt` that of the load in the friction
     (of the friction), `drag` the idle friction (of the friction), `creep` and `zero` of the load
@@ -91,7 +69,10 @@ def record(
         "sliding_velocity": speed * way * (1 + 2e-3 * rng.standard_normal(time.size)),
     }
     run = stamp(xr.Dataset({k: ("time", v) for k, v in signals.items()}, {"time": time}))
-    return run.assign(truth=("time", truth))
+    slides = np.array([bool(d) and part > 0 for _, d, part in legs])
+    signed = speed * np.array([d for _, d, _ in legs])
+    start, stop = knots[slides].T
+    return Trial(run, Truth(start, stop, signed[slides], time, truth))
 
 
 def one_way(rng: np.random.Generator, before: Sequence[Leg] = ()) -> list[Leg]:
@@ -141,149 +122,92 @@ def step(rng: np.random.Generator) -> Callable[[np.ndarray], np.ndarray]:
     return lambda u: np.where(u > at, factor, 1.0)
 
 
-@kind
-def leak_into_load(rng: np.random.Generator) -> xr.Dataset:
+@tricky("load")
+def leak_into_load(rng: np.random.Generator) -> Trial:
     """Friction of one-way sliding leaks into the load reading."""
     return record(rng, one_way(rng), leak=sign(rng) * rng.uniform(0.03, 0.1))
 
 
-@kind
-def partial_unloading(rng: np.random.Generator) -> xr.Dataset:
+@tricky("zero")
+def partial_unloading(rng: np.random.Generator) -> Trial:
     """All rests keep some of the load."""
     return record(rng, with_rests(rng, some_way(rng)))
 
 
-@kind
-def drag_one_way(rng: np.random.Generator) -> xr.Dataset:
+@tricky("zero")
+def drag_one_way(rng: np.random.Generator) -> Trial:
     """The bearing drags, as strokes without load show."""
     return record(rng, one_way(rng, idle(rng)), drag=rng.uniform(0.01, 0.08))
 
 
-@kind
-def load_reading_drops(rng: np.random.Generator) -> xr.Dataset:
+@tricky("load")
+def load_reading_drops(rng: np.random.Generator) -> Trial:
     """The load reading drops, the load does not."""
     return record(rng, both_ways(rng), gain=step(rng))
 
 
-@kind
-def tilt_below_limit(rng: np.random.Generator) -> xr.Dataset:
+@tricky("zero")
+def tilt_below_limit(rng: np.random.Generator) -> Trial:
     """The load reads as friction, by less than 2 % of it."""
     return record(rng, one_way(rng), tilt=sign(rng) * rng.uniform(0.005, 0.0195))
 
 
-@kind
-def creep_below_limit(rng: np.random.Generator) -> xr.Dataset:
+@tricky("load")
+def creep_below_limit(rng: np.random.Generator) -> Trial:
     """The load reading creeps by up to 3 %."""
     return record(rng, some_way(rng), creep=sign(rng) * rng.uniform(0.005, 0.03))
 
 
-@kind
-def sound_plain(rng: np.random.Generator) -> xr.Dataset:
+@tricky("zero")
+def tilt_beyond_limit(rng: np.random.Generator) -> Trial:
+    """The load reads as friction, by 3 to 15 % of it, as rests under load show."""
+    return record(rng, one_way(rng), tilt=sign(rng) * rng.uniform(0.03, 0.15))
+
+
+@tricky("load")
+def creep_beyond_limit(rng: np.random.Generator) -> Trial:
+    """The load reading creeps by 5 to 15 % under a dead weight."""
+    return record(rng, some_way(rng), creep=sign(rng) * rng.uniform(0.05, 0.15))
+
+
+@sound
+def load_once_a_second(rng: np.random.Generator) -> Trial:
+    """The load reading is refreshed once a second."""
+    trial = record(rng, some_way(rng))
+    load = trial.data["normal_force"]
+    first = np.searchsorted(load["time"].values, np.floor(load["time"].values))
+    return replace(trial, data=trial.data.assign(normal_force=load.copy(data=load.values[first])))
+
+
+@sound
+def plain_run(rng: np.random.Generator) -> Trial:
     """Nothing is wrong."""
     return record(rng, some_way(rng))
 
 
-@kind
-def sound_offset(rng: np.random.Generator) -> xr.Dataset:
+@sound
+def untared_load_cell(rng: np.random.Generator) -> Trial:
     """The load cell was not tared; rests without load show it."""
     return record(rng, some_way(rng), zero=sign(rng) * rng.uniform(0.005, 0.05))
 
 
-@kind
-def sound_idle(rng: np.random.Generator) -> xr.Dataset:
+@sound
+def idle_strokes(rng: np.random.Generator) -> Trial:
     """Strokes without load show that nothing drags."""
     return record(rng, one_way(rng, idle(rng)))
 
 
-@kind
-def sound_programme(rng: np.random.Generator) -> xr.Dataset:
+@sound
+def load_programme(rng: np.random.Generator) -> Trial:
     """Loads of 0.2, 0.4 and 1 of the nominal one; friction of a plain or a Hertz contact."""
     shares = rng.permutation([0.2, 0.4, 1.0])
     return record(rng, both_ways(rng, shares), exponent=-rng.uniform(0, 1 / 3))
 
 
-@kind
-def sound_load_steps(rng: np.random.Generator) -> xr.Dataset:
+@sound
+def load_steps_one_way(rng: np.random.Generator) -> Trial:
     """The same loads, put on again and again while it slides one way."""
     shares = np.tile(rng.permutation([0.2, 0.4, 1.0]), rng.integers(1, 7))
     slides = [(rng.uniform(20, 60), 1, share) for share in shares]
     legs = [(rng.uniform(6, 15), 0, 0.0), (4.0, 0, slides[0][2]), *slides, (3.0, 0, slides[-1][2])]
     return record(rng, [*legs, (rng.uniform(6, 15), 0, 0.0)], exponent=-rng.uniform(0, 1 / 3))
-
-
-class Judged(NamedTuple):
-    """How a run came out: largest deviation and median U95 over the coefficient, findings."""
-
-    outcome: str
-    off: float
-    wide: float
-    said: str
-
-
-def judge(run: xr.Dataset) -> Judged:
-    """Analyse a run with the public functions and compare it with its truth."""
-    measured = run.drop_vars("truth")
-    segments = tl.find_segments(measured)
-    friction = tl.friction_coefficient(measured, segments)
-    found = tl.check(measured, segments, friction=friction)
-    ends = (friction[f"trimmed_{end}"].values for end in ("start", "stop"))
-    time, mu = run["time"].values, friction["friction_coefficient"].values
-    truth = np.array(
-        [
-            run["truth"].values[slice(*np.searchsorted(time, span))].mean()
-            for span in zip(*ends, strict=True)
-        ]
-    )
-    pair = friction["pair"].values
-    independent = max(len({p if p >= 0 else -2 - i for i, p in enumerate(pair)}), 1)
-    bound = float(norm.isf(CHANCE / independent) / norm.isf(0.025))
-    off, u95 = np.abs(mu - truth) / truth, friction["friction_coefficient_U95"].values / truth
-    said = "; ".join(
-        f"{row['check']} {row['status']}: {row['message']}"
-        for row in found.rows
-        if row["status"] in ("suspect", "fail", "error")
-    )
-    wrong = bool((off > bound * u95 + 1e-9).any()) or not mu.size
-    outcome = "unsure" if said else "wrong" if wrong else "right"
-    return Judged(
-        outcome, float(off.max(initial=0.0)), float(np.median(u95)) if mu.size else 0, said
-    )
-
-
-def main() -> int:
-    """Print the table; the exit code says whether the aims are met."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seeds", default="0:20", help="FIRST:LAST+1")
-    parser.add_argument("--kinds", default="", help="names, separated by commas")
-    parser.add_argument(
-        "--verbose", action="store_true", help="list wrong runs and unsure sound ones"
-    )
-    options = parser.parse_args()
-    warnings.simplefilter("ignore")
-    seeds = range(*map(int, options.seeds.split(":")))
-    chosen = set(filter(None, options.kinds.split(","))) or set(KINDS)
-    odd, sound, unsure, wrong = [], 0, 0, 0
-    print(f"{'kind':20} {'right':>6} {'unsure':>6} {'wrong':>6} {'worst':>7} {'U95':>7}")
-    for name, make in KINDS.items():
-        if name not in chosen:
-            continue
-        rows = [judge(make(np.random.default_rng([zlib.crc32(name.encode()), s]))) for s in seeds]
-        n = {o: sum(row.outcome == o for row in rows) for o in ("right", "unsure", "wrong")}
-        worst = max((row.off for row in rows if row.outcome == "wrong"), default=0.0)
-        passed = [row.wide for row in rows if row.outcome != "unsure"]
-        wide = float(np.median(passed)) if passed else 0.0
-        print(f"{name:20} {n['right']:6} {n['unsure']:6} {n['wrong']:6} {worst:7.1%} {wide:7.2%}")
-        of_sound = name.startswith("sound")
-        sound, unsure = sound + of_sound * len(rows), unsure + of_sound * n["unsure"]
-        wrong += n["wrong"]
-        for seed, row in zip(seeds, rows, strict=True):
-            if row.outcome == "wrong" or (of_sound and row.outcome == "unsure"):
-                odd.append(f"{row.outcome} {name} {seed}: off {row.off:.2%}; {row.said}")
-    print(f"sound runs: {sound}, unsure {unsure}; silently wrong: {wrong}")
-    if options.verbose:
-        print(*odd, sep="\n")
-    return int(wrong > 0 or unsure > MAX_UNSURE * sound)
-
-
-if __name__ == "__main__":
-    sys.exit(main())
