@@ -5,10 +5,12 @@ import pytest
 
 from tribolab.app.file_info import file_lines
 from tribolab.draft.dialect.draft import draft_dialect
+from tribolab.draft.read import read
 from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError
 from tribolab.io.kinds import kind_of
 from tribolab.io.scans.results import read_tester_results
+from tribolab.reading.scans.results_table import find_results_table
 
 TEXT = "Report\nRa\t0,523µm\nRq\t0,661 µm\nRz\t*.*******µm\nRsk\t-0,31\nRt\t4,2 µm\nλc\t0,8mm\n"
 
@@ -44,3 +46,35 @@ def test_a_profile_below_its_results_is_a_profile(tmp_path):
     path.write_text("Ra = 0.5 um\nRq = 0.6 um\nRz = 3 um\nX [mm],Z [um]\n" + rows)
     assert kind_of(path) == "unknown"
     assert read_scans(path).sizes["x"] == 50
+
+
+TABLES = {
+    "Ra of scans": "File;Ra [\u00b5m];Rq [\u00b5m]\nbrake_01;0,41;0,52\nbrake_02;0,43;0,55\n",
+    "with units in a row": "Sample\tRa\tRz\n\tum\tum\nA1\t0.41\t3.1\nA2\t0.43\t3.3\nA3\t0.4\t3.0\n",
+    "Mohr-Coulomb": (
+        "Test,Normal stress [kPa],Peak shear stress [kPa],Residual shear stress [kPa]\n"
+        "1,50,38.2,31.1\n2,100,71.0,58.9\n3,200,139.5,116.2\n"
+    ),
+}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_a_table_of_results_is_reported_as_such(tmp_path, name):
+    path = tmp_path / "table.csv"
+    path.write_text(TABLES[name], "latin-1")
+    for reader in (read_scans, read, read_tester_results):
+        with pytest.raises(ReadError, match="table of results") as refused:
+            reader(path)
+        assert "read_tester_results" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Ra;Rz\n0.4;3\n" + "x [mm];z [um]\n" + "".join(f"{n / 10};{n % 3}\n" for n in range(40)),
+        "Time [s];Normal stress [kPa];Peak shear stress [kPa]\n"
+        + "".join(f"{n / 10};50;{20 + n % 3}\n" for n in range(40)),
+    ],
+)
+def test_a_table_below_results_and_one_along_time_are_none(text):
+    assert find_results_table(text) is None

@@ -18,7 +18,14 @@ from tribolab.draft.model import Understood
 from tribolab.errors import ConfigError, OutputError, ReadError, TribolabError, shown
 from tribolab.io.dialects.cells import split_name
 from tribolab.io.dialects.find import recognise
-from tribolab.io.dialects.signature import File, is_results, is_surftest_results, named_values, peek
+from tribolab.io.dialects.signature import (
+    File,
+    is_results,
+    is_surftest_results,
+    named_values,
+    peek,
+    results_error,
+)
 from tribolab.reading.interpret.names import matches, split_unit
 
 
@@ -248,6 +255,9 @@ def _answer(file: File, understood: Understood) -> str:
 
 def _results(file: File, name: str) -> Draft:
     lines = file.head.decode("latin-1").replace("\r", "").split("\n")
+    if not is_surftest_results(file.head) and not named_values(file.head):
+        answer = str(results_error(file.head, file.path))
+        return Draft(path=file.path, name=name, kind="table", answer=answer, cells=())
     start = next((n for n, line in enumerate(lines) if line.startswith("// CalcResult")), 0) + 1
     rows = [line.split(";") for line in lines[start:] if line.strip()]
     if not is_surftest_results(file.head):

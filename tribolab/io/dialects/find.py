@@ -13,7 +13,7 @@ from pydantic import ValidationError
 
 from tribolab.errors import ConfigError, ReadError, TribolabError, brief, nearest, shown
 from tribolab.io.dialects.model import Dialect
-from tribolab.io.dialects.signature import File, is_results, peek
+from tribolab.io.dialects.signature import File, peek, results_error
 from tribolab.io.schema_folder import schema_folder
 from tribolab.reading import cures
 from tribolab.reading.raw.readers import installed_readers, is_reader
@@ -134,12 +134,8 @@ def recognise(path: str | Path) -> Dialect:
             where=named.path,
             cure=cures.name_instrument(cures.RUN),
         )
-    if is_results(file.head):
-        raise ReadError(
-            "this looks like the results of a roughness tester",
-            where=named.path,
-            cure=cures.TESTER_RESULTS,
-        )
+    if error := results_error(file.head, named.path):
+        raise error
     raise unknown(named, cures.RUN)
 
 

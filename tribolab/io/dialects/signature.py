@@ -18,6 +18,7 @@ from tribolab.reading.raw.hdf5_safety import refuse_outside
 from tribolab.reading.raw.readers import answers, installed_readers
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.raw.unpacked import ZIP, holds_arrays, is_workbook, unpacked
+from tribolab.reading.scans.results_table import find_results_table
 
 HEAD = 1 << 20  # bytes looked at for preamble and header
 
@@ -220,8 +221,27 @@ _FEWEST, _MOST = 3, 200  # lines of results
 
 
 def is_results(head: bytes) -> bool:
-    """Whether a file's first bytes are those of a roughness tester's results."""
-    return is_surftest_results(head) or len(named_values(head)) >= _FEWEST
+    """Whether a file's first bytes are those of results: of a roughness tester, or a table."""
+    return results_error(head, Path()) is not None
+
+
+def results_error(head: bytes, where: Path) -> ReadError | None:
+    """Return the error about a file that holds results where signals are wanted; else None."""
+    if is_surftest_results(head) or len(named_values(head)) >= _FEWEST:
+        what = "the file holds the results of a roughness tester, but no profile"
+        return ReadError(what, where=where, cure=cures.TESTER_RESULTS)
+    table = find_results_table(_text_of(head)) if b"\0" not in head[:4096] else None
+    if table is None:
+        return None
+    cure = "export the profiles, or the records over time"
+    return ReadError(f"the file holds {table.words}", where=where, cure=cure)
+
+
+def _text_of(head: bytes) -> str:
+    try:
+        return head.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return head.decode("latin-1")
 
 
 def is_surftest_results(head: bytes) -> bool:
@@ -242,11 +262,7 @@ def named_values(head: bytes) -> list[tuple[int, tuple[str, str, str]]]:
     """
     if head.count(b"\n") > _MOST or b"\0" in head[:4096]:
         return []
-    try:
-        text = head.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = head.decode("latin-1")
-    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    lines = _text_of(head).replace("\r\n", "\n").replace("\r", "\n").split("\n")
     told = [(n, match) for n, line in enumerate(lines, 1) if (match := _NAMED.match(line))]
     if 2 * len(told) < sum(bool(line.strip()) for line in lines):
         return []

@@ -21,7 +21,7 @@ from tribolab.io.dialects.find import (
     scan_dialects,
 )
 from tribolab.io.dialects.python_reader import PythonReader, with_columns
-from tribolab.io.dialects.signature import File, is_results, peek
+from tribolab.io.dialects.signature import File, peek, results_error
 from tribolab.io.patterns import is_pattern, matching
 from tribolab.io.scans.undescribed import read_undescribed
 from tribolab.provenance import as_text, made, sha256_of_file
@@ -170,12 +170,8 @@ def _recognised(path: Path) -> Dialect | None:
         return None  # a format that only SurfaceTopography may know
     if file.format not in ("text", "tdms"):
         return None
-    if is_results(file.head):
-        raise ReadError(
-            "the file holds the results of a roughness tester, but no profile",
-            where=path,
-            cure=cures.TESTER_RESULTS,
-        )
+    if error := results_error(file.head, path):
+        raise error
     known = [d for d in _every_dialect() if mismatch(file, d) is None]
     fitting = [d for d in known if is_scan(d)]
     if known and not fitting:

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.errors import ReadError, UnitError
-from tribolab.io.dialects.signature import is_results, is_surftest_results, peek
+from tribolab.io.dialects.signature import is_surftest_results, named_values, peek, results_error
 from tribolab.io.scans.formats import result
 from tribolab.io.scans.named_results import read_named_results
 from tribolab.provenance import provenance
@@ -61,8 +61,10 @@ def read_tester_results(path: str | Path) -> xr.Dataset:
 def _results(path: str | Path) -> xr.Dataset:
     file = peek(path)
     if not is_surftest_results(file.head):
-        if is_results(file.head):
+        if named_values(file.head):
             return read_named_results(file)
+        if error := results_error(file.head, file.path):
+            raise error
         raise ReadError(
             f"{file.path}: these are no results of a roughness tester (neither 'Mode;RES' nor "
             "lines such as 'Ra = 0.5 um')"

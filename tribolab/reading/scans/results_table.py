@@ -1,0 +1,94 @@
+"""Tables in which each row is the result of a whole measurement: Ra of scans, peaks of tests."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from tribolab.reading.lexicon.lexicon import known_words, normalise_label, role_of
+
+_HEAD_LINES = 40  # above such a table
+_MOST_ROWS = 2000  # more are no measurements of a person
+_FEWEST = 2  # names that only results have, or one and the load beside it
+_NUMERIC = 0.5  # of a row's cells
+# parameters of ISO 21920 and ISO 25178, with their unit perhaps
+_PARAMETER = re.compile(
+    r"[RPWS](?:a|q|z|t|p|v|c|sk|ku|dq|dr|Sm|z1max|max|3z|k|pk|vk|pc)\d?\s*(?:[\[(/_ ].{0,12})?"
+)
+_COMMON = ("Ra", "Rq", "Rz", "Sa", "Sq", "Sz")
+_CELLS = re.compile(r"\s*[;\t]\s*|\s*,(?!\d)\s*|\s{2,}")
+_COMMAS = re.compile(r"\s*,\s*")
+_NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
+
+
+class ResultsTable(NamedTuple):
+    """Names of results in a table, and the number of its rows."""
+
+    names: list[str]
+    rows: int
+
+    @property
+    def words(self) -> str:
+        """What is said of it."""
+        return (
+            f"a table of results: {', '.join(self.names[:5])} of {self.rows} measurements, a row "
+            "each, and neither a profile nor signals along time"
+        )
+
+
+def find_results_table(text: str) -> ResultsTable | None:
+    r"""Return the table of results that a text is, from its names on to its end; else None.
+
+    Parameters
+    ----------
+    text
+        The whole text, or its beginning.
+
+    Examples
+    --------
+    >>> find_results_table("Sample;Ra [um];Rz [um]\\nA1;0,41;3,1\\nA2;0,43;3,3\\n")
+    ResultsTable(names=['Ra [um]', 'Rz [um]'], rows=2)
+    >>> find_results_table("x [mm];z [um]\\n0;0,41\\n1;0,43\\n") is None
+    True
+    """
+    lines = [line.strip().strip('"') for line in text.splitlines() if line.strip()]
+    if len(lines) > _MOST_ROWS:
+        return None
+    for place, line in enumerate(lines[:_HEAD_LINES]):
+        for between in (_CELLS, _COMMAS):
+            labels = [label.strip('"') for label in between.split(line)]
+            names = _results(labels)
+            if names and (rows := _rows(lines[place + 1 :], between, len(labels))):
+                return ResultsTable(names, rows)
+    return None
+
+
+def _results(labels: list[str]) -> list[str]:
+    """Return the names of results among the names of columns; none of a row of numbers."""
+    parameters = [label for label in labels if _PARAMETER.fullmatch(label)]
+    if len(parameters) >= _FEWEST:
+        return parameters
+    peaks = [
+        label for label in labels if role_of(label) == "extreme" and _is(label, "shear_stress")
+    ]
+    loads = [label for label in labels if _is(label, "normal_stress")]
+    times = any(_is(label, "time") for label in labels)
+    return [*loads, *peaks] if peaks and loads and not times else []
+
+
+def _is(label: str, quantity: str) -> bool:
+    [word] = [word for word in known_words("run") if word.quantity == quantity]
+    name = normalise_label(label)
+    return any(stem in name for stem in word.stems)
+
+
+def _rows(lines: list[str], between: re.Pattern[str], width: int) -> int:
+    """Return the number of rows, if every line is one of numbers; one of units may come first."""
+    cells = [between.split(line) for line in lines]
+    if cells and not any(map(_NUMBER.fullmatch, cells[0])):
+        cells = cells[1:]
+    for row in cells:
+        numbers = sum(_NUMBER.fullmatch(cell.strip('" ')) is not None for cell in row)
+        if len(row) != width or numbers < _NUMERIC * width:
+            return 0
+    return len(cells)
