@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from tribolab.draft.columns.cells import Cells
+from tribolab.draft.file.layout import Layout
+from tribolab.draft.model import DraftColumn
+from tribolab.io.dialects.cells import split_row
 from tribolab.io.dialects.dates import ISO, ISO_ZONE, has_day, seconds
 
 # Day before month or after it: which one, the dates may tell; where they do not it is a guess.
@@ -64,3 +68,50 @@ def _fits(texts: Sequence[str], form: str) -> bool:
     except ValueError:
         return False
     return bool((np.diff(times) >= 0).all()) or not has_day(form)
+
+
+def take_dates(columns: list[DraftColumn], layout: Layout, cells: Cells) -> list[DraftColumn]:
+    """Take the first column of dates for time if no column of numbers is; its numbers change.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    layout
+        From `tribolab.draft.file.layout.find_layout`.
+    cells
+        From `tribolab.draft.columns.cells.read_cells`.
+    """
+    numbers, text = cells.numbers, cells.text
+    timed = [c for c in columns if c.quantity == "time" and c.used and not text[c.place - 1]]
+    dates = [] if timed or not any(text) else list(_dates(columns, layout, cells))
+    if not dates:
+        return columns
+    # a date next to a time of day is the same for the whole day
+    column, moments, form, other = next((one for one in dates if np.ptp(one[1]) > 0), dates[0])
+    numbers[:, column.place - 1] = moments
+    dated = column._replace(
+        quantity="time",
+        unit=None,
+        form=form,
+        used=True,
+        guessed=(f"dates are written {form}",) if other else (),
+        options=(other,) if other else (),
+        note="",
+        fill_in="",
+    )
+    others = [c._replace(quantity=None, used=False) if c.quantity == "time" else c for c in columns]
+    return [dated if c is column else o for c, o in zip(columns, others, strict=True)]
+
+
+def _dates(
+    columns: list[DraftColumn], layout: Layout, cells: Cells
+) -> Iterator[tuple[DraftColumn, np.ndarray, str, str]]:
+    """Yield columns of dates with their times [s], their form, and another form that fits."""
+    rows = [split_row(line, layout.delimiter) for line in layout.rows()]
+    for column in columns:
+        index = column.place - 1
+        words = [row[index] if index < len(row) else "" for row in rows]
+        form, other = find_form(words if cells.text[index] else [])
+        if form and len(words) == len(cells.numbers):  # a damaged row is split in two ways
+            yield column, seconds(words, form), form, other
