@@ -29,6 +29,7 @@ from tribolab.records.run_record import RunRecord
 
 CATALOGUE = "catalogue.sqlite"
 _FORMAT = "1"
+_LARGEST_RECORD = 1 << 26  # bytes: records of long runs have some 100 kB
 _LATE = 2_000_000_000  # ns before it was read, within which a change says nothing of later ones
 _TABLES = """
 CREATE TABLE part (
@@ -375,9 +376,14 @@ def _has_our_format(known: sqlite3.Connection) -> bool:
     return False
 
 
+def _inflated(packed: bytes) -> bytes:
+    """Unpack a record; of a bomb only its beginning, which is no JSON."""
+    return zlib.decompressobj().decompress(packed, _LARGEST_RECORD)
+
+
 def _entries(rows: Iterable[tuple[str, str, bytes]], record: type[Kept]) -> Iterator[Entry[Kept]]:
     for name, fingerprint, text in rows:
         try:
-            yield Entry(name, fingerprint, _adapter(record).validate_json(zlib.decompress(text)))
+            yield Entry(name, fingerprint, _adapter(record).validate_json(_inflated(text)))
         except (ValidationError, zlib.error, TypeError):  # damaged: not known
             continue

@@ -79,9 +79,10 @@ def others_alike(chosen: Sequence[HeldColumn], every: Sequence[HeldColumn]) -> s
         All columns of the file.
     """
     names = {column.label for column in chosen}
+    meant = set(map(id, chosen))
     alike: dict[str, int] = {}
     for column in every:
-        if not any(column is c for c in chosen) and column.label in names:
+        if id(column) not in meant and column.label in names:
             alike[column.table] = alike.get(column.table, 0) + 1
     tables = [f"'{shown(table, 30)}'" for table, count in alike.items() if table and count > 1]
     return ", ".join(tables[:_TOLD])

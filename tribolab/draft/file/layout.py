@@ -46,7 +46,6 @@ _MOST_IN_A_LINE = 64
 _LONGEST = 200  # characters of a line that are looked at
 _COUNT = re.compile(r"(?<![\d.,])(\d{2,7})(?![\d.,])[^\d]{0,20}$")  # "Number of points: 5600"
 _FEW = 20  # lines at the end that tell what parts cells
-_MOST_COLUMNS = 20_000
 _WIDE, _FEWEST_OF_WIDE = 1000, 5  # columns, and rows: a line end that is lost makes such a line
 _MOST_TURNED = 1 << 28  # bytes of a file of few long lines
 _MOST_ABOVE = 500  # lines of text above a table that are looked at
@@ -212,7 +211,7 @@ def find_layout(file: File) -> Layout:
         main, others = main_blocks(blocks)
     first = main[0]
     rows = sum(len(block.rows) for block in main)
-    if first.width > _MOST_COLUMNS or (first.width > _WIDE and rows < _FEWEST_OF_WIDE):
+    if first.width > limits.COLUMNS.value or (first.width > _WIDE and rows < _FEWEST_OF_WIDE):
         raise ReadError(
             f"{file.path}: {first.width} columns in {rows} rows are more than an instrument "
             "writes; is it the right file, and is each row on a line of its own?"

@@ -107,6 +107,8 @@ def unit_beside(text: str, name: str, *, counted: bool = False) -> str | None:
     >>> unit_beside("F scale: 0.002 N", "F", counted=True), unit_beside("F scale: 0.002 N", "F")
     ('0.002 N', None)
     """
+    if name.casefold() not in text.casefold():  # patterns are slow to make
+        return None
     start = rf"^{re.escape(name)}[_. ]"
     words = rf"{start}?(?:units?|einheit|unite)\s*[:=]\s*[\[(]?([^\s\])]+)"
     match = re.search(words, text, re.MULTILINE | re.IGNORECASE)

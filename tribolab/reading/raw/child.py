@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import importlib
 import os
 import pickle
@@ -17,7 +18,8 @@ from tribolab.reading.raw import limits, opening
 from tribolab.reading.raw.opening import Ended, Job
 
 _LENGTH = 8
-_DONE, _ERROR, _NO_MEMORY = 0, 3, 4
+_DONE, _ERROR, _NO_MEMORY, _TOO_LARGE, _NO_ROOM = 0, 3, 4, 5, 6
+_TEXT_PER_NUMBER = 4  # a cell as text is longer than a number
 _PIPE = 1 << 15  # bytes of names of modules
 _POLL = 0.01  # s between looks at a child, where the system cannot wait for one
 
@@ -89,7 +91,7 @@ def _limit(job: Job) -> None:
 
         bound(resource.RLIMIT_CORE, 0)
         bound(resource.RLIMIT_CPU, int(job.seconds) + 1, 2)  # a signal first that says why
-        bound(resource.RLIMIT_FSIZE, job.output)
+        bound(resource.RLIMIT_FSIZE, _TEXT_PER_NUMBER * job.output)
         bound(resource.RLIMIT_AS, _address_space() + job.memory)
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)  # an error of writing instead
 
@@ -124,12 +126,12 @@ def _work(job: Job) -> int:
         result = opening.packed_error(result)
     try:
         with open(job.target, "wb") as file:  # noqa: PTH123
-            opening.write_result(result, file)
+            if not opening.write_result(result, file, job.output):
+                return _TOO_LARGE
     except MemoryError:
         return _NO_MEMORY
     except OSError as error:
-        sys.stderr.write(str(error))
-        return 5
+        return _TOO_LARGE if error.errno == errno.EFBIG else _NO_ROOM
     return code
 
 

@@ -44,12 +44,13 @@ def check_self_contained(path: Path) -> None:
 
     with h5py.File(path, "r") as file:
         look = _Look(h5py, file)
+        look.count_attributes(file.id)
         file.id.links.visit(look)
     if look.too_many:
         raise OutsideError(
-            f"{path}: more than {limits.HDF5_OBJECTS.value:.0f} groups and datasets, or more than "
-            f"{limits.HDF5_DEPTH.value:.0f} groups in one another, are no measurement; save the "
-            "run's own datasets in a file of their own"
+            f"{path}: more than {limits.HDF5_OBJECTS.value:.0f} groups and datasets, "
+            f"{limits.HDF5_ATTRIBUTES.value:.0f} attributes or {limits.HDF5_DEPTH.value:.0f} groups "
+            "in one another are no measurement; save the run's own datasets in a file of their own"
         )
     if look.found:
         name, what = look.found
@@ -102,13 +103,14 @@ class _Look:
     def __init__(self, h5py: Any, file: Any) -> None:
         self._h5py, self._file = h5py, file
         self.found: tuple[str, str] | None = None
-        self._count, self.too_many = 0, False
+        self._count, self._attributes, self.too_many = 0, 0, False
 
     def __call__(self, name: bytes) -> bool | None:
         h5 = self._h5py
         self._count += 1
         if self._count > limits.HDF5_OBJECTS.value or name.count(b"/") > limits.HDF5_DEPTH.value:
             self.too_many = True  # an error would not pass through the library
+        if self.too_many:
             return True
         kind = self._file.id.links.get_info(name).type
         what = ""
@@ -122,9 +124,15 @@ class _Look:
             self.found = name.decode("utf-8", "replace"), what
         return True if what else None
 
+    def count_attributes(self, item: Any) -> None:
+        """Count the attributes of a group, a dataset or a type."""
+        self._attributes += self._h5py.h5a.get_num_attrs(item)
+        self.too_many |= self._attributes > limits.HDF5_ATTRIBUTES.value
+
     def _outside(self, name: bytes) -> str:
         h5 = self._h5py
         item = h5.h5o.open(self._file.id, name)
+        self.count_attributes(item)
         if not isinstance(item, h5.h5d.DatasetID):
             return ""
         made = item.get_create_plist()

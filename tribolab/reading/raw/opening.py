@@ -43,7 +43,7 @@ _ENVIRONMENT = {
     "OMP_NUM_THREADS": "1",
     "OPENBLAS_NUM_THREADS": "1",
     "MKL_NUM_THREADS": "1",
-    "JE_ARROW_MALLOC_CONF": "background_thread:false",
+    "ARROW_DEFAULT_MEMORY_POOL": "system",  # others reserve addresses that no limit counts
     "HDF5_PLUGIN_PRELOAD": "::",
     "HDF5_USE_FILE_LOCKING": "FALSE",
     "PYTHONSAFEPATH": "1",
@@ -164,7 +164,7 @@ def largest_unpacked(size: int) -> int:
     Examples
     --------
     >>> largest_unpacked(1000), largest_unpacked(10**7)
-    (64000000, 1000000000)
+    (16000000, 500000000)
     """
     most = os.environ.get("TRIBOLAB_MAX_UNPACKED", "")
     ceiling = int(float(most)) if most.replace(".", "", 1).isdigit() else limits.MAX_UNPACKED.value
@@ -196,8 +196,7 @@ def _in_child(
             _here(),
             limits.CPU_FOR_ANY_FILE.value + size / limits.BYTES_PER_CPU_SECOND.value,
             int(limits.MEMORY_FOR_ANY_FILE.value + limits.MEMORY_PER_BYTE.value * size),
-            # what the rows need and what is packed, unpacked; text of cells is longer than numbers
-            4 * largest_unpacked(size),
+            largest_unpacked(size),
         )
         ended = _ONLY.run(job)
         if isinstance(ended, str):
@@ -236,6 +235,8 @@ def _ending(ended: Ended) -> str:
         return "the library that reads it did not come to an end"
     if ended.code == 4:
         return "reading it takes more memory than a sound file of this size"
+    if ended.code == 5:
+        return "it unpacks to more than a sound file of this size"
     if ended.code < 0:
         return f"the library that reads it crashed (signal {-ended.code})"
     return f"the library that reads it crashed (exit code {ended.code})"
@@ -388,7 +389,7 @@ def _unpacked_error(failure: Any) -> Any:
     return error
 
 
-def write_result(value: object, file: io.BufferedIOBase) -> None:
+def write_result(value: object, file: io.BufferedIOBase, most: int) -> bool:
     """Write a result so that long arrays need not be copied when they are read.
 
     Parameters
@@ -397,15 +398,25 @@ def write_result(value: object, file: io.BufferedIOBase) -> None:
         Anything that can be pickled.
     file
         Open for writing, at its start.
+    most
+        Bytes that its arrays may have together.
+
+    Returns
+    -------
+    bool
+        Whether it is written: its arrays are no larger.
     """
     buffers: list[pickle.PickleBuffer] = []
     data = pickle.dumps(value, protocol=5, buffer_callback=buffers.append)
     raw = [buffer.raw() for buffer in buffers]
+    if sum(part.nbytes for part in raw) > most:
+        return False
     head = pickle.dumps((len(data), [part.nbytes for part in raw]))
     file.write(len(head).to_bytes(_LENGTH, "little") + head + data)
     for part in raw:
         file.write(b"\0" * (-file.tell() % _ALIGNED))
         file.write(part)
+    return True
 
 
 def _result(handle: int) -> Any:

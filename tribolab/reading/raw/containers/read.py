@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib
 from pathlib import Path
 
+from tribolab.errors import ReadError
+from tribolab.reading.raw import limits
 from tribolab.reading.raw.model import RawFile
 
 # module and function of each: what they import takes long to load
@@ -36,11 +38,18 @@ def read_container(path: Path, form: str) -> RawFile:
     Raises
     ------
     ReadError
-        If it is damaged; other libraries have errors of their own.
+        If it is damaged or has too many columns; other libraries have errors of their own.
     ImportError
         If the library for it is not installed.
     """
     module, function = _READERS[form]
     reader = importlib.import_module(f"tribolab.reading.raw.containers.{module}")
     file: RawFile = getattr(reader, function)(path)
+    count = sum(len(table.columns) for table in file.tables)
+    if count > limits.COLUMNS.value:
+        raise ReadError(
+            f"{count} columns are more than a measurement has ({limits.COLUMNS.value:.0f})",
+            where=path,
+            cure="save those of the run in a file of their own",
+        )
     return file
