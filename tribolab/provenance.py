@@ -46,6 +46,17 @@ def as_text(path: str | Path) -> str:
     return _STEERS.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
 
 
+def without_controls(text: str) -> str:
+    r"""Return a text whose control characters are escaped, but for tabs and ends of lines.
+
+    Examples
+    --------
+    >>> without_controls("\x1b[31mred\n")
+    '\\x1b[31mred\n'
+    """
+    return _STEERS.sub(lambda found: found[0] if found[0] in "\t\n\r" else as_text(found[0]), text)
+
+
 def history_line(action: str) -> str:
     """Return one line for the ``history`` attribute: time in UTC, version, what was done."""
     # late: looks the installed package up

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
 from hostile.base import FORCE, TRIBOLAB, USAGE, Command, case, notebook, wrong_campaign
 
 _MILLION = 1_000_000

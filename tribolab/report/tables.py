@@ -14,6 +14,7 @@ import pyarrow as pa
 from pyarrow import parquet
 
 from tribolab.errors import ReadError, brief
+from tribolab.provenance import without_controls
 from tribolab.records.parts import Notice, Row
 
 _CHUNK = 4_000  # rows that are in memory at once
@@ -43,14 +44,17 @@ _SIGN = "'"
 def uncomputed(cell: Any) -> Any:
     r"""Return a cell that no spreadsheet computes: text that begins like a formula gets a sign.
 
-    Numbers stay as they are, also those written as text.
+    Numbers stay as they are, also those written as text. Control characters are escaped.
 
     Examples
     --------
     >>> uncomputed("=1+1"), uncomputed("-3.5e2"), uncomputed(-3.5), uncomputed("sb-r")
     ("'=1+1", '-3.5e2', -3.5, 'sb-r')
     """
-    if not isinstance(cell, str) or not cell.startswith(_ACTIVE):
+    if not isinstance(cell, str):
+        return cell
+    cell = without_controls(cell)
+    if not cell.startswith(_ACTIVE):
         return cell
     try:
         float(cell)

@@ -11,12 +11,17 @@ from pydantic import BaseModel, ValidationError
 
 from tribolab.campaign.settings import problems
 from tribolab.core.limit import Limit
-from tribolab.errors import ConfigError, ReadError
+from tribolab.errors import ConfigError, ReadError, shown
+from tribolab.provenance import without_controls
 from tribolab.reading.raw.source import check_regular
 
 MOST_TABLES = Limit(
     10_000.0, "1", "tables [[run]] and the like in a file: 150 000 take 40 s to be understood"
 )
+MOST_ENTRIES = Limit(
+    50_000.0, "1", "keys and items of lists in a file: 100 000 unknown ones take 5 s to be named"
+)
+LARGEST = Limit(8e6, "byte", "a file: 10 000 runs take 3 MB, and 40 MB of comments 12 s")
 SettingsModel = TypeVar("SettingsModel", bound=BaseModel)
 
 
@@ -38,6 +43,11 @@ def text_of(path: Path, missing: str) -> str:
     try:
         if path.exists():
             check_regular(path)
+            if (size := path.stat().st_size) > LARGEST.value:
+                raise ConfigError(
+                    f"{path}: {size / 1e6:.0f} MB are more than the {LARGEST.value / 1e6:.0f} MB "
+                    "that settings may have; is it the right file?"
+                )
         return path.read_text(encoding="utf-8-sig")
     except ReadError as error:
         raise ConfigError(error) from error
@@ -93,6 +103,7 @@ def open_settings(
             f"{path}: {tables} tables such as [[run]] are more than {MOST_TABLES.value:.0f}; name "
             "many runs by one pattern, or make several campaigns"
         )
+    content: dict[str, object]
     try:
         content = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -100,8 +111,33 @@ def open_settings(
         raise ConfigError(f"{path}: not a TOML file: {said}") from error
     except (RecursionError, ValueError) as error:
         raise ConfigError(f"{path}: cannot be read: {problems.unreadable(error)}") from error
+    _check_entries(path, content)
     try:
         return Opened(path, text, model.model_validate(content, context={"in_file": True}))
     except ValidationError as error:
         wrong = problems.from_pydantic(error, model)
         raise ConfigError(problems.message(wrong, path, text)) from error
+
+
+def _check_entries(path: Path, content: dict[str, object]) -> None:
+    """Refuse too many entries, and texts that steer a terminal or a page that shows them."""
+    count = 0
+    left: list[tuple[str, object]] = list(content.items())
+    while left:
+        key, value = left.pop()
+        count += 1
+        for text in (key, value):
+            if isinstance(text, str) and without_controls(text) != text:
+                raise ConfigError(
+                    f"{path}: {shown(key)} = '{shown(value)}' contains a control character (shown "
+                    "as ?); write it without"
+                )
+        if isinstance(value, dict):
+            left += value.items()
+        elif isinstance(value, list):
+            left += [(key, item) for item in value]
+        if count + len(left) > MOST_ENTRIES.value:
+            raise ConfigError(
+                f"{path}: more than {MOST_ENTRIES.value:.0f} keys and items of lists; name many "
+                "runs by one pattern, or make several campaigns"
+            )

@@ -29,7 +29,7 @@ from tribolab.records.run_record import RunRecord
 
 CATALOGUE = "catalogue.sqlite"
 _FORMAT = "1"
-_LARGEST_RECORD = 1 << 26  # bytes: records of long runs have some 100 kB
+_LARGEST_RECORD = 1 << 24  # bytes: records of long runs have some 100 kB
 _LATE = 2_000_000_000  # ns before it was read, within which a change says nothing of later ones
 _TABLES = """
 CREATE TABLE part (

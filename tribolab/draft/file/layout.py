@@ -41,6 +41,7 @@ from tribolab.io.dialects.spelling import (
 )
 from tribolab.io.dialects.thousands import Mark, find_thousands, without_thousands
 from tribolab.io.dialects.wrapped import numbers_in, unwrapped
+from tribolab.reading.raw import limits
 
 _MOST_IN_A_LINE = 64
 _LONGEST = 200  # characters of a line that are looked at

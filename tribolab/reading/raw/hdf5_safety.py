@@ -49,8 +49,9 @@ def check_self_contained(path: Path) -> None:
     if look.too_many:
         raise OutsideError(
             f"{path}: more than {limits.HDF5_OBJECTS.value:.0f} groups and datasets, "
-            f"{limits.HDF5_ATTRIBUTES.value:.0f} attributes or {limits.HDF5_DEPTH.value:.0f} groups "
-            "in one another are no measurement; save the run's own datasets in a file of their own"
+            f"{limits.HDF5_ATTRIBUTES.value:.0f} attributes or {limits.HDF5_DEPTH.value:.0f} "
+            "groups in one another are no measurement; save the run's own datasets in a file of "
+            "their own"
         )
     if look.found:
         name, what = look.found

@@ -18,6 +18,7 @@ from tribolab.reading.raw.opening import largest_unpacked, scratch_folder
 _GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
 _OFFICE = ("[Content_Types].xml", "main.xml")  # Office files and x3p are archives, too
 _CHUNK = 1 << 20
+_STATED = 4  # bytes at the end of a gzip file that state its unpacked size, modulo 4 GiB
 _LONGEST_README = 1 << 16  # bytes
 _LONGEST_LETTER = 3  # bytes of it that may stand at the end of what was read
 # what lies beside the data in an archive: texts about them, pictures, what systems leave behind
@@ -141,6 +142,9 @@ def _unpacked(path: Path, size: int, modified: int, kind: str) -> Path:
     try:
         if kind == "gz":
             target = folder / (path.stem if path.suffix.lower() in (".gz", ".z") else path.name)
+            with path.open("rb") as file:
+                file.seek(-_STATED, 2)
+                _refuse_larger(int.from_bytes(file.read(), "little"), size, path)
             with gzip.open(path) as source:
                 _copy(source, target, size, path)
             return target
@@ -155,6 +159,7 @@ def _unpacked(path: Path, size: int, modified: int, kind: str) -> Path:
             )
         target = folder / (Path(names[0]).name or "content")
         with zipfile.ZipFile(path) as archive, archive.open(names[0]) as source:
+            _refuse_larger(archive.getinfo(names[0]).file_size, size, path)
             first = source.read(_CHUNK)
             above = _text_beside(archive, [name for name in every if name != names[0]], first)
             _copy(_Chained(above + first, source), target, size, path)
@@ -201,14 +206,18 @@ class _Chained:
 
 def _copy(source: _Source, target: Path, size: int, path: Path) -> None:
     """Copy what is unpacked, and stop where it becomes larger than data can be."""
-    done, most = 0, largest_unpacked(size)
+    done = 0
     with target.open("wb") as file:
         while part := source.read(_CHUNK):
             done += len(part)
-            if done > most:
-                raise ReadError(
-                    f"this compressed file unpacks to more than {done / 1e6:.0f} MB: that is no "
-                    "measurement",
-                    where=path,
-                )
+            _refuse_larger(done, size, path)
             file.write(part)
+
+
+def _refuse_larger(unpacked: int, size: int, path: Path) -> None:
+    if unpacked > largest_unpacked(size):
+        raise ReadError(
+            f"this compressed file of {size / 1e6:.2g} MB unpacks to {unpacked / 1e6:.0f} MB or "
+            "more: that is no measurement",
+            where=path,
+        )

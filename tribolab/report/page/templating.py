@@ -17,6 +17,7 @@ import jinja2.bccache
 from markupsafe import Markup
 
 from tribolab import words
+from tribolab.provenance import without_controls
 from tribolab.records import judgement, trends, wording
 from tribolab.records.hurst_words import hurst_verdict, is_steep
 from tribolab.records.model_words import is_described, shear_stress_u95, stress_interval
@@ -118,6 +119,14 @@ class _Compiled(jinja2.BytecodeCache):
 _COMPILED = _Compiled()
 
 
+def _printed(value: object) -> object:
+    """Escape control characters of a text; one that is HTML already stays so."""
+    if not isinstance(value, str):
+        return value
+    kind = Markup if isinstance(value, Markup) else str
+    return kind(without_controls(value))
+
+
 def environment(folder: Path) -> jinja2.Environment:
     """Return what fills the templates of pages whose figures lie in a folder."""
     jinja = jinja2.Environment(
@@ -125,6 +134,7 @@ def environment(folder: Path) -> jinja2.Environment:
         bytecode_cache=_COMPILED,
         autoescape=True,
         undefined=jinja2.StrictUndefined,
+        finalize=_printed,
         trim_blocks=True,
         lstrip_blocks=True,
     )

@@ -76,9 +76,10 @@ class _Found:
         labels = _labels_of_matrix(item)
         if item.dtype.names:  # rows of several numbers, as tables are kept
             own = _each_its_own(units, len(item.dtype.names))
+            rows = item[()]
             for place, field in enumerate(item.dtype.names):
                 unit = own[place] or _of_field(item, place)
-                self._take(name, str(field), item[field], unit)
+                self._take(name, str(field), rows[field], unit)
         elif labels:
             matrix = item[()]
             for place, label in enumerate(labels):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import warnings
+import zlib
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -13,12 +15,14 @@ from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.containers.groups import Groups
 from tribolab.reading.raw.containers.settings import settings_of
 from tribolab.reading.raw.model import RawColumn, RawFile
-from tribolab.reading.raw.opening import damage_told, isolated
+from tribolab.reading.raw.opening import damage_told, isolated, largest_unpacked
 
 _DEEPEST = 8  # structures within structures
 _MOST_ELEMENTS = 500  # of an array of structures
 _LONGEST = 2000  # letters of a text
 _MOST_CELLS = 200  # texts of cells
+_HEADER, _COMPRESSED = 128, 15  # bytes before the variables, and the type of a packed one
+_STATED = 64  # packed bytes that hold the type and length of what is packed
 
 
 class Variable(NamedTuple):
@@ -55,6 +59,7 @@ def read_variables(path: Path) -> list[Variable]:
     # late: SciPy takes long to load
     from scipy.io import loadmat
 
+    _refuse_bomb(path)
     with damage_told(path, "MAT file"), warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always")
         content = loadmat(path, appendmat=False, mat_dtype=True)
@@ -70,6 +75,25 @@ def read_variables(path: Path) -> list[Variable]:
     if not found:
         raise ReadError("the MAT file is cut short: it holds no variable", where=path)
     return found
+
+
+def _refuse_bomb(path: Path) -> None:
+    """Refuse a file whose compressed variables state more bytes than it can unpack to."""
+    with path.open("rb") as file:
+        place, unpacked, size = _HEADER, 0, file.seek(0, 2)
+        file.seek(_HEADER - 2)
+        order: Literal["little", "big"] = "little" if file.read(2) == b"IM" else "big"
+        while place < size:
+            file.seek(place)
+            head = file.read(8 + _STATED)
+            kind, length = (int.from_bytes(head[at : at + 4], order) for at in (0, 4))
+            if kind == _COMPRESSED:
+                with contextlib.suppress(zlib.error):  # damaged: SciPy says so
+                    inner = zlib.decompressobj().decompress(head[8:], 8)
+                    unpacked += int.from_bytes(inner[4:], order)
+            place += 8 + length
+    if unpacked > largest_unpacked(size):
+        raise ReadError(f"its variables unpack to {unpacked / 1e6:.0f} MB", where=path)
 
 
 def _variables(name: str, value: Any, depth: int) -> list[Variable]:
