@@ -47,6 +47,7 @@ _MOST_IN_A_LINE = 64
 _LONGEST = 200  # characters of a line that are looked at
 _COUNT = re.compile(r"(?<![\d.,])(\d{2,7})(?![\d.,])[^\d]{0,20}$")  # "Number of points: 5600"
 _FEW = 20  # lines at the end that tell what parts cells
+_CELLS = 4  # times as many marks as columns: blanks that align, commas of decimals
 _WIDE, _FEWEST_OF_WIDE = 1000, 5  # columns, and rows: a line end that is lost makes such a line
 _MOST_TURNED = 1 << 28  # bytes of a file of few long lines
 _MOST_ABOVE = 500  # lines of text above a table that are looked at
@@ -164,6 +165,19 @@ class Layout(NamedTuple):
         return [mark.join(row[p] if p < len(row) else "" for p in places) for row in rows]
 
 
+def _refuse_wide(file: File, lines: Sequence[str]) -> None:
+    """Refuse a table whose rows have far too many cells, before they are looked at one by one."""
+    filled = [line for line in lines if line.strip()]
+    widths = [max(len(line.split()), *map(line.count, "\t;,")) for line in filled]
+    wide = [width for width in widths if width > _CELLS * limits.COLUMNS.value]
+    if 2 * len(wide) > len(filled):
+        raise ReadError(
+            f"some {wide[0]} columns are more than a measurement has",
+            where=file.path,
+            cure="save those of the run in a file of their own; is each row on a line of its own?",
+        )
+
+
 def find_layout(file: File) -> Layout:
     """Find out how a text file is written.
 
@@ -191,6 +205,7 @@ def find_layout(file: File) -> Layout:
         apart = any("\t" in line or ";" in line for line in lines[-_FEW:])
         lines = tuple(without_thousands(x, thousands, ";" if apart else ",") for x in lines)
     lines, arrangement = arranged(lines)
+    _refuse_wide(file, lines)
     grammar = find_grammar(lines)
     if grammar is None:
         raise ReadError(
