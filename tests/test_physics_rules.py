@@ -128,3 +128,18 @@ def test_a_pin_on_disc_log_whose_columns_prove_every_unit_is_read_at_once(shared
     assert found.sliding_speed.item() == pytest.approx(0.150, abs=5e-4)
     assert found.friction_coefficient.item() == pytest.approx(0.11539, rel=0.002)
     assert found.friction_coefficient_std.item() == pytest.approx(0.0069, abs=2e-4)
+
+
+def test_a_load_in_grams_is_a_force_and_a_torque_in_volts_proves_nothing():
+    load = np.linspace(100.0, 200.0, 50)
+    columns = np.column_stack([0.3 * load, np.full(50, 0.3), load])
+    named = ["friction_force", "friction_coefficient", "normal_force"]
+    proofs = prove(
+        [Candidate(frozenset({n}), u) for n, u in zip(named, (None, None, "g"), strict=True)],
+        columns,
+    )
+    assert {proofs[0].quantity, proofs[2].quantity} == {"friction_force", "normal_force"}
+    assert to_si("friction_force", proofs[0].unit) == pytest.approx(9.80665e-3)
+    volts = [Candidate(frozenset({"torque"}), "V"), Candidate(frozenset({"friction_force"}), "N")]
+    radius = Candidate(frozenset({"track_radius"}), "mm")
+    assert prove([*volts, radius], columns) == {}

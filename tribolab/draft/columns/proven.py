@@ -90,7 +90,9 @@ def restrict_to_proofs(
             kept = [option for option in options if option.quantity not in settled]
             return kept if proof is None or proof.quantity != "distance" else []
         if place == taken[proof.quantity] or not _same(numbers, place, taken[proof.quantity]):
-            return [Match(proof.quantity, 1.0, None)]
+            # a load in g is read in gf, as its name alone would say
+            unit = next((o.unit for o in options if o.quantity == proof.quantity), None)
+            return [Match(proof.quantity, 1.0, unit)]
         return []
 
     return [options_of(place, options) for place, options in enumerate(matched)]

@@ -13,8 +13,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.quantities import QUANTITIES
 from tribolab.reading.interpret.limits import AGREEMENT, ROWS, SPREAD
-from tribolab.reading.interpret.rules import Rule, plausible_sizes, rules, to_si, units_written
+from tribolab.reading.interpret.rules import (
+    Rule,
+    plausible_sizes,
+    rules,
+    si_unit,
+    to_si,
+    units_written,
+)
+from tribolab.reading.interpret.unit_texts import converts
+from tribolab.unit_names import WEIGHTS
 
 _MOST_MEMBERS = 500  # ways in which columns may be members of one rule
 Units = dict[int, str]
@@ -150,11 +160,19 @@ def _units(
     """Yield the units in which each member of a rule is of a plausible size."""
     for name, place in zip(rule.members, places, strict=True):
         own = candidates[place].unit
-        options = [own] if own is not None else units_written()[name]
+        options = units_written()[name] if own is None else _read_as(name, own)
         values = np.abs(numbers[:, place])
         size = float(np.nanmax(values, initial=0.0))
         least, most = plausible_sizes()[name]
         yield [unit for unit in options if least <= size * to_si(name, unit) <= most]
+
+
+def _read_as(name: str, unit: str) -> list[str]:
+    """Return the unit in which a column is a member of a rule: a force in g is one in gf."""
+    si = si_unit(name)
+    read = WEIGHTS.get(unit, unit) if si == "N" else unit
+    bare = QUANTITIES[name].bare if name in QUANTITIES else None
+    return [read] if converts(read, si, bare) else []
 
 
 def _only_units(fits: Sequence[_Fit]) -> Units:
