@@ -9,6 +9,7 @@ from tribolab.reading.lexicon.lexicon import known_words, normalise_label, role_
 
 _HEAD_LINES = 40  # above such a table
 _MOST_ROWS = 2000  # more are no measurements of a person
+_LONGEST_LINE = 2000  # characters; tables of results have few columns
 _FEWEST = 2  # names that only results have, or one and the load beside it
 _NUMERIC = 0.5  # of a row's cells
 # parameters of ISO 21920 and ISO 25178, with their unit perhaps
@@ -17,6 +18,7 @@ _PARAMETER = re.compile(
 )
 _COMMON = ("Ra", "Rq", "Rz", "Sa", "Sq", "Sz")
 _CELLS = re.compile(r"\s*[;\t]\s*|\s*,(?!\d)\s*|\s{2,}")
+_BLANKS = re.compile(r"[^\S\t]{3,}")  # the search for cells takes the square of their number
 _COMMAS = re.compile(r"\s*,\s*")
 _NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
 
@@ -54,7 +56,10 @@ def find_results_table(text: str) -> ResultsTable | None:
     lines = [line.strip().strip('"') for line in text.splitlines() if line.strip()]
     if len(lines) > _MOST_ROWS:
         return None
+    lines = [_BLANKS.sub("  ", line[: _LONGEST_LINE + 1]) for line in lines]
     for place, line in enumerate(lines[:_HEAD_LINES]):
+        if len(line) > _LONGEST_LINE:
+            return None
         for between in (_CELLS, _COMMAS):
             labels = [label.strip('"') for label in between.split(line)]
             names = _results(labels)
