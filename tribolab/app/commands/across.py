@@ -113,12 +113,8 @@ def history(
         list[Path],
         typer.Argument(help="Results folders, or folders below which they lie, in any order."),
     ],
-    rule: Annotated[
-        list[str] | None, leaving("--rule", "choose rules with tl.history(..., rules=...)")
-    ] = None,
-    baseline: Annotated[
-        int | None, leaving("--baseline", "choose it with tl.history(..., baseline=...)")
-    ] = None,
+    rule: Annotated[list[str] | None, leaving("--rule", "choose rules in a notebook")] = None,
+    baseline: Annotated[int | None, leaving("--baseline", "choose it in a notebook")] = None,
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder of the page and its table.")
     ] = Path("lab"),
