@@ -240,7 +240,7 @@ def simulate(
     ] = False,
     fault: Annotated[
         list[str] | None,
-        leaving("--fault", "use tl.rig.simulate_campaign(folder, faults=[...])"),
+        leaving("--fault", "simulate faults in a notebook"),
     ] = None,
     jobs: Jobs = None,
     quiet: Quiet = False,
