@@ -121,7 +121,7 @@ def test_a_run_that_is_still_measured_is_refused_or_read_as_it_is_at_the_end(run
 
 def test_a_scan_and_a_modulus_are_watched_too(tmp_path, monkeypatch):
     from tribolab.io.scans import read as scans
-    from tribolab.reading import moduli
+    from tribolab.reading import modulus_tables
 
     profile, table = tmp_path / "line.txt", tmp_path / "pdms.csv"
     profile.write_text("Point spacing: 0.25 um\nZ [um]\n" + "1.0\n1.5\n1.25\n" * 20)
@@ -138,7 +138,7 @@ def test_a_scan_and_a_modulus_are_watched_too(tmp_path, monkeypatch):
         monkeypatch.setattr(module, name, read)
 
     spoil(scans, "read_content")
-    spoil(moduli, "_text")
+    spoil(modulus_tables, "_text")
     for reader, path in ((tl.read_scans, profile), (tl.read_modulus, table)):
         with pytest.raises(ReadError, match=rf"{path.name}: the file changes while it is read"):
             reader(path)

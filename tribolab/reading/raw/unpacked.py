@@ -18,6 +18,7 @@ from tribolab.reading.raw.opening import largest_unpacked, scratch_folder
 _GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
 _OFFICE = ("[Content_Types].xml", "main.xml")  # Office files and x3p are archives, too
 _CHUNK = 1 << 20
+_MOST_DEFLATED = 1032  # times: zlib packs no better (zlib.net/zlib_tech.html)
 _STATED = 4  # bytes at the end of a gzip file that state its unpacked size, modulo 4 GiB
 _LONGEST_README = 1 << 16  # bytes
 _LONGEST_LETTER = 3  # bytes of it that may stand at the end of what was read
@@ -144,7 +145,10 @@ def _unpacked(path: Path, size: int, modified: int, kind: str) -> Path:
             target = folder / (path.stem if path.suffix.lower() in (".gz", ".z") else path.name)
             with path.open("rb") as file:
                 file.seek(-_STATED, 2)
-                _refuse_larger(int.from_bytes(file.read(), "little"), size, path)
+                stated = int.from_bytes(file.read(), "little")
+            if stated > _MOST_DEFLATED * size:
+                raise zlib.error("its last bytes state more than it can hold")
+            _refuse_larger(stated, size, path)
             with gzip.open(path) as source:
                 _copy(source, target, size, path)
             return target
