@@ -48,9 +48,9 @@ def find_results_table(text: str) -> ResultsTable | None:
 
     Examples
     --------
-    >>> find_results_table("Sample;Ra [um];Rz [um]\\nA1;0,41;3,1\\nA2;0,43;3,3\\n")
+    >>> find_results_table("Sample;Ra [um];Rz [um]\nA1;0,41;3,1\nA2;0,43;3,3\n")
     ResultsTable(names=['Ra [um]', 'Rz [um]'], rows=2)
-    >>> find_results_table("x [mm];z [um]\\n0;0,41\\n1;0,43\\n") is None
+    >>> find_results_table("x [mm];z [um]\n0;0,41\n1;0,43\n") is None
     True
     """
     lines = [line.strip().strip('"') for line in text.splitlines() if line.strip()]
