@@ -93,3 +93,10 @@ def test_names_are_tried_together_and_not_one_after_the_other(tmp_path: Path) ->
     assert [column.quantity for column in columns] == ["friction_force", "normal_force"]
     assert not columns[0].guessed and columns[0].used
     assert evidence.NEAR < 0.1
+
+
+def test_the_load_of_a_testing_machine_may_be_the_friction(tmp_path: Path) -> None:
+    _, load = decided(tmp_path, "", {"Extension (mm)": T, "Load (N)": 2 + TURNS})
+    assert load.guessed and "friction_force" in load.options
+    _, load, _ = decided(tmp_path, "", {"Position (mm)": T, "Load (N)": 5.0, "Fx [N]": TURNS})
+    assert load.quantity == "normal_force" and not load.guessed

@@ -9,6 +9,7 @@ import numpy as np
 
 from tribolab.draft.columns.evidence import BOTH_FORCES, FRICTION, RULED_OUT, Evidence, Facts, Rule
 from tribolab.draft.columns.labels import bare_name
+from tribolab.draft.columns.turning import torque_of
 from tribolab.draft.file.layout import Layout
 from tribolab.draft.model import NO_NUMBERS, DraftColumn
 from tribolab.draft.stated.lengths import find_arm
@@ -115,6 +116,10 @@ def by_stated_load(layout: Layout) -> Rule:
             if _is_called_force(facts, place) and any(map(facts.places, _MOTION)):
                 why = "it is the only force on what slides; the load is not stated"
                 yield Evidence(place, "friction_force", _BY_LOAD, why, proposes=True, sure=True)
+            elif _is_load_of_tester(facts, place) and torque_of(facts.columns) is None:
+                # the load cell of a testing machine that pulls: "Load" next to a travel
+                doubt = "it is the normal force, although no other column is the friction"
+                yield Evidence(place, "normal_force", 0.0, doubt=doubt)
             return
         # no cell reads the weight of a sled
         sled = part_pattern("sled").search(normalise_label(load.text)) is not None
@@ -158,6 +163,12 @@ def _undecided_cells(facts: Facts) -> list[int]:
 def _is_called_force(facts: Facts, place: int) -> bool:
     name = normalise_label(facts.bare[place][0])
     return part_pattern("force_name").fullmatch(name) is not None
+
+
+def _is_load_of_tester(facts: Facts, place: int) -> bool:
+    """Whether a column is called as testing machines call what pulls, next to a travel."""
+    name = normalise_label(facts.bare[place][0])
+    return bool(facts.places("position")) and bool(part_pattern("tester_load").fullmatch(name))
 
 
 def _share_of_load(facts: Facts, place: int, load: Amount) -> float:
