@@ -1,9 +1,9 @@
 """What the tests of drafted dialects share."""
 
-from tribolab.draft.dialect.draft import draft_dialect, save_draft
-from tribolab.draft.read import read
-from tribolab.draft.scans import read_scans
-from tribolab.io.dialects.find import load_dialect
+from tribolab.reading.dialect.find import load_dialect
+from tribolab.reading.read import read
+from tribolab.reading.scan_files import read_scans
+from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
 
 
 def drafted(path, tmp_path):

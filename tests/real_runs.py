@@ -5,8 +5,8 @@ from pathlib import Path
 
 import xarray as xr
 
-from tribolab.draft.read import read
-from tribolab.draft.scans import read_scans
+from tribolab.reading.read import read
+from tribolab.reading.scan_files import read_scans
 
 
 def actuator(folder: Path, name: str) -> xr.Dataset:

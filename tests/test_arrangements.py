@@ -4,9 +4,14 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.draft.dialect.draft import draft_dialect, save_draft
 from tribolab.errors import ReadError
-from tribolab.io.dialects.arranged import below_names, groups_beside, holds_names, listed_columns
+from tribolab.reading.text.arrangements import (
+    below_names,
+    groups_beside,
+    holds_names,
+    listed_columns,
+)
+from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
 
 RNG = np.random.default_rng(12)
 FORCE = 1.2 + 0.02 * RNG.normal(size=400)

@@ -12,8 +12,8 @@ from tribolab.app.run import run_campaign
 from tribolab.campaign.models.plan import plan_models
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.store.catalogue import Catalogue
-from tribolab.io.netcdf import read_netcdf
 from tribolab.lubrication.viscosity import liquid_viscosity
+from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.records.part_records import CurveRecord, SurfaceRecord
 from tribolab.rig import (
     Calibration,

@@ -14,8 +14,8 @@ from tribolab.campaign.joint.stage import JointFits
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.errors import ReadError
-from tribolab.io.netcdf import read_netcdf
 from tribolab.lubrication.viscosity import liquid_viscosity
+from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.records.joint_record import JointRecord
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.report.figures.models import draw_model, plan_model_figures

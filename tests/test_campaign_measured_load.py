@@ -7,10 +7,10 @@ from dialects import dialect_of
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.runs.loads import RunLoad, load_of
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.draft.on_the_fly import read_run
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.segments.find import find_segments
-from tribolab.io.netcdf import read_netcdf
+from tribolab.reading.netcdf.netcdf import read_netcdf
+from tribolab.reading.unknown_run import read_run
 from tribolab.words import force_text, load_text
 
 DIALECT = dialect_of("plain", time="t", friction_force="F", normal_force="N", sliding_velocity="v")

@@ -24,7 +24,7 @@ from tribolab.errors import AnalysisError, ConfigError
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.fit.spectrum_error import shear_stress_shift
 from tribolab.friction.coefficient.repeatability import pooled_repeatability
-from tribolab.io.netcdf import read_netcdf, write_netcdf
+from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
 from tribolab.records.model_words import is_described, judgement, stress_interval
 from tribolab.records.part_records import ModelRecord
 from tribolab.records.parts import ModelOutcome

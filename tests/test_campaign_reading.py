@@ -14,8 +14,8 @@ from tribolab.campaign.runs.reading import READING, Earlier, earlier_signals, ma
 from tribolab.campaign.runs.sources import sources_of_run
 from tribolab.campaign.settings.plan import PlannedRun
 from tribolab.campaign.store.data_files import read_data, write_data
-from tribolab.io.runs import read_run
 from tribolab.qc.run.checks import check_run
+from tribolab.reading.runs.read_run import read_run
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +41,7 @@ def read(monkeypatch):
         names.append((paths if isinstance(paths, Path) else paths[0]).name)
         return read_run(paths, *given, **more)
 
-    monkeypatch.setattr("tribolab.io.runs.read_run", spied)
+    monkeypatch.setattr("tribolab.reading.runs.read_run.read_run", spied)
     return names
 
 
@@ -92,7 +92,7 @@ def shifted(campaign):
 
 
 def dialect(campaign):
-    from tribolab.io.dialects.find import known_dialects
+    from tribolab.reading.dialect.find import known_dialects
 
     shutil.copy(known_dialects()["linear_slider"], campaign.parent / "mine.toml")
     edit(

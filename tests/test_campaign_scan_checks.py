@@ -18,10 +18,10 @@ from tribolab.campaign.surfaces.plan import PlannedSurface
 from tribolab.campaign.surfaces.stage import SurfaceTask, process_surface
 from tribolab.cli import app
 from tribolab.errors import ConfigError
-from tribolab.io.netcdf import read_netcdf
 from tribolab.qc.run.checks import RUN_CHECKS
 from tribolab.qc.scan import checks as scan_checks
 from tribolab.qc.scan.checks import SCAN_CHECKS
+from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.rig.files import scan_file
 
 BARE = ("--figures", "none")  # where they are not looked at

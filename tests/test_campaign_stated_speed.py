@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from tribolab import cli
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.io.netcdf import read_netcdf
+from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.report.page.answer import cards
 
 DIALECT = dialect_of("plain", time="t", friction_force="F", normal_force="N")

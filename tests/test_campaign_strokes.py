@@ -9,7 +9,7 @@ from dialects import dialect_of
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.errors import ConfigError
-from tribolab.io.netcdf import read_netcdf
+from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.records.run_facts import ends_of_strokes
 
 DIALECT = dialect_of("crank", time="t", position="x", friction_force="F", normal_force="N")

@@ -13,7 +13,7 @@ import tribolab as tl
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.errors import ConfigError
-from tribolab.io.netcdf import read_netcdf
+from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.report.results import write_report
 from tribolab.rig import Protocol, Rig, simulate_campaign
 from tribolab.rubber.friction import viscoelastic_friction

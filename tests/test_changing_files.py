@@ -9,8 +9,8 @@ import pytest
 
 import tribolab as tl
 from tribolab.errors import ReadError
-from tribolab.io import gather
 from tribolab.reading.raw import limits, source
+from tribolab.reading.runs import gather
 
 HEAD = "# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n"
 LONG_AGO = 10 * limits.AT_REST.value
@@ -120,8 +120,8 @@ def test_a_run_that_is_still_measured_is_refused_or_read_as_it_is_at_the_end(run
 
 
 def test_a_scan_and_a_modulus_are_watched_too(tmp_path, monkeypatch):
-    from tribolab.io.scans import read as scans
     from tribolab.reading import modulus_tables
+    from tribolab.reading.scans import read_scan as scans
 
     profile, table = tmp_path / "line.txt", tmp_path / "pdms.csv"
     profile.write_text("Point spacing: 0.25 um\nZ [um]\n" + "1.0\n1.5\n1.25\n" * 20)

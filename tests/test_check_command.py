@@ -11,13 +11,13 @@ import pytest
 from typer.testing import CliRunner
 
 from tribolab import cli, rig
-from tribolab.draft.read import read
-from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError
-from tribolab.io.kinds import kind_of
 from tribolab.qc.register import Check
 from tribolab.qc.run import checks as run_checks
 from tribolab.qc.scan import checks as scan_checks
+from tribolab.reading.kinds import kind_of
+from tribolab.reading.read import read
+from tribolab.reading.scan_files import read_scans
 from tribolab.rig.files import scan_file
 
 

@@ -10,11 +10,11 @@ from typer.testing import CliRunner
 import tribolab as tl
 from tribolab.cli import app
 from tribolab.errors import ReadError
-from tribolab.io.clocks.basis import Play
-from tribolab.io.clocks.merge import merge
-from tribolab.io.clocks.motion import clean_motion
-from tribolab.io.signals import signals_of
 from tribolab.qc.run.checks import check_run
+from tribolab.reading.clocks.basis import Play
+from tribolab.reading.clocks.merge import merge
+from tribolab.reading.clocks.motion import clean_motion
+from tribolab.reading.signals import signals_of
 
 # short logs of every kind and protocol; tests/benchmarks/clock_shift_coverage.py takes hundreds
 PAIRS = {

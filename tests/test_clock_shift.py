@@ -9,7 +9,7 @@ import pytest
 
 import tribolab as tl
 from tribolab import rig
-from tribolab.io.clocks.shift import estimate_clock_shift
+from tribolab.reading.clocks.shift import estimate_clock_shift
 from tribolab.rig.files import force_file as force_file_of
 from tribolab.rig.files import motion_file as motion_file_of
 

@@ -8,15 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tribolab.draft.columns import evidence, text_evidence
-from tribolab.draft.columns.decide import decide
-from tribolab.draft.columns.evidence import RULES, Facts, Rule
-from tribolab.draft.columns.labels import bare_name, labelled
-from tribolab.draft.columns.text_evidence import by_legend, by_mean, by_stated_load
-from tribolab.draft.file.layout import Layout, find_layout
-from tribolab.draft.model import DraftColumn
-from tribolab.io.dialects.signature import peek
 from tribolab.reading.interpret.names import matches
+from tribolab.reading.text.first_bytes import peek
+from tribolab.reading.unknown.columns import evidence, text_evidence
+from tribolab.reading.unknown.columns.decide import decide
+from tribolab.reading.unknown.columns.evidence import RULES, Facts, Rule
+from tribolab.reading.unknown.columns.labels import bare_name, labelled
+from tribolab.reading.unknown.columns.text_evidence import by_legend, by_mean, by_stated_load
+from tribolab.reading.unknown.layout.text_layout import Layout, find_layout
+from tribolab.reading.unknown.model import DraftColumn
 
 N = 60
 T = np.arange(N) / 10

@@ -7,8 +7,8 @@ import pytest
 import xarray as xr
 
 import tribolab as tl
-from tribolab.draft.dialect.draft import save_draft
 from tribolab.errors import ReadError
+from tribolab.reading.unknown.proposal.draft import save_draft
 
 LOAD = 5.0  # N
 BLOCKS = ((1.0, 4.0, 0.22), (10.0, 4.0, 0.15), (5.0, 1.5, 0.18))  # Hz, mm, coefficient

@@ -15,7 +15,7 @@ from tribolab.friction.oscillation.slip_curve import stick_slip_curve
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.stribeck import measured_stribeck_curve
-from tribolab.io.netcdf import read_netcdf, write_netcdf
+from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
 
 SAID = {"reason": "slipped off", "author": "A. Person", "date": "2026-11-20"}
 MU, BAD = 0.3, 2

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from test_physics_rules import CASES, PRODUCTS, proven
 
-from tribolab.io.dialects.formula import Operand, dimension_of, evaluate, in_base_units
+from tribolab.reading.dialect.formula import Operand, dimension_of, evaluate, in_base_units
 from tribolab.reading.interpret import derive as derivations
 from tribolab.reading.interpret import physics
 from tribolab.reading.interpret.derive import Given, derive, missing_members

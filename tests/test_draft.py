@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from drafts import drafted
 
-from tribolab.draft.dialect.draft import draft_dialect, save_draft
-from tribolab.draft.read import read
-from tribolab.draft.scans import read_scans
 from tribolab.errors import OutputError, ReadError
-from tribolab.io.scans.results import read_tester_results
+from tribolab.reading.read import read
+from tribolab.reading.scan_files import read_scans
+from tribolab.reading.scans.results import read_tester_results
+from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
 
 ACTUATOR = "actuator_friction_CC0"
 CETR = "cetr_umt2_MIT/HT-2n-6-4 2_00"

@@ -10,11 +10,11 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
-from tribolab.draft.dialect.answers import corrected
-from tribolab.draft.dialect.draft import dialect_name, draft_dialect
-from tribolab.draft.dialect.examples import draft_of_examples
-from tribolab.draft.dialect.sparks import BARS
 from tribolab.errors import ReadError, UnitError
+from tribolab.reading.unknown.proposal.answers import corrected
+from tribolab.reading.unknown.proposal.draft import dialect_name, draft_dialect
+from tribolab.reading.unknown.proposal.several_files import draft_of_examples
+from tribolab.reading.unknown.proposal.sparklines import BARS
 from tribolab.units import to_si
 
 

@@ -6,8 +6,8 @@ from drafts import drafted
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.errors import ReadError
+from tribolab.reading.unknown.proposal.draft import draft_dialect
 
 NAMES = {
     "time": ("Time", "s", 1.0),

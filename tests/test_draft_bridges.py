@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from tribolab.draft.dialect.draft import draft_dialect, save_draft
-from tribolab.draft.read import read
 from tribolab.errors import TribolabError
+from tribolab.reading.read import read
+from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
 
 TIME = np.arange(300) / 10
 SPEED = np.repeat([0.0, 1.0, 3.0], 100)  # mm/s

@@ -8,9 +8,9 @@ from typer.testing import CliRunner
 
 from tribolab import cli
 from tribolab.app.file_info import run_lines
-from tribolab.draft.dialect.draft import draft_dialect, save_draft
 from tribolab.errors import ConfigError
-from tribolab.io.dialects.find import load_dialect
+from tribolab.reading.dialect.find import load_dialect
+from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
 
 
 def test_an_existing_dialect_is_not_overwritten(tmp_path):

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.errors import ReadError
+from tribolab.reading.unknown.proposal.draft import draft_dialect
 
 TIME = 0.05 * np.arange(600)
 FRICTION = 4.0 + 0.02 * np.sin(TIME)

@@ -7,9 +7,9 @@ import pytest
 
 import tribolab as tl
 from tribolab.app.file_info import file_lines
-from tribolab.draft.dialect.draft import draft_dialect, save_draft
-from tribolab.draft.dialect.questions import GuessedError
 from tribolab.errors import TribolabError
+from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
+from tribolab.reading.unknown.proposal.questions import GuessedError
 
 TIME = np.arange(600) / 10
 WAY = np.interp(TIME, [0, 10, 60], [0, 0, 100])  # mm, 2 mm/s

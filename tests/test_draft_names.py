@@ -8,11 +8,11 @@ from drafts import drafted
 from rich.console import Console
 
 import tribolab as tl
-from tribolab.draft.dialect.draft import draft_dialect
-from tribolab.draft.dialect.questions import questions
-from tribolab.draft.dialect.show import print_draft
 from tribolab.qc.run.checks import check_run
 from tribolab.reading.lexicon.lexicon import known_words, normalise_label
+from tribolab.reading.unknown.proposal.draft import draft_dialect
+from tribolab.reading.unknown.proposal.questions import questions
+from tribolab.reading.unknown.proposal.show import print_draft
 
 TABLES = {
     "French": "Temps (s);Force de frottement (N);Charge (N);Vitesse de glissement (mm/s);"

@@ -10,9 +10,9 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
-from tribolab.draft.dialect.draft import draft_dialect
-from tribolab.draft.dialect.questions import GuessedError
 from tribolab.errors import ReadError
+from tribolab.reading.unknown.proposal.draft import draft_dialect
+from tribolab.reading.unknown.proposal.questions import GuessedError
 
 GOOD = "Temps (s);Force de frottement (N);Charge (N);Vitesse (mm/s)"
 OPEN = "Zeit;Reibkraft;Load Cell [N];Weg [mm]"

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.draft.dialect.draft import draft_dialect
-from tribolab.draft.file.lines import find_encoding
 from tribolab.errors import ReadError
+from tribolab.reading.unknown.layout.lines import find_encoding
+from tribolab.reading.unknown.proposal.draft import draft_dialect
 
 ROWS = 400
 

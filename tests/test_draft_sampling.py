@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from tribolab.draft.dialect.draft import draft_dialect, save_draft
-from tribolab.draft.on_the_fly import read_run
-from tribolab.draft.stated.sampling import sample_rate_unit
 from tribolab.errors import TribolabError
+from tribolab.reading.unknown.header.sampling import sample_rate_unit
+from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
+from tribolab.reading.unknown_run import read_run
 
 LINES = (
     "# Cadence d'acquisition : 1000 pts/s",

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.draft.dialect.answers import corrected
-from tribolab.draft.dialect.questions import GuessedError
+from tribolab.reading.unknown.proposal.answers import corrected
+from tribolab.reading.unknown.proposal.questions import GuessedError
 
 HOLD = 40  # rows at each speed
 TURNS = (0.0, 60.0, 120.0, 240.0)  # 1/min

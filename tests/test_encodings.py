@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tribolab.draft.file.lines import find_encoding
-from tribolab.draft.scans import read_scans
+from tribolab.reading.scan_files import read_scans
+from tribolab.reading.unknown.layout.lines import find_encoding
 
 NUMBERS = b"\n0.0 1.5\n0.1 1.25\n"
 EASTERN = [

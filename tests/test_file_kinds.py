@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 import tribolab as tl
 from tribolab import cli
 from tribolab.errors import AnalysisError, ReadError
-from tribolab.io.stroke_speed import velocity_of_strokes
+from tribolab.reading.runs.stroke_speed import velocity_of_strokes
 from tribolab.rig.layouts import KINDS, write_kind
 
 WAYS = {

@@ -13,10 +13,10 @@ from mutations import MADE
 from typer.testing import CliRunner
 
 from tribolab.cli import app
-from tribolab.draft.dialect.draft import draft_dialect
-from tribolab.draft.read import read
-from tribolab.draft.scans import read_scans
 from tribolab.errors import TribolabError
+from tribolab.reading.read import read
+from tribolab.reading.scan_files import read_scans
+from tribolab.reading.unknown.proposal.draft import draft_dialect
 
 _QUICK = re.compile(
     r"units 6: (header|campaign)|patterns 7: \(a|large 8: dialect, (5000.*True, clock True)"

@@ -9,7 +9,7 @@ import pytest
 
 import tribolab as tl
 from tribolab.errors import ReadError
-from tribolab.io.netcdf import read_netcdf
+from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.reading.raw.hdf5_safety import check_self_contained
 
 SECRET = "root:secret of this machine"

@@ -11,7 +11,7 @@ import xarray as xr
 import tribolab as tl
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.errors import AnalysisError, ReadError
-from tribolab.io.inertia import acceleration
+from tribolab.reading.runs.inertia import acceleration
 from tribolab.records.traces import decimated_trace
 from tribolab.rig import DryLaw
 from tribolab.rig.layouts.motion import Leg, carried_out, crank

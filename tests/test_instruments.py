@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.io.dialects.find import known_dialects, recognise
+from tribolab.reading.dialect.find import known_dialects, recognise
 
 RNG = np.random.default_rng(4)
 N = 4000

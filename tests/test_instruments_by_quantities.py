@@ -6,8 +6,8 @@ from file_kinds import AT_ONCE, judge, read_in_some_way
 
 import tribolab as tl
 from tribolab.errors import ConfigError, ReadError
-from tribolab.io.dialects.find import known_dialects, load_dialect, recognise
 from tribolab.qc.run.checks import check_run
+from tribolab.reading.dialect.find import known_dialects, load_dialect, recognise
 from tribolab.rig.layouts import write_kind
 
 SECONDS = np.arange(120.0)

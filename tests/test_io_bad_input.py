@@ -88,7 +88,7 @@ def test_what_is_no_file_is_refused(tmp_path):
 
 
 def test_a_file_that_vanishes_between_looking_and_reading_is_a_read_error(tmp_path, monkeypatch):
-    from tribolab.io.dialects import text
+    from tribolab.reading.dialect.delimited import read_text as text
 
     file = force_log(tmp_path, rows())
     original = text._opened
@@ -123,7 +123,7 @@ def test_a_normal_force_that_is_zero_for_a_while_is_left_to_later_stages(tmp_pat
 
 
 def test_repeated_times_can_be_dropped_by_the_dialect(tmp_path):
-    from tribolab.io.schema_folder import schema_folder
+    from tribolab.reading.schema_folder import schema_folder
 
     text = (schema_folder() / "instruments/linear_slider.toml").read_text()
     (tmp_path / "mine.toml").write_text(text + '\n[time]\non_repeat = "drop"\n')

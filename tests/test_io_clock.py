@@ -5,10 +5,10 @@ import pytest
 
 import tribolab as tl
 from tribolab.app.file_info import file_lines
-from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.errors import ReadError
-from tribolab.io.clocks.faults import find_faults, rows_at_fault
 from tribolab.qc.run.checks import check_run
+from tribolab.reading.clocks.faults import find_faults, rows_at_fault
+from tribolab.reading.unknown.proposal.draft import draft_dialect
 
 HEAD = "Time [s],Friction force [N],Normal force [N],Position [mm]"
 TOML = """

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 import tribolab as tl
 from tribolab.errors import ReadError
-from tribolab.io.dialects.time_rule import Time
+from tribolab.reading.dialect.time_rule import Time
 
 N = 300
 STEP = 0.125  # s: a power of two, so that sums are exact

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import tribolab as tl
 from tribolab.errors import ConfigError, ReadError, UnitError
-from tribolab.io.dialects.formula import evaluate, in_base_units, parse_formula
+from tribolab.reading.dialect.formula import evaluate, in_base_units, parse_formula
 
 DISC = """
 name = "disc"

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 import tribolab as tl
 from tribolab.errors import ConfigError, ReadError
-from tribolab.io.dialects.find import json_schema, known_dialects, load_dialect, recognise
-from tribolab.io.dialects.recognise import mismatch
-from tribolab.io.dialects.signature import peek
-from tribolab.io.dialects.write import dialect_toml
-from tribolab.io.schema_folder import schema_folder
+from tribolab.reading.dialect.find import json_schema, known_dialects, load_dialect, recognise
+from tribolab.reading.dialect.recognise import mismatch
+from tribolab.reading.dialect.write import dialect_toml
+from tribolab.reading.schema_folder import schema_folder
+from tribolab.reading.text.first_bytes import peek
 
 BASE = """
 name = "mine"
@@ -207,7 +207,7 @@ def test_nothing_and_too_much_recognised_name_the_way_out(tmp_path, monkeypatch)
     )
     (tmp_path / "twin.toml").write_text(twin)
     both = known_dialects() | {"twin": tmp_path / "twin.toml"}
-    monkeypatch.setattr("tribolab.io.dialects.find.known_dialects", lambda: both)
+    monkeypatch.setattr("tribolab.reading.dialect.find.known_dialects", lambda: both)
     with pytest.raises(ReadError, match="'linear_slider', 'twin'; say which with instrument="):
         recognise(file)
 
@@ -235,7 +235,7 @@ def test_numbers_come_back_exactly_however_they_are_written(
 
 
 def test_blocks_join_without_loss_in_a_file_longer_than_a_block(tmp_path, monkeypatch):
-    from tribolab.io.dialects import text
+    from tribolab.reading.dialect.delimited import read_text as text
 
     numbers = np.random.default_rng(1).normal(size=1500)
     data = "t [s];F [N]\n" + "".join(f"{n};{force!r}\n" for n, force in enumerate(numbers.tolist()))
@@ -279,7 +279,7 @@ ENDLESS = "^(a|aa)+$"
 def test_a_pattern_that_backtracks_without_end_is_a_clear_error_in_time(
     tmp_path, old, new, monkeypatch
 ):
-    monkeypatch.setattr("tribolab.io.dialects.patterns._SECONDS", 0.2)
+    monkeypatch.setattr("tribolab.reading.text.bounded_patterns._SECONDS", 0.2)
     text = "a" * 60 + "b\nt [s];F [N]\n" + "".join(f"{n};1\n" for n in range(20))
     (tmp_path / "raw.csv").write_text(text)
     known = BASE.replace("line = 1", "pattern = '^t '") if old != "line = 1" else BASE

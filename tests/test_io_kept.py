@@ -5,9 +5,9 @@ import pytest
 import xarray as xr
 
 from tribolab.errors import ReadError
-from tribolab.io import kept
-from tribolab.io.kept import SHORT, read_kept
-from tribolab.io.netcdf import read_netcdf, write_groups
+from tribolab.reading.netcdf import cache as kept
+from tribolab.reading.netcdf.cache import SHORT, read_kept
+from tribolab.reading.netcdf.netcdf import read_netcdf, write_groups
 
 
 def dataset(value, size=3):

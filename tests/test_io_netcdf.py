@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 
 import tribolab as tl
 from tribolab.errors import ReadError, TribolabError
-from tribolab.io.attributes import encoded
-from tribolab.io.netcdf import read_groups, read_netcdf, write_groups, write_netcdf
-from tribolab.io.seal import seal, unseal
-from tribolab.io.storage import CHUNK, storage
+from tribolab.reading.netcdf.attributes import encoded
+from tribolab.reading.netcdf.netcdf import read_groups, read_netcdf, write_groups, write_netcdf
+from tribolab.reading.netcdf.seal import seal, unseal
+from tribolab.reading.netcdf.storage import CHUNK, storage
 
 ATTRIBUTES = st.dictionaries(
     st.from_regex(r"[a-z][a-z0-9_]{0,10}", fullmatch=True).filter(lambda k: k != "units"),
@@ -288,7 +288,7 @@ def test_of_a_group_only_the_wanted_variables_are_read(tmp_path):
 _READ_IN_THREADS = """
 import sys
 from concurrent.futures import ThreadPoolExecutor
-from tribolab.io.netcdf import read_netcdf
+from tribolab.reading.netcdf.netcdf import read_netcdf
 with ThreadPoolExecutor(6) as threads:
     read = threads.map(read_netcdf, 80 * sys.argv[1:], 240 * ["run"])
     sizes = [data.sizes["time"] for data in read]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.io.file_facts import file_facts
-from tribolab.io.runs import read_log
+from tribolab.reading.runs.file_facts import file_facts
+from tribolab.reading.runs.read_run import read_log
 
 REAL = {
     "actuator_friction_CC0/Circle_1bar.csv": ("pneumatic_actuator", 7139),

@@ -5,9 +5,9 @@ import pytest
 
 import tribolab as tl
 from tribolab.errors import ReadError
-from tribolab.io.clocks.shift import estimate_clock_shift
-from tribolab.io.companion import describe_companion
-from tribolab.io.logs import group_files
+from tribolab.reading.clocks.shift import estimate_clock_shift
+from tribolab.reading.runs.companion import describe_companion
+from tribolab.reading.runs.logs import group_files
 
 FASTEST = 1e-3  # s, sample period of the fastest strokes
 

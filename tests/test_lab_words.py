@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.draft.file.lines import find_encoding
 from tribolab.reading.interpret.names import matches
 from tribolab.reading.lexicon.lexicon import known_words
+from tribolab.reading.unknown.layout.lines import find_encoding
 
 TERMS = {
     word.quantity: [term for terms in word.terms.values() for term in terms]

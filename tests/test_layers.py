@@ -40,17 +40,18 @@ def test_an_import_upwards_a_circle_and_one_of_the_public_face_are_found(tmp_pat
         empty.write_text("")
     (tmp_path / "pyproject.toml").write_text((PROJECT / "pyproject.toml").read_text("utf-8"))
     assert lint(tmp_path).returncode == 0
-    io = tmp_path / "tribolab" / "io"
-    (io / "one.py").write_text("def f():\n    import tribolab.report\n")
-    (io / "two.py").write_text("from tribolab.io import three\n")
-    (io / "three.py").write_text(
-        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from tribolab.io import two\n"
+    clocks = tmp_path / "tribolab" / "reading" / "clocks"
+    (clocks / "one.py").write_text("def f():\n    import tribolab.report\n")
+    (clocks / "two.py").write_text("from tribolab.reading.clocks import three\n")
+    (clocks / "three.py").write_text(
+        "from typing import TYPE_CHECKING\n"
+        "if TYPE_CHECKING:\n    from tribolab.reading.clocks import two\n"
     )
-    (io / "four.py").write_text("from tribolab import read\n")
+    (clocks / "four.py").write_text("from tribolab import read\n")
     settings = tmp_path / "tribolab" / "campaign" / "settings"
     (settings / "five.py").write_text("from tribolab.campaign.runs import stage\n")
     said = lint(tmp_path).stdout
-    assert "tribolab.io is not allowed to import tribolab.report" in said
+    assert "tribolab.reading is not allowed to import tribolab.report" in said
     assert "tribolab.campaign.settings is not allowed to import tribolab.campaign.runs" in said
     assert "No circles, in packages and between them BROKEN" in said
     assert "Nothing below the face imports the public names BROKEN" in said

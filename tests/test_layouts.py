@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.draft.dialect.draft import draft_dialect
 from tribolab.errors import ReadError
 from tribolab.reading.raw.containers.workbook import sheets_of
+from tribolab.reading.unknown.proposal.draft import draft_dialect
 
 NAMES, UNITS = ["Time", "Friction force", "Normal force", "Speed"], ["s", "N", "N", "mm/s"]
 

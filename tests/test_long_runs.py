@@ -20,8 +20,8 @@ from tribolab.campaign.settings.review import REVIEW_FILE
 from tribolab.errors import ReadError
 from tribolab.friction.segments.plateaus import running_median
 from tribolab.friction.segments.slopes import block_slopes, position_noise, without_resets
-from tribolab.io.netcdf import read_groups
-from tribolab.io.runs import read_run
+from tribolab.reading.netcdf.netcdf import read_groups
+from tribolab.reading.runs.read_run import read_run
 
 GROUPS = ("run", "segments", "friction", "stick_slip", "friction_as_found")
 COLUMNS = {

@@ -8,8 +8,8 @@ from contact_cases import CONTACT, reference_psd
 
 from tribolab.errors import AnalysisError
 from tribolab.fit.model_uncertainty import model_uncertainty
-from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.lubrication.stribeck import stribeck_curve
+from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
 from tribolab.surface.extrapolation import extrapolate
 from tribolab.surface.moments import band, rms_roughness
 

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from tribolab.app.file_info import file_lines
-from tribolab.draft.dialect.draft import draft_dialect
-from tribolab.draft.read import read
-from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError
-from tribolab.io.kinds import kind_of
-from tribolab.io.scans.results import read_tester_results
-from tribolab.reading.scans.results_table import find_results_table
+from tribolab.reading.kinds import kind_of
+from tribolab.reading.read import read
+from tribolab.reading.results_table import find_results_table
+from tribolab.reading.scan_files import read_scans
+from tribolab.reading.scans.results import read_tester_results
+from tribolab.reading.unknown.proposal.draft import draft_dialect
 
 TEXT = "Report\nRa\t0,523µm\nRq\t0,661 µm\nRz\t*.*******µm\nRsk\t-0,31\nRt\t4,2 µm\nλc\t0,8mm\n"
 

@@ -6,10 +6,10 @@ import xarray as xr
 
 import tribolab as tl
 from tribolab.campaign.settings.media import contradicting_viscosity
-from tribolab.draft.read import read
 from tribolab.friction.oscillation.mains import find_mains
 from tribolab.friction.oscillation.spectra import EvenRecord
 from tribolab.qc.signals import saturation
+from tribolab.reading.read import read
 from tribolab.stamping import stamp
 
 RATE = 20.0
@@ -241,7 +241,7 @@ def test_an_uncertainty_of_the_zero_in_the_wrong_unit_is_a_mistake_in_the_campai
         '[campaign]\nname = "a"\nraw = "."\n\n[[run]]\nfiles = "a.csv"\n'
         'zero_uncertainty = "0.2 N"\ninstrument = "a.toml"\n'
     )
-    from tribolab.draft.dialect.draft import draft_dialect
+    from tribolab.reading.unknown.proposal.draft import draft_dialect
 
     (tmp_path / "a.toml").write_text(draft_dialect(tmp_path / "a.csv").toml)
     outcome = tl.run_campaign(tmp_path / "campaign.toml", jobs=1, figures="none")

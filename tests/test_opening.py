@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 import tribolab
 from tribolab.cli import app
 from tribolab.errors import ReadError, TribolabError
-from tribolab.io.tables.schema import load_schema
+from tribolab.reading.netcdf.table_schema import load_schema
 from tribolab.reading.raw import limits, opening
 from tribolab.reading.raw.opening import CrashedError, MissingLibraryError
 from tribolab.reading.raw.source import check_regular

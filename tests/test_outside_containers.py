@@ -9,7 +9,7 @@ import pytest
 
 import tribolab as tl
 from tribolab.errors import ConfigError, ReadError
-from tribolab.io.dialects.find import load_dialect
+from tribolab.reading.dialect.find import load_dialect
 
 FORCE = "# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n" + "".join(
     f"{n / 10},{n}.5,31.0\n" for n in range(300)

@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 import tribolab
-from tribolab.io.schema_folder import schema_folder
+from tribolab.reading.schema_folder import schema_folder
 
 PROJECT = Path(tribolab.__file__).resolve().parents[1]
 SHOWS = (
     "import json, tribolab\n"
-    "from tribolab.io.schema_folder import schema_folder\n"
-    "from tribolab.io.dialects.find import known_dialects, load_dialect\n"
+    "from tribolab.reading.schema_folder import schema_folder\n"
+    "from tribolab.reading.dialect.find import known_dialects, load_dialect\n"
     "names = [load_dialect(name).name for name in known_dialects()]\n"
     "print(json.dumps([str(schema_folder()), names, tribolab.__version__]))\n"
 )

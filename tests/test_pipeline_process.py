@@ -26,7 +26,7 @@ from tribolab.campaign.runs import stage
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.settings.plan import planned_runs
 from tribolab.errors import ConfigError, OutputError
-from tribolab.io.netcdf import read_netcdf
+from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.records.traces import trace_size
 from tribolab.report.page.reviewing import review_data
 from tribolab.rig import read_truth
@@ -381,6 +381,6 @@ def test_a_full_disk_ends_the_campaign_with_one_clear_error(original, tmp_path, 
     def full(data, path, **options):
         raise OSError(errno.ENOSPC, "No space left on device", str(path))
 
-    monkeypatch.setattr("tribolab.io.netcdf.write_groups", full)
+    monkeypatch.setattr("tribolab.reading.netcdf.netcdf.write_groups", full)
     with pytest.raises(OutputError, match="disk is full"):
         process(load_campaign(original), tmp_path)

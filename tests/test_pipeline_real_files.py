@@ -4,7 +4,7 @@ import pytest
 
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.io.netcdf import read_netcdf
+from tribolab.reading.netcdf.netcdf import read_netcdf
 
 TEXT = """
 [campaign]

@@ -16,9 +16,9 @@ from reporting import SPEEDS, made_curve, made_run
 import tribolab as tl
 from tribolab import plot
 from tribolab.errors import AnalysisError
-from tribolab.io.netcdf import write_netcdf
 from tribolab.plot.look.style import DOUBLE_MM, SINGLE_MM, surface_styles
 from tribolab.plot.runs.signals import main_signal
+from tribolab.reading.netcdf.netcdf import write_netcdf
 from tribolab.report.figures.sliding import Shown, SlipFigure, draw_sliding
 from tribolab.stamping import stamp
 

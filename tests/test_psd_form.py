@@ -76,7 +76,7 @@ def test_dropouts_do_not_pull_the_form_and_are_counted():
 
 
 def test_a_tilted_map_is_levelled(shared_data):
-    from tribolab.draft.scans import read_scans
+    from tribolab.reading.scan_files import read_scans
 
     tilted = read_scans(shared_data / "nanovea_map_MIT" / "test1.txt", instrument="nanovea_map")
     flat = remove_form(tilted, "tilt")

@@ -8,12 +8,12 @@ import pytest
 import xarray as xr
 
 from tribolab.errors import ConfigError, UnitError
-from tribolab.io.schema_folder import schema_folder
 from tribolab.qc import catalogue
 from tribolab.qc.findings import Findings, exit_code
 from tribolab.qc.register import STATUSES, Check, Result
 from tribolab.qc.run.checks import RUN_CHECKS, check, check_run
 from tribolab.qc.scan.checks import SCAN_CHECKS
+from tribolab.reading.schema_folder import schema_folder
 from tribolab.stamping import stamp
 from tribolab.units import to_si
 

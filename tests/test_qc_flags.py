@@ -7,7 +7,6 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.qc.flags import (
     FAIL,
     GOOD,
@@ -18,6 +17,7 @@ from tribolab.qc.flags import (
     combine,
 )
 from tribolab.qc.run.checks import check_run
+from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
 from tribolab.stamping import stamp
 
 SEVERITIES = [NOT_EVALUATED, GOOD, SUSPECT, FAIL, MISSING]  # from what yields to what prevails

@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 from tribolab.friction.oscillation.lines import find_lines, mains_harmonic
 from tribolab.friction.oscillation.noise import noise_level
-from tribolab.io.tables.schema import validate
 from tribolab.qc import signals
 from tribolab.qc.flags import FAIL, GOOD, MISSING, NOT_EVALUATED, SUSPECT
 from tribolab.qc.run import schema, timing
+from tribolab.reading.netcdf.table_schema import validate
 
 seeds = st.integers(0, 2**32 - 1)
 

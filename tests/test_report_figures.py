@@ -138,7 +138,7 @@ def test_nothing_is_read_back_to_be_shown(made, tmp_path, monkeypatch):
         raise AssertionError("a data file was opened to be shown")
 
     for name in ("read_netcdf", "read_groups"):
-        monkeypatch.setattr(f"tribolab.io.netcdf.{name}", refuse)
+        monkeypatch.setattr(f"tribolab.reading.netcdf.netcdf.{name}", refuse)
     write_report(later, figures="none")
     here, before = report_of(later), report_of(made)
     for key in ("runs", "curves", "verdict", "sliding_mode"):

@@ -17,8 +17,8 @@ from report_pages import details_of, figures_of
 from reporting import made_curve, made_outcome, made_run, with_run, without_curves
 
 import tribolab
-from tribolab.io.netcdf import read_netcdf, write_netcdf
 from tribolab.qc.flags import attach
+from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
 from tribolab.records.packed import clock_of, packed_points
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome

@@ -32,11 +32,11 @@ from tribolab.friction.decisions.decide import decide
 from tribolab.friction.decisions.decision import Decision
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.stribeck import measured_stribeck_curve
-from tribolab.io.runs import read_run
-from tribolab.io.schema_folder import schema_folder
 from tribolab.qc.flags import FAIL, GOOD
 from tribolab.qc.manual import BIT
 from tribolab.qc.run.checks import check_run
+from tribolab.reading.runs.read_run import read_run
+from tribolab.reading.schema_folder import schema_folder
 from tribolab.records.decision_rows import decision_rows
 from tribolab.report.read_results import read_results
 

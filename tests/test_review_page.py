@@ -16,7 +16,7 @@ from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.decisions.decide import decide
 from tribolab.friction.decisions.decision import Decision
 from tribolab.friction.segments.find import find_segments
-from tribolab.io.runs import read_run
+from tribolab.reading.runs.read_run import read_run
 from tribolab.report.page.reviewing import decision_texts
 
 NUMBERS = {name: number for number, name in enumerate((FROZEN, SLIPPED, LATE, SOUND), start=1)}

@@ -8,10 +8,10 @@ import pytest
 import xarray as xr
 
 from tribolab.app.checks import check_files
-from tribolab.draft.read import read
 from tribolab.errors import ConfigError, ReadError
 from tribolab.qc.register import STATUSES
 from tribolab.qc.run.checks import RUN_CHECKS, check_run
+from tribolab.reading.read import read
 from tribolab.rig import (
     FAULTS,
     Protocol,

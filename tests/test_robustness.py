@@ -19,19 +19,19 @@ from hypothesis import strategies as st
 from mutations import mat_inside, mutate
 
 import tribolab as tl
-from tribolab.draft.dialect.draft import draft_dialect
-from tribolab.draft.dialect.questions import GuessedError
-from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError, TribolabError
-from tribolab.io import seal
-from tribolab.io.content.twice import times_over
-from tribolab.io.dialects.model import Dialect
-from tribolab.io.dialects.text_tables import find_tables
-from tribolab.io.dialects.wrapped import numbers_in
-from tribolab.io.netcdf import read_netcdf, write_netcdf
-from tribolab.io.scans.results import read_tester_results
+from tribolab.reading.content.repeated_rows import times_over
+from tribolab.reading.dialect.delimited.tables import find_tables
+from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.netcdf import seal
+from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
 from tribolab.reading.raw.containers.mat import read_variables
 from tribolab.reading.raw.opening import damage_told
+from tribolab.reading.scan_files import read_scans
+from tribolab.reading.scans.results import read_tester_results
+from tribolab.reading.text.wrapped_lines import numbers_in
+from tribolab.reading.unknown.proposal.draft import draft_dialect
+from tribolab.reading.unknown.proposal.questions import GuessedError
 from tribolab.rubber.modulus import read_modulus
 
 COLUMNS = [

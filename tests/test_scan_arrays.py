@@ -6,9 +6,9 @@ import pytest
 from scipy.io import savemat
 
 from tribolab.app.file_info import file_lines
-from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError
-from tribolab.io.kinds import kind_of
+from tribolab.reading.kinds import kind_of
+from tribolab.reading.scan_files import read_scans
 
 Z = np.round(np.random.default_rng(3).normal(size=(12, 20)).cumsum(1), 3)  # um
 X, Y = 1.5 * np.arange(20), 2.0 * np.arange(12)  # um

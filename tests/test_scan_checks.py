@@ -8,13 +8,13 @@ from hypothesis import strategies as st
 from real_runs import mitutoyo
 
 from tribolab import rig
-from tribolab.draft.scans import read_scans
 from tribolab.errors import AnalysisError, ConfigError, UnitError
-from tribolab.io.scans.results import read_tester_results
 from tribolab.qc.flags import SUSPECT
 from tribolab.qc.register import STATUSES
 from tribolab.qc.scan import profiles
 from tribolab.qc.scan.checks import SCAN_CHECKS, check_scans
+from tribolab.reading.scan_files import read_scans
+from tribolab.reading.scans.results import read_tester_results
 from tribolab.rig.scan_faults import SCAN_FAULTS, exported, strike
 
 LENGTH = 6e-3

@@ -7,12 +7,12 @@ import pytest
 
 from tribolab.app.checks import check_files
 from tribolab.app.file_info import file_lines
-from tribolab.draft.dialect.answers import corrected
-from tribolab.draft.dialect.draft import draft_dialect, save_draft
-from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError, TribolabError
-from tribolab.io.dialects.find import load_dialect
 from tribolab.qc.scan.checks import check_scans
+from tribolab.reading.dialect.find import load_dialect
+from tribolab.reading.scan_files import read_scans
+from tribolab.reading.unknown.proposal.answers import corrected
+from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
 
 Z = np.round(np.sin(np.arange(200) / 9.0), 4)
 COLUMN = "\n".join(map(str, Z))

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from tribolab.app.file_info import read_scan
-from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError
+from tribolab.reading.scan_files import read_scans
 
 HEIGHTS = np.random.default_rng(5).normal(0, 1e-6, (7, 12))
 HOLES = np.zeros(HEIGHTS.shape, bool)

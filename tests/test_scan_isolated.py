@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tribolab.draft.scans import read_scans
+from tribolab.reading.scan_files import read_scans
 from tribolab.reading.scans.isolated import take_isolated
 from tribolab.surface.form import remove_form
 

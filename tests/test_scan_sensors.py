@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from tribolab.app.file_info import file_lines
-from tribolab.draft.on_the_fly import holds_run
-from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError
+from tribolab.reading.scan_files import read_scans
 from tribolab.reading.scans.passes import find_passes
+from tribolab.reading.unknown_run import holds_run
 
 N = 400
 Z = np.round(np.sin(np.arange(N) / 7.0) + 0.3 * np.sin(np.arange(N) / 2.0), 3)  # um

@@ -5,11 +5,11 @@ import pytest
 import xarray as xr
 from real_runs import mitutoyo
 
-from tribolab.draft.scans import read_scans
 from tribolab.errors import ReadError
-from tribolab.io.netcdf import read_netcdf, write_netcdf
-from tribolab.io.scans.results import read_tester_results
+from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
+from tribolab.reading.scan_files import read_scans
 from tribolab.reading.scans.grid import even
+from tribolab.reading.scans.results import read_tester_results
 from tribolab.rig.files import scan_file
 
 HEAD = "# Surftest profile\n# tip radius: 2 um\n# pitch: 0.5 um\n# length: 25 mm\nx [mm],z [um]\n"

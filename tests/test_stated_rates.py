@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.draft.dialect.questions import GuessedError
+from tribolab.reading.unknown.proposal.questions import GuessedError
 
 CASES = {
     "averaging_10.csv": "every sample is taken for a row, although the file states 'Averaging: 10",

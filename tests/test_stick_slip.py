@@ -8,7 +8,7 @@ from tests.real_runs import paper
 from tribolab.errors import AnalysisError
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.friction.segments.find import find_segments
-from tribolab.io.netcdf import read_netcdf, write_netcdf
+from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
 from tribolab.rig import Protocol, Rig, StickSlip, simulate_run, simulate_trace
 from tribolab.stamping import stamp
 

@@ -5,7 +5,7 @@ import pytest
 from strange_files import strange_file
 
 import tribolab as tl
-from tribolab.draft.dialect.questions import GuessedError
+from tribolab.reading.unknown.proposal.questions import GuessedError
 
 SEEDS = range(30)
 

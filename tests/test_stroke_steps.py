@@ -7,9 +7,9 @@ import pytest
 
 import tribolab as tl
 from tribolab.app.file_info import file_lines
-from tribolab.io.speed import level_of_each
-from tribolab.io.stroke_speed import velocity_of_strokes
 from tribolab.qc.run.checks import check_run
+from tribolab.reading.runs.speed import level_of_each
+from tribolab.reading.runs.stroke_speed import velocity_of_strokes
 
 RATE = 250.0
 

@@ -9,12 +9,12 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tribolab.draft.read import read
-from tribolab.draft.scans import read_scans
 from tribolab.errors import ConfigError
-from tribolab.io.schema_folder import schema_folder
-from tribolab.io.tables.schema import load_schema, validate
 from tribolab.quantities import QUANTITIES
+from tribolab.reading.netcdf.table_schema import load_schema, validate
+from tribolab.reading.read import read
+from tribolab.reading.scan_files import read_scans
+from tribolab.reading.schema_folder import schema_folder
 from tribolab.stamping import stamp
 
 ONTOLOGY = "https://www.iam.kit.edu/cms/download/TriboDataFAIR_Ontology.owl#"

@@ -9,9 +9,9 @@ import pytest
 import xarray as xr
 
 import tribolab as tl
-from tribolab.draft.dialect.draft import draft_dialect, save_draft
-from tribolab.draft.on_the_fly import holds_run
 from tribolab.errors import ReadError
+from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
+from tribolab.reading.unknown_run import holds_run
 
 RATE, N, ZERO = 20.0, 300, 0.5
 STEPS = {1.0: 0.30, 2.0: 0.28, 5.0: 0.25}  # mm/s: coefficient

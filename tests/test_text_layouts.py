@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.draft.dialect.draft import draft_dialect, save_draft
-from tribolab.draft.dialect.questions import GuessedError, missing_words
+from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
+from tribolab.reading.unknown.proposal.questions import GuessedError, missing_words
 
 RNG = np.random.default_rng(21)
 TIME = np.round(0.1 * np.arange(300), 3)

@@ -8,7 +8,6 @@ import xarray as xr
 
 import tribolab as tl
 from tribolab.errors import AnalysisError, TribolabError
-from tribolab.io.uncertainty import Known, StatedUncertainty, Uncertainty
 from tribolab.metrology.budget_parts import (
     BETWEEN,
     ScatterPart,
@@ -17,6 +16,7 @@ from tribolab.metrology.budget_parts import (
     effective_dof,
 )
 from tribolab.metrology.sensitivity import contributions, readings_of
+from tribolab.reading.dialect.uncertainty import Known, StatedUncertainty, Uncertainty
 from tribolab.rig import Calibration
 from tribolab.stamping import stamp
 

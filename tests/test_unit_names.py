@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from tribolab.draft.dialect.draft import draft_dialect, save_draft
-from tribolab.draft.on_the_fly import read_run
 from tribolab.quantities import unit_conversion
+from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
+from tribolab.reading.unknown_run import read_run
 from tribolab.units import conversion
 
 LBF = 4.4482216152605

@@ -14,8 +14,8 @@ from tribolab.app.commands.campaign import show_outcome
 from tribolab.campaign import curves
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.io.netcdf import read_netcdf
 from tribolab.qc.run.checks import check_run
+from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.run_facts import friction_facts
 from tribolab.report import results

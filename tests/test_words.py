@@ -15,8 +15,8 @@ from typer.testing import CliRunner
 import tribolab as tl
 from tribolab import cli, errors
 from tribolab.friction.oscillation.stick_slip import stick_slip
-from tribolab.io.dialects.find import load_dialect
 from tribolab.qc.run.checks import check_run
+from tribolab.reading.dialect.find import load_dialect
 
 PACKAGE = Path(tl.__file__).parent
 # Who reads a docstring, or what `notebook=` and `function=` say, has Python before him.
@@ -70,8 +70,8 @@ def sentences(path):
 def words_of_the_field():
     """Names that are quantities, keys of a campaign or dialect: everyone may read them."""
     from tribolab.campaign.settings.config import Campaign
-    from tribolab.io.dialects.find import json_schema
     from tribolab.quantities import QUANTITIES
+    from tribolab.reading.dialect.find import json_schema
 
     schemas = json.dumps([Campaign.model_json_schema(), json_schema()])
     keys = set(re.findall(r'"(\w+)"', schemas))
@@ -81,7 +81,7 @@ def words_of_the_field():
 # Modules whose strings are programs, pages or files, not sentences.
 NO_SENTENCES = {
     "campaign/store/catalogue.py",
-    "draft/dialect/show.py",
+    "reading/unknown/proposal/show.py",
     "plot/look/style.py",
     "report/live/axes.py",
     "report/live/marks.py",

@@ -7,7 +7,6 @@ from made_runs import strokes, with_friction
 from real_runs import actuator, rock
 from zero_cases import BOTH, LOAD, MU, SPEED, analysed, doubts, off, programme
 
-from tribolab.draft.read import read
 from tribolab.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.coefficient.half_loops import half_loops
@@ -17,6 +16,7 @@ from tribolab.friction.zero.offsets import wander
 from tribolab.friction.zero.rectified import ForceTrace, Pressed, folded
 from tribolab.friction.zero.rests import Zeros
 from tribolab.qc.run.checks import check_run
+from tribolab.reading.read import read
 
 # drift
 

@@ -7,9 +7,9 @@ from zero_cases import BOTH, SPEED, off, programme
 
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.draft.read import read
 from tribolab.errors import ConfigError
-from tribolab.io.netcdf import read_netcdf
+from tribolab.reading.netcdf.netcdf import read_netcdf
+from tribolab.reading.read import read
 
 DIALECT = dialect_of(
     "one_rig", time="t", sliding_velocity="v", friction_force="F", normal_force="N"

@@ -21,11 +21,11 @@ from tribolab.version import __version__
 # Public name -> the module it lives in; "" for a module itself. Loaded when first used, so that
 # `import tribolab` costs nothing.
 _PUBLIC = {
-    "read": "tribolab.draft.read",
+    "read": "tribolab.reading.read",
     "variables": "tribolab.variables",
-    "draft_dialect": "tribolab.draft.dialect.draft",
-    "read_netcdf": "tribolab.io.netcdf",
-    "write_netcdf": "tribolab.io.netcdf",
+    "draft_dialect": "tribolab.reading.unknown.proposal.draft",
+    "read_netcdf": "tribolab.reading.netcdf.netcdf",
+    "write_netcdf": "tribolab.reading.netcdf.netcdf",
     "find_segments": "tribolab.friction.segments.find",
     "Decision": "tribolab.friction.decisions.decision",
     "decide": "tribolab.friction.decisions.decide",
@@ -45,7 +45,7 @@ _PUBLIC = {
     "objections": "tribolab.qc.objections",
     "check_scans": "tribolab.qc.scan.checks",
     "check_scan_set": "tribolab.qc.scan.sets",
-    "read_scans": "tribolab.draft.scans",
+    "read_scans": "tribolab.reading.scan_files",
     "read_results": "tribolab.report.read_results",
     "remove_form": "tribolab.surface.form",
     "fill_dropouts": "tribolab.surface.form",
@@ -209,9 +209,6 @@ if TYPE_CHECKING:
     from tribolab.contact.separation import separation_table
     from tribolab.contact.work_of_adhesion import SurfaceEnergies, work_of_adhesion_spread
     from tribolab.deposit.pack import pack
-    from tribolab.draft.dialect.draft import draft_dialect
-    from tribolab.draft.read import read
-    from tribolab.draft.scans import read_scans
     from tribolab.errors import TribolabError
     from tribolab.fit.joint.comparison import compare_shear_stress_models
     from tribolab.fit.joint.fit import fit_shear_stress_jointly
@@ -233,7 +230,6 @@ if TYPE_CHECKING:
     from tribolab.friction.oscillation.stick_slip import stick_slip
     from tribolab.friction.segments.find import find_segments
     from tribolab.friction.stribeck import measured_stribeck_curve
-    from tribolab.io.netcdf import read_netcdf, write_netcdf
     from tribolab.lubrication.factors import flow_factors
     from tribolab.lubrication.film import film_profile
     from tribolab.lubrication.relative_factors import relative_flow_factors
@@ -248,6 +244,10 @@ if TYPE_CHECKING:
     from tribolab.qc.run.checks import RUN_CHECKS, check
     from tribolab.qc.scan.checks import check_scans
     from tribolab.qc.scan.sets import check_scan_set
+    from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
+    from tribolab.reading.read import read
+    from tribolab.reading.scan_files import read_scans
+    from tribolab.reading.unknown.proposal.draft import draft_dialect
     from tribolab.report.read_results import read_results
     from tribolab.rubber.friction import viscoelastic_friction
     from tribolab.rubber.modulus import read_modulus

@@ -74,7 +74,7 @@ def peak():
 
 print("%-12s %33s %6.0f MB" % ("libraries", "peak", peak()))
 friction = "tribolab.friction."
-timed("tribolab.io.runs", "read_run", "read")
+timed("tribolab.reading.runs.read_run", "read_run", "read")
 timed(friction + "segments.find", "find_segments", "segments")
 timed(friction + "coefficient.coefficient", "friction_coefficient", "coefficient")
 timed(friction + "oscillation.stick_slip", "stick_slip", "stick-slip")

@@ -30,7 +30,7 @@ from tribolab.campaign.runs.analysis import analyse_run
 from tribolab.campaign.runs.stage import RunTask, process_run
 from tribolab.campaign.settings.load import load_and_plan
 from tribolab.campaign.store.data_files import write_data
-from tribolab.io.storage import CHUNK, storage
+from tribolab.reading.netcdf.storage import CHUNK, storage
 
 _MORE = 1.5  # times reading and analysis alone
 _NETCDF = 0.05  # s, and the time of the bytes

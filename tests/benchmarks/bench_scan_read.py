@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from tribolab.draft.scans import read_scans
+from tribolab.reading.scan_files import read_scans
 
 POINTS, ROUNDS = 50_001, 30
 

@@ -10,7 +10,7 @@ import time
 import numpy as np
 import pandas as pd
 
-from tribolab.io.tables.schema import load_schema, validate
+from tribolab.reading.netcdf.table_schema import load_schema, validate
 
 ROWS = 1_000_000
 COLUMNS = ("time", "friction_force", "normal_force", "sliding_velocity", "position")

@@ -28,10 +28,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribolab.draft.read import read
 from tribolab.errors import ReadError
-from tribolab.io.clocks.merge import merge
-from tribolab.io.signals import signals_of
+from tribolab.reading.clocks.merge import merge
+from tribolab.reading.read import read
+from tribolab.reading.signals import signals_of
 from tribolab.rig import Protocol, Rig, simulate_run
 from tribolab.rig.files import force_file, motion_file
 

@@ -18,10 +18,10 @@ import tempfile
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
-from tribolab.draft.read import read
 from tribolab.errors import ReadError
 from tribolab.qc.register import STATUSES
 from tribolab.qc.run.checks import check_run
+from tribolab.reading.read import read
 from tribolab.rig import FAULTS, Protocol, Rig, simulate_run
 from tribolab.rig.files import force_file, motion_file
 from tribolab.studies import xu2026

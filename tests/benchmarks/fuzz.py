@@ -39,12 +39,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import numpy as np
 from mutations import MADE, mutate
 
-from tribolab.draft.dialect.draft import draft_dialect
-from tribolab.draft.read import read
-from tribolab.draft.scans import read_scans
 from tribolab.errors import TribolabError
-from tribolab.io.netcdf import read_netcdf
-from tribolab.io.scans.results import read_tester_results
+from tribolab.reading.netcdf.netcdf import read_netcdf
+from tribolab.reading.read import read
+from tribolab.reading.scan_files import read_scans
+from tribolab.reading.scans.results import read_tester_results
+from tribolab.reading.unknown.proposal.draft import draft_dialect
 
 SECONDS, MEMORY, LONGEST_MESSAGE = 5.0, 1 << 30, 1500
 NO_ANSWER = "did not answer the alarm"
@@ -84,7 +84,7 @@ class Verdict(NamedTuple):
 def rig_files(folder: Path) -> None:
     """Files of the virtual rig, and what tribolab writes itself."""
     from tribolab import rig
-    from tribolab.io.netcdf import write_netcdf
+    from tribolab.reading.netcdf.netcdf import write_netcdf
     from tribolab.rig.files import scan_file
     from tribolab.rig.parameters import Protocol, Rig
 

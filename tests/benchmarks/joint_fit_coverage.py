@@ -41,8 +41,8 @@ from tribolab.fit.joint.loads import fit_loads
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.response import Response, response_of
 from tribolab.fit.joint.result import JointFit
-from tribolab.io.netcdf import read_netcdf
 from tribolab.lubrication.stribeck import stribeck_curve
+from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.rig.files import write_run, write_scans
 from tribolab.rig.profiles import scans
 from tribolab.rig.runs import run_name, simulate_run

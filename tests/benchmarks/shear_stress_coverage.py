@@ -33,8 +33,8 @@ from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.fit.spectrum_error import shear_stress_shift
-from tribolab.io.netcdf import read_netcdf
 from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
+from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.rig import simulate_campaign
 from tribolab.studies import xu2026
 

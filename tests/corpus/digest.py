@@ -18,14 +18,14 @@ import numpy as np
 import xarray as xr
 
 from corpus.store import Case, Read, contents_of, write_case
-from tribolab.draft.dialect.draft import Draft
-from tribolab.draft.dialect.questions import missing_words, questions
-from tribolab.draft.on_the_fly import draft_of
-from tribolab.draft.read import read as read_run
-from tribolab.draft.scans import read_scans
 from tribolab.errors import TribolabError
-from tribolab.io.dialects.find import Dialect
-from tribolab.io.scans.results import read_tester_results
+from tribolab.reading.dialect.find import Dialect
+from tribolab.reading.read import read as read_run
+from tribolab.reading.scan_files import read_scans
+from tribolab.reading.scans.results import read_tester_results
+from tribolab.reading.unknown.proposal.draft import Draft
+from tribolab.reading.unknown.proposal.questions import missing_words, questions
+from tribolab.reading.unknown_run import draft_of
 from tribolab.rubber.modulus import read_modulus
 
 # Of the version, the moment and the machine, or the words of a cure: not what was read.

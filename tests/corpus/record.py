@@ -26,18 +26,18 @@ from tribolab.errors import ReadError
 
 LARGEST = 4_000_000  # bytes of a file that is kept while recording
 _WATCHED = (
-    ("tribolab.draft.on_the_fly", "read_run", "run"),
-    ("tribolab.draft.on_the_fly", "read_log", "run"),
-    ("tribolab.draft.on_the_fly", "draft_of", "draft"),
-    ("tribolab.io.runs", "read_run", "run"),
-    ("tribolab.io.runs", "read_log", "run"),
-    ("tribolab.draft.scans", "read_scans", "scan"),
-    ("tribolab.io.scans.read", "read_known_scans", "scan"),
-    ("tribolab.draft.dialect.draft", "draft_dialect", "draft"),
+    ("tribolab.reading.unknown_run", "read_run", "run"),
+    ("tribolab.reading.unknown_run", "read_log", "run"),
+    ("tribolab.reading.unknown_run", "draft_of", "draft"),
+    ("tribolab.reading.runs.read_run", "read_run", "run"),
+    ("tribolab.reading.runs.read_run", "read_log", "run"),
+    ("tribolab.reading.scan_files", "read_scans", "scan"),
+    ("tribolab.reading.scans.read_scan", "read_known_scans", "scan"),
+    ("tribolab.reading.unknown.proposal.draft", "draft_dialect", "draft"),
     ("tribolab.app.file_info", "file_lines", "draft"),
-    ("tribolab.io.scans.results", "read_tester_results", "results"),
+    ("tribolab.reading.scans.results", "read_tester_results", "results"),
     ("tribolab.rubber.modulus", "read_modulus", "modulus"),
-    ("tribolab.io.dialects.signature", "peek", "peek"),
+    ("tribolab.reading.text.first_bytes", "peek", "peek"),
 )
 
 

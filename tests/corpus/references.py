@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from corpus.store import HERE, SHARED
-from tribolab.draft.read import read as read_run
-from tribolab.draft.scans import read_scans
 from tribolab.errors import TribolabError
+from tribolab.reading.read import read as read_run
+from tribolab.reading.scan_files import read_scans
 from tribolab.rubber.modulus import read_modulus
 
 RIGHT, WRONG, NOT_READ = "right", "WRONG", "not read"

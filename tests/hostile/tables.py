@@ -57,7 +57,7 @@ for _command in ("info", "check", "dialect", "run"):
 
 
 def _instruments() -> list[str]:
-    from tribolab.io.dialects.find import known_dialects
+    from tribolab.reading.dialect.find import known_dialects
 
     return list(known_dialects())
 

@@ -9,22 +9,32 @@ from typing import Protocol
 import numpy as np
 
 from tribolab.app.typed import NUMBER, amount_typed, as_amount, as_strokes, turning, turns_alone
-from tribolab.draft.columns.turning import angle_of, torque_of
-from tribolab.draft.dialect.answers import column_of, corrected, fits
-from tribolab.draft.dialect.draft import Draft, as_profile, holds_counts, holds_heights
-from tribolab.draft.dialect.worth import ANGLE, TORQUE, Worth, si_unit_of, worth_of
-from tribolab.draft.file.layout import Layout
-from tribolab.draft.follows.candidate_lines import amount_of, candidate_lines, likely_value
-from tribolab.draft.follows.follows import what_follows
-from tribolab.draft.follows.lacking import lacking
-from tribolab.draft.follows.sums import ADDS
-from tribolab.draft.model import Agreed, DraftColumn, Understood, other_units
-from tribolab.draft.stated.stated_load import stated_number
 from tribolab.errors import ReadError, TribolabError, shown
-from tribolab.io.zero_reading import parse_zero
 from tribolab.quantities import QUANTITIES, quantity
+from tribolab.reading.dialect.zero_reading import parse_zero
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.unit_texts import converts, is_unit
+from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
+from tribolab.reading.unknown.derivations.candidate_lines import (
+    amount_of,
+    candidate_lines,
+    likely_value,
+)
+from tribolab.reading.unknown.derivations.derive import what_follows
+from tribolab.reading.unknown.derivations.load_cells import ADDS
+from tribolab.reading.unknown.derivations.missing_inputs import lacking
+from tribolab.reading.unknown.header.load import stated_number
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.reading.unknown.model import Agreed, DraftColumn, Understood, other_units
+from tribolab.reading.unknown.proposal.answers import column_of, corrected, fits
+from tribolab.reading.unknown.proposal.calibration_factor import (
+    ANGLE,
+    TORQUE,
+    Worth,
+    si_unit_of,
+    worth_of,
+)
+from tribolab.reading.unknown.proposal.draft import Draft, as_profile, holds_counts, holds_heights
 
 _NONE = "-"
 _YES = ("yes", "y")

@@ -16,13 +16,13 @@ from rich.table import Table
 from tribolab.app.file_info import read_scan
 from tribolab.app.streams import say
 from tribolab.campaign.engine.stage import Progress, Stage, perform
-from tribolab.draft.on_the_fly import holds_run, read_run
 from tribolab.errors import ConfigError, TribolabError, told
-from tribolab.io.kinds import kind_of, repeats_by_name
-from tribolab.io.logs import group_files
-from tribolab.io.scans.results import read_tester_results
 from tribolab.qc.findings import FindingRow, Findings, exit_code, told_of
 from tribolab.qc.run.checks import check_run
+from tribolab.reading.kinds import kind_of, repeats_by_name
+from tribolab.reading.runs.logs import group_files
+from tribolab.reading.scans.results import read_tester_results
+from tribolab.reading.unknown_run import holds_run, read_run
 from tribolab.untyped import Json
 from tribolab.words import explain
 
@@ -185,7 +185,7 @@ def check_files(
         If there is no such instrument.
     """
     # late: starting stays quick
-    from tribolab.draft.scans import file_of
+    from tribolab.reading.scan_files import file_of
 
     stage = Checks(paths, instrument, repeats)
     done = perform(stage, executor, progress)

@@ -41,7 +41,7 @@ def _run_said(file: Path, dialect: Path) -> str:
     # late: starting stays quick
     from tribolab.friction.coefficient.coefficient import friction_coefficient, friction_signal
     from tribolab.friction.segments.find import find_segments, why_no_segment
-    from tribolab.io.runs import read_run
+    from tribolab.reading.runs.read_run import read_run
     from tribolab.reversals import reversals
 
     run = read_run(file, dialect, pair=False)
@@ -110,7 +110,7 @@ def _undirected(run: xr.Dataset, segments: xr.Dataset) -> bool:
 
 def _scan_said(file: Path, dialect: Path) -> str:
     # late: starting stays quick
-    from tribolab.draft.scans import read_scans
+    from tribolab.reading.scan_files import read_scans
     from tribolab.reading.scans.extent import doubt_about_heights
 
     scan = read_scans(file, dialect)

@@ -11,21 +11,21 @@ from tribolab.app.quick import importing, plain_arrays_only
 from tribolab.app.ranges import range_of
 from tribolab.app.scan_info import areal_lines, roughness_lines, stated_lines
 from tribolab.campaign.engine.stage import Stage
-from tribolab.draft.on_the_fly import draft_of, holds_run, read_log
 from tribolab.errors import ReadError, TribolabError, shown, told
-from tribolab.io.companion import CompanionFacts, describe_companion
-from tribolab.io.dialects.cells import split_name
-from tribolab.io.dialects.find import known_dialects, load_dialect
-from tribolab.io.dialects.signature import peek
-from tribolab.io.file_facts import FileFacts, file_facts
-from tribolab.io.force_ratio import doubt_about, doubt_about_coefficient
-from tribolab.io.kinds import kind_of
-from tribolab.io.runs import read_log as known_log
 from tribolab.quantities import quantity
 from tribolab.reading import cures
+from tribolab.reading.dialect.find import known_dialects, load_dialect
 from tribolab.reading.interpret.missing import missing_inputs
+from tribolab.reading.kinds import kind_of
 from tribolab.reading.moduli import holds_modulus, read_modulus_table
 from tribolab.reading.raw.source import check_regular
+from tribolab.reading.runs.companion import CompanionFacts, describe_companion
+from tribolab.reading.runs.file_facts import FileFacts, file_facts
+from tribolab.reading.runs.force_ratio import doubt_about, doubt_about_coefficient
+from tribolab.reading.runs.read_run import read_log as known_log
+from tribolab.reading.text.cells import split_name
+from tribolab.reading.text.first_bytes import peek
+from tribolab.reading.unknown_run import draft_of, holds_run, read_log
 from tribolab.reversals import reversals
 from tribolab.words import Count, explain
 
@@ -126,8 +126,8 @@ class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]
 def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, Any]:
     """Read the traces of a scan; what turns out to be none is told about as a run would be."""
     # late: starting stays quick
-    from tribolab.draft.scans import read_traces
-    from tribolab.io.scans.formats import NotSaidError
+    from tribolab.reading.scan_files import read_traces
+    from tribolab.reading.scans.formats.profilometers import NotSaidError
 
     try:
         return read_traces(path, instrument)
@@ -152,8 +152,8 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
 def _is_told(path: Path, error: ReadError) -> bool:
     """Whether an error says of a scan, and of nothing else, what is wrong with it."""
     # late: starting stays quick
-    from tribolab.draft.dialect.questions import GuessedError, questions
-    from tribolab.io.scans.undescribed import is_own_text
+    from tribolab.reading.scans.formats.undescribed import is_own_text
+    from tribolab.reading.unknown.proposal.questions import GuessedError, questions
 
     if isinstance(error, GuessedError):
         return False  # which is told again
@@ -211,7 +211,7 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
 
 def _results_lines(path: Path) -> list[str]:
     # late: starting stays quick
-    from tribolab.io.scans.results import read_tester_results
+    from tribolab.reading.scans.results import read_tester_results
 
     results = read_tester_results(path)
     lines = [f"{path}: results of a roughness tester, no profile"]
@@ -227,7 +227,7 @@ def _attribute_lines(attrs: Mapping[str, Any], path: str | Path) -> list[str]:
         del told["x_unevenness"]
     if "to_keep_it" in told:  # to be typed where `info` was
         # late: starting stays quick
-        from tribolab.draft.dialect.questions import how_to_keep
+        from tribolab.reading.unknown.proposal.questions import how_to_keep
 
         told["to_keep_it"] = how_to_keep(str(path))
     return [f"  {key}: {shown(_said(value), _LONGEST)}" for key, value in told.items()]
@@ -251,7 +251,7 @@ def run_lines(facts: FileFacts) -> list[str]:
     Parameters
     ----------
     facts
-        From `tribolab.io.file_facts.file_facts`.
+        From `tribolab.reading.runs.file_facts.file_facts`.
     """
     title = f" ({facts['title']})" if facts["title"] else ""
     lines = [f"{facts['file']}: {facts['instrument'] or 'netCDF'}{title}"]
@@ -285,7 +285,7 @@ def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[s
     Parameters
     ----------
     facts
-        From `tribolab.io.file_facts.file_facts`.
+        From `tribolab.reading.runs.file_facts.file_facts`.
     columns
         The signals themselves, by quantity.
     """
@@ -323,7 +323,7 @@ def companion_lines(told: CompanionFacts) -> list[str]:
     Parameters
     ----------
     told
-        From `tribolab.io.companion.describe_companion`.
+        From `tribolab.reading.runs.companion.describe_companion`.
     """
     if "missing" in told:
         return [f"  companion log: {told['missing']} is not there"]

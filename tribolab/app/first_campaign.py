@@ -13,9 +13,9 @@ from tribolab.campaign.settings.load import load_and_plan
 from tribolab.campaign.settings.run_names import safe_name
 from tribolab.campaign.store.ledger import Ledger
 from tribolab.errors import ConfigError, TribolabError
-from tribolab.io.kinds import kind_of
-from tribolab.io.logs import group_files
+from tribolab.reading.kinds import kind_of
 from tribolab.reading.moduli import holds_modulus
+from tribolab.reading.runs.logs import group_files
 
 NAME, RESULTS = "campaign.toml", "results"
 _ABOUT = (
@@ -165,7 +165,7 @@ def _is_campaign(path: Path) -> bool:
 def _campaign_of(
     paths: Sequence[Path], folder: Path, results: str, instrument: str | None = None
 ) -> str:
-    from tribolab.io.dialects.write import quoted  # late: starting stays quick
+    from tribolab.reading.dialect.write import quoted  # late: starting stays quick
 
     raw = Path(os.path.commonpath([path.parent for path in paths]))
     where = os.path.relpath(raw, folder) if raw.is_relative_to(folder) else str(raw)
@@ -188,7 +188,7 @@ def _said(instrument: str | None, folder: Path) -> list[str]:
     """Return the line that names an instrument; the file of a dialect relative to the campaign."""
     if instrument is None:
         return []
-    from tribolab.io.dialects.write import quoted  # late: starting stays quick
+    from tribolab.reading.dialect.write import quoted  # late: starting stays quick
 
     file = Path(instrument)
     if file.suffix == ".toml":
@@ -208,7 +208,7 @@ def _holds_modulus(path: Path) -> bool:
 def _holds_run(path: Path, instrument: str | None) -> bool:
     if instrument is not None:
         return kind_of(path, instrument) == "run"
-    from tribolab.draft.on_the_fly import holds_run  # late: starting stays quick
+    from tribolab.reading.unknown_run import holds_run  # late: starting stays quick
 
     try:
         kind = kind_of(path)

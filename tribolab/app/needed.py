@@ -4,7 +4,7 @@ FILES = (
     "tribolab.app.plain",
     "tribolab.app.checks",
     "tribolab.qc.scan.sets",
-    "tribolab.draft.scans",
+    "tribolab.reading.scan_files",
 )
 
 SIMULATION = ("tribolab.app.plain", "tribolab.rig.campaign", "scipy.linalg")
@@ -14,14 +14,14 @@ ANALYSIS = (
     "tribolab.app.plain",
     "tribolab.campaign.pipeline",
     "netCDF4",
-    "tribolab.draft.on_the_fly",
+    "tribolab.reading.unknown_run",
     "tribolab.friction.coefficient.static",
     "tribolab.friction.coefficient.repeatability",
     "tribolab.metrology.dead_weight",
     "tribolab.records.run_facts",
     "tribolab.records.notices",
     "tribolab.report.results",
-    "tribolab.draft.scans",
+    "tribolab.reading.scan_files",
     "tribolab.campaign.surfaces.contact",
     "tribolab.campaign.surfaces.scans",
     "tribolab.campaign.models.analysis",

@@ -19,8 +19,8 @@ from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.data_files import digest, write_data
 from tribolab.errors import TribolabError
 from tribolab.friction.points.limits import SPEED_TOLERANCE
-from tribolab.io.uncertainty import MODEL_INPUTS
 from tribolab.provenance import sha256_of
+from tribolab.reading.dialect.uncertainty import MODEL_INPUTS
 from tribolab.records.part_records import CurveRecord, Origin
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome
 from tribolab.records.wording import plain_value
@@ -30,7 +30,7 @@ from tribolab.words import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES, explain, loa
 if TYPE_CHECKING:
     import xarray as xr
 
-    from tribolab.io.uncertainty import Known
+    from tribolab.reading.dialect.uncertainty import Known
 
     Parts = dict[str | None, xr.Dataset]  # of a data file, by group
 
@@ -185,7 +185,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
     # late: starting stays quick
     from tribolab.friction.coefficient.repeatability import run_levels
     from tribolab.friction.oscillation.slip_curve import NEEDED, stick_slip_curve
-    from tribolab.io.netcdf import read_groups
+    from tribolab.reading.netcdf.netcdf import read_groups
     from tribolab.records.budget_rows import budget_rows
     from tribolab.records.frames import curve_table, plain_rows
 
@@ -256,7 +256,7 @@ def _model_inputs(frictions: Sequence[xr.Dataset]) -> dict[str, float]:
 def _as_found(task: CurveTask) -> xr.Dataset | None:
     """Return the curve as it would be without a person's decisions; None if nobody decided."""
     # late: starting stays quick
-    from tribolab.io.netcdf import read_groups
+    from tribolab.reading.netcdf.netcdf import read_groups
 
     if not task.found_files:
         return None

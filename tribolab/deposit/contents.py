@@ -11,8 +11,8 @@ from tribolab.campaign.settings.files import inputs_of
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.store.ledger import Ledger
 from tribolab.errors import ConfigError, ReadError
-from tribolab.io.zero_reading import parse_zero
 from tribolab.provenance import as_text, sha256_of_file
+from tribolab.reading.dialect.zero_reading import parse_zero
 from tribolab.report.campaign_tables import TABLES
 from tribolab.untyped import Json
 

@@ -10,8 +10,8 @@ import xarray as xr
 from tribolab.errors import AnalysisError
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.segments.strokes import find_strokes
-from tribolab.io.inertia import acceleration, take_inertia
 from tribolab.medians import median
+from tribolab.reading.runs.inertia import acceleration, take_inertia
 from tribolab.units import positive
 
 _FAST = 0.4  # of the highest speed: below it friction still turns over

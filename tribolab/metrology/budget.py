@@ -11,11 +11,11 @@ from pydantic import ValidationError
 
 from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.friction.stribeck import measured_stribeck_curve
-from tribolab.io.uncertainty import NAMES, Known, StatedUncertainty, Uncertainty
 from tribolab.metrology.budget_curve import with_curve_uncertainty
 from tribolab.metrology.budget_parts import NOISE, ScatterPart, combined
 from tribolab.metrology.budget_result import UncertaintyBudget
 from tribolab.metrology.sensitivity import contributions, readings_of
+from tribolab.reading.dialect.uncertainty import NAMES, Known, StatedUncertainty, Uncertainty
 
 _OWN = ("friction_coefficient_u", "friction_coefficient_dof")  # of a curve's own scatter
 StatedUncertainties = Mapping[str, StatedUncertainty | Mapping[str, Any]]
@@ -36,7 +36,7 @@ def uncertainty_budget(
         runs of one system: the budget of each point of their curve. Runs of one instrument share
         what is stated of it, those of several are independent.
     uncertainty
-        What is stated of the calibration, by the names of `tribolab.io.uncertainty.NAMES`, each
+        What is stated of the calibration, by the names of `uncertainty.NAMES`, each
         with the keys of a table [uncertainty.NAME] of the campaign file: ``{"tilt": {"value":
         "0.5 deg", "as": "half-width"}}``. It goes before what the instrument's file states.
     speed_tolerance

@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 
 from tribolab.friction.decisions.rejected import kept
-from tribolab.io.uncertainty import Known
 from tribolab.metrology.budget_parts import BETWEEN, NOISE, ScatterPart, combined, part_name
 from tribolab.metrology.sensitivity import AMBIGUOUS, contributions, readings_of
+from tribolab.reading.dialect.uncertainty import Known
 
 _MOUNT = "mount"  # attribute of a friction result: which mount it was measured in
 EACH_POINT = (NOISE, BETWEEN, AMBIGUOUS, "resolution", "zero_drift")  # each point has its own

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from scipy import special
 
-from tribolab.io.uncertainty import Known
+from tribolab.reading.dialect.uncertainty import Known
 from tribolab.stamping import stamp
 
 NOISE, BETWEEN = "noise and known zero of the run", "between runs"

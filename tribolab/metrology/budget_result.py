@@ -10,8 +10,8 @@ import pandas as pd
 import xarray as xr
 
 from tribolab.errors import AnalysisError
-from tribolab.io.uncertainty import NAMES, Known
 from tribolab.metrology.budget_parts import coverage_factor, part_name, part_words
+from tribolab.reading.dialect.uncertainty import NAMES, Known
 
 
 @dataclass(frozen=True, eq=False)

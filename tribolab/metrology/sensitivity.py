@@ -11,7 +11,7 @@ import xarray as xr
 from tribolab.friction.coefficient.reversal import RESTS, WEIGHED
 from tribolab.friction.coefficient.reversal import ZERO as TAKEN_FOR_ZERO
 from tribolab.friction.zero.of_run import PAIRED
-from tribolab.io.uncertainty import Known
+from tribolab.reading.dialect.uncertainty import Known
 
 _TOLD_BY_LOOPS = 3  # pairs from which on the loops themselves show how the zero drifts
 # inputs of the friction coefficient; the other names are inputs of the model beside it
@@ -125,7 +125,7 @@ def contributions(at: SegmentReadings, known: Mapping[str, Known]) -> dict[str, 
     at
         From `readings_of`.
     known
-        Standard uncertainties by the names of `tribolab.io.uncertainty.NAMES`; those that do not
+        Standard uncertainties by the names of `uncertainty.NAMES`; those that do not
         move the friction coefficient are left out.
 
     Returns

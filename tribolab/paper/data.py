@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribolab.io.netcdf import read_netcdf
 from tribolab.paper.work import data_file
 from tribolab.plot import Trace
+from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.report.figures.curves import read_curve
 from tribolab.studies import xu2026
 from tribolab.words import speed_text

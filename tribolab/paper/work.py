@@ -13,8 +13,8 @@ from tribolab.campaign.surfaces.scans import spectra_of_scans, usable_scans
 from tribolab.campaign.surfaces.stage import sources_of_surface
 from tribolab.errors import AnalysisError
 from tribolab.fit.shear_stress import fit_shear_stress
-from tribolab.io.netcdf import read_netcdf
 from tribolab.provenance import made, named_sources, sha256_of
+from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.records.frames import rows_of
 from tribolab.records.parts import Row
 from tribolab.rig import Scatter

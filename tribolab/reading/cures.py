@@ -78,7 +78,7 @@ MEND_SIGNALS = Cure(
     campaign="it belongs in a [[run]]",
 )
 TESTER_RESULTS = Cure(
-    notebook="read_tester_results() of tribolab.io.scans.results reads them",
+    notebook="read_tester_results() of tribolab.reading.scans.results reads them",
     terminal="'tribolab check' takes them",
     campaign="'tribolab check' takes them; the scans of a [[surface]] are profiles",
 )

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribolab.io.uncertainty import Known
 from tribolab.metrology.budget_parts import part_words
+from tribolab.reading.dialect.uncertainty import Known
 from tribolab.records.parts import Row
 from tribolab.records.wording import plain_value
 

@@ -64,7 +64,7 @@ class Results(Mapping[str, "pd.DataFrame"]):
             If there is no such data file.
         """
         # late: starting stays quick
-        from tribolab.io.netcdf import read_netcdf
+        from tribolab.reading.netcdf.netcdf import read_netcdf
 
         known = {path.stem: path for path in sorted((self.folder / "data").glob("*.nc"))}
         if name not in known:
@@ -162,7 +162,7 @@ class Results(Mapping[str, "pd.DataFrame"]):
 
     def _part(self, file: str, group: str | None) -> xr.Dataset:
         # late: starting stays quick
-        from tribolab.io.netcdf import read_netcdf
+        from tribolab.reading.netcdf.netcdf import read_netcdf
 
         return read_netcdf(self.folder / file, group=group)
 
@@ -184,7 +184,7 @@ def read_results(path: str | Path) -> Results | xr.Dataset:
     Results or xarray.Dataset
         Of a folder its tables by name, its data, and all its runs or curves at once
         (``results.runs()``, ``results.curves()``); of a file what
-        `tribolab.io.scans.results.read_tester_results` says.
+        `tribolab.reading.scans.results.read_tester_results` says.
 
     Raises
     ------
@@ -203,7 +203,7 @@ def read_results(path: str | Path) -> Results | xr.Dataset:
     path = Path(path)
     if not path.is_dir():
         # late: starting stays quick
-        from tribolab.io.scans.results import read_tester_results
+        from tribolab.reading.scans.results import read_tester_results
 
         return read_tester_results(path)
     if not (path / "tables").is_dir():

@@ -168,14 +168,14 @@ def _describe(
     from tribolab.app.asking import ask_about
     from tribolab.app.dialect import try_on
     from tribolab.app.terminal import console
-    from tribolab.draft.dialect.draft import (
+    from tribolab.reading.unknown.proposal.draft import (
         as_profile,
         check_target,
         holds_heights,
         save_draft,
     )
-    from tribolab.draft.dialect.examples import draft_of_examples
-    from tribolab.draft.dialect.show import print_draft, print_next, print_signals
+    from tribolab.reading.unknown.proposal.several_files import draft_of_examples
+    from tribolab.reading.unknown.proposal.show import print_draft, print_next, print_signals
 
     draft = draft_of_examples(files, name)
     target = target or Path(f"{draft.name}.toml")

@@ -12,7 +12,7 @@ import pandas as pd
 
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.errors import AnalysisError
-from tribolab.io.netcdf import read_groups
+from tribolab.reading.netcdf.netcdf import read_groups
 from tribolab.rig import read_truth
 
 if TYPE_CHECKING:

@@ -140,8 +140,8 @@ def _stated(run: PlannedRun, signals: xr.Dataset) -> xr.Dataset:
 
 def _read(run: PlannedRun) -> xr.Dataset:
     # late: starting stays quick
-    from tribolab.draft.on_the_fly import read_run
     from tribolab.friction.moving_mass import without_inertia
+    from tribolab.reading.unknown_run import read_run
 
     files = list(run.files)
     read = read_run(

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from tribolab.campaign.runs.sources import sources_of_run
 from tribolab.campaign.store.catalogue import fingerprint_of
 from tribolab.errors import ReadError
-from tribolab.io.zero_reading import parse_zero
 from tribolab.provenance import as_text, sha256_of
+from tribolab.reading.dialect.zero_reading import parse_zero
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -94,7 +94,7 @@ def earlier_signals(earlier: Earlier) -> xr.Dataset | None:
         What reading the raw files would give (time).
     """
     # late: starting stays quick
-    from tribolab.io.netcdf import read_netcdf
+    from tribolab.reading.netcdf.netcdf import read_netcdf
 
     try:
         marked = read_netcdf(earlier.file, "run")

@@ -24,7 +24,7 @@ from tribolab.campaign.settings.media import (
 )
 from tribolab.campaign.settings.table import Table
 from tribolab.campaign.settings.theory import Joint, Model, Rubber
-from tribolab.io.uncertainty import Uncertainty
+from tribolab.reading.dialect.uncertainty import Uncertainty
 from tribolab.untyped import Arguments, Json
 
 CAMPAIGN_SCHEMA_FILE = "campaign.schema.json"

@@ -18,7 +18,7 @@ from pydantic_core import core_schema
 
 from tribolab.campaign.settings.name_pattern import NamePattern
 from tribolab.errors import UnitError, shown
-from tribolab.io.zero_reading import parse_zero
+from tribolab.reading.dialect.zero_reading import parse_zero
 from tribolab.units import to_si
 from tribolab.untyped import Json
 

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from tribolab.campaign.settings.problems import SettingsProblem
 from tribolab.campaign.settings.review import REVIEW_FILE
 from tribolab.errors import nearest, shown
-from tribolab.io.zero_reading import parse_zero
 from tribolab.provenance import as_text, sha256_of_file
+from tribolab.reading.dialect.zero_reading import parse_zero
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
@@ -162,7 +162,7 @@ def _is_folder(path: Path) -> bool:
 def sha256_of_dialect(instrument: str) -> str:
     """Return the checksum of what describes an instrument."""
     # late: starting stays quick
-    from tribolab.io.dialects.find import known_dialects
+    from tribolab.reading.dialect.find import known_dialects
     from tribolab.reading.raw.readers import is_reader, source_of
 
     known = known_dialects()

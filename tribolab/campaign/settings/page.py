@@ -8,8 +8,8 @@ from typing import Any
 
 from tribolab.campaign.settings.config import campaign_schema
 from tribolab.friction.segments.find import find_segments
-from tribolab.io.uncertainty import NAMES
 from tribolab.quantities import QUANTITIES, Quantity
+from tribolab.reading.dialect.uncertainty import NAMES
 from tribolab.turns import reciprocal
 
 CAMPAIGN_PAGE = "CAMPAIGN.md"

@@ -20,8 +20,8 @@ from tribolab.campaign.settings.run_names import unique_names
 from tribolab.campaign.settings.toml_lines import line_of
 from tribolab.errors import ConfigError
 from tribolab.friction.decisions.decision import Decision
-from tribolab.io.zero_reading import parse_zero
 from tribolab.provenance import sha256_of, sha256_of_file
+from tribolab.reading.dialect.zero_reading import parse_zero
 from tribolab.untyped import Arguments, Json
 
 if TYPE_CHECKING:
@@ -214,7 +214,7 @@ def _groups(campaign: Campaign, entry: RunEntry, files: list[Path]) -> list[list
     if entry.cycles:
         return [files]
     # late: starting stays quick
-    from tribolab.io.logs import group_files
+    from tribolab.reading.runs.logs import group_files
 
     instrument = entry.instrument and instrument_of(campaign, entry.instrument)
     return group_files(files, instrument)
@@ -228,7 +228,7 @@ def _zero(campaign: Campaign, entry: RunEntry) -> tuple[str | None, list[Path]]:
         return (f"file {blank}", [blank]) if name else (entry.zero, [])
     if not entry.instrument:
         return None, []
-    from tribolab.io.dialects.find import load_dialect  # an unchanged campaign may not need it
+    from tribolab.reading.dialect.find import load_dialect  # an unchanged campaign may not need it
 
     dialect = load_dialect(instrument_of(campaign, entry.instrument))
     rules = [parse_zero(column.zero) for column in dialect.column if column.zero]

@@ -14,7 +14,7 @@ from tribolab.campaign.settings.problems import SettingsProblem, message
 from tribolab.campaign.settings.toml_file import Opened, open_settings, settings_path
 from tribolab.errors import TribolabError, nearest, shown
 from tribolab.friction.decisions.decision import Decision
-from tribolab.io.switches import NoSwitches
+from tribolab.reading.dialect.switches import NoSwitches
 from tribolab.untyped import Json
 
 REVIEW_FILE = "review.toml"

@@ -54,7 +54,7 @@ def write_data(groups: Mapping[str | None, xr.Dataset], path: Path) -> None:
         If there is no room, or the folder is gone.
     """
     # late: starting stays quick
-    from tribolab.io.netcdf import write_groups
+    from tribolab.reading.netcdf.netcdf import write_groups
 
     part = path.with_name(f"{path.stem}.{uuid.uuid4().hex}{UNFINISHED}")
     try:
@@ -87,7 +87,7 @@ def _number_of(
 def read_data(path: Path, group: str | None = None) -> xr.Dataset:
     """Open a data file of a campaign, or one group of it."""
     # late: starting stays quick
-    from tribolab.io.kept import read_kept
+    from tribolab.reading.netcdf.cache import read_kept
 
     return read_kept(path, group)
 

@@ -25,7 +25,7 @@ GONE = "it is not there"
 def kept_text(path: Path, why: str) -> str:
     """Return since when a part is kept, as its data file knows it, and why."""
     # late: starting stays quick
-    from tribolab.io.netcdf import read_groups
+    from tribolab.reading.netcdf.netcdf import read_groups
 
     try:
         root = read_groups(path, [None], only={"": ()})[None]

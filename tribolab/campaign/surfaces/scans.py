@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribolab.campaign.surfaces.contact import line_contact
-from tribolab.draft.scans import read_traces
 from tribolab.errors import AnalysisError, TribolabError
-from tribolab.io.scans.read import stacked
 from tribolab.qc.register import STATUSES
 from tribolab.qc.scan.sets import check_scan_set
+from tribolab.reading.scan_files import read_traces
+from tribolab.reading.scans.read_scan import stacked
 from tribolab.records.parts import Finding, Row
 from tribolab.records.roughness_words import DOUBTFUL_FORM
 from tribolab.surface.areal_roughness import areal_roughness

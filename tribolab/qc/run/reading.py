@@ -10,10 +10,10 @@ import numpy as np
 from tribolab.core.limit import Limit
 from tribolab.errors import AnalysisError
 from tribolab.friction.segments.strokes import find_strokes
-from tribolab.io.force_ratio import LARGEST, SMALLEST
 from tribolab.medians import median
 from tribolab.qc.register import Check, Result, Skip
 from tribolab.qc.run.subject import RunSubject
+from tribolab.reading.runs.force_ratio import LARGEST, SMALLEST
 from tribolab.words import Count
 
 

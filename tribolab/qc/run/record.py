@@ -10,13 +10,13 @@ import numpy as np
 from tribolab.core.limit import Limit
 from tribolab.errors import AnalysisError, shown
 from tribolab.friction.oscillation.noise import quantisation_step
-from tribolab.io.dialects.formula import names_in, parse_formula
 from tribolab.pieces import anywhere, one_by_one
 from tribolab.qc import signals
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
 from tribolab.qc.register import OBJECTIONS, Check, Result, Skip, sample_result
 from tribolab.qc.run import schema, timing
 from tribolab.qc.run.subject import RunSubject
+from tribolab.reading.dialect.formula import names_in, parse_formula
 from tribolab.room import filled
 from tribolab.words import Count
 

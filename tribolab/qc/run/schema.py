@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.io.tables.schema import load_schema
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
 from tribolab.quantities import QUANTITIES
+from tribolab.reading.netcdf.table_schema import load_schema
 
 _FRICTION = ("friction_force", "friction_coefficient", "shear_stress")
 _SPEED = ("sliding_velocity", "position", "step", "set_speed", "shear_rate")
@@ -32,7 +32,7 @@ def ranges() -> Mapping[str, Range]:
     """Return what is believed of each signal of a run, as ``run.schema.json`` states it.
 
     Wide on purpose: they catch a wrong unit or an error code that passes for a number, not a bad
-    day. There they are stated once, for this check and for `tribolab.io.tables.schema.validate`.
+    day. There they are stated once, for this check and for `table_schema.validate`.
 
     Examples
     --------

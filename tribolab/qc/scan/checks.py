@@ -42,14 +42,14 @@ def check_scans(
     Parameters
     ----------
     scans
-        ``height`` [m] (scan, x) from `tribolab.draft.scans.read_scans`; a single profile or a map
+        ``height`` [m] (scan, x) from `scan_files.read_scans`; a single profile or a map
         (y, x) will do. A list of such datasets gives a list.
     limits
         ``{check: {limit: value}}`` over the defaults; SI numbers or text with a unit.
     skip
         Names of checks to leave out; they appear as skipped.
     results
-        What `tribolab.io.scans.results.read_tester_results` gave for the instrument's own results.
+        What `results.read_tester_results` gave for the instrument's own results.
 
     Returns
     -------

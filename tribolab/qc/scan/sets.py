@@ -83,7 +83,7 @@ def check_results(results: xr.Dataset) -> Findings:
     Parameters
     ----------
     results
-        From `tribolab.io.scans.results.read_tester_results`.
+        From `tribolab.reading.scans.results.read_tester_results`.
 
     Returns
     -------

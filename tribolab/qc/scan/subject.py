@@ -25,7 +25,7 @@ class ScanSubject:
     scans
         ``height`` [m] (..., x).
     results
-        Datasets of `tribolab.io.scans.results.read_tester_results`, if the instrument wrote some.
+        Datasets of `results.read_tester_results`, if the instrument wrote some.
     """
 
     def __init__(self, scans: xr.Dataset, results: Sequence[xr.Dataset] = ()) -> None:

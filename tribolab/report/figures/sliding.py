@@ -13,8 +13,8 @@ from tribolab import plot
 from tribolab.campaign.curves import SLIP
 from tribolab.campaign.store.data_files import read_data
 from tribolab.friction.decisions.rejected import kept
-from tribolab.io.netcdf import read_groups
 from tribolab.plot.runs.signals import LOOKED_AT
+from tribolab.reading.netcdf.netcdf import read_groups
 from tribolab.records.mode_record import ModeRecord, condition
 from tribolab.report.figures.files import Drawn
 from tribolab.report.slowest import lowest_loads, slow_segments

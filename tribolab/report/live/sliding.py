@@ -218,7 +218,7 @@ class _Open(NamedTuple):
 
 def _opened(contact: Judged, colours: Mapping[str, int], folder: Path) -> _Open:
     # late: starting stays quick
-    from tribolab.io.netcdf import read_groups
+    from tribolab.reading.netcdf.netcdf import read_groups
 
     assert contact.slow is not None
     wanted = ("run", "segments", "friction", "stick_slip")

@@ -1,1 +1,0 @@
-"""A dialect drafted from an unknown raw file."""

@@ -1,1 +1,0 @@
-"""What each column of an unknown table holds, in which unit."""

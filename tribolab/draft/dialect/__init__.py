@@ -1,1 +1,0 @@
-"""The dialect that is drafted: shown, asked about, written down."""

@@ -1,1 +1,0 @@
-"""How an unknown file is written: its lines, its header, its tables."""

@@ -1,1 +1,0 @@
-"""What follows from columns and from what is stated, and all of it understood together."""

@@ -1,1 +1,0 @@
-"""Files to xarray: dialects, runs, scans, netCDF."""

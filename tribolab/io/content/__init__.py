@@ -1,1 +1,0 @@
-"""What raw files hold: tables at each step of the instrument, in SI, and single values."""

@@ -1,1 +1,0 @@
-"""Instruments as data: how delimited text is read by its dialect."""

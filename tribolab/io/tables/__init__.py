@@ -1,1 +1,0 @@
-"""Tables of numbers: schemas, binary formats, pieces."""

@@ -1,0 +1,195 @@
+"""What a motion log shows of all that moves the friction force, as columns of a fit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from functools import cached_property
+from itertools import chain
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tribolab.aliases import Array
+from tribolab.medians import median
+from tribolab.reading.clocks.motion import Motion
+
+Ways = Array | NDArray[np.int64]  # -1 backward, 0 at rest, 1 forward
+
+_LENGTHS = 9  # stops
+_SHORTEST = 1e-4  # of the longest stroke: length of the shortest stop
+_LONGEST = 0.3
+_SPEEDS = 6  # hat functions of the speed, at most
+_TIMES = (0.1, 0.5, 3.0)  # of the usual rest, for which the force relaxes
+_BACK = (1e-4, 3e-3)  # of the longest stroke, within which it is back
+_SHORT = 0.1  # of the longest fast stroke's duration: what is shorter is noise
+_STILL = 1e-6  # of the fastest speed: what is left of a number that should be zero
+_LARGEST_SLACK = 3e-4  # m
+_FAST = 0.03  # of the fastest speed: slower motion is not looked at
+_MOST_ROWS = 300_000  # of a motion log, looked at
+SLACKS = (0.003, 0.01, 0.03)  # of the longest stroke
+
+
+class Basis:
+    """Functions of the motion that make up the force, on the motion log's clock."""
+
+    def __init__(self, time: Array, motion: Motion):
+        self.time, self.averaged, self._motion = time, motion.averaged, motion
+        way = motion.way
+        change = np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way) - 1]])
+        self._path = _path(time, motion.velocity)
+        strokes = np.abs(np.diff(self._path[change]))
+        self.longest = float(strokes.max())
+        self.shortest = float(strokes[strokes > 0.01 * self.longest].min())
+        # a slow start tells the moment badly, and its friction is another
+        speed = np.abs(motion.velocity)
+        fastest = np.maximum.reduceat(speed, change[:-1])
+        fast = fastest > _FAST * np.percentile(speed, 99.5)
+        moving = fast & (way[change[:-1]] != 0)
+        lasted = np.diff(time[change])[moving]
+        self.stroke = float(lasted[lasted > _SHORT * lasted.max()].min())
+        seen = fast[1:] | fast[:-1]
+        self.events = change[1:-1][seen]
+        self.begins = self.events[way[self.events] != 0]
+        halfway = 0.5 * (time[change[1:]] + time[change[:-1]])
+        self.around = np.stack([halfway[:-1], halfway[1:]], axis=1)[seen]
+        self._kept = _kept(len(time), self.events)
+        self.rows = time[self._kept]
+
+    @cached_property
+    def models(self) -> list[tuple[str, Array]]:
+        """Name and table (column, row) of each model of how the force follows the motion."""
+        table, models = Play(self._path), []
+        for slack in (0.0, *SLACKS):
+            driven = table.followed(0.5 * min(slack * self.longest, _LARGEST_SLACK))
+            velocity = np.gradient(driven, self.time) if slack else self._motion.velocity
+            models.append((f"slack {slack:g}", self._after(velocity, driven)))
+        models.append(("before", self._before(*self._motion[:2], self._path)))
+        return models
+
+    def _after(self, velocity: Array, path: Array) -> Array:
+        """List what happens to the force once the table has moved."""
+        lengths = self.longest * np.geomspace(_SHORTEST, _LONGEST, _LENGTHS)
+        moved = Play(path)
+        stops = ((path - moved.followed(r)) / r for r in lengths)
+        way = np.where(np.abs(velocity) > _STILL * np.abs(velocity).max(), np.sign(velocity), 0.0)
+        last = way[np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))]
+        return self._table(chain([last], stops, self._more(velocity, way, last)))
+
+    def _before(self, velocity: Array, way: NDArray[np.int64], path: Array) -> Array:
+        """List what happens to the force before the sample moves."""
+        last = way[np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))]
+        lengths = self.longest * np.geomspace(_SHORTEST, _LONGEST, _LENGTHS)
+        ramps = (self._ramps(velocity, way, last, r) for r in lengths)
+        stop = (path - Play(path).followed(lengths[-3])) / lengths[-3]
+        return self._table(chain(ramps, [stop], self._more(velocity, way, last)))
+
+    def _table(self, columns: Iterable[Array | Ways]) -> Array:
+        """Put columns below one another, each at most 1."""
+        kept = (np.asarray(column[self._kept], float) for column in columns)
+        return np.stack([k / max(k.max(), -k.min(), 1e-300) for k in kept])
+
+    def _more(self, velocity: Array, way: Ways, last: Ways) -> Iterator[Array]:
+        """Give what goes with the speed, what relaxes at rest, and the inertia."""
+        yield from _speeds(velocity, last)
+        yield from self._relaxed(velocity, way, last)
+        yield np.gradient(velocity, self.time)
+
+    def _relaxed(self, velocity: Array, way: Ways, last: Ways) -> Iterator[Array]:
+        """Give what the force loses at rest, and gets back within a distance."""
+        stops = np.flatnonzero((way == 0) & (np.roll(way, 1) != 0))
+        stops = stops[stops > 0]
+        if not len(stops):
+            return
+        moved = _path(self.time, np.abs(velocity))
+        ends = np.append(stops[1:], len(way))
+        rested, slid = np.zeros(len(way)), np.full(len(way), np.inf)
+        held = np.zeros(len(way))
+        for first, end in zip(stops, ends, strict=True):
+            part = slice(first, end)
+            begun = np.flatnonzero(way[part])
+            start = first + int(begun[0]) if len(begun) else end - 1
+            rested[part] = np.minimum(self.time[part], self.time[start]) - self.time[first]
+            slid[part] = moved[part] - moved[start - 1]
+            slid[first:start] = 0.0
+            held[part] = last[first]
+        usual = float(median(rested[np.minimum(ends, len(way)) - 1]))
+        for tau in _TIMES:
+            for length in _BACK:
+                back = np.exp(-slid / (self.longest * length))
+                yield held * -np.expm1(-rested / (usual * tau)) * back
+
+    def _ramps(
+        self, velocity: Array, way: NDArray[np.int64], last: NDArray[np.int64], length: float
+    ) -> Array:
+        """Way of the last motion, turning before a motion is seen, as far as the stage moves."""
+        out = last.astype(float)
+        starts = [k for k in self.events if way[k] != 0]
+        for k, after in zip(starts, [*starts, len(way) - 1][1:], strict=True):
+            turn = way[k] - (last[k - 1] if k else 0)
+            speed = np.abs(velocity[k : min(k + 9, after + 1)]).max(initial=0.0)
+            begin = self.time[k] - length / max(speed, 1e-300)
+            before = slice(min(int(np.searchsorted(self.time, begin)), k), k)
+            out[before] += turn * (1.0 + (self.time[before] - self.time[k]) * speed / length)
+        return out
+
+
+def _path(time: Array, velocity: Array) -> Array:
+    steps = 0.5 * np.diff(time) * (velocity[1:] + velocity[:-1])
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def _kept(count: int, events: NDArray[np.int64]) -> NDArray[np.int64] | slice:
+    """Rows of a motion log that are looked at: of a long one all near events, some of the others.
+
+    A table of all would take a hundred times the memory of the log itself.
+    """
+    if count <= _MOST_ROWS:
+        return slice(None)
+    near = _MOST_ROWS // (4 * max(len(events), 1))
+    kept = np.zeros(count, dtype=bool)
+    kept[:: -(-2 * count // _MOST_ROWS)] = True
+    kept[-1] = True
+    for event in events:
+        kept[max(event - near, 0) : event + near] = True
+    return np.flatnonzero(kept)
+
+
+def _speeds(velocity: Array, last: Ways) -> Iterator[Array]:
+    """Hat functions of log |v| times the way; held at rest."""
+    speed = np.abs(velocity)
+    moving = speed > 0
+    level = np.log10(speed[moving])
+    high = float(np.percentile(level, 99))
+    low = max(float(np.percentile(level, 5)), high - 4.0)
+    if high - low < 0.1:
+        return
+    knots = np.linspace(low, high, min(_SPEEDS, 2 + int(2 * (high - low))))
+    index = np.maximum.accumulate(np.where(moving, np.arange(len(speed)), 0))
+    held = np.log10(np.maximum(speed, 10.0 ** (low - 1)))[index]
+    for hat in np.eye(len(knots))[1:]:
+        yield last * np.interp(held, knots, hat)
+
+
+class Play:
+    """Follows a position with slack: what is driven stays within half of it of the driver.
+
+    >>> Play(np.array([0.0, 3.0, 1.0, -3.0])).followed(1.0).tolist()
+    [0.0, 2.0, 2.0, -2.0]
+    """
+
+    def __init__(self, position: Array):
+        self.position = position
+        # a turning point still belongs to the way that led to it
+        turns = np.flatnonzero(np.diff(np.sign(np.diff(position))) != 0) + 2
+        self._first = np.concatenate([[0], turns])
+        self._ends = position[np.append(turns, len(position)) - 1].tolist()
+
+    def followed(self, half: float) -> Array:
+        """Return the position of what is driven with so much slack on either side."""
+        last, before = float(self.position[0]), []
+        for end in self._ends:  # one way from turn to turn: the ends tell all
+            before.append(last)
+            last = min(max(last, end - half), end + half)
+        out = np.repeat(before, np.diff(self._first, append=len(self.position)))
+        np.maximum(out, self.position - half, out=out)
+        return np.minimum(out, self.position + half, out=out)

@@ -1,0 +1,132 @@
+"""Which of several shifts of two clocks it is, where the motion repeats or friction comes late.
+
+Classes of velocity explain a force that comes late, through slack or over a distance, better a
+stroke or a period off than at the true shift. A fit by all that the motion does
+(`clocks.joint`) is not deceived so: where the record begins and ends, and where strokes
+differ, it leaves more unexplained. One shift is taken for another only if the likelihood, with as
+many independent residuals as there are, says so decisively.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.aliases import Array
+from tribolab.reading.clocks.basis import Basis
+from tribolab.reading.clocks.joint import fit_jointly, sampling
+
+APART = 0.25  # of a fast stroke's duration: shifts nearer than this are one
+_SPAN = 0.3  # of it, in which each is fitted
+_ALL = 0.8  # of a rival's changes of the motion have to lie in the force log, or it is not beaten
+_DECISIVE = 6.0  # log likelihood ratio
+_MORE = 4.0  # times as much unexplained, as no model is quite right
+_SURE, _WORSE = 30.0, 2.0  # the same, for one that explains fewer changes, and those worse
+
+
+class Candidate(NamedTuple):
+    """A shift that may be the true one [s], what a fit leaves unexplained, and its freedom.
+
+    `changes` is how many changes of the motion lie in the force log: of few, any model explains
+    much. `unexplained` is NaN where they are too few for a fit.
+    """
+
+    shift: float
+    unexplained: float
+    freedom: float
+    changes: int
+
+    def beats(self, other: Candidate) -> bool:
+        """Whether this one is decisively likelier than another.
+
+        >>> Candidate(0.0, 0.01, 100.0, 8).beats(Candidate(9.0, 0.05, 80.0, 7))
+        True
+        >>> Candidate(0.0, 0.01, 5.0, 8).beats(Candidate(9.0, 0.05, 80.0, 7))
+        False
+        >>> Candidate(0.0, 0.01, 100.0, 3).beats(Candidate(9.0, 0.05, 80.0, 7))
+        False
+        """
+        more, likelihood = self._against(other)
+        sees_all = self.changes >= _ALL * other.changes
+        return bool(sees_all and more > _MORE and likelihood > _DECISIVE)
+
+    def clears(self, other: Candidate) -> bool:
+        """Whether another one, not chosen, leaves no doubt about this one.
+
+        It does not if it is beaten, nor if it is worse though fewer changes lie in the force log:
+        where the record begins and ends tells the two apart.
+
+        >>> Candidate(0.0, 0.02, 200.0, 12).clears(Candidate(14.0, 0.05, 160.0, 10))
+        True
+        >>> Candidate(0.0, 0.02, 200.0, 12).clears(Candidate(14.0, 0.05, 160.0, 12))
+        False
+        """
+        ends_tell = other.changes < self.changes and self.surpasses(other)
+        return bool(ends_tell or self.beats(other))
+
+    def surpasses(self, other: Candidate) -> bool:
+        """Whether this one is much likelier than another, if not as much as to be taken for it.
+
+        >>> Candidate(0.0, 0.06, 130.0, 12).surpasses(Candidate(1.7, 0.16, 67.0, 12))
+        True
+        """
+        more, likelihood = self._against(other)
+        return bool(more > _WORSE and likelihood > _SURE)
+
+    def _against(self, other: Candidate) -> tuple[float, float]:
+        """Tell how many times more another leaves unexplained, and the log likelihood ratio."""
+        more = other.unexplained / max(self.unexplained, 1e-12)
+        freedom = min(self.freedom, other.freedom)
+        return more, 0.5 * freedom * float(np.log(max(more, 1e-12)))
+
+    def outdoes(self, other: Candidate) -> bool:
+        """Whether this one leaves less unexplained of as many changes of the motion.
+
+        >>> Candidate(0.0, 0.04, 90.0, 5).outdoes(Candidate(9.0, 0.12, 70.0, 5))
+        True
+        >>> Candidate(0.0, 0.04, 90.0, 3).outdoes(Candidate(9.0, 0.12, 70.0, 5))
+        False
+        """
+        return self.changes >= other.changes and self.unexplained < other.unexplained
+
+
+def candidates(force_time: Array, force: Array, basis: Basis, shifts: Array) -> list[Candidate]:
+    """Fit the force by all that the motion does, around each of several shifts.
+
+    Parameters
+    ----------
+    force_time, force
+        Force log: its own clock [s] and the friction force.
+    basis
+        What the motion log shows.
+    shifts
+        Shifts [s], `APART` of a fast stroke's duration from one another.
+    """
+    return [_fitted(force_time, force, basis, shift) for shift in map(float, shifts)]
+
+
+def _fitted(force_time: Array, force: Array, basis: Basis, shift: float) -> Candidate:
+    finest = sampling(force_time, basis, shift)
+    answers = fit_jointly(force_time, force, basis, shift, _SPAN * basis.stroke, finest)
+    at = basis.time[basis.events] + shift
+    changes = int(np.count_nonzero((at > force_time[0]) & (at < force_time[-1])))
+    if not answers:
+        return Candidate(shift, np.nan, 0.0, changes)
+    best = min(answers, key=lambda answer: answer.unexplained)
+    return Candidate(shift, best.unexplained, best.freedom, changes)
+
+
+def likeliest(candidates: list[Candidate]) -> Candidate:
+    """Return the first, or the one that beats all others.
+
+    >>> likeliest([Candidate(0.0, 0.2, 70.0, 8), Candidate(4.5, 0.003, 180.0, 8)]).shift
+    4.5
+    >>> likeliest([Candidate(0.0, 0.011, 70.0, 8), Candidate(4.5, 0.01, 180.0, 8)]).shift
+    0.0
+    """
+    fitted = [candidate for candidate in candidates if not np.isnan(candidate.unexplained)]
+    if not fitted or np.isnan(candidates[0].unexplained):
+        return candidates[0]
+    best = min(fitted, key=lambda candidate: candidate.unexplained)
+    return best if best.beats(candidates[0]) else candidates[0]

@@ -1,0 +1,1 @@
+"""Tables and single values of a raw file, in SI units, at each step of the instrument."""

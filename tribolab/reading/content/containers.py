@@ -1,0 +1,196 @@
+"""Runs in files that hold columns by name: HDF5, MAT, TDMS, Parquet, workbooks, records."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from tribolab.errors import ReadError, shown
+from tribolab.provenance import sha256_of_file
+from tribolab.reading.content.model import Content, Piece
+from tribolab.reading.content.steps import started
+from tribolab.reading.dialect.column_rule import FRICTION_SIGNALS
+from tribolab.reading.dialect.columns import AGAIN, ReadColumn, resolve, scales_of, symbols
+from tribolab.reading.dialect.containers import name_and_unit, named_tables, open_as, tables_of
+from tribolab.reading.dialect.file_layout import Marks
+from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.raw.clocks import OneClock, on_one_clock
+from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, text_of
+from tribolab.reading.text.bounded_patterns import guarded
+from tribolab.reading.text.cells import split_name
+from tribolab.units import conversion
+
+_NAMED = 8  # tables that an attribute names
+
+
+def read_columns(path: Path, dialect: Dialect) -> Content:
+    """Read the columns of a file that names them; each table of several is a piece.
+
+    Parameters
+    ----------
+    path
+        The file.
+    dialect
+        Its format, which tables are steps, and which column is which quantity.
+
+    Raises
+    ------
+    ReadError
+        If the file is damaged, a table or column is missing or holds no numbers, or columns
+        differ in length.
+    """
+    file = _opened(path, dialect)
+    tables = tables_of(file, dialect)
+    if not tables:
+        steps = shown(dialect.tables.steps) if dialect.tables else ""
+        what = f"no table is called as '{steps}' says; there are {named_tables(file)}"
+        raise ReadError(what, where=path)
+    pieces = []
+    labels: dict[str, str] = {}
+    unused: dict[str, None] = {}
+    own: dict[str, str] = {}
+    scales: dict[str, tuple[float, float]] = {}
+    notes = dict(file.notes)
+    several = dialect.tables is not None or len(tables) > 1
+    for number, table in enumerate(tables, start=1):
+        signals, not_used = _resolved(path, table, dialect)
+        clocks = _one_clock(path, table, signals) if dialect.time.rate_pattern else None
+        columns = _in_si(path, table, signals, clocks)
+        if clocks is not None and clocks.others:
+            notes["interpolated"] = _interpolated(signals, clocks)
+        said = [clocks.setting, *table.settings] if clocks else table.settings
+        parts = [text_of(file.settings)] if several else []
+        before = "\n".join(filter(None, [*parts, text_of(said)]))
+        step = number if several else None
+        pieces.append(Piece(columns, step, started(before, path, dialect), before))
+        labels |= {s.quantity: f"{s.label} [{s.unit}]" for s in signals}
+        unused |= dict.fromkeys(not_used)
+        own |= symbols(signals, dialect)
+        scales |= scales_of(signals)
+    if dialect.tables is not None:
+        names = ", ".join(table.name for table in tables[:_NAMED])
+        notes["steps_are"] = f"{names}, ..." if len(tables) > _NAMED else names
+    if dialect.marks is not None:
+        time = pieces[0].columns["time"]
+        pieces[0].columns["step"], more = _marked_steps(path, file, time, dialect.marks)
+        notes |= more
+    return Content(
+        path, sha256_of_file(path), pieces, labels, tuple(unused), {}, notes, own, scales
+    )
+
+
+def read_table(path: Path, dialect: Dialect, name: str) -> dict[str, np.ndarray]:
+    """Read those columns of one more table of a file that it holds, in SI.
+
+    Parameters
+    ----------
+    path, dialect
+        As for `read_columns`.
+    name
+        Of the table.
+
+    Raises
+    ------
+    ReadError
+        If there is no such table.
+    """
+    tables = [table for table in _opened(path, dialect).tables if table.name == name]
+    if not tables:
+        raise ReadError(f"there is no table '{shown(name)}' to read a zero from", where=path)
+    columns = tuple(column.model_copy(update={"optional": True}) for column in dialect.column)
+    signals, _ = _resolved(path, tables[0], dialect.model_copy(update={"column": columns}))
+    return {s.quantity: _scaled(path, s, tables[0].columns[s.place].values) for s in signals}
+
+
+def _opened(path: Path, dialect: Dialect) -> RawFile:
+    try:
+        return open_as(path, dialect)
+    except (ReadError, ImportError):
+        raise
+    except Exception as error:  # each of these libraries has its own ways to say "damaged"
+        form = dialect.text.container or dialect.format
+        what = f"this {form} file cannot be read: {shown(str(error), 200)}"
+        raise ReadError(what, where=path) from error
+
+
+def _resolved(path: Path, table: RawTable, dialect: Dialect) -> tuple[list[ReadColumn], list[str]]:
+    where = f"{path}: table '{shown(table.name, 40)}'" if dialect.tables else str(path)
+    named = [name_and_unit(column) for column in table.columns]
+    names, units = [name for name, _ in named], [unit for _, unit in named]
+    return resolve(where, names, units, len(names), dialect)
+
+
+def _one_clock(path: Path, table: RawTable, signals: list[ReadColumn]) -> OneClock | None:
+    """Return the signals at the times of the friction signal, else of the fastest one."""
+    names = [signal.quantity.split(AGAIN)[0] for signal in signals]
+    lead = next((names.index(name) for name in FRICTION_SIGNALS if name in names), None)
+    try:
+        return on_one_clock([table.columns[signal.place] for signal in signals], lead)
+    except ReadError as error:
+        raise ReadError(error, where=path) from error
+
+
+def _interpolated(signals: list[ReadColumn], clocks: OneClock) -> str:
+    return "; ".join(
+        f"{signals[place].quantity}: a value every {clock.interval:.6g} s, the first "
+        f"{clock.start - clocks.clock.start:.6g} s from the first of the run"
+        for place, clock in clocks.others.items()
+    )
+
+
+def _in_si(
+    path: Path, table: RawTable, signals: list[ReadColumn], clocks: OneClock | None
+) -> dict[str, np.ndarray]:
+    raw = [table.columns[s.place].values for s in signals] if clocks is None else clocks.values
+    columns = {s.quantity: _scaled(path, s, x) for s, x in zip(signals, raw, strict=True)}
+    lengths = sorted({len(column) for column in columns.values()})
+    if len(lengths) > 1:
+        whose = f" of '{shown(table.name, 40)}'" if table.name else ""
+        raise ReadError(f"the columns{whose} differ in length: {lengths}", where=path)
+    return columns
+
+
+def _scaled(path: Path, signal: ReadColumn, values: np.ndarray) -> np.ndarray:
+    if values.dtype.kind in "Mm":
+        values = seconds_of(values)
+    if values.dtype.kind not in "fiub":
+        odd = f": '{shown(str(values[0]), 40)}' is none" if values.size else ""
+        raise ReadError(f"column '{shown(signal.label)}' holds no numbers{odd}", where=path)
+    with np.errstate(over="ignore", invalid="ignore"):  # damaged numbers may be anything
+        return np.asarray(values, dtype=float) * signal.scale + signal.offset
+
+
+def seconds_of(values: np.ndarray) -> np.ndarray:
+    """Return moments as seconds since 1970, and durations as seconds; NaN where there is none.
+
+    >>> seconds_of(np.array(["1970-01-01T00:01:00.5", "NaT"], dtype="datetime64[ms]")).tolist()
+    [60.5, nan]
+    """
+    known = ~np.isnat(values)
+    since = values.astype("datetime64[ns]" if values.dtype.kind == "M" else "timedelta64[ns]")
+    return np.where(known, since.astype(np.int64) / 1e9, np.nan)
+
+
+def _marked_steps(
+    path: Path, file: RawFile, time: np.ndarray, marks: Marks
+) -> tuple[np.ndarray, dict[str, str]]:
+    """Step k lasts from mark k to mark k + 1; before the first mark it is 0."""
+    table = next((table for table in file.tables if table.name == marks.group), None)
+    clocks: list[RawColumn] = [] if table is None else list(table.columns)
+    clocks = [column for column in clocks if split_name(column.label)[0] == marks.time]
+    if table is None or not clocks:
+        raise ReadError(
+            f"there is no channel '{shown(marks.time)}' in a group '{shown(marks.group)}'",
+            where=path,
+        )
+    unit = marks.unit or name_and_unit(clocks[0])[1]
+    if unit is None:
+        raise ReadError(
+            "the marks' time has no unit; give it in the dialect: [marks] unit", where=path
+        )
+    at = np.sort(np.asarray(clocks[0].values, dtype=float) * conversion(unit, "s")[0])
+    pattern = guarded(marks.labels) if marks.labels else None
+    texts = [s.text for s in table.settings if pattern is not None and pattern.search(s.key)]
+    notes = {"step_labels": "; ".join(texts)} if texts else {}
+    return np.searchsorted(at, time, side="right").astype(float), notes

@@ -1,0 +1,152 @@
+"""Single values outside the table: in the text about it, in a step's, in the file's name."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from tribolab.errors import ReadError, shown
+from tribolab.reading.content.model import Content
+from tribolab.reading.content.steps import last_match
+from tribolab.reading.dialect.formula import names_in, parse_formula
+from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.dialect.value_rule import Value
+from tribolab.reading.text.bounded_patterns import guarded
+from tribolab.units import conversion, to_si
+from tribolab.untyped import Json
+
+# 21,5 above a table with decimal points; 1,200 may be a thousand and is asked about
+_OWN_COMMA = re.compile(r"[-+]?(?:\d+,\d{1,2}|\d+,\d{4,}|0,\d+)(?:[eE][-+]?\d+)?")
+
+_OF_NAME = re.compile(r"(?<=\d)[,pP_](?=\d)")
+
+
+def single_values(content: Content, dialect: Dialect) -> dict[str, str | float]:
+    """Attributes from the preamble and the file's name; the unit is in an attribute's name.
+
+    Raises
+    ------
+    ReadError
+        If a value that has a unit is no number.
+    """
+    attrs: dict[str, str | float] = {}
+    for value in dialect.value:
+        if value.source in ("step", "programme") or value.pattern is None:
+            continue
+        text = content.path.name if value.source == "file name" else content.pieces[0].before
+        text_found = _first_match(value.pattern, text)
+        if not text_found and value.source == "preamble":
+            text_found = _first_match(value.pattern, content.foot)
+        if text_found:
+            _agrees(text_found, value, content, dialect)
+            attrs[value.attribute] = converted(text_found, value, content, dialect)
+    return attrs
+
+
+def add_assumed(attrs: Json, dialect: Dialect) -> list[Value]:
+    """Add the dialect's values where neither the table nor the text beside it says them.
+
+    Returns which these are, for `tell_assumed`.
+    """
+    lost = [v for v in dialect.value if v.default is not None and v.attribute not in attrs]
+    for value in lost:
+        attrs[value.attribute] = to_si(str(value.default), value.si_unit, value.name)
+    return lost
+
+
+def tell_assumed(attrs: Json, assumed: list[Value], dialect: Dialect) -> None:
+    """Say in ``assumed`` which of the values that were added something follows from."""
+    used = set(dialect.speed.values_named.values())
+    for formula in attrs.get("derived", {}).values():
+        used |= names_in(parse_formula(formula))
+    if told := [f"{value.name} {value.default}" for value in assumed if value.name in used]:
+        attrs["assumed"] = "; ".join(told)
+
+
+def _agrees(text: str, value: Value, content: Content, dialect: Dialect) -> None:
+    """Refuse a value that is reckoned with, where the text before a later table says another."""
+    reckoned = value.name in dialect.values_reckoned_with
+    if value.source != "preamble" or value.pattern is None or not reckoned:
+        return
+    for piece in content.pieces[1:]:
+        later = last_match(value.pattern, piece.before)
+        if later is not None and later != text:
+            raise ReadError(
+                f"{content.path}: {value.name} is {shown(text)} before the first table and "
+                f"{shown(later)} before a later one; say source = 'step' in its [[value]] (dialect "
+                f"'{dialect.name}'), so that each has its own"
+            )
+
+
+def step_values(
+    contents: list[Content], dialect: Dialect
+) -> tuple[dict[str, np.ndarray], dict[str, str]]:
+    """Values that each step has: numbers as variables along time, texts as one attribute each.
+
+    A number whose name is no quantity is for formulas only.
+    """
+    variables: dict[str, np.ndarray] = {}
+    attrs: dict[str, str] = {}
+    places = [(content, piece) for content in contents for piece in content.pieces]
+    for value in dialect.value:
+        if value.source != "step" or value.pattern is None:
+            continue
+        texts = [last_match(value.pattern, piece.before) or "" for _, piece in places]
+        if value.unit is None:
+            attrs[f"{value.name}s"] = "; ".join(
+                f"{piece.step}: {text}" for text, (_, piece) in zip(texts, places, strict=True)
+            )
+        else:
+            numbers = [
+                converted(text, value, content, dialect) if text else np.nan
+                for text, (content, _) in zip(texts, places, strict=True)
+            ]
+            lengths = [len(piece.columns["time"]) for _, piece in places]
+            variables[value.name] = np.repeat(np.array(numbers, dtype=float), lengths)
+    return variables, attrs
+
+
+def _number(text: str, decimal: str) -> float:
+    """Return a number in the table's spelling, or with a decimal comma of its own."""
+    if decimal == "." and _OWN_COMMA.fullmatch(text):
+        decimal = ","
+    return float(text.replace(decimal, "."))
+
+
+def _first_match(pattern: str, text: str) -> str | None:
+    return guarded(pattern).first(text)
+
+
+def converted(text: str, value: Value, content: Content, dialect: Dialect) -> str | float:
+    """Return the number that a text is, in the SI unit of its value; text without a unit as it is.
+
+    Parameters
+    ----------
+    text
+        As it stands in the file.
+    value
+        The dialect's rule.
+    content, dialect
+        The file and its instrument, for the decimal mark and for messages.
+
+    Raises
+    ------
+    ReadError
+        If a value that has a unit is no number.
+    """
+    if value.unit is None:
+        return text
+    spelt = text.rstrip(".,")
+    try:
+        if value.source == "file name":  # "r12p5mm", "R12_5": names of files avoid points
+            number = float(_OF_NAME.sub(".", spelt))
+        else:
+            number = _number(spelt, dialect.text.decimal)
+    except ValueError as error:
+        raise ReadError(
+            f"{content.path}: '{shown(text)}' ({value.name}) is not a number; see the value's "
+            f"pattern in the dialect '{dialect.name}'"
+        ) from error
+    scale, offset = conversion(value.unit, value.si_unit, value.bare)
+    return float(f"{value.sign * value.scale * number * scale + offset:.15g}")

@@ -1,0 +1,112 @@
+"""Texts of a dialect that are checked as they are read, and the base of what it says."""
+
+from __future__ import annotations
+
+import codecs
+import re
+from collections.abc import Callable
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, ConfigDict, Field
+
+from tribolab.errors import TribolabError, shown
+from tribolab.quantities import quantity
+from tribolab.reading.dialect.formula import parse_formula
+from tribolab.reading.dialect.switches import NoSwitches
+from tribolab.reading.dialect.zero_reading import parse_zero
+from tribolab.reading.text.bounded_patterns import PatternError, guarded
+from tribolab.turns import Counted
+from tribolab.units import conversion
+
+
+def _is_pattern(text: str) -> str:
+    try:
+        guarded(text)
+    except PatternError as error:
+        raise ValueError(f"'{shown(text)}' is not a regular expression: {error}") from error
+    return text
+
+
+def _is_encoding(text: str) -> str:
+    try:
+        codecs.lookup(text)
+    except LookupError as error:
+        raise ValueError(
+            f"'{shown(text)}' is not an encoding; write e.g. 'utf-8' or 'latin-1'"
+        ) from error
+    return text
+
+
+def _is_field(text: str) -> str:
+    name, _, kind = text.strip().rpartition(" ")
+    if not name.strip() or not _BINARY_TYPE.fullmatch(kind):
+        raise ValueError(f"'{shown(text)}' is not a name and a type, e.g. 'Fx <f4'")
+    return text
+
+
+_RULE = 'symbol = "{0}" in its [[column]], and [[derived]] quantity = "{1}", formula as "{2}"'
+_INSTEAD = {
+    "torque": _RULE.format("torque", "friction_force", "torque / '20 mm'"),
+    "angle": _RULE.format("angle", "position", "angle * '20 mm'"),
+    "turns": _RULE.format("turns", "position", "2 * pi * turns * '20 mm'"),
+    "strain": _RULE.format("strain", "friction_force", "strain * '5 kN'"),
+    "counts": _RULE.format("counts", "friction_force", "counts * '0.5 mN'"),
+    "radius": _RULE.format("radius", "sliding_velocity", "rotation_speed * radius"),
+    "stress": 'quantity = "shear_stress" or "normal_stress"',
+}
+_ALIKE = {
+    **dict.fromkeys(("moment", "couple", "drehmoment"), "torque"),
+    **dict.fromkeys(("laps", "lap", "revolutions", "rotations", "revs"), "turns"),
+    **dict.fromkeys(("digits", "adc", "bits", "raw", "count"), "counts"),
+    **dict.fromkeys(("bridge", "deformation"), "strain"),
+}
+
+
+def _is_quantity(name: str) -> object:
+    """Refuse what is no quantity, and say how a column of it makes one."""
+    try:
+        return quantity(name)
+    except TribolabError as error:
+        words = [_ALIKE.get(word, word) for word in name.lower().split("_")]
+        rule = next((_INSTEAD[word] for word in words if word in _INSTEAD), None)
+        if rule is None:
+            raise
+        raise TribolabError(f"no quantity is called '{shown(name)}': say {rule}") from error
+
+
+def _told_by(check: Callable[[str], object]) -> AfterValidator:
+    """Make what a check of another room raises a mistake in the dialect."""
+
+    def validated(text: str) -> str:
+        try:
+            check(text)
+        except TribolabError as error:
+            raise ValueError(str(error)) from error
+        return text
+
+    return AfterValidator(validated)
+
+
+_BINARY_TYPE = re.compile(r"[<>|=]?[fiu][1248]")
+Pattern = Annotated[str, AfterValidator(_is_pattern)]
+Encoding = Annotated[str, AfterValidator(_is_encoding)]
+BinaryField = Annotated[str, AfterValidator(_is_field)]
+QuantityName = Annotated[str, _told_by(_is_quantity)]
+Formula = Annotated[str, _told_by(parse_formula)]
+ZeroText = Annotated[str, _told_by(parse_zero)]
+Symbol = Annotated[str, Field(pattern=r"^[A-Za-z_]\w*$")]
+Sign = Literal[1, -1]
+
+
+class Strict(NoSwitches):
+    """Frozen, and an unknown key is an error."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
+
+
+def check_unit(unit: str, si_unit: str, bare: Counted | None = None) -> None:
+    """Refuse a unit that does not turn into another."""
+    try:
+        conversion(unit, si_unit, bare)
+    except TribolabError as error:
+        raise ValueError(str(error)) from error

@@ -1,0 +1,123 @@
+"""What a dialect says of one column: which quantity it is, in which unit and with which zero."""
+
+from __future__ import annotations
+
+from typing import Literal, Self
+
+from pydantic import Field, PositiveInt, model_validator
+
+from tribolab.quantities import QUANTITIES, quantity
+from tribolab.reading.dialect.checked_text import (
+    Pattern,
+    QuantityName,
+    Sign,
+    Strict,
+    Symbol,
+    ZeroText,
+    check_unit,
+)
+from tribolab.turns import Counted, reciprocal
+from tribolab.unit_names import plain_unit
+from tribolab.units import base_unit, to_si
+
+_TURNING = {"cycles": "Hz", "radians": "rad/s"}
+FRICTION_SIGNALS = ("friction_force", "friction_coefficient")  # signals whose zero can be stated
+
+
+class Column(Strict):
+    """Which column is which quantity: value in SI = sign * (scale * x + offset) * unit."""
+
+    quantity: QuantityName | None = None
+    symbol: Symbol | None = Field(
+        None, description="instead of a quantity: a name of your own, for formulas of [[derived]]"
+    )
+    name: str | None = Field(None, description="name in the header without its unit")
+    name_pattern: Pattern | None = Field(
+        None, description="instead of a name: the whole name without its unit matches this"
+    )
+    occurrence: PositiveInt = Field(1, description="which one, when a name is used twice")
+    position: PositiveInt | None = Field(None, description="number of the column, from 1")
+    group: str | None = Field(None, description="TDMS only: the channel's group")
+    unit: str | None = Field(None, description="goes before the unit in the file")
+    scale: float = 1.0
+    offset: float = 0.0
+    sign: Sign | Literal["pressed"] = Field(
+        1,
+        description="'pressed', of a normal force: the sign by which its largest numbers are "
+        "positive, where programs write a load either way",
+    )
+    optional: bool = Field(
+        False,
+        description="may be missing or empty in some files; of several such columns for one "
+        "quantity the first that is filled is taken",
+    )
+    zero_uncertainty: str | None = Field(
+        None, description="standard uncertainty of its zero with unit, e.g. '0.2 N': friction only"
+    )
+    zero: ZeroText | None = Field(
+        None,
+        description="where its zero is read and taken off: 'first 200 samples', 'first 2 s', "
+        "'1.5 s to 3 s', 'file blank.csv' for a run without contact beside it, 'table zero' for "
+        "such a table in the file, 'table zero to table after' for one before and one after it",
+    )
+    rectified: bool | None = Field(
+        None, description="recorded without sign (true) or surely with it (false): friction only"
+    )
+
+    @model_validator(mode="after")
+    def _is_consistent(self) -> Self:
+        if (self.quantity is None) == (self.symbol is None):
+            raise ValueError("a column has either a quantity or a symbol")
+        if self.symbol in QUANTITIES:
+            raise ValueError(f"'{self.symbol}' is a quantity: say quantity = '{self.symbol}'")
+        places = (self.name, self.name_pattern, self.position)
+        if sum(place is not None for place in places) != 1:
+            raise ValueError(f"column '{self.key}': give either name, name_pattern or position")
+        if self.unit is not None:
+            check_unit(self.unit, self.si_unit(self.unit), self.bare)
+        stated = {"zero_uncertainty": self.zero_uncertainty, "rectified": self.rectified}
+        for key, value in stated.items():
+            if value is not None and self.quantity not in FRICTION_SIGNALS:
+                raise ValueError(
+                    f"column '{self.key}': {key} is for {' and '.join(FRICTION_SIGNALS)} only"
+                )
+        if self.sign == "pressed" and self.quantity != "normal_force":
+            raise ValueError(f"column '{self.key}': sign = 'pressed' is for normal_force only")
+        if self.zero is not None and self.quantity in ("time", "x", "y"):
+            raise ValueError(f"column '{self.key}': only a signal has a zero")
+        if self.zero_uncertainty is not None:
+            key = f"column '{self.key}': zero_uncertainty"
+            to_si(self.zero_uncertainty, self.si_unit(None), key)
+        return self
+
+    @property
+    def key(self) -> str:
+        """What the column is called here: its quantity, or its symbol."""
+        return self.quantity or str(self.symbol)
+
+    @property
+    def bare(self) -> Counted | None:
+        """What a unit per time counts that does not say it."""
+        return quantity(self.quantity).bare if self.quantity else None
+
+    def si_unit(self, unit: str | None) -> str:
+        """SI unit that numbers in a unit are turned into."""
+        if self.quantity:
+            return quantity(self.quantity).unit
+        if unit in (None, "", "1", "-", "%"):
+            return "1"
+        turning = reciprocal(plain_unit(str(unit)))  # cycles stay cycles
+        return _TURNING.get(turning.counts if turning else "") or base_unit(str(unit))
+
+    @property
+    def attributes(self) -> dict[str, float | bool]:
+        """What is stated of its zero and sign, as attributes of the run."""
+        attrs: dict[str, float | bool] = {}
+        if self.zero_uncertainty is not None:
+            unit = self.si_unit(None)
+            ending = "" if unit == "1" else f"_{unit}"
+            value = abs(to_si(self.zero_uncertainty, unit, "zero_uncertainty"))
+            attrs[f"{self.quantity}_zero_uncertainty{ending}"] = value
+        if self.rectified is not None:
+            attrs[f"{self.quantity}_rectified"] = self.rectified
+        return attrs

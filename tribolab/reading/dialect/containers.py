@@ -1,0 +1,84 @@
+"""What a dialect says of a file that holds columns by name: which tables and columns are read."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tribolab.errors import shown
+from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.dialect.python_reader import PythonReader
+from tribolab.reading.raw.containers.read import read_container
+from tribolab.reading.raw.containers.records import read_records
+from tribolab.reading.raw.model import RawColumn, RawFile, RawTable
+from tribolab.reading.raw.readers import read_with
+from tribolab.reading.text.bounded_patterns import guarded
+from tribolab.reading.text.cells import split_name
+
+_NAMED = 8  # tables that a message names
+
+
+def open_as(path: Path, dialect: Dialect) -> RawFile:
+    """Open a container as a dialect says where its tables are.
+
+    Raises
+    ------
+    ReadError
+        If it has no such sheet, or is shorter than a record.
+    ImportError
+        If the library for it is not installed; other libraries' own errors if it is damaged.
+    """
+    header = dialect.header
+    if isinstance(dialect, PythonReader):
+        return read_with(dialect.reader, path)
+    if dialect.binary is not None:
+        return read_records(path, dialect.binary.record, dialect.binary.offset)
+    if dialect.format != "excel":
+        return read_container(path, dialect.text.container or dialect.format)
+    # late: starting stays quick
+    from tribolab.reading.raw.containers.workbook import read_sheet, read_sheets
+
+    below = header.units == "row"
+    if dialect.tables is None:
+        return read_sheet(path, header.sheet, header.line or 1, header.skip, units_below=below)
+    wanted = [column.name for column in dialect.column if column.name]
+    return read_sheets(path, wanted, header.line or 1, units_below=below)
+
+
+def tables_of(file: RawFile, dialect: Dialect) -> list[RawTable]:
+    """Return the tables that a dialect reads: the steps of a run, or the whole file as one.
+
+    Tables of JSON are of one kind, and steps.
+    """
+    if dialect.tables is not None:
+        pattern = guarded(dialect.tables.steps)
+        return [table for table in file.tables if pattern.search(table.name)]
+    if len(file.tables) > 1 and file.container == "json":
+        return list(file.tables)
+    if dialect.format != "tdms":
+        return [file.as_one_table()]
+    groups = {column.group for column in dialect.column}
+    read = [table for table in file.tables if table.name in groups]
+    whole = file._replace(tables=tuple(read)).as_one_table()
+    # channels are called without their group
+    return [whole._replace(columns=tuple(c for table in read for c in table.columns))]
+
+
+def named_tables(file: RawFile) -> str:
+    """Name the first tables of a file, for a message."""
+    return ", ".join(shown(table.name, 30) for table in file.tables[:_NAMED]) or "none"
+
+
+def name_and_unit(column: RawColumn) -> tuple[str, str | None]:
+    """Return a column's name without its unit, and the unit, in brackets or as the file says it."""
+    name, unit = split_name(column.label)
+    return name, unit or column.unit
+
+
+def column_names(path: Path, dialect: Dialect) -> set[str]:
+    """Return the names of a file's columns, with and without their units; none if it is damaged."""
+    try:
+        tables = tables_of(open_as(path, dialect), dialect)[:1]
+    except Exception:  # it cannot be this instrument's
+        return set()
+    named = [name_and_unit(column) for table in tables for column in table.columns]
+    return {name for name, _ in named} | {f"{name} [{unit}]" for name, unit in named if unit}

@@ -1,0 +1,1 @@
+"""Delimited text read by its dialect, block by block."""

@@ -1,0 +1,179 @@
+"""Headers of delimited text: where they stand, and what they say of the columns."""
+
+from __future__ import annotations
+
+import functools
+import mmap
+import re
+from itertools import islice
+
+from tribolab.errors import ReadError, shown
+from tribolab.reading import cures
+from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.text.bounded_patterns import Guarded
+from tribolab.reading.text.cells import split_name, split_row
+from tribolab.reading.text.first_bytes import File
+
+BOM = b"\xef\xbb\xbf"
+_CLASS = re.compile(r"(?<!\\)\[")
+LONGEST_LINE = 4 << 20  # bytes: some 300 000 columns; what is longer is no row of a table
+
+
+def header_starts(file: File, content: bytes | mmap.mmap, dialect: Dialect) -> list[int]:
+    """Return the offsets of the header lines."""
+    header = dialect.header
+    first = 3 if content[:3] == BOM else 0
+    if header.pattern is not None:
+        matches = compiled(header.pattern, dialect).all(content, first)
+        wanted = None if header.repeats else 1  # looking for more would read the whole head
+        starts = [
+            max(content.rfind(b"\n", 0, m.start() + 1) + 1, first) for m in islice(matches, wanted)
+        ]
+        if not starts:
+            raise ReadError(
+                f"no line matches '{shown(header.pattern)}', which begins the table in files of "
+                f"'{dialect.name}'",
+                where=file.path,
+                cure=cures.name_instrument(say="if another instrument wrote it, say so with"),
+            )
+        return starts
+    position = first
+    for _ in range((header.line or 1) - 1):
+        position = content.find(b"\n", position) + 1
+        if position == 0:
+            raise ReadError(
+                f"{file.path}: the header should stand in line {header.line}, but the file (or "
+                "its first megabyte) has fewer lines"
+            )
+    return [position]
+
+
+def read_header(
+    file: File, content: bytes | mmap.mmap, start: int, dialect: Dialect
+) -> tuple[int, tuple[str, ...], tuple[str | None, ...]]:
+    """Return the offset after the header block, names and units."""
+    header, delimiter = dialect.header, dialect.text.delimiter
+    if header.line is None and header.pattern is None:
+        for _ in range(header.skip):
+            start = line_at(file, content, start, dialect)[1]
+        return start, (), ()
+    line, here = line_at(file, content, start, dialect)
+    names, units = _columns(line, delimiter, header.units == "brackets")
+    if header.units == "row":
+        for _ in range(header.units_line):
+            line, here = line_at(file, content, here, dialect)
+        while not line.strip() and here < len(content):  # nothing but delimiters, or nothing
+            line, here = line_at(file, content, here, dialect)
+        row = [unit.strip("[]() ") or None for unit in split_row(line, delimiter)]
+        units = tuple((row + [None] * len(names))[: len(names)])
+    for _ in range(header.skip):
+        here = line_at(file, content, here, dialect)[1]
+    return here, names, units
+
+
+@functools.lru_cache(maxsize=2)  # a dozen dialects look at the same header, one after the other
+def _columns(
+    line: str, delimiter: str, brackets: bool
+) -> tuple[tuple[str, ...], tuple[str | None, ...]]:
+    """Names of the columns in a header's line, and their units if these stand in brackets."""
+    cells = split_row(line, delimiter)
+    if not brackets:
+        return tuple(cells), (None,) * len(cells)
+    names, units = zip(*map(split_name, cells), strict=True)
+    return names, units
+
+
+def parted_as_numbers(
+    names: tuple[str, ...], units: tuple[str | None, ...], width: int, dialect: Dialect
+) -> tuple[tuple[str, ...], tuple[str | None, ...]]:
+    """Return names and units of a header that blanks part otherwise than they part its numbers.
+
+    Parameters
+    ----------
+    names, units
+        As the delimiter parts them.
+    width
+        How many numbers stand in a row.
+    dialect
+        The instrument's: only where it tells its columns by their place names may be wrong.
+
+    Notes
+    -----
+    Units in brackets belong to the names before them; what still fits no row names nothing.
+    """
+    fits = len(names) == width or dialect.text.delimiter != "whitespace"
+    if fits or any(column.position is None for column in dialect.column):
+        return names, units
+    joined: list[str] = []
+    marked = len(names) > width and not any(map(str.isalnum, names[0]))  # "# t [s] x [mm]"
+    for name in names[marked:]:
+        if joined and name[:1] in "([":
+            joined[-1] += f" {name}"
+        else:
+            joined.append(name)
+    if len(joined) != width:
+        return (), ()
+    return tuple(split_name(name)[0] for name in joined), (None,) * width
+
+
+def line_at(
+    file: File, content: bytes | mmap.mmap, start: int, dialect: Dialect
+) -> tuple[str, int]:
+    """Return the line that starts at an offset, and the offset of the next."""
+    end = content.find(b"\n", start, start + LONGEST_LINE)
+    if end < 0:
+        end = len(content)
+    if end - start > LONGEST_LINE:
+        raise ReadError(endless(content[:start].count(b"\n") + 1), where=file.path)
+    text = content[start:end].decode(table_encoding(dialect), errors="replace")
+    return text.rstrip("\r"), min(end + 1, len(content))
+
+
+def endless(line: int) -> str:
+    """Say that a line is longer than any row of a table."""
+    return (
+        f"line {line} is longer than {LONGEST_LINE >> 20} MB, as no row of a table is; was the "
+        "file written without line ends, or is it damaged?"
+    )
+
+
+def table_encoding(dialect: Dialect) -> str:
+    """Return the encoding of what is looked at: some text is mended to UTF-8."""
+    return "utf-8" if is_wide(dialect) else dialect.text.encoding
+
+
+def is_wide(dialect: Dialect) -> bool:
+    """Whether text is mended to UTF-8: wide letters, arranged anew, or such missing words."""
+    encoding = dialect.text.encoding.lower().replace("_", "-")
+    words = not all(word.isascii() for word in dialect.text.missing)
+    plain = encoding.startswith(("utf-8", "ascii"))
+    arranged = dialect.text.arrangement != "below names"
+    return arranged or encoding.startswith(("utf-16", "utf-32")) or (words and not plain)
+
+
+def compiled(pattern: str, dialect: Dialect) -> Guarded[bytes]:
+    """Return a pattern for lines of raw bytes: ``$`` also stands before CR LF."""
+    # behind "\s*", a second wish for blanks would take a time that grows with their number squared
+    if dialect.text.delimiter == "whitespace" and not _CLASS.search(pattern):
+        pattern = re.sub(" +", r"[\\t ]+", pattern)  # tabs stand for blanks by now, see `mended`
+    if pattern.endswith("$") and not pattern.endswith((r"\$", r"\s*$")):
+        pattern = pattern[:-1] + r"[ \t\r]*$"
+    return Guarded(_as_bytes(pattern, table_encoding(dialect)))
+
+
+def _as_bytes(pattern: str, encoding: str) -> bytes:
+    """Return a pattern for bytes: the second byte of a letter may be a sign of patterns.
+
+    >>> re.search(_as_bytes("^[ ]*ー+$", "cp932"), "  ーー".encode("cp932")) is not None
+    True
+    """
+    parts = []
+    inside = escaped = False  # of a class of letters; behind a backslash
+    for sign in pattern:
+        code = sign.encode(encoding, errors="replace")
+        plain = sign.isascii() or inside or len(code) == 1
+        parts.append(code if plain else b"(?:" + re.escape(code) + b")")
+        if not escaped and sign in "[]":
+            inside = sign == "["
+        escaped = sign == "\\" and not escaped
+    return b"".join(parts)

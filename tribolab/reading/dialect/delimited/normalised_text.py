@@ -1,0 +1,146 @@
+"""Text that cannot be parsed as it lies on disk, made such as can be: ends of lines, numbers."""
+
+from __future__ import annotations
+
+import codecs
+import functools
+import re
+from collections.abc import Callable
+from typing import AnyStr
+
+from tribolab.errors import ReadError
+from tribolab.reading.dialect.delimited.headers import (
+    compiled,
+    header_starts,
+    is_wide,
+    table_encoding,
+)
+from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.text.arrangements import below_names
+from tribolab.reading.text.first_bytes import File
+from tribolab.reading.text.number_spelling import is_unusual, usual, without_commas_in_quotes
+from tribolab.reading.text.thousands import without_thousands
+from tribolab.reading.text.wrapped_lines import unwrapped
+
+_ODD_ENDS = 3  # a line end that went through two programs is CR CR LF; more were not seen
+
+
+def mended(file: File, dialect: Dialect, head_only: bool) -> bytes | None:
+    """Return the whole content (or head) such as can be parsed; None if it can as it lies."""
+    memory = _with_usual_lines(file, dialect, head_only)
+    if not head_only:
+        memory = _without_lines(file, memory, dialect)
+    respell = _respelling(dialect, file.head)
+    return memory if respell is None else _respelt(file, memory, dialect, respell, head_only)
+
+
+def _with_usual_lines(file: File, dialect: Dialect, head_only: bool) -> bytes | None:
+    """Whole content as UTF-8 with LF, where line ends or encoding forbid reading it as it lies."""
+    head = file.head
+    wide = is_wide(dialect) or head.startswith((b"\xff\xfe", b"\xfe\xff"))
+    odd_ends = b"\r" in head and re.search(rb"\r(?!\n)", head[:-1]) is not None
+    spaced = dialect.text.delimiter == "whitespace"
+    if not (wide or odd_ends or spaced):
+        return None
+    try:
+        content = head if head_only else file.path.read_bytes()
+        if wide:
+            marked = head[:2] in (b"\xff\xfe", b"\xfe\xff")
+            decoder = codecs.getincrementaldecoder("utf-16" if marked else dialect.text.encoding)()
+            told = line_feeds(decoder.decode(content, final=not head_only))
+            text = dialect.text
+            content = below_names(told, text.arrangement, text.delimiter).encode()
+    except (OSError, UnicodeDecodeError) as error:
+        raise ReadError(f"{file.path}: the file cannot be read: {error}") from error
+    content = line_feeds(content)
+    return _tabbed(content) if spaced else content
+
+
+def line_feeds(content: AnyStr) -> AnyStr:
+    r"""Return text or bytes with LF at the end of each line, whatever stood there.
+
+    Examples
+    --------
+    >>> line_feeds("one\rtwo\r\nthree\r\r\n\nfive")
+    'one\ntwo\nthree\n\nfive'
+    """
+    cr, lf = ("\r", "\n") if isinstance(content, str) else (b"\r", b"\n")
+    for _ in range(_ODD_ENDS):
+        content = content.replace(cr + lf, lf)
+    return content.replace(cr, lf)
+
+
+def _tabbed(content: bytes) -> bytes:
+    """Put one tab between the cells of a line and none around them, whatever blanks there were.
+
+    Patterns would take a time that grows with the square of a row of blanks.
+    """
+    content = content.replace(b" ", b"\t")
+    while b"\t\t" in content:
+        content = content.replace(b"\t\t", b"\t")
+    content = content.replace(b"\n\t", b"\n").replace(b"\t\n", b"\n")
+    return content.removeprefix(b"\t").removesuffix(b"\t")
+
+
+def _without_lines(file: File, content: bytes | None, dialect: Dialect) -> bytes | None:
+    """Whole content without the lines below the first header that are to be passed over."""
+    if dialect.text.skip_lines is None:
+        return content
+    try:
+        content = file.path.read_bytes() if content is None else content
+    except OSError as error:
+        raise ReadError(f"{file.path}: the file cannot be read: {error}") from error
+    header = dialect.header
+    starts = header_starts(file, content, dialect)
+    first = content.count(b"\n", 0, starts[0])
+    deep = header.skip + (header.units_line if header.units == "row" else 0)
+    whole = header.line is not None or header.pattern is not None
+    kept = {content.count(b"\n", 0, start) + k for start in starts for k in range(deep + whole)}
+    pattern = compiled(dialect.text.skip_lines, dialect)
+    return b"\n".join(
+        line
+        for number, line in enumerate(content.split(b"\n"))
+        if number < first or number in kept or not pattern.search(line)
+    )
+
+
+def _respelling(dialect: Dialect, head: bytes) -> Callable[[str], str] | None:
+    """Return what makes a table's numbers such as the parser reads; None where they are."""
+    text = dialect.text
+    steps: list[Callable[[str], str]] = []
+    if text.thousands:
+        steps.append(lambda table: without_thousands(table, text.thousands, text.delimiter))
+    if text.is_quoted:
+        steps.append(without_commas_in_quotes)
+    if _is_unusual(head, text.encoding):
+        steps.append(usual)
+    if text.wrapped:  # blanks are tabs by now
+        mark = "\t" if text.delimiter == "whitespace" else text.delimiter
+        steps.append(lambda table: unwrapped(table, mark))
+    if not steps:
+        return None
+    return lambda table: functools.reduce(lambda so_far, step: step(so_far), steps, table)
+
+
+@functools.lru_cache(maxsize=4)  # dozens of dialects look at the same head, one after the other
+def _is_unusual(head: bytes, encoding: str) -> bool:
+    return is_unusual(head.decode(encoding, errors="replace"))
+
+
+def _respelt(
+    file: File,
+    content: bytes | None,
+    dialect: Dialect,
+    respell: Callable[[str], str],
+    head_only: bool,
+) -> bytes:
+    """Content whose table's numbers are written as the parser reads them; the text before stays."""
+    if content is None:
+        try:
+            content = file.head if head_only else file.path.read_bytes()
+        except OSError as error:
+            raise ReadError("the file cannot be read", where=file.path) from error
+    start = header_starts(file, content, dialect)[0]
+    encoding = table_encoding(dialect)
+    table = respell(content[start:].decode(encoding, errors="surrogateescape"))
+    return content[:start] + table.encode(encoding, errors="surrogateescape")

@@ -1,0 +1,86 @@
+"""What stands in a text file outside of the tables that are read: rows of numbers, a foot."""
+
+from __future__ import annotations
+
+import re
+
+from tribolab.errors import ReadError
+from tribolab.reading.dialect.delimited.tables import RawText
+from tribolab.reading.dialect.model import Dialect
+
+_LONGEST_FOOT = 1 << 16  # bytes
+# a line that begins with a number and holds neither words nor times of day nor dates
+_NUMBERS = re.compile(rb'^[ \t"]*[-+.]?\d[^\r\nA-DF-Za-df-z:/#%]*\r?$', re.MULTILINE)
+
+
+def rows_outside(raw: RawText, delimiter: str) -> int:
+    """Count the rows of numbers before, between and below the tables of a file.
+
+    Parameters
+    ----------
+    raw
+        The file and its tables, from `tribolab.reading.dialect.delimited.tables.find_tables`.
+    delimiter
+        As the dialect says it.
+
+    Notes
+    -----
+    A row has at least two cells, and between half and twice as many as the tables have columns:
+    few numbers beside one another are settings or results.
+
+    Raises
+    ------
+    ReadError
+        If the file cannot be read any more.
+    """
+    tables = raw.tables
+    size = raw.file.size if raw.memory is None else len(raw.memory)
+    edges = [0, *(place for table in tables for place in (table.start, table.stop)), size]
+    gaps = [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if b > a]
+    width = max(table.width for table in tables)
+    mark = b"\t" if delimiter == "whitespace" else delimiter.encode()
+    return sum(_count(_bytes(raw, *gap), mark, width) for gap in gaps)
+
+
+def foot_of(raw: RawText, dialect: Dialect) -> str:
+    """Return the text below the last table of a file, of a long one its end.
+
+    Parameters
+    ----------
+    raw
+        As for `rows_outside`.
+    dialect
+        The encoding of the file.
+
+    Raises
+    ------
+    ReadError
+        If the file cannot be read any more.
+    """
+    size = raw.file.size if raw.memory is None else len(raw.memory)
+    stop = raw.tables[-1].stop
+    if not stop < size:
+        return ""
+    text = _bytes(raw, max(stop, size - _LONGEST_FOOT), size)
+    return text.decode(dialect.text.encoding, errors="replace").replace("\r", "\n")
+
+
+def _bytes(raw: RawText, start: int, stop: int) -> bytes:
+    if raw.memory is not None:
+        return raw.memory[start:stop]
+    if stop <= len(raw.file.head):
+        return raw.file.head[start:stop]
+    try:
+        with raw.file.path.open("rb") as file:
+            file.seek(start)
+            return file.read(stop - start)
+    except OSError as error:
+        raise ReadError(f"{raw.file.path}: the file cannot be read any more: {error}") from error
+
+
+def _count(text: bytes, mark: bytes, width: int) -> int:
+    rows = 0
+    for line in _NUMBERS.findall(text):
+        cells = sum(bool(cell.strip(b' "\r')) for cell in line.split(mark))
+        rows += max(2, width / 2) <= cells <= 2 * width
+    return rows

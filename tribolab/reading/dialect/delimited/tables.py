@@ -1,0 +1,131 @@
+"""Delimited text: where its tables start and end."""
+
+from __future__ import annotations
+
+import mmap
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+from tribolab.errors import ReadError
+from tribolab.reading.dialect.delimited.headers import (
+    BOM,
+    compiled,
+    header_starts,
+    line_at,
+    parted_as_numbers,
+    read_header,
+    table_encoding,
+)
+from tribolab.reading.dialect.delimited.normalised_text import mended
+from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.text.cells import split_row
+from tribolab.reading.text.first_bytes import File, peek
+
+# one class of letters: a repeated group would take sixty bytes of memory for each line
+_BLANK = re.compile(rb"(?:[ \t\r\n]*\n)?")
+
+
+class TextTable(NamedTuple):
+    """One table of a text file: offsets of its first byte and of the byte after its last."""
+
+    names: tuple[str, ...]
+    units: tuple[str | None, ...]
+    width: int
+    start: int
+    stop: int
+    line: int
+    before: str
+
+
+class RawText(NamedTuple):
+    """A text file on disk, or its content in memory if its line ends had to be mended."""
+
+    file: File
+    memory: bytes | None
+    tables: tuple[TextTable, ...]
+
+    @property
+    def preamble(self) -> str:
+        """Text before the first table."""
+        return self.tables[0].before
+
+
+def find_tables(path: str | Path | File, dialect: Dialect, *, head_only: bool = False) -> RawText:
+    """Find the tables of a text file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    dialect
+        How the file is written.
+    head_only
+        Whether its first megabyte is enough, as it is to recognise a file.
+
+    Raises
+    ------
+    ReadError
+        If there is no header where the dialect expects it, or nothing stands below it.
+    """
+    file = path if isinstance(path, File) else peek(path)
+    memory = mended(file, dialect, head_only)
+    if memory is not None:
+        return RawText(file, memory, tuple(_scan(file, memory, len(memory), dialect)))
+    if head_only or not (dialect.header.repeats or dialect.text.end):
+        return RawText(file, None, tuple(_scan(file, file.head, file.size, dialect)))
+    try:
+        with file.path.open("rb") as handle, mmap.mmap(handle.fileno(), 0, prot=1) as content:
+            return RawText(file, None, tuple(_scan(file, content, len(content), dialect)))
+    except (OSError, ValueError) as error:
+        raise ReadError(f"{file.path}: the file cannot be read any more: {error}") from error
+
+
+def _scan(file: File, content: bytes | mmap.mmap, size: int, dialect: Dialect) -> list[TextTable]:
+    """Tables in `content`, the start of (or the whole of) a file of `size` bytes."""
+    header, text = dialect.header, dialect.text
+    starts = header_starts(file, content, dialect)
+    end = compiled(text.end, dialect) if text.end else None
+    tables: list[TextTable] = []
+    origin = 3 if content[:3] == BOM else 0
+    line, counted = 1, 0
+    for number, start in enumerate(starts):
+        limit = starts[number + 1] if number + 1 < len(starts) else size
+        here, names, units = read_header(file, content, start, dialect)
+        blank = _BLANK.match(content, here)
+        body = blank.end() if blank else here
+        stop = limit
+        if end is not None and (last := end.search(content, body, min(limit, len(content)))):
+            stop = last.start()
+        width = _width(file, content, body, dialect)
+        names, units = parted_as_numbers(names, units, width, dialect)
+        before = _decode(content[origin : start if start > origin else body], file, dialect)
+        if header.line is None and header.pattern is None and not header.skip:
+            before = ""
+        line, counted = line + content[counted:body].count(b"\n"), body
+        if body < stop:
+            tables.append(TextTable(names, units, width, body, stop, line, before))
+        origin = min(stop, len(content))
+    if not tables:
+        raise ReadError(f"{file.path}: the file has a header, but no row of numbers below it")
+    return tables
+
+
+def _width(file: File, content: bytes | mmap.mmap, body: int, dialect: Dialect) -> int:
+    """Return the number of cells of a row: of the first one without delimiters too many."""
+    first, below = line_at(file, content, body, dialect)
+    cells = split_row(first, dialect.text.delimiter)
+    if cells[-1] or below >= len(content):
+        return len(cells)
+    second = len(split_row(line_at(file, content, below, dialect)[0], dialect.text.delimiter))
+    return second if 0 < second < len(cells) and not any(cells[second:]) else len(cells)
+
+
+def _decode(content: bytes, file: File, dialect: Dialect) -> str:
+    try:
+        return content.decode(table_encoding(dialect)).replace("\r\n", "\n")
+    except UnicodeDecodeError as error:
+        raise ReadError(
+            f"{file.path}: byte {error.start} is not {dialect.text.encoding}; name the encoding "
+            "in the dialect, e.g. encoding = 'latin-1'"
+        ) from error

@@ -1,0 +1,250 @@
+"""Dialects: descriptions of instruments' raw files as TOML, found by name or by content."""
+
+from __future__ import annotations
+
+import functools
+import multiprocessing
+import tomllib
+import warnings
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from tribolab.errors import ConfigError, ReadError, TribolabError, brief, nearest, shown
+from tribolab.reading import cures
+from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.raw.readers import installed_readers, is_reader
+from tribolab.reading.raw.source import check_regular
+from tribolab.reading.schema_folder import schema_folder
+from tribolab.reading.text.first_bytes import File, peek, results_error
+from tribolab.untyped import Json
+
+__all__ = [
+    "Dialect",
+    "Instrument",
+    "UnknownFileError",
+    "every_dialect",
+    "is_scan",
+    "json_schema",
+    "known_dialects",
+    "load_dialect",
+    "recognise",
+    "scan_dialects",
+    "unknown",
+]
+
+
+Instrument = str | Path | Dialect  # a name, a TOML file, or what it says
+_SHOWN = 5  # mistakes of a dialect that are told at once
+_LEAVING = {  # keys by table: no instrument needs them, and the next release will not know them
+    "tables": ("steps",),
+    "text": ("arrangement", "wrapped"),
+    "derived": ("way",),
+    "header": ("only",),
+    "rows": ("left_out",),
+}
+
+
+class UnknownFileError(ReadError):
+    """No dialect describes such a file; one may be drafted from it."""
+
+
+def known_dialects() -> dict[str, Path]:
+    """Names of the instruments that are described, and the TOML file of each.
+
+    Examples
+    --------
+    >>> "linear_slider" in known_dialects()
+    True
+    """
+    return {path.stem: path for path in sorted((schema_folder() / "instruments").glob("*.toml"))}
+
+
+def load_dialect(name_or_path: Instrument) -> Dialect:
+    """Return the dialect of a known instrument, or of a TOML file of your own.
+
+    Parameters
+    ----------
+    name_or_path
+        Name of a known instrument or of an installed reader, path of a TOML file or of a reader in
+        Python, or a dialect, which is returned as it is.
+
+    Raises
+    ------
+    ConfigError
+        If there is no such dialect, or it says something that cannot be.
+
+    Examples
+    --------
+    >>> load_dialect("linear_slider").text.delimiter
+    ','
+    """
+    if isinstance(name_or_path, Dialect):
+        return name_or_path
+    known = known_dialects()
+    if str(name_or_path) in known:
+        return _load(known[str(name_or_path)])
+    if is_reader(str(name_or_path)):
+        # late: starting stays quick
+        from tribolab.reading.dialect.python_reader import python_reader
+
+        return python_reader(str(name_or_path))
+    path = Path(name_or_path)
+    if path.suffix == ".toml":
+        if not path.exists():
+            raise ConfigError(f"{path}: there is no such dialect file")
+        try:
+            check_regular(path)
+        except ReadError as error:
+            raise ConfigError(error) from error
+        return _parse(path)
+    raise ConfigError(
+        f"no instrument is called '{shown(str(name_or_path))}'{nearest(str(name_or_path), known)}; "
+        "a description of your own is given by its path, ending in .toml, a reader by .py"
+    )
+
+
+def recognise(path: str | Path) -> Dialect:
+    """Tell from a file's content which known instrument wrote it.
+
+    Raises
+    ------
+    ReadError
+        If no dialect fits, or more than one; the message names the candidates and how to say
+        which.
+    """
+    # late: starting stays quick
+    from tribolab.reading.dialect.recognise import mismatch
+
+    file = peek(path)
+    named = file._replace(path=Path(path))  # what was unpacked lies elsewhere
+    fitting = [dialect for dialect in every_dialect() if mismatch(file, dialect) is None]
+    if not fitting and installed_readers():
+        # late: few have any
+        from tribolab.reading.dialect.python_reader import recognised_by
+
+        fitting = recognised_by(file.head)
+    if len(fitting) == 1:
+        return fitting[0]
+    if fitting:
+        names = ", ".join(repr(dialect.name) for dialect in fitting)
+        raise ReadError(
+            f"more than one instrument fits: {names}",
+            where=named.path,
+            cure=cures.name_instrument(cures.RUN),
+        )
+    if error := results_error(file.head, named.path):
+        raise error
+    raise unknown(named, cures.RUN)
+
+
+def unknown(file: File, table: str) -> UnknownFileError:
+    """Return what is said of a file that no dialect fits."""
+    what = f"no known instrument writes such a file ({file.format})"
+    if file.format != "text":
+        folder = "describe it as raw_data_schema/README.md says"
+        cure = cures.name_instrument(table, say=f"{folder}, and name that with")
+        if file.format == "excel":
+            cure = cures.joined(cures.PERHAPS_PROFILE, cure)
+        return UnknownFileError(what, where=file.path, cure=cure)
+    return UnknownFileError(what, where=file.path, cure=cures.unknown_instrument(file.path, table))
+
+
+def is_scan(dialect: Dialect) -> bool:
+    """Whether a dialect's files hold a profile or map, and no run.
+
+    Examples
+    --------
+    >>> is_scan(load_dialect("surftest_csv")), is_scan(load_dialect("linear_slider"))
+    (True, False)
+    """
+    keys = {column.key for column in dialect.column}
+    return "height" in keys and "time" not in keys
+
+
+def scan_dialects() -> list[Dialect]:
+    """Return the known dialects whose files hold a profile or map.
+
+    Examples
+    --------
+    >>> "nanovea_map" in [dialect.name for dialect in scan_dialects()]
+    True
+    """
+    return [dialect for dialect in every_dialect() if is_scan(dialect)]
+
+
+def every_dialect() -> list[Dialect]:
+    """Return the dialects of all known instruments, by name."""
+    return [_load(path) for path in known_dialects().values()]
+
+
+def json_schema() -> Json:
+    """Return the JSON Schema of a dialect file, for editors and other programs."""
+    schema = Dialect.model_json_schema()
+    for table, keys in _LEAVING.items():
+        for key in keys:
+            del schema["$defs"][table.capitalize()]["properties"][key]
+    del schema["$defs"]["Tables"], schema["properties"]["tables"]
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+@functools.lru_cache(maxsize=64)
+def _load(path: Path) -> Dialect:
+    return _parse(path)
+
+
+def _parse(path: Path) -> Dialect:
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except RecursionError as error:
+        raise ConfigError(
+            f"{path}: the dialect cannot be read: its lists or tables lie hundreds deep in one "
+            "another; write them flat"
+        ) from error
+    except (OSError, ValueError) as error:
+        raise ConfigError(f"{path}: the dialect cannot be read: {brief(error)}") from error
+    try:
+        dialect = Dialect.model_validate(content)
+        _warn_of_keys(path, content)
+        return dialect
+    except ValidationError as error:
+        said = [_explain(fault) for fault in error.errors()]
+        more = [f"and {len(said) - _SHOWN} more"] if len(said) > _SHOWN else []
+        raise ConfigError("; ".join(said[:_SHOWN] + more), where=path) from error
+    except TribolabError as error:  # of a unit or number: it says of which key
+        raise ConfigError(error, where=path) from error
+
+
+def _warn_of_keys(path: Path, content: Json) -> None:
+    """Warn of keys that the next release will not know; once, not in every worker."""
+    if multiprocessing.parent_process() is not None:
+        return
+    for table, keys in _LEAVING.items():
+        said = content.get(table, [])
+        for key in keys:
+            if any(key in one for one in (said if isinstance(said, list) else [said])):
+                warnings.warn(
+                    f"{path}: {table}.{key} will be removed from dialects in the next release; "
+                    "read such files without a dialect",
+                    FutureWarning,
+                    stacklevel=2,
+                )
+
+
+def _explain(problem: Any) -> str:
+    where = ".".join(shown(str(part)) for part in problem["loc"])
+    if problem["type"] != "extra_forbidden":
+        return f"{where}: {problem['msg'].removeprefix('Value error, ')}".removeprefix(": ")
+    model = _model_at(problem["loc"][:-1])
+    word = str(problem["loc"][-1])
+    return f"{where}: there is no such key{nearest(word, model)}"
+
+
+def _model_at(loc: tuple[str | int, ...]) -> list[str]:
+    """Names of the keys that are allowed at a place of the dialect."""
+    # late: starting stays quick
+    from tribolab.reading.dialect import model as dialect_model
+
+    name = next((str(part) for part in reversed(loc) if isinstance(part, str)), "dialect")
+    return list(getattr(dialect_model, name.capitalize()).model_fields)

@@ -1,0 +1,178 @@
+"""What a dialect may say: the typed description of one instrument's raw files.
+
+The keys are those of the TOML files in ``raw_data_schema/instruments``; the JSON Schema beside
+them is generated from these classes.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from tribolab.errors import nearest, shown
+from tribolab.reading.dialect.checked_text import Formula, QuantityName, Strict, ZeroText
+from tribolab.reading.dialect.column_rule import Column
+from tribolab.reading.dialect.file_layout import (
+    Binary,
+    Header,
+    Marks,
+    Pair,
+    Recognise,
+    Rows,
+    Tables,
+    Text,
+)
+from tribolab.reading.dialect.formula import names_in, parse_formula
+from tribolab.reading.dialect.pitch_rule import check_pitch
+from tribolab.reading.dialect.speed_rule import Speed
+from tribolab.reading.dialect.time_rule import Time
+from tribolab.reading.dialect.uncertainty import Uncertainty
+from tribolab.reading.dialect.value_rule import Value
+from tribolab.units import positive
+
+
+class Derived(Strict):
+    """A quantity that no column holds: a formula of columns, values and quantities with units."""
+
+    quantity: QuantityName
+    formula: Formula = Field(
+        description="+ - * / ( ) of quantities and symbols of columns, names of values, pi, and "
+        "numbers with units in quotes: \"torque / (radius + '5 mm')\""
+    )
+    optional: bool = Field(
+        False,
+        description="left out of files that do not hold all that the formula needs; of several "
+        "such formulas for one quantity the first that can be worked out is taken",
+    )
+    way: Literal["both", "out"] = Field(
+        "both",
+        description="'out': on ways back, against the first way, it is zero, as of a normal force "
+        "where a sled is lifted; the position tells the ways",
+    )
+    beside: tuple[str, ...] = Field(
+        (), description="what the file has to hold besides, if the formula is to be used"
+    )
+    zero: ZeroText | None = Field(
+        None, description="where the zero of what follows is read and taken off, as for a column"
+    )
+
+
+class Dialect(Strict):
+    """One instrument's raw files."""
+
+    name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
+    title: str = Field(description="what the instrument is, for people")
+    format: Literal[
+        "text", "mat", "tdms", "hdf5", "parquet", "feather", "excel", "npz", "binary"
+    ] = Field(
+        "text",
+        description="hdf5 is MATLAB 7.3, too; npz an archive of NumPy's arrays; files of all "
+        "formats may be compressed (gz, zip)",
+    )
+    from_file: bool = Field(
+        True,
+        description="false: written after a maker's description or a standard, without a file of "
+        "the instrument; runs say so",
+    )
+    recognise: Recognise = Recognise()
+    text: Text = Text()
+    header: Header = Header()
+    time: Time = Time()
+    rows: Rows = Rows()
+    moving_mass: str | None = Field(
+        None,
+        description="mass between the contact and the force sensor, e.g. '1.2 kg': its inertia is "
+        "taken out of the friction force",
+    )
+    speed: Speed = Speed()
+    pitch: str | None = Field(
+        None, description="distance of neighbouring heights of a profile without x, e.g. '0.25 um'"
+    )
+    pitch_value: str | None = Field(None, description="the [[value]] (in m) that holds the pitch")
+    length_value: str | None = Field(
+        None,
+        description="the [[value]] (in m) that holds the length of a profile without x, over which "
+        "its heights lie evenly",
+    )
+    pair: Pair | None = None
+    marks: Marks | None = None
+    tables: Tables | None = None
+    binary: Binary | None = None
+    column: tuple[Column, ...] = Field(min_length=1)
+    value: tuple[Value, ...] = ()
+    derived: tuple[Derived, ...] = ()
+    uncertainty: Uncertainty = Uncertainty()
+
+    @model_validator(mode="after")
+    def _is_consistent(self) -> Self:
+        names = [column.key for column in self.column]
+        side_by_side = {"height"} if "y" not in names else set()  # profiles of one surface
+        for name in sorted({name for name in names if names.count(name) > 1} - side_by_side):
+            if not all(column.optional for column in self.column if column.key == name):
+                raise ValueError(
+                    f"'{name}' is given by two columns; if each file fills one of them, say "
+                    "optional = true for all: the first that is filled is taken"
+                )
+        sure = {column.key for column in self.column if not column.optional}
+        values = [v.name for v in self.value if v.unit is not None]
+        _check_formulas(self.derived, names, values, sure)
+        profile = "height" in names and self.time == Time()  # heights have no time
+        timed = self.time.source in ("column", "period")
+        if ("time" in names) != timed and not (profile and "time" not in names):
+            raise ValueError(
+                "a column for 'time' and time.source = 'column' or 'period' belong together; "
+                "without such a column say under [time] source = 'rate' and rate = '100 Hz'"
+            )
+        if self.time.source == "position" and "position" not in names:
+            raise ValueError("time.source = 'position' needs a column for 'position'")
+        if self.moving_mass is not None:
+            positive(self.moving_mass, "kg", "moving_mass")
+        if (self.format == "binary") != (self.binary is not None):
+            raise ValueError("format = 'binary' and [binary] belong together")
+        if self.tables is not None and self.format in ("text", "binary", "parquet", "feather"):
+            raise ValueError(
+                f"[tables] is for files that hold several tables by name, not {self.format}"
+            )
+        without_header = self.header.line is None and self.header.pattern is None
+        if without_header and self.text.delimiter == "any":
+            raise ValueError("text.delimiter = 'any' needs header.line or header.pattern")
+        if self.format == "text" and without_header and not self.text.container:
+            for column in self.column:
+                if column.position is None or column.unit is None:
+                    raise ValueError(
+                        f"column '{column.key}': in a file without a header it needs "
+                        "position and unit"
+                    )
+        check_pitch(self.pitch, self.pitch_value, self.length_value, self.value, names)
+        for key, value in self.speed.values_named.items():
+            if value not in {v.name for v in self.value} | {c.symbol for c in self.column}:
+                raise ValueError(
+                    f"speed.{key}: there is no value and no symbol of a column '{shown(value)}'"
+                )
+        return self
+
+    @property
+    def values_reckoned_with(self) -> set[str]:
+        """Names that the speed or formulas rest on, of values and of all else."""
+        formulas = (names_in(parse_formula(rule.formula)) for rule in self.derived)
+        return set(self.speed.values_named.values()).union(*formulas)
+
+
+def _check_formulas(
+    derived: tuple[Derived, ...], columns: list[str], values: list[str], sure: set[str]
+) -> None:
+    """Each formula needs what there is: columns, values with a unit, results of those before it.
+
+    A quantity that a column surely holds has no formula; of an optional column it is the stand-in.
+    """
+    known = {*columns, *values}
+    for rule in derived:
+        for name in sorted({*names_in(parse_formula(rule.formula)), *rule.beside} - known):
+            raise ValueError(
+                f"formula of '{rule.quantity}': there is no column, value with a unit or derived "
+                f"quantity before it called '{shown(name)}'{nearest(name, known)}"
+            )
+        if rule.quantity in sure:
+            raise ValueError(f"'{rule.quantity}' is given by a column and by a formula")
+        known.add(rule.quantity)

@@ -1,0 +1,78 @@
+"""The dialect of a reader in Python: its columns are called by their quantities."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from tribolab.quantities import QUANTITIES
+from tribolab.reading.dialect.column_rule import Column
+from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.dialect.speed_rule import Speed
+from tribolab.reading.dialect.time_rule import Time
+from tribolab.reading.raw.clocks import INTERVAL_PATTERN
+from tribolab.reading.raw.readers import answers, read_with, source_of
+
+
+class PythonReader(Dialect):
+    """An instrument whose files a reader in Python opens; `reader` is its path or its name."""
+
+    reader: str
+
+
+def python_reader(name: str) -> PythonReader:
+    """Return the dialect of a reader, whose columns only a file can tell.
+
+    Parameters
+    ----------
+    name
+        Path of a Python file, or the name of an installed reader.
+
+    Raises
+    ------
+    ConfigError
+        If there is no such file.
+    """
+    source = source_of(name)
+    called = re.sub(r"[^a-z0-9]+", "_", Path(name).stem.lower()).strip("_") or "reader"
+    time = Column(quantity="time", name="time")
+    title = f"files that {source.name} reads"
+    return PythonReader(name=called, title=title, format="hdf5", column=(time,), reader=name)
+
+
+def recognised_by(head: bytes) -> list[Dialect]:
+    """Return the installed readers that can read a file by its first bytes; else those that may."""
+    said = answers(head)
+    sure = [name for name, answer in said.items() if answer == "yes"]
+    return [python_reader(name) for name in sure or said]
+
+
+def with_columns(dialect: PythonReader, path: Path) -> PythonReader:
+    """Return a reader's dialect with the columns that it finds in a file.
+
+    Parameters
+    ----------
+    dialect
+        From `python_reader`.
+    path
+        The file.
+
+    Raises
+    ------
+    ReadError
+        If the reader does not read it.
+    """
+    columns = read_with(dialect.reader, path).as_one_table().columns
+    names = dict.fromkeys(column.label for column in columns if column.label in QUANTITIES)
+    found = tuple(Column(quantity=name, name=name, optional=name != "time") for name in names)
+    clocked = "time" not in names and all(column.clock for column in columns)
+    if "time" not in names and "height" not in names and not clocked:
+        found = (*dialect.column, *found)  # time is missing, and whoever reads it says so
+    source = next((s for s, name in _SPEED_FROM if name in names), "none")
+    update = {"column": found, "speed": Speed.model_validate({"source": source})}
+    if clocked:
+        update["time"] = Time(source="rate", rate_pattern=INTERVAL_PATTERN, rate_unit="s")
+    return dialect.model_copy(update=update)
+
+
+_SPEED_FROM = (("column", "sliding_velocity"), ("position", "position"))

@@ -1,0 +1,116 @@
+"""Does a file's content fit a dialect? Every rule that the dialect states has to hold."""
+
+from __future__ import annotations
+
+import functools
+import re
+
+import numpy as np
+
+from tribolab.errors import ReadError, shown
+from tribolab.reading.dialect.delimited.tables import find_tables
+from tribolab.reading.dialect.file_layout import Recognise
+from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.dialect.text_form import as_written
+from tribolab.reading.text.bounded_patterns import guarded
+from tribolab.reading.text.cells import split_row
+from tribolab.reading.text.first_bytes import File, fits_format
+
+_ROWS = 4000  # rows looked at for linked columns: enough for the instrument to have moved
+_FIRST_LINE = re.compile(r"\s*([^\r\n]*)")
+_PREAMBLE = 1 << 13  # characters in which the marks of a preamble are sought
+_LINKED = 0.999  # correlation of the same signal in volts and in its unit
+
+
+def mismatch(file: File, dialect: Dialect) -> str | None:
+    """Why a file cannot be this instrument's, or None if it can.
+
+    Parameters
+    ----------
+    file
+        The file, looked at by `tribolab.reading.text.first_bytes.peek`.
+    dialect
+        The dialect in question.
+    """
+    rules = dialect.recognise
+    if not fits_format(file.format, dialect.format):
+        return f"it is {file.format}, not {dialect.format}"
+    if rules == Recognise():
+        return "the dialect has no rules to recognise it by"
+    if rules.file_name and not guarded(rules.file_name).search(file.path.name):
+        return "its name does not fit"
+    if dialect.format == "mat" and dialect.tables is None:
+        # late: starting stays quick
+        from tribolab.reading.raw.containers.mat import variable_names
+
+        return _names_missing(rules, variable_names(file.path))
+    if dialect.format == "tdms" and dialect.tables is None:
+        # late: starting stays quick
+        from tribolab.reading.raw.containers.tdms import channel_names
+
+        return _names_missing(rules, channel_names(file.path))
+    if dialect.format != "text" or dialect.text.container:
+        # late: starting stays quick
+        from tribolab.reading.dialect.containers import column_names
+
+        return _names_missing(rules, column_names(file.path, dialect))
+    return _text_mismatch(file, dialect)
+
+
+def _names_missing(rules: Recognise, names: set[str]) -> str | None:
+    missing = [name for name in rules.header if name not in names]
+    return f"it has no '{shown(missing[0])}'" if missing else None
+
+
+def _text_mismatch(file: File, dialect: Dialect) -> str | None:
+    rules = dialect.recognise
+    encoding = "utf-16" if file.head[:2] in (b"\xff\xfe", b"\xfe\xff") else dialect.text.encoding
+    text = _text(file.head[: 1 << 16], encoding)
+    for pattern in rules.preamble:
+        if not guarded(pattern).search(text[:_PREAMBLE]):
+            return f"nothing in it matches '{shown(pattern)}'"
+    try:
+        dialect = as_written(file, dialect)
+        raw = find_tables(file, dialect, head_only=True)
+    except ReadError as error:
+        # a file that is otherwise this instrument's is recognised, so that the error is told
+        return None if rules.preamble else str(error)
+    names = {
+        f"{name} [{unit}]" if unit else name
+        for name, unit in zip(raw.tables[0].names, raw.tables[0].units, strict=True)
+    } | set(raw.tables[0].names)
+    wanted = _names_missing(rules, names)
+    if wanted:
+        return wanted
+    if rules.columns is not None:
+        return _numbers_mismatch(text, dialect)
+    return None
+
+
+@functools.lru_cache(maxsize=4)  # a dozen dialects look at the same file, one after the other
+def _text(head: bytes, encoding: str) -> str:
+    text = head.decode(encoding, errors="replace").replace("\r\n", "\n")
+    return text.removeprefix("\ufeff")
+
+
+def _numbers_mismatch(text: str, dialect: Dialect) -> str | None:
+    """Check a table without a header by the number and the kinship of its columns."""
+    columns, delimiter = dialect.recognise.columns, dialect.text.delimiter
+    first = _FIRST_LINE.match(text)  # of most files it tells
+    rows = []
+    if first and len(split_row(first[1], delimiter)) == columns:
+        lines = text.splitlines()[:-1][:_ROWS]
+        rows = [split_row(line, delimiter) for line in lines if line.strip()]
+    if not rows or any(len(row) != columns for row in rows):
+        return f"it does not have {columns} columns"
+    try:
+        numbers = np.array(rows, dtype=float)
+    except ValueError:
+        return "it is not all numbers"
+    for first_column, other in dialect.recognise.linked:
+        a, b = numbers[:, first_column - 1], numbers[:, other - 1]
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            linked = np.ptp(a) > 0 and np.ptp(b) > 0 and abs(np.corrcoef(a, b)[0, 1]) >= _LINKED
+        if not linked:
+            return f"columns {first_column} and {other} are not the same signal"
+    return None

@@ -1,0 +1,111 @@
+"""How a table is written, of a dialect that leaves it to the file: cells, decimals, units."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from tribolab.errors import ReadError
+from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.dialect.python_reader import PythonReader, with_columns
+from tribolab.reading.text.bounded_patterns import guarded
+from tribolab.reading.text.cells import split_name, split_row
+from tribolab.reading.text.first_bytes import File, peek
+
+_ANY = "any"
+_DELIMITERS = ("\t", ";", "|", ",")  # of those that part a header's line alike, the first
+_ROWS = 20  # looked at below the names
+_WIDE = (b"\xff\xfe", b"\xfe\xff")
+_COMMA, _POINT = re.compile(r"\d,\d"), re.compile(r"\d\.\d")
+_NUMBER = re.compile(r"[-+]?\d[\d.,]*(?:[eE][-+]?\d+)?")
+
+
+def as_written(path: str | Path | File, dialect: Dialect) -> Dialect:
+    """Complete a dialect that leaves to the file how its table is written.
+
+    Parameters
+    ----------
+    path
+        The file.
+    dialect
+        The dialect. One that says its delimiter is returned as it is.
+
+    Returns
+    -------
+    Dialect
+        With the delimiter that parts the header's line into the most cells, the decimal mark and
+        the encoding of what stands below it, and units from the next line where no name of the
+        header has one. That of a reader in Python with the columns that it finds.
+
+    Raises
+    ------
+    ReadError
+        If the file has no such header.
+    """
+    if isinstance(dialect, PythonReader):
+        return with_columns(dialect, Path(path.path if isinstance(path, File) else path))
+    if dialect.text.delimiter != _ANY:
+        return dialect
+    file = path if isinstance(path, File) else peek(path)
+    if file.format != "text":  # whoever reads it says so
+        return dialect
+    text, encoding = _decoded(file.head)
+    header, *below = _from_header(file, text, dialect)
+    delimiter = max(_DELIMITERS, key=lambda mark: len(split_row(header, mark)))
+    if len(split_row(header, delimiter)) < 2:
+        delimiter = "whitespace"
+    written = {"delimiter": delimiter, "encoding": encoding, "decimal": _decimal(below, delimiter)}
+    units = dialect.header.units
+    named = any(split_name(cell)[1] for cell in split_row(header, delimiter))
+    if units == "brackets" and not named and below and not _is_numbers(below[0], delimiter):
+        units = "row"
+    return dialect.model_copy(
+        update={
+            "text": dialect.text.model_copy(update=written),
+            "header": dialect.header.model_copy(update={"units": units}),
+        }
+    )
+
+
+def _decoded(head: bytes) -> tuple[str, str]:
+    """Return a file's first text, and in which encoding it is."""
+    if head.startswith(_WIDE):
+        return head.decode("utf-16", errors="ignore"), "utf-8"  # it is mended to that
+    try:
+        return head.decode("utf-8-sig"), "utf-8"
+    except UnicodeDecodeError as error:
+        if error.start > len(head) - 4:  # the first megabyte ends within a letter
+            return head.decode("utf-8-sig", errors="ignore"), "utf-8"
+        return head.decode("latin-1"), "latin-1"
+
+
+def _from_header(file: File, text: str, dialect: Dialect) -> list[str]:
+    """Return the header's line and those below it that are not blank."""
+    lines = text.splitlines()
+    header = dialect.header
+    if header.pattern is not None:
+        pattern = guarded(header.pattern)
+        start = next((n for n, line in enumerate(lines) if pattern.search(line)), len(lines))
+    else:
+        start = (header.line or 1) - 1
+    if start >= len(lines):
+        raise ReadError(
+            f"no line has the names of the columns that files of '{dialect.name}' have",
+            where=file.path,
+        )
+    below = (line for line in lines[start + 1 :] if line.strip())
+    return [lines[start], *(line for line, _ in zip(below, range(_ROWS), strict=False))]
+
+
+def _decimal(rows: list[str], delimiter: str) -> str:
+    """Return the decimal mark of rows of numbers."""
+    if delimiter != ",":
+        comma = any(_COMMA.search(row) for row in rows)
+        return "," if comma and not any(_POINT.search(row) for row in rows) else "."
+    quoted = [text for row in rows for text in re.findall(r'"([^"]*)"', row)]
+    return "," if any(_COMMA.search(text) for text in quoted) else "."
+
+
+def _is_numbers(row: str, delimiter: str) -> bool:
+    """Whether a row holds numbers, as one of units does not."""
+    return any(_NUMBER.fullmatch(cell) for cell in split_row(row, delimiter))

@@ -1,0 +1,232 @@
+"""How well a calibration, a mount or a medium is known: the tables [uncertainty.NAME]."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Annotated, Literal, NamedTuple, Self
+
+from pydantic import AfterValidator, ConfigDict, Field, model_validator
+
+from tribolab.errors import TribolabError, UnitError, shown
+from tribolab.reading.dialect.switches import NoSwitches
+from tribolab.units import conversion, to_si
+from tribolab.untyped import Json
+
+Distribution = Literal["standard", "expanded", "half-width", "triangular", "step"]
+Varies = Literal["calibration", "mount", "run", "stroke"]
+
+# what a stated value is divided by (JCGM 100:2008, 4.3); "expanded" states its own factor
+_DIVISOR = {"standard": 1.0, "half-width": 3**0.5, "triangular": 6**0.5, "step": 12**0.5}
+
+
+class Known(NamedTuple):
+    """A standard uncertainty as it goes into a budget.
+
+    Parameters
+    ----------
+    standard
+        Standard uncertainty, in the SI unit of its name.
+    dof
+        Degrees of freedom behind it.
+    varies
+        With what it takes another value: the calibration, the mount, the run or the stroke.
+    distribution
+        What was stated.
+    source
+        Where it was stated.
+    """
+
+    standard: float
+    dof: float
+    varies: str
+    distribution: str
+    source: str
+
+
+class _Strict(NoSwitches):
+    model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
+
+
+class StatedUncertainty(_Strict):
+    """One uncertainty, as a certificate, a data sheet or a measurement states it."""
+
+    value: str = Field(
+        min_length=1, examples=["0.2 %"], description="How large it is, with its unit."
+    )
+    kind: Distribution = Field(
+        alias="as",
+        description="What the value is: a standard uncertainty, one expanded by `k`, half the "
+        "width of a rectangular or a triangular distribution, or a whole step of a reading.",
+    )
+    k: Annotated[float, Field(gt=0)] | None = Field(
+        None, description='Coverage factor, with `as = "expanded"`.'
+    )
+    dof: Annotated[float, Field(ge=1)] | None = Field(
+        None,
+        description="Degrees of freedom behind the value; left out, it counts as known exactly.",
+    )
+    varies: Varies | None = Field(
+        None,
+        description="With what it takes another value. What varies with run or mount is not "
+        "added again where repeats show it. Left out, it is what is usual for the name.",
+    )
+    source: str | None = Field(
+        None, description="Where the value comes from: certificate, data sheet, date."
+    )
+    full_scale: Annotated[str, Field(min_length=1, examples=["100 N"])] | None = Field(
+        None,
+        description="Of what a value in per cent is a share, for the linearity of a channel.",
+    )
+
+    @model_validator(mode="after")
+    def _factor_is_stated(self) -> Self:
+        if (self.kind == "expanded") != (self.k is not None):
+            raise ValueError('as = "expanded" and k = 2 (or what the certificate says) go together')
+        return self
+
+    def size(self, unit: str) -> float:
+        """Return the stated value in an SI unit.
+
+        Raises
+        ------
+        UnitError
+            If it is no number with such a unit, or below zero.
+        """
+        if self.full_scale is not None:
+            if unit != "N":
+                raise UnitError(
+                    "value: full_scale belongs to the linearity of a force channel only"
+                )
+            return _difference(self.value, "1") * _difference(self.full_scale, "N")
+        if unit == "N" and self.value.strip().endswith("%"):
+            raise UnitError('value: a share of what? state full_scale = "100 N" beside it')
+        return _difference(self.value, unit)
+
+    def known(self, unit: str, usual: str) -> Known:
+        """Return the standard uncertainty in an SI unit, varying as usual where it is not said."""
+        divisor = _DIVISOR.get(self.kind, self.k or 1.0)
+        return Known(
+            self.size(unit) / divisor,
+            math.inf if self.dof is None else self.dof,
+            self.varies or usual,
+            self.kind,
+            self.source or "",
+        )
+
+
+def _difference(text: str, unit: str) -> float:
+    """Return a size in an SI unit; of a temperature, a difference, which has no zero."""
+    size = to_si(text, unit, name="value")
+    if unit == "K":
+        size -= conversion(text.strip().lstrip("+-.0123456789eE "), unit)[1]
+    if size < 0:
+        raise UnitError(f"value: {shown(repr(text))} is below zero; an uncertainty is not")
+    return size
+
+
+def _in(unit: str) -> Callable[[StatedUncertainty], StatedUncertainty]:
+    def checked(stated: StatedUncertainty) -> StatedUncertainty:
+        try:
+            stated.size(unit)
+        except TribolabError as error:
+            raise ValueError(str(error)) from error
+        return stated
+
+    return checked
+
+
+_Relative = Annotated[StatedUncertainty, AfterValidator(_in("1"))] | None
+_Angle = Annotated[StatedUncertainty, AfterValidator(_in("rad"))] | None
+_Force = Annotated[StatedUncertainty, AfterValidator(_in("N"))] | None
+_Difference = Annotated[StatedUncertainty, AfterValidator(_in("K"))] | None
+
+# SI unit of each name, and with what it varies where nobody says so
+NAMES: dict[str, tuple[str, Varies]] = {
+    "friction_gain": ("1", "calibration"),
+    "normal_gain": ("1", "calibration"),
+    "friction_linearity": ("N", "calibration"),
+    "normal_linearity": ("N", "calibration"),
+    "tilt": ("rad", "mount"),
+    "yaw": ("rad", "mount"),
+    "cross_talk_friction_from_normal": ("1", "calibration"),
+    "cross_talk_normal_from_friction": ("1", "calibration"),
+    "friction_zero": ("N", "run"),
+    "normal_zero": ("N", "run"),
+    "zero_drift": ("N", "stroke"),
+    "resolution": ("N", "stroke"),
+    "temperature": ("K", "run"),
+    "water_content": ("1", "calibration"),
+    "speed": ("1", "calibration"),
+    "load": ("1", "calibration"),
+    "radius": ("1", "calibration"),
+    "youngs_modulus": ("1", "calibration"),
+}
+
+# what a model takes as given: the last two by the liquid's viscosity
+MODEL_INPUTS = ("speed", "load", "radius", "youngs_modulus", "temperature", "water_content")
+
+
+class Uncertainty(_Strict):
+    """What is known of the instrument, the mount and the medium, each with how well."""
+
+    friction_gain: _Relative = Field(
+        None, description='Gain of the friction channel, relative: "0.2 %".'
+    )
+    normal_gain: _Relative = Field(None, description="Gain of the normal force channel, relative.")
+    friction_linearity: _Force = Field(
+        None,
+        description='Linearity and hysteresis of the friction channel ("class"): "0.1 %" of '
+        "full_scale, or N.",
+    )
+    normal_linearity: _Force = Field(
+        None, description="Linearity and hysteresis of the normal force channel."
+    )
+    tilt: _Angle = Field(
+        None,
+        description="Angle between the force cell and the contact, in the plane of sliding: "
+        '"0.5 deg".',
+    )
+    yaw: _Angle = Field(
+        None,
+        description="Angle between the friction axis and the direction of sliding, in the plane of "
+        "contact.",
+    )
+    cross_talk_friction_from_normal: _Relative = Field(
+        None, description="Share of the normal force that the friction channel reads."
+    )
+    cross_talk_normal_from_friction: _Relative = Field(
+        None, description="Share of the friction force that the normal force channel reads."
+    )
+    friction_zero: _Force = Field(
+        None, description="Zero of the friction channel, where the run itself does not tell it."
+    )
+    normal_zero: _Force = Field(
+        None, description="Zero of the normal force channel, where the run itself does not tell it."
+    )
+    zero_drift: _Force = Field(
+        None, description="By how much the zero of the friction channel drifts between two strokes."
+    )
+    resolution: _Force = Field(
+        None, description='Resolution of the friction channel; `as = "step"` for one count.'
+    )
+    temperature: _Difference = Field(
+        None, description='Temperature of the medium, as a difference: "0.5 K".'
+    )
+    water_content: _Relative = Field(
+        None, description='Mass fraction of water in the medium, absolute: "0.5 %" of the mass.'
+    )
+    speed: _Relative = Field(None, description="Sliding speed, relative.")
+    load: _Relative = Field(None, description="Normal force for the model, relative.")
+    radius: _Relative = Field(None, description="Radius of the cylinder, relative.")
+    youngs_modulus: _Relative = Field(
+        None, description="Young's modulus of the elastomer, relative."
+    )
+
+    def plain(self) -> Json:
+        """Return what is stated as attributes of a run hold it: by name, in SI."""
+        return {
+            name: stated.known(*NAMES[name])._asdict()
+            for name in NAMES
+            if (stated := getattr(self, name)) is not None
+        }

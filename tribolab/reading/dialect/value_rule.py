@@ -1,0 +1,112 @@
+"""What a dialect says of one value that stands outside the table."""
+
+from __future__ import annotations
+
+import contextlib
+import re
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from tribolab.errors import TribolabError, nearest, shown
+from tribolab.quantities import QUANTITIES, quantity
+from tribolab.reading.dialect.checked_text import Pattern, Sign, Strict, check_unit
+from tribolab.reading.text.bounded_patterns import guarded
+from tribolab.turns import Counted, reciprocal
+from tribolab.units import base_unit, conversion, to_si
+
+
+class Value(Strict):
+    """A single value that stands outside the table; it becomes an attribute of the run.
+
+    From a step, a number becomes a variable along time, and text one attribute for all steps.
+    """
+
+    name: str = Field(description="a quantity, or a name of your own")
+    source: Literal["preamble", "file name", "step", "programme"] = Field(
+        "preamble",
+        description="'step' is the text before each of several tables; 'programme' a table of all "
+        "steps above that of the signals, whose column 'step' counts them",
+    )
+    pattern: Pattern | None = Field(
+        None,
+        description="group 1 is the value; of a programme group 1 is the number of the step and "
+        "group 2 the value",
+    )
+    default: str | None = Field(
+        None,
+        description="what it is where the file does not say it, e.g. '1 mm': of a method or a part "
+        "of the instrument that is always so; the run says that it was taken",
+    )
+    unit: str | None = Field(None, description="without a unit the value is kept as text")
+    to: str | None = Field(None, description="SI unit to keep it in, if the name is no quantity")
+    scale: float = 1.0
+    sign: Sign = 1
+
+    @model_validator(mode="after")
+    def _is_consistent(self) -> Self:
+        if self.pattern is None and self.default is None:
+            raise ValueError(f"value '{shown(self.name)}': give a pattern, a default or both")
+        if self.pattern is not None and guarded(self.pattern).groups < 1:
+            raise ValueError(
+                f"value '{shown(self.name)}': the pattern needs a group ( ) for the value"
+            )
+        if self.source == "programme" and (
+            self.unit is None or self.pattern is None or guarded(self.pattern).groups != 2
+        ):
+            raise ValueError(
+                f"value '{shown(self.name)}': of a programme it needs a unit, and a pattern with "
+                "two groups, for the number of the step and for the value"
+            )
+        if self.unit is not None:
+            check_unit(self.unit, self.si_unit, self.bare)
+        if self.default is not None:
+            if self.unit is None or self.source in ("step", "programme"):
+                raise ValueError(
+                    f"value '{shown(self.name)}': a default is for a number with a unit that "
+                    "holds for the whole file"
+                )
+            try:
+                to_si(self.default, self.si_unit, "default")
+            except TribolabError as error:
+                raise ValueError(f"value '{shown(self.name)}': {error}") from error
+        return self
+
+    @property
+    def bare(self) -> Counted | None:
+        """What a unit per time counts that does not say it, if the name is a quantity."""
+        return QUANTITIES[self.name].bare if self.name in QUANTITIES and self.to is None else None
+
+    @property
+    def si_unit(self) -> str:
+        """Unit in which a number is kept."""
+        if self.to is not None:
+            return self.to
+        try:
+            return quantity(self.name).unit
+        except TribolabError as error:
+            hint = nearest(self.name, QUANTITIES)
+            hint = f"{hint[:-1]}, or " if "did you mean" in hint else "; "
+            raise ValueError(
+                f"value '{shown(self.name)}' is no known quantity{hint}add "
+                f"to = '{self._own_unit()}', the "
+                f"SI unit to keep it in"
+            ) from error
+
+    def _own_unit(self) -> str:
+        """SI unit of the unit given: of a quantity of its kind, else of base units."""
+        units = dict.fromkeys(known.unit for known in QUANTITIES.values())
+        if reciprocal(str(self.unit)):  # cycles stay cycles
+            units = dict.fromkeys(("1/s", "Hz", "rad/s", *units))
+        for unit in units:
+            with contextlib.suppress(TribolabError):
+                conversion(str(self.unit), unit)
+                return unit
+        return base_unit(str(self.unit))
+
+    @property
+    def attribute(self) -> str:
+        """Name of the run's attribute: the SI unit is its ending."""
+        if self.unit is None or self.si_unit in ("", "1"):
+            return self.name
+        return f"{self.name}_{re.sub(r'[^A-Za-z0-9]+', '_', self.si_unit)}"

@@ -1,0 +1,94 @@
+"""What a raw file holds: a run, a scan, or the results of a roughness tester."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from pathlib import Path
+
+from tribolab.errors import ReadError
+from tribolab.reading.dialect.find import is_scan, load_dialect, recognise
+from tribolab.reading.dialect.python_reader import PythonReader, with_columns
+from tribolab.reading.netcdf.seal import carries_seal
+from tribolab.reading.raw.source import check_regular
+from tribolab.reading.scans.formats.named_arrays import holds_arrays
+from tribolab.reading.text.first_bytes import is_results, peek
+
+_LAST_NUMBER = re.compile(r"[ _-]*\d+$")
+
+
+def kind_of(path: str | Path, instrument: str | Path | None = None) -> str:
+    """Tell from a file's content, or from its instrument, what it holds.
+
+    Parameters
+    ----------
+    path
+        The file.
+    instrument
+        Its dialect, if it is known.
+
+    Returns
+    -------
+    str
+        "run", "scan", "results", or "unknown": text or a format that no dialect describes, which
+        may be a profile that SurfaceTopography reads.
+
+    Raises
+    ------
+    ConfigError
+        If there is no such instrument.
+    """
+    path = Path(path)
+    if instrument is not None:
+        dialect = load_dialect(instrument)
+        if isinstance(dialect, PythonReader):
+            dialect = with_columns(dialect, path)
+        return "scan" if is_scan(dialect) else "run"
+    if _holds_map(path):
+        return "scan"
+    try:
+        file = peek(path)
+    except ReadError:  # no file, an empty one, or a format of profilometers
+        return "unknown"
+    if file.format == "netcdf":
+        return "run"
+    if is_results(file.head):
+        return "results"
+    try:
+        return "scan" if is_scan(recognise(path)) else "run"
+    except ReadError:
+        return "unknown"
+
+
+def _holds_map(path: Path) -> bool:
+    """Whether a file of arrays by name holds a map, or profiles side by side."""
+    try:
+        check_regular(path)
+        with path.open("rb") as file:
+            head = file.read(16)
+        if not holds_arrays(path, head) or carries_seal(path):
+            return False
+        # late: starting stays quick
+        from tribolab.reading.scans.formats.arrays import holds_map
+
+        return holds_map(path)
+    except (OSError, ValueError, ImportError, ReadError):  # whoever reads it says why
+        return False
+
+
+def repeats_by_name(paths: Iterable[Path]) -> list[list[Path]]:
+    """Put scans together whose names differ in their last number only, in one folder.
+
+    Examples
+    --------
+    >>> files = [Path("sb-r_1.csv"), Path("smooth_1.csv"), Path("sb-r_2.csv"), Path("a.csv")]
+    >>> [[path.name for path in group] for group in repeats_by_name(files)]
+    [['sb-r_1.csv', 'sb-r_2.csv'], ['smooth_1.csv'], ['a.csv']]
+    """
+    groups: dict[object, list[Path]] = {}
+    for path in paths:
+        name = _LAST_NUMBER.sub("", path.stem)
+        alone = not name or name == path.stem
+        key: object = path if alone else (path.parent, name, path.suffix)
+        groups.setdefault(key, []).append(path)
+    return list(groups.values())

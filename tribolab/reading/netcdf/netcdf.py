@@ -1,0 +1,310 @@
+"""Results as netCDF: what is written comes back the same."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+import tempfile
+import threading
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import xarray as xr
+
+from tribolab.errors import ReadError, TribolabError, shown
+from tribolab.pieces import pieces
+from tribolab.reading.netcdf.attributes import decoded
+from tribolab.reading.netcdf.seal import check_seal, seal, unseal
+from tribolab.reading.netcdf.storage import write_into
+from tribolab.reading.netcdf.stored import read_plain
+from tribolab.reading.raw.hdf5_safety import check_self_contained
+from tribolab.reading.raw.opening import damage_told, isolated
+from tribolab.room import is_long, room
+
+if TYPE_CHECKING:
+    import netCDF4
+
+# The library is not safe under threads, which some executors use.
+_LIBRARY = threading.RLock()
+_CACHE = 1 << 20  # bytes of a long variable that the library keeps
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+_GROUPS = "groups"  # attribute of the root of a file of groups
+# What netCDF4 and xarray raise on data that netCDF cannot hold, and on a disk that takes no more.
+_REFUSED = (OSError, ValueError, TypeError, AttributeError, KeyError, RuntimeError)
+
+
+def write_netcdf(
+    data: xr.Dataset,
+    path: str | Path,
+    group: str | None = None,
+    mode: Literal["w", "a"] | None = None,
+) -> Path:
+    """Write a dataset, losing nothing: values, types, flags and attributes come back the same.
+
+    Parameters
+    ----------
+    data
+        The dataset.
+    path
+        The file.
+    group
+        Group in the file; several datasets can so share one file.
+    mode
+        ``"w"`` writes a new file, ``"a"`` adds to it; by default a group is added to a file that
+        is there, and a dataset without a group starts a new one.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    TribolabError
+        If the file cannot be written.
+
+    Notes
+    -----
+    Long arrays are stored in chunks of 65 536 samples with zlib, shuffled where that makes them
+    smaller. True, False, None, dicts and lists among the attributes become JSON text behind the
+    mark ``json:``. In a file of groups the root's attribute ``groups`` names them, for those who
+    open the root alone. The file is sealed (see `tribolab.reading.netcdf.seal`).
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> run = xr.Dataset({"friction_force": ("time", [1.0, 2.0])}, {"time": [0.0, 0.1]})
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = write_netcdf(run.assign_attrs(checked=True), Path(folder) / "run.nc", "run")
+    ...     read_netcdf(path, "run").attrs["checked"]
+    True
+    """
+    path = Path(path)
+    mode = mode or ("a" if group and path.exists() else "w")
+    return _write(path, {group: data}, mode)
+
+
+def write_groups(groups: Mapping[str | None, xr.Dataset], path: str | Path) -> Path:
+    """Write datasets as the groups of a new file, which is opened but once; as `write_netcdf`.
+
+    Parameters
+    ----------
+    groups
+        Dataset by name of the group; None stands for the root.
+    path
+        The file; one that is there is replaced.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    TribolabError
+        If the file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> run = xr.Dataset({"friction_force": ("time", [1.0, 2.0])}, {"time": [0.0, 0.1]})
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = write_groups({None: xr.Dataset(), "run": run}, Path(folder) / "run.nc")
+    ...     read_netcdf(path).attrs, read_netcdf(path, "run").identical(run)
+    ({'groups': 'run'}, True)
+    """
+    return _write(Path(path), groups, "w")
+
+
+def _write(path: Path, groups: Mapping[str | None, xr.Dataset], mode: Literal["w", "a"]) -> Path:
+    # late: netCDF4 takes long to load
+    import netCDF4
+
+    try:
+        if mode == "a" and path.is_file():
+            unseal(path)
+        with _LIBRARY, _plain_name(path) as name, netCDF4.Dataset(name, mode) as file:
+            write_into(file, groups)
+            if any(groups):  # whoever opens the file without a group sees the root alone
+                file.setncattr(_GROUPS, "; ".join(file.groups))
+        seal(path)
+    except _REFUSED as error:
+        raise TribolabError(f"{path}: the netCDF file cannot be written: {error}") from error
+    return path
+
+
+@contextlib.contextmanager
+def _plain_name(path: Path) -> Iterator[Path]:
+    """Yield the path, or a link to it where the libraries cannot pass its bytes on."""
+    try:
+        str(path).encode(sys.getfilesystemencoding())
+    except UnicodeEncodeError:
+        with tempfile.TemporaryDirectory() as folder:
+            link = Path(folder) / "link.nc"
+            link.symlink_to(path.absolute())
+            yield link
+    else:
+        yield path
+
+
+def read_netcdf(path: str | Path, group: str | None = None) -> xr.Dataset:
+    """Read a dataset that `write_netcdf` wrote, into memory.
+
+    Parameters
+    ----------
+    path
+        The file.
+    group
+        Group in the file. ``"run?"`` takes the group ``run`` if the file has one, else its root.
+
+    Raises
+    ------
+    ReadError
+        If there is no such file or group, or the file is no netCDF, or damaged.
+
+    Notes
+    -----
+    The file is read in a child process. One that carries a seal and is not what it was when it was
+    sealed is refused.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> run = xr.Dataset({"friction_force": ("time", [1.0, 2.0])}, {"time": [0.0, 0.1]})
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     read_netcdf(write_netcdf(run, Path(folder) / "run.nc")).identical(run)
+    True
+    """
+    return read_groups(path, [group])[group]
+
+
+def read_groups(
+    path: str | Path,
+    groups: Iterable[str | None],
+    *,
+    optional: bool = False,
+    only: Mapping[str, Collection[str]] | None = None,
+) -> dict[str | None, xr.Dataset]:
+    """Read several groups of a file, which is opened but once; as `read_netcdf` does it.
+
+    Parameters
+    ----------
+    path
+        The file.
+    groups
+        Their names; None stands for the root.
+    optional
+        Whether groups that the file has not are passed over.
+    only
+        Variables that are read, by group, where not all are wanted; those that are not there are
+        passed over.
+
+    Raises
+    ------
+    ReadError
+        As `read_netcdf`.
+    """
+    wanted = {name: tuple(names) for name, names in (only or {}).items()}
+    return _read_groups(Path(path), list(groups), optional=optional, only=wanted)
+
+
+@isolated("netCDF4", "h5py", "xarray")
+def _read_groups(
+    path: Path,
+    groups: list[str | None],
+    *,
+    optional: bool,
+    only: Mapping[str, Collection[str]],
+) -> dict[str | None, xr.Dataset]:
+    datasets = {}
+    with _whole(path) as file:
+        there = list(file.groups)
+        for name in groups:
+            group = ("run" if "run" in there else None) if name == "run?" else name
+            if group is None or group in there:
+                datasets[name] = _group(file, group, only.get(name or ""))
+            elif not optional:
+                raise ReadError(
+                    f"{path}: there is no group '{shown(group)}'; there are "
+                    f"{', '.join(there) or 'none'}"
+                )
+    return datasets
+
+
+def read_short(path: str | Path, most: int) -> dict[str | None, xr.Dataset]:
+    """Read all groups of a file that are short, and its root if that is.
+
+    Parameters
+    ----------
+    path
+        The file.
+    most
+        Values that a group may have in all its variables.
+
+    Raises
+    ------
+    ReadError
+        As `read_netcdf`.
+    """
+    return _read_short(Path(path), most)
+
+
+@isolated("netCDF4", "h5py", "xarray")
+def _read_short(path: Path, most: int) -> dict[str | None, xr.Dataset]:
+    with _whole(path) as file:
+        short: list[str | None] = [None] if _values(file) <= most else []
+        short += [name for name, group in file.groups.items() if _values(group) <= most]
+        return {name: _group(file, name, None) for name in short}
+
+
+def _values(group: netCDF4.Dataset) -> int:
+    return sum(variable.size for variable in group.variables.values())
+
+
+@contextlib.contextmanager
+def _whole(path: Path) -> Iterator[netCDF4.Dataset]:
+    """Open a file that is what it was when it was written, and holds its own data."""
+    # late: netCDF4 takes long to load
+    import netCDF4
+
+    with path.open("rb") as file:
+        is_hdf5 = file.read(len(_HDF5)) == _HDF5
+    with damage_told(path, "netCDF file"):
+        check_seal(path)
+        if is_hdf5:
+            check_self_contained(path)
+        with _plain_name(path) as plain, netCDF4.Dataset(plain) as opened:
+            yield opened
+
+
+def _loaded(data: xr.Dataset) -> xr.Dataset:
+    """Return a dataset whose values are read, long ones into scratch files."""
+    for name, variable in list(data.data_vars.items()):
+        if variable.ndim == 1 and variable.dtype.kind in "fiu" and is_long(variable.size):
+            values = room(variable.size, variable.dtype)
+            for first, last in pieces(0, variable.size):
+                values[first:last] = variable.variable[first:last].values
+            data[name] = variable.variable.copy(data=values)
+    return data.load()
+
+
+def _group(file: netCDF4.Dataset, group: str | None, only: Collection[str] | None) -> xr.Dataset:
+    plain = read_plain(file if group is None else file[group], only)
+    if plain is not None:
+        return plain
+    store = xr.backends.NetCDF4DataStore(file, group=group)
+    for variable in (file if group is None else file[group]).variables.values():
+        if is_long(variable.size):  # else the library keeps much of it, until the file is closed
+            variable.set_var_chunk_cache(_CACHE)
+    data = xr.open_dataset(store, decode_times=False, mask_and_scale=False)
+    if only is not None:
+        data = data[[name for name in data.data_vars if name in only]]
+    data = _loaded(data)
+    data.attrs = decoded(data.attrs)
+    for name in data.variables:
+        data[name].attrs = decoded(data[name].attrs)
+        data[name].encoding = {}
+    data.encoding = {}
+    data.set_close(None)  # it is in memory: an open file could not travel to another process
+    return data

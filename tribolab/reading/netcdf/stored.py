@@ -1,0 +1,74 @@
+"""Groups of an open netCDF file as datasets: what `netcdf.storage` writes, read directly.
+
+xarray opens every variable as one that may be lazy, scaled, dated, or made of characters. Of the
+hundred variables of a run, most of them of a few values, that costs more than reading them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from tribolab.reading.netcdf.attributes import decoded
+from tribolab.reading.netcdf.storage import COORDINATES, ORDERS
+from tribolab.room import is_long
+from tribolab.untyped import Json
+
+if TYPE_CHECKING:
+    import netCDF4
+
+_ORDERS = ORDERS - {COORDINATES} | {"least_significant_digit"}
+
+
+def read_plain(group: netCDF4.Dataset, only: Collection[str] | None = None) -> xr.Dataset | None:
+    """Read a group of an open file, if it holds short arrays of numbers and text alone.
+
+    Parameters
+    ----------
+    group
+        The group, or the file for its root.
+    only
+        Variables that are read, with the coordinates on their dims; None reads all.
+
+    Returns
+    -------
+    xarray.Dataset or None
+        What xarray would read, without undoing scales and dates; None where there is more to it,
+        or an array is long.
+    """
+    attrs = group.__dict__
+    names = [name for name in group.variables if only is None or name in only]
+    noted = {name: group.variables[name].__dict__ for name in names}
+    dims = {dim for name in names for dim in group.variables[name].dimensions}
+    named = " ".join(str(its.pop(COORDINATES, "")) for its in (attrs, *noted.values())).split()
+    beside = dims.union(named).intersection(group.variables)
+    for name in beside.difference(names):
+        if dims.issuperset(group.variables[name].dimensions):
+            noted[name] = group.variables[name].__dict__
+            noted[name].pop(COORDINATES, None)
+    if not all(_is_plain(group.variables[name], its) for name, its in noted.items()):
+        return None
+    # as xarray has it: coordinates last
+    names = sorted((n for n in group.variables if n in noted), key=lambda name: name in beside)
+    read = {name: _read(group.variables[name], noted[name]) for name in names}
+    data = xr.Dataset(read, attrs=decoded(attrs))
+    return data.set_coords([name for name in names if name in beside])
+
+
+def _is_plain(stored: netCDF4.Variable[Any], attrs: Json) -> bool:
+    if is_long(stored.size) or not _ORDERS.isdisjoint(attrs):
+        return False
+    kind = stored.datatype
+    if stored.dtype is str:  # of what an empty one holds xarray has an opinion of its own
+        return stored.size > 0
+    return isinstance(kind, np.dtype) and kind.kind in "fiu" and kind.isnative
+
+
+def _read(stored: netCDF4.Variable[Any], attrs: Json) -> xr.Variable:
+    stored.set_auto_maskandscale(False)
+    values = np.asarray(stored[...])
+    values = values.astype(str) if stored.dtype is str else values
+    return xr.Variable(stored.dimensions, values, decoded(attrs))

@@ -1,0 +1,124 @@
+"""Read raw files: one run, or all runs that a pattern names."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, overload
+
+import xarray as xr
+
+from tribolab.aliases import PathLike
+from tribolab.errors import ReadError
+from tribolab.reading.dialect.find import Instrument
+from tribolab.reading.file_patterns import is_pattern, matching
+from tribolab.reading.runs.logs import group_files
+from tribolab.reading.runs.read_run import Reading
+from tribolab.reading.unknown_run import read_run
+
+
+@overload
+def read(
+    path: PathLike,
+    instrument: Instrument | None = None,
+    *,
+    pair: bool = True,
+    clock_shift: str | float | None = None,
+    zero: str | None = None,
+    moving_mass: str | float | None = None,
+) -> Any: ...  # one run, or a list: a type checker does not know patterns from names
+
+
+@overload
+def read(
+    path: Sequence[PathLike],
+    instrument: Instrument | None = None,
+    *,
+    pair: bool = True,
+    clock_shift: str | float | None = None,
+    zero: str | None = None,
+    moving_mass: str | float | None = None,
+) -> xr.Dataset: ...
+
+
+def read(
+    path: PathLike | Sequence[PathLike],
+    instrument: Instrument | None = None,
+    *,
+    pair: bool = True,
+    clock_shift: str | float | None = None,
+    zero: str | None = None,
+    moving_mass: str | float | None = None,
+) -> xr.Dataset | list[xr.Dataset]:
+    r"""Read one run from its raw file or files, or all the runs that a pattern names.
+
+    Parameters
+    ----------
+    path
+        A raw file (text, MAT, TDMS, or a run that tribolab wrote as netCDF); a pattern such as
+        ``"raw/*.csv"`` (``**`` stands for folders, too); or a list: the two logs of a run, or the
+        files of consecutive cycles, in any order if they say when they start.
+    instrument
+        Name of a known instrument, path of a TOML description of your own, or a dialect such as
+        ``tl.draft_dialect(path).dialect``. Without it the instrument is recognised by the file's
+        content; text that none is known to write is read all the same where its header says
+        what every column is, and ``instrument`` is then "drafted from the file".
+    pair
+        Also read the companion log, if the instrument writes one and it lies beside the file.
+    clock_shift
+        What has to be added to the companion's clock to get this log's clock [s]; estimated from
+        the signals when not given.
+    zero
+        Where the zero of the friction signal is read: ``"first 200 samples"``, ``"first 2 s"``,
+        ``"1.5 s to 3 s"``, or ``"file blank.csv"``, a run without contact beside the file.
+    moving_mass
+        Mass between the contact and the force sensor ("1.2 kg", or a number in kg): its inertia is
+        taken out of the friction force, and stands in ``inertial_force``. Where it is not known,
+        `without_inertia` may find it.
+
+    Returns
+    -------
+    xarray.Dataset or list of xarray.Dataset
+        Dim ``time`` [s] from the first sample, strictly increasing; the quantities that the
+        instrument records, in SI; what stands outside the table as attributes, with the unit in
+        the name. Raw time is ``time + time_origin_s``. Of a pattern a list, with each run once, in
+        order of name: a log and its companion are one run.
+
+    Raises
+    ------
+    ReadError
+        If a file cannot be read, or no file is called as the pattern says; the message says what,
+        where and how to mend it. Of a file of an unknown instrument it says what would have to be
+        guessed, with what else it may be.
+    ConfigError
+        If there is no such instrument.
+
+    Notes
+    -----
+    Time has to increase strictly; what is done where it does not is stated in
+    `clocks.clock`. Single values that are missing are NaN, and so are numbers beyond
+    1e100, which ``numbers_beyond_range`` counts. An optional column without a
+    value is left out and named in ``columns_not_used``.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> folder = pathlib.Path(tempfile.mkdtemp())
+    >>> head = "# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n"
+    >>> for number in (1, 2):
+    ...     file = folder / f"sb-r_dry_31N_0{number}_force.csv"
+    ...     _ = file.write_text(head + f"5.0,{number}.0,31.0\n5.1,2.0,31.0\n")
+    >>> run = read(file)
+    >>> run.friction_force.values.tolist(), run.attrs["time_origin_s"]
+    ([2.0, 2.0], 5.0)
+    >>> [run.attrs["source"] for run in read(folder / "*_force.csv")]
+    ['sb-r_dry_31N_01_force.csv', 'sb-r_dry_31N_02_force.csv']
+    """
+    said: Reading = {"pair": pair, "clock_shift": clock_shift, "zero": zero}
+    said["moving_mass"] = moving_mass
+    if not isinstance(path, PathLike) or not is_pattern(path):
+        return read_run(path, instrument, **said)
+    files = [file for file in matching(path) if file.is_file()]
+    if not files:
+        raise ReadError(f"{path}: only folders have such a name; write e.g. '{path}/*.csv'")
+    runs = group_files(files, instrument) if pair else [[file] for file in files]
+    return [read_run(logs, instrument, **said) for logs in runs]

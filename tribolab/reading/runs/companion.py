@@ -1,0 +1,84 @@
+"""What is known of a run's second log: whether it is there, and how its clock was matched."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TypedDict
+
+import numpy as np
+
+from tribolab.errors import ReadError
+from tribolab.reading.dialect.find import load_dialect, recognise
+from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.runs.logs import companion_name, companion_path
+from tribolab.reading.runs.read_run import read_log, with_companion
+from tribolab.reading.signals import Signals
+from tribolab.reading.text.first_bytes import peek
+
+
+class CompanionFacts(TypedDict, total=False):
+    """What is known of a companion log; see `describe_companion`."""
+
+    missing: str
+    refused: str
+    instrument: str
+    shift_s: float
+    uncertainty_s: float
+    source: str
+    ways: dict[str, str]
+
+
+def describe_companion(
+    path: str | Path, instrument: str | Path | None = None, log: Signals | None = None
+) -> CompanionFacts:
+    """Say what was found of a raw file's companion log, and how the clocks were matched.
+
+    Parameters
+    ----------
+    path
+        The main log.
+    instrument
+        As for `tribolab.read`.
+    log
+        Signals of the main log alone, where they are read already.
+
+    Returns
+    -------
+    dict
+        Empty if the instrument writes one log only. ``missing`` is the name of a companion that
+        is not there, ``refused`` why it cannot be used or its clock not be matched. Else
+        ``instrument``, ``shift_s``, ``uncertainty_s``, ``source`` ("estimated" or "none") and
+        ``ways`` (name of a way to tell the shift -> what it tells).
+    """
+    try:
+        dialect = _pairing(Path(path), instrument)
+        if dialect is None:
+            return {}
+        other = companion_path(Path(path), dialect)
+        if other is None or not other.exists():
+            return {"missing": companion_name(Path(path), dialect)}
+        log = read_log(path, instrument) if log is None else log
+        attrs = with_companion(log, other, dialect).attrs
+    except ReadError as error:
+        return {"refused": error.told("terminal")}
+    told: CompanionFacts = {
+        "instrument": attrs["companion_instrument"],
+        "shift_s": float(attrs["clock_shift_s"]),
+        "uncertainty_s": float(attrs["clock_shift_uncertainty_s"]),
+        "source": attrs["clock_shift_source"],
+        "ways": dict(attrs.get("clock_shift_ways", {})),
+    }
+    if not np.isfinite(told["uncertainty_s"]):
+        told["refused"] = attrs.get(
+            "clock_shift_refused", "the friction force does not follow the motion"
+        )
+    return told
+
+
+def _pairing(path: Path, instrument: str | Path | None) -> Dialect | None:
+    """Return the dialect of a main log that has a second one."""
+    if instrument is None and peek(path).format == "netcdf":
+        return None
+    dialect = load_dialect(instrument) if instrument else recognise(path)
+    alone = dialect.pair is None or path.stem.endswith(dialect.pair.other)
+    return None if alone else dialect

@@ -1,0 +1,67 @@
+"""Which files make one run: two logs where the instrument writes two, else one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from tribolab.aliases import PathLike
+from tribolab.provenance import as_text
+from tribolab.reading.dialect.find import Dialect, Instrument, every_dialect, load_dialect
+
+
+def group_files(
+    paths: Iterable[PathLike], instrument: Instrument | None = None
+) -> list[list[Path]]:
+    """Put the files of each run together: two logs where the instrument writes two, else one.
+
+    Parameters
+    ----------
+    paths
+        Raw files, in any order.
+    instrument
+        The instrument; without it the naming rules of all known instruments are tried.
+
+    Returns
+    -------
+    list of list of Path
+        One list for each run, in the order of their first file; this instrument's main log comes
+        first. A file without its companion stands alone.
+
+    Examples
+    --------
+    >>> files = ["a_31N_01_force.csv", "a_31N_01_motion.csv", "b.csv"]
+    >>> [[path.name for path in group] for group in group_files(files)]
+    [['a_31N_01_force.csv', 'a_31N_01_motion.csv'], ['b.csv']]
+    """
+    every = [load_dialect(instrument)] if instrument else every_dialect()
+    rules = [dialect for dialect in every if dialect.pair is not None]
+    files = list(dict.fromkeys(Path(path) for path in paths))
+    present = set(files)
+    partner: dict[Path, Path] = {}
+    for file in files:
+        for dialect in rules:
+            other = companion_path(file, dialect)
+            if other in present:
+                partner[file] = other
+    taken = set(partner.values())
+    groups = {file: [file, partner[file]] if file in partner else [file] for file in files}
+    first = {companion: main for main, companion in partner.items()}
+    order = dict.fromkeys(first.get(file, file) for file in files)
+    return [groups[file] for file in order if file not in taken]
+
+
+def companion_path(path: Path, dialect: Dialect) -> Path | None:
+    """Return where the second log of a file would lie; None if there is none by its name."""
+    rule = dialect.pair
+    if rule is None or not path.stem.endswith(rule.own):
+        return None
+    return path.with_name(path.stem.removesuffix(rule.own) + rule.other + path.suffix)
+
+
+def companion_name(path: Path, dialect: Dialect) -> str:
+    """Return what the second log of a file would be called; nothing if there is one log only."""
+    if dialect.pair is None:
+        return ""
+    other = companion_path(path, dialect)
+    return as_text(other.name) if other else f"*{dialect.pair.other}.*"

@@ -1,0 +1,100 @@
+"""Runs as netCDF: tribolab's own, and what others call so."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import ReadError
+from tribolab.quantities import QUANTITIES
+from tribolab.reading.dialect.find import UnknownFileError
+from tribolab.reading.raw.hdf5_safety import check_self_contained
+from tribolab.reading.raw.opening import CrashedError
+from tribolab.untyped import Json
+
+_NUMBERS = "fiub"
+_DESCRIBE = "of others a description says which is which (raw_data_schema/README.md)"
+# attributes that are reckoned with; of another kind they say nothing
+_KINDS: Mapping[str, type | tuple[type, ...]] = {"columns_used": dict, "findings": (list, tuple)}
+_UNITS = ("_s", "_m", "_N", "_m_s", "_m_per_s", "_Hz", "_K", "_Pa")
+_COUNTS = {"rows_not_covered", "rows_left_out", "rows_in_file"}
+
+
+def read_own_run(path: Path, content: Path | None = None) -> xr.Dataset:
+    """Read a run from netCDF, whoever wrote it.
+
+    Parameters
+    ----------
+    path
+        The file.
+    content
+        Where its content lies, if it is compressed.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dim ``time`` [s]. Variables that are no known quantity and not numbers along time are left
+        out, and named in ``columns_not_used``; so are attributes of another kind than a run's.
+
+    Raises
+    ------
+    ReadError
+        If it cannot be read, has no time, or a quantity of a run is no number along time.
+    """
+    # late: starting stays quick
+    from tribolab.reading.netcdf.netcdf import read_netcdf
+
+    cure = "columns of one length, with names and units, are read as they are: " + _DESCRIBE
+    try:
+        run = read_netcdf(content or path, group="run?")
+    except CrashedError as error:  # HDF5 that is no netCDF may be sound all the same
+        check_self_contained(content or path)
+        what = "this HDF5 file is no netCDF"
+        raise UnknownFileError(what, where=path, cure=cure) from error
+    if "time" not in run.coords or run.sizes.get("time", 0) == 0:
+        what = "this netCDF or HDF5 file holds no run: it has no coordinate 'time'"
+        raise UnknownFileError(what, where=path, cure=cure)
+    strange = [str(name) for name in run.variables if not _along_time(run[name])]
+    for name in strange:
+        if name == "time" or name in QUANTITIES:
+            dims = ", ".join(map(str, run[name].dims))
+            raise ReadError(
+                f"{path}: variable '{name}' ({dims}) holds {_held(run[name])}; a run's quantities "
+                "are numbers along (time): write it so, or leave it out"
+            )
+    run = run.drop_vars(strange)
+    run.attrs = _attributes(run.attrs)
+    for variable in run.variables:
+        run[variable].attrs = {
+            key: value
+            for key, value in run[variable].attrs.items()
+            if isinstance(value, str) or key not in ("units", "long_name", "standard_name")
+        }
+    if strange:
+        known = str(run.attrs.get("columns_not_used", ""))
+        run.attrs["columns_not_used"] = "; ".join(filter(None, [known, *strange]))
+    return run
+
+
+def _along_time(variable: xr.DataArray) -> bool:
+    return variable.dims in (("time",), ()) and variable.dtype.kind in _NUMBERS
+
+
+def _held(variable: xr.DataArray) -> str:
+    return "numbers" if variable.dtype.kind in _NUMBERS else "text or dates"
+
+
+def _attributes(attrs: Mapping[Any, Any]) -> Json:
+    return {str(name): value for name, value in attrs.items() if _says_something(str(name), value)}
+
+
+def _says_something(name: str, value: Any) -> bool:
+    if name in _KINDS:
+        return isinstance(value, _KINDS[name])
+    if name in _COUNTS or name.endswith(_UNITS):
+        return isinstance(value, int | float | None)
+    return not isinstance(value, np.ndarray)

@@ -1,0 +1,94 @@
+"""How many rows a run's files have, how many were left out, and why: attributes of the run.
+
+``rows_in_file``; where rows were left out also ``rows_left_out`` and ``rows_left_out_why``, and
+``rows_left_out_meant``, the share that the dialect allows; ``rows_time_interpolated``. Of a
+companion log the same with ``companion_`` before it; ``rows_not_covered`` are those of the first
+log, before and after, of which the companion knows nothing.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from typing import Any
+
+from tribolab.reading.clocks.clock import Mended
+from tribolab.reading.content.model import Content
+from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.signals import Signals
+from tribolab.untyped import Json
+
+ROW_ATTRIBUTES = ("rows_in_file", "rows_left_out", "rows_left_out_why", "rows_left_out_meant")
+
+
+def row_attributes(kept: int, contents: list[Content], mended: Mended, dialect: Dialect) -> Json:
+    """Count the rows of a run's files.
+
+    Parameters
+    ----------
+    kept
+        Rows of the run.
+    contents
+        What the files hold.
+    mended
+        What became of the rows when time was put in order.
+    dialect
+        The instrument's dialect.
+
+    Returns
+    -------
+    dict
+        Attributes of the run.
+    """
+    reasons: Counter[str] = Counter(mended.left_out)
+    for content in contents:
+        reasons.update(content.left_out)
+    attrs = _counted(kept, reasons)
+    if dialect.rows.left_out:
+        attrs["rows_left_out_meant"] = dialect.rows.left_out
+    if mended.interpolated:
+        attrs["rows_time_interpolated"] = mended.interpolated
+    return attrs
+
+
+def _counted(kept: int, reasons: Mapping[str, int]) -> Json:
+    lost = sum(reasons.values())
+    attrs: Json = {"rows_in_file": kept + lost}
+    if lost:
+        attrs["rows_left_out"] = lost
+        attrs["rows_left_out_why"] = "; ".join(f"{n} {why}" for why, n in reasons.items() if n)
+    return attrs
+
+
+def rows_in_words(attrs: Mapping[str, Any]) -> str:
+    """Say how many rows of the file are not in the run, and why; empty where all are.
+
+    Examples
+    --------
+    >>> rows_in_words(
+    ...     {"rows_in_file": 50, "rows_left_out": 1, "rows_left_out_why": "1 cut short at the end"}
+    ... )
+    '1 of 50 rows (2.00%): 1 cut short at the end'
+    """
+    lost, rows = int(attrs.get("rows_left_out", 0)), int(attrs.get("rows_in_file", 0))
+    if not lost or not rows:
+        return ""
+    return f"{lost} of {rows} rows ({lost / rows:.2%}): {attrs.get('rows_left_out_why', '')}"
+
+
+def with_companion_rows(merged: Signals, run: Signals, motion: Signals) -> Signals:
+    """Add to a merged run's attributes what its two logs lost, and what only one of them covers.
+
+    Parameters
+    ----------
+    merged
+        The run of both logs.
+    run, motion
+        The logs.
+    """
+    companion: Json = {
+        f"companion_{key}": motion.attrs[key] for key in ROW_ATTRIBUTES if key in motion.attrs
+    }
+    if alone := run.time.size - merged.time.size:
+        companion["rows_not_covered"] = alone
+    return merged._replace(attrs=merged.attrs | companion)

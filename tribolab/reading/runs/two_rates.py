@@ -1,0 +1,119 @@
+"""Signals that were sampled at different rates and stand in one table, with blank cells between.
+
+Friction is taken as it was sampled; what was sampled more seldom is interpolated between its own
+values, and rows without a value of friction are left out where friction is the slower one. Blanks
+that come at no even distance are missing values and stay so.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.medians import median
+from tribolab.pieces import chosen, pieces
+from tribolab.reading.dialect.column_rule import FRICTION_SIGNALS
+from tribolab.untyped import Json
+
+_MOST = 0.6  # share of rows with a value, of what was sampled more seldom
+_FEW = 8  # values that show a rate
+_EVEN = 2.0  # times the usual distance of values, the longest of nineteen in twenty
+_GAP = 3.0  # times the usual distance: a gap, which is not bridged
+
+
+class Together(NamedTuple):
+    """Time [s] and columns of the rows that are kept, and what was done, as attributes."""
+
+    time: np.ndarray
+    columns: dict[str, np.ndarray]
+    attrs: Json = {}
+
+
+def sampled_together(columns: dict[str, np.ndarray], time: np.ndarray) -> Together:
+    """Bring signals of different rates to the rows of the friction signal.
+
+    Parameters
+    ----------
+    columns
+        Arrays in SI by quantity (time); blank cells are NaN.
+    time
+        [s] (time), increasing.
+
+    Returns
+    -------
+    Together
+        The same time and columns where all signals have values in most rows. ``interpolated``
+        says of which signal only every so many rows has a value, and ``rows_without_friction``
+        how many rows have none.
+
+    Examples
+    --------
+    >>> load = np.where(np.arange(40) % 4 == 0, 5.0 + np.arange(40), np.nan)
+    >>> signals = {"friction_force": np.ones(40), "normal_force": load}
+    >>> both = sampled_together(signals, np.arange(40.0))
+    >>> both.columns["normal_force"][:4].tolist(), both.attrs["interpolated"], both.time.size
+    ([5.0, 6.0, 7.0, 8.0], 'normal_force: a value in every 4th row', 37)
+    """
+    seldom = {
+        name: rows
+        for name, values in columns.items()
+        if values.dtype.kind == "f" and (rows := _rows(values)) is not None
+    }
+    if not seldom:
+        return Together(time, columns)
+    lead = next((name for name in (*FRICTION_SIGNALS, "shear_stress") if name in columns), None)
+    told = [
+        f"{name}: a value in every {_ordinal(rows)} row"
+        for name, rows in seldom.items()
+        if name != lead
+    ]
+    result = {
+        name: _interpolated(time, values, seldom[name])
+        if name in seldom and name != lead
+        else values
+        for name, values in columns.items()
+    }
+    attrs: Json = {"interpolated": "; ".join(told)} if told else {}
+    keep = np.ones(time.size, dtype=bool)
+    if lead in seldom:
+        keep[:] = False
+        keep[seldom[lead]] = True
+        attrs["rows_without_friction"] = int(time.size - seldom[lead].size)
+    for name, rows in seldom.items():  # of the first and last interval only one end is known
+        longest = int(np.diff(rows).max())
+        if name != lead and rows[0] <= longest:
+            keep[: rows[0]] = False
+        if name != lead and time.size - 1 - rows[-1] <= longest:
+            keep[rows[-1] + 1 :] = False
+    if keep.all():
+        return Together(time, result, attrs)
+    return Together(
+        chosen(time, keep), {name: chosen(values, keep) for name, values in result.items()}, attrs
+    )
+
+
+def _rows(values: np.ndarray) -> np.ndarray | None:
+    """Rows in which a signal has a value, if it has one every so many rows; else None."""
+    count = sum(int(np.isfinite(values[a:b]).sum()) for a, b in pieces(0, values.size))
+    if not _FEW <= count <= _MOST * values.size:
+        return None
+    rows = np.flatnonzero(np.isfinite(values))
+    steps = np.diff(rows)
+    usual = float(median(steps))
+    even = usual >= 2 and float(np.quantile(steps, 0.95)) <= _EVEN * usual
+    return rows if even else None
+
+
+def _interpolated(time: np.ndarray, values: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Values between those that are there; none before the first, behind the last and in gaps."""
+    known = time[rows]
+    between = np.interp(time, known, values[rows], left=np.nan, right=np.nan)
+    after = np.clip(np.searchsorted(known, time), 1, known.size - 1)
+    lost = known[after] - known[after - 1] > _GAP * median(np.diff(known))
+    return np.where(lost & ~np.isfinite(values), np.nan, between)
+
+
+def _ordinal(rows: np.ndarray) -> str:
+    number = round(float(median(np.diff(rows))))
+    return {2: "2nd", 3: "3rd"}.get(number, f"{number}th")

@@ -1,0 +1,202 @@
+"""Read scans of any instrument: text that no dialect knows is described from its own header.
+
+The face of `scans.read_scan` for whoever does not know beforehand what wrote a file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import Literal, overload
+
+import xarray as xr
+
+from tribolab.aliases import PathLike
+from tribolab.errors import ReadError
+from tribolab.reading import cures
+from tribolab.reading.dialect.find import Dialect, Instrument
+from tribolab.reading.raw.source import read_unchanged
+from tribolab.reading.scans.extent import doubt_about_heights
+from tribolab.reading.scans.formats.column_map import UnclearOrderError
+from tribolab.reading.scans.formats.undescribed import is_own_text
+from tribolab.reading.scans.read_scan import files_of, read_known_scans, stacked
+from tribolab.reading.unknown.proposal.draft import holds_counts, holds_heights
+from tribolab.reading.unknown.proposal.questions import (
+    GuessedError,
+    how_to_keep,
+    questions,
+    understood_columns,
+)
+from tribolab.reading.unknown_run import DRAFTED, draft_of, lacks_distance
+from tribolab.stamping import stamp
+
+_TRACE = ", trace "
+
+
+@overload
+def read_scans(
+    paths: PathLike | Sequence[PathLike],
+    instrument: Instrument | None = None,
+    *,
+    x_unit: str | None = None,
+    height_unit: str | None = None,
+    stack: Literal[True] = True,
+) -> xr.Dataset: ...
+
+
+@overload
+def read_scans(
+    paths: PathLike | Sequence[PathLike],
+    instrument: Instrument | None = None,
+    *,
+    x_unit: str | None = None,
+    height_unit: str | None = None,
+    stack: Literal[False],
+) -> list[xr.Dataset]: ...
+
+
+def read_scans(
+    paths: PathLike | Sequence[PathLike],
+    instrument: Instrument | None = None,
+    *,
+    x_unit: str | None = None,
+    height_unit: str | None = None,
+    stack: bool = True,
+) -> xr.Dataset | list[xr.Dataset]:
+    r"""Read scans of one surface; text of an unknown instrument by what its header says.
+
+    Parameters
+    ----------
+    paths
+        A file, a pattern with ``*``, or a list of either. A pattern's files come in order of name.
+    instrument
+        Dialect of a text file: its name, the path of a TOML file, or a dialect. Without it text is
+        recognised by content; of other formats those of `formats.undescribed` are read.
+        Text that no dialect knows is read where its header says what the columns are, or how far
+        its heights lie apart; ``instrument`` is then "drafted from the file".
+    x_unit, height_unit
+        Units of positions and heights, for files that state none and have no dialect.
+    stack
+        False: return a list with a dataset for each file, or for each trace in one, which may
+        differ in pitch and length.
+
+    Returns
+    -------
+    xarray.Dataset or list of xarray.Dataset
+        Profiles: ``height`` [m] (scan, x), ``x`` [m] from 0, also for one file, and the files'
+        names as ``file`` (scan); of several traces in a file each is a scan. One map:
+        ``height`` [m] (y, x), several: (scan, y, x). Missing heights are NaN.
+        Attributes: ``pitch_m``, ``length_m`` (from the first point to the last), ``tip_radius_m``,
+        ``lambda_c_m`` and the instrument's own results (``instrument_Ra_m``, ...) where the file
+        has them. Attributes that differ between stacked scans are joined by ``"; "``.
+
+    Raises
+    ------
+    ReadError
+        If there is no such file, it cannot be understood, holds results only, or the scans differ
+        in pitch or length. Of a file that says too little itself, with the guesses.
+
+    Notes
+    -----
+    Positions that deviate from an even grid by no more than the rounding of their last digit are
+    taken as even. Others are interpolated, and the attribute ``resampled`` says so.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> file = pathlib.Path(tempfile.mkdtemp()) / "line.txt"
+    >>> _ = file.write_text("Point spacing: 0.25 um\nZ [um]\n1.0\n1.5\n1.25\n1.0\n")
+    >>> scan = read_scans(file)
+    >>> scan.attrs["instrument"], scan.attrs["pitch_m"], scan.sizes["x"]
+    ('drafted from the file', 2.5e-07, 4)
+    """
+    files = files_of(paths)
+    units = {"x_unit": x_unit, "height_unit": height_unit}
+
+    def read_file(file: Path) -> list[xr.Dataset]:
+        if instrument is not None:
+            return read_known_scans([file], instrument, **units)
+        return _read(file, units)
+
+    read = [read_unchanged([file], partial(read_file, file)) for file in files]
+    traces = [(file, scan) for file, scans in zip(files, read, strict=True) for scan in scans]
+    if not stack:
+        return [stamp(scan) for _, scan in traces]
+    return stacked([file for file, _ in traces], [scan for _, scan in traces])
+
+
+def read_traces(path: Path, instrument: Instrument | None = None) -> dict[Path, xr.Dataset]:
+    """Read all scans of one file, each by a name of its own.
+
+    Parameters
+    ----------
+    path
+        The file.
+    instrument
+        As for `read_scans`.
+
+    Returns
+    -------
+    dict
+        Of a file with one scan that by the file's path; of several traces each by a path that the
+        trace would have: "line.txt, trace 2".
+
+    Raises
+    ------
+    ReadError
+        As for `read_scans`.
+    """
+    scans = read_scans([path], instrument, stack=False)
+    if len(scans) == 1:
+        return {path: scans[0]}
+    return {path.with_name(f"{path.name}{_TRACE}{k}"): scan for k, scan in enumerate(scans, 1)}
+
+
+def file_of(trace: Path) -> Path:
+    """Return the file that a trace of `read_traces` stands in.
+
+    >>> file_of(Path("line.txt, trace 2")).name, file_of(Path("line.txt")).name
+    ('line.txt', 'line.txt')
+    """
+    name, mark, number = trace.name.rpartition(_TRACE)
+    return trace.with_name(name) if mark and number.isdecimal() else trace
+
+
+def _read(file: Path, units: dict[str, str | None]) -> list[xr.Dataset]:
+    try:
+        return read_known_scans([file], **units)
+    except UnclearOrderError:
+        raise
+    except ReadError as error:
+        dialect = None if any(units.values()) else _drafted(file, error)
+        if dialect is None:
+            raise
+        told = {"instrument": DRAFTED, "to_keep_it": how_to_keep(file)}
+        return [_doubted(scan.assign_attrs(told)) for scan in read_known_scans([file], dialect)]
+
+
+def _doubted(scan: xr.Dataset) -> xr.Dataset:
+    doubt = doubt_about_heights(scan)
+    return scan.assign_attrs(doubtful=doubt) if doubt else scan
+
+
+def _drafted(file: Path, error: ReadError) -> Dialect | None:
+    """Return the dialect that a file's header makes of a scan; None if it is none."""
+    draft = draft_of(file)
+    if draft is None or draft.known or is_own_text(file):
+        return None
+    if draft.kind == "table" and (holds_heights(draft) or holds_counts(draft)):
+        raise ReadError(
+            draft.answer, where=file, cure=cures.unknown_instrument(file, cures.SURFACE)
+        ) from error
+    if draft.kind != "scan":
+        return None
+    understood = draft.understood
+    asked, lacks = questions(draft), lacks_distance(draft)
+    if asked and not draft.named and not (understood is not None and understood.pitched):
+        return None
+    if asked or lacks:
+        known = understood_columns(draft)
+        raise GuessedError(file, asked, cures.SURFACE, lacks, known) from error
+    return draft.dialect

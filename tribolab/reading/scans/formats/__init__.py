@@ -1,0 +1,1 @@
+"""Formats of profiles and maps, one module for each."""

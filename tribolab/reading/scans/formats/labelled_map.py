@@ -1,0 +1,163 @@
+"""Maps with positions along both sides of their heights, in text or a workbook.
+
+So spreadsheets and mathematics programs write maps: x across the top, y down the side.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import islice, starmap
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.reading.raw.containers.workbook import sheets_of
+from tribolab.reading.raw.missing_marks import measurable, take_marks
+from tribolab.reading.raw.unpacked import ZIP, is_workbook
+from tribolab.reading.scans.formats.matrix import GRAMMARS, cells_of, texts_of, value_of
+from tribolab.reading.scans.formats.named_units import unsaid
+from tribolab.reading.scans.formats.profilometers import NotSaidError
+from tribolab.reading.scans.header import map_header
+from tribolab.units import conversion
+
+_HEAD_LINES = 60  # above the positions
+_FEWEST = 8  # rows, and heights of each
+_HEAD = 1 << 20  # bytes in which a map begins
+_EVEN = 1e-2  # of a step, by which positions may be rounded
+
+
+class _Map(NamedTuple):
+    """Lines above, the corner, positions [own unit] across and down, heights (y, x)."""
+
+    above: list[str]
+    corner: str
+    x: np.ndarray
+    y: np.ndarray
+    heights: np.ndarray
+    mark: str
+
+
+def read_labelled_map(
+    path: Path, x_unit: str | None = None, height_unit: str | None = None
+) -> xr.Dataset | None:
+    """Read a map that has its positions along two sides.
+
+    Parameters
+    ----------
+    path
+        Text, or a workbook.
+    x_unit, height_unit
+        Units of positions and heights, where the file states none.
+
+    Returns
+    -------
+    xarray.Dataset or None
+        ``height`` [m] (y, x) from the lowest positions on; None where the file is no such map.
+
+    Raises
+    ------
+    NotSaidError
+        If it is one and does not say in which units its positions and heights are.
+    """
+    found = next(filter(None, starmap(_map_of, _tables(path))), None)
+    if found is None:
+        return None
+    lines = [*found.above, found.corner]
+    header = map_header(lines, found.heights.shape, found.mark)
+    along = conversion(x_unit, "m")[0] if x_unit else header.along
+    height = conversion(height_unit, "m")[0] if height_unit else header.height
+    lacking = ["positions"] * (along is None) + ["heights"] * (height is None)
+    if along is None or height is None:
+        raise NotSaidError(
+            "a map with positions along two sides that does not say the unit of its "
+            f"{' and '.join(lacking)}",
+            where=path,
+            cure=unsaid(path, along=along is None, up=height is None),
+        )
+    heights = height * found.heights
+    attrs = {"instrument": "map with positions along two sides, by its header"}
+    if marks := take_marks([heights.reshape(-1)]):
+        attrs["taken_for_missing"] = "; ".join(f"height: {mark.words}" for mark in marks)
+    scan = xr.Dataset(
+        {"height": (("y", "x"), measurable(heights))},
+        {"y": along * found.y, "x": along * found.x},
+        attrs,
+    )
+    return scan.sortby(["y", "x"])
+
+
+def _tables(path: Path) -> Iterator[tuple[list[list[str]], str]]:
+    """Give the cells and the decimal mark of each sheet, or of the text by each grammar."""
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+    if head.startswith(ZIP):
+        sheets = sheets_of(path).values() if is_workbook(path) else ()
+        yield from (([[_cell(cell) for cell in row] for row in sheet], ".") for sheet in sheets)
+        return
+    if not any(_grammars(text.splitlines()) for text in texts_of(head)):
+        return
+    for text in texts_of(path.read_bytes()):
+        lines = text.splitlines()
+        for delimiter, mark in _grammars(lines):
+            yield [cells_of(line, delimiter) for line in lines], mark
+
+
+def _grammars(lines: Sequence[str]) -> list[tuple[str | None, str]]:
+    """Return by which delimiter and decimal mark lines begin such a map."""
+    head = lines[: _HEAD_LINES + _FEWEST]
+    return [
+        (delimiter, mark)
+        for delimiter, mark in GRAMMARS
+        if _begin([cells_of(line, delimiter) for line in head], mark) is not None
+    ]
+
+
+def _cell(cell: object) -> str:
+    return repr(float(cell)) if isinstance(cell, int | float) else str(cell).strip()
+
+
+def _begin(rows: Sequence[Sequence[str]], mark: str) -> int | None:
+    """Return the row of positions below which rows of as many cells begin with theirs."""
+    for place, row in enumerate(islice(rows, _HEAD_LINES)):
+        below = rows[place + 1 : place + 1 + _FEWEST]
+        if len(row) <= _FEWEST or len(below) < _FEWEST or {len(r) for r in below} != {len(row)}:
+            continue
+        if _even(_numbers(row[1:], mark)) and _even(_numbers([r[0] for r in below], mark)):
+            return place
+    return None
+
+
+def _numbers(cells: Sequence[str], mark: str) -> np.ndarray | None:
+    """Return cells as numbers, NaN of an empty one; None where one is other text."""
+    values = [value_of(cell, mark) for cell in cells]
+    return None if None in values else np.array(values, float)
+
+
+def _even(values: np.ndarray | None) -> bool:
+    """Whether numbers rise or fall by even steps."""
+    if values is None:
+        return False
+    steps = np.diff(values)
+    usual = float(np.median(steps))
+    return bool(usual and (np.abs(steps - usual) <= _EVEN * abs(usual)).all())
+
+
+def _map_of(rows: Sequence[Sequence[str]], mark: str) -> _Map | None:
+    place = _begin(rows, mark)
+    across = None if place is None else _numbers(rows[place][1:], mark)
+    if place is None or across is None:
+        return None
+    body = []
+    for row in rows[place + 1 :]:
+        values = _numbers(row, mark) if len(row) == across.size + 1 else None
+        if values is None or np.isnan(values[0]):
+            break
+        body.append(values)
+    table = np.array(body)
+    if len(body) < _FEWEST or not _even(table[:, 0]):
+        return None
+    above = [" ".join(filter(None, row)) for row in rows[:place]]
+    x, y = (np.linspace(side[0], side[-1], side.size) for side in (across, table[:, 0]))
+    return _Map(above, rows[place][0], x, y, table[:, 1:], mark)

@@ -1,0 +1,281 @@
+"""Maps as text: a matrix of heights below lines that say how large it is, of any maker.
+
+So export Keyence, Alicona, Bruker and Zygo microscopes their maps, each with words of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.errors import ReadError, shown
+from tribolab.reading import cures
+from tribolab.reading.raw.missing_marks import Marked, measurable, take_marks
+from tribolab.reading.scans.formats.named_units import unsaid
+from tribolab.reading.scans.formats.profilometers import NotSaidError
+from tribolab.reading.scans.header import MapHeader, map_header, unit_of_range
+from tribolab.reading.scans.stated_missing import take_stated
+from tribolab.units import conversion
+
+_HEAD = 1 << 20  # bytes in which a matrix begins
+_CUT = 8  # bytes of a sign at their end
+_HEAD_LINES = 200  # above a matrix
+_FEWEST = 8  # columns of a matrix; fewer may be a table
+_MOST_OF_LINE = 24  # numbers of one profile in a line
+_ROWS = 4  # of one width tell a matrix
+_MARKS = frozenset(
+    (
+        "",
+        "bad",
+        "nan",
+        "-nan",
+        "n/a",
+        "na",
+        "inf",
+        "-inf",
+        "null",
+        "none",
+        "invalid",
+        "void",
+        "no data",
+        "nodata",
+    )
+)
+_SIGNS = frozenset("*-#?")
+_ENCODINGS = ("utf-8-sig", "cp932", "gb18030", "latin-1")
+GRAMMARS = (
+    *(("\t", "."), ("\t", ","), (";", "."), (";", ","), (",", "."), (None, "."), (None, ",")),
+)
+
+
+class _Matrix(NamedTuple):
+    """Rows of numbers: the lines above, what parts cells, whether the last line is shorter."""
+
+    above: list[str]
+    rows: list[list[float]]
+    delimiter: str | None
+    mark: str
+    columns: int
+    alone: bool = True
+    ragged: bool = False
+
+
+def read_matrix(
+    path: Path, x_unit: str | None = None, height_unit: str | None = None
+) -> xr.Dataset | None:
+    """Read a map from text.
+
+    Parameters
+    ----------
+    path
+        The file.
+    x_unit, height_unit
+        Units of positions and heights, where it states none.
+
+    Returns
+    -------
+    xarray.Dataset or None
+        ``height`` [m] (y, x), the rows as the file has them; None where the file is no matrix.
+
+    Raises
+    ------
+    NotSaidError
+        If it is one, but does not say how far its points lie apart or in what its heights are.
+    ReadError
+        If it holds other numbers of rows and columns than it says, or several matrices.
+    """
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+    if not any(_matrix(text.splitlines()) for text in texts_of(head)):
+        return None
+    told: tuple[_Matrix, MapHeader] | None = None
+    for text in texts_of(path.read_bytes()):
+        matrix = _matrix(text.splitlines())
+        if matrix is None:
+            continue
+        shape = len(matrix.rows), matrix.columns
+        commas = matrix.delimiter == ","
+        header = map_header(
+            matrix.above, shape, matrix.mark, commas_part=commas, x_unit=x_unit or ""
+        )
+        if header.height is None and height_unit is not None:
+            header = header._replace(height=conversion(height_unit, "m")[0])
+        if told is None or (header.dx and header.dy and header.height):
+            told = matrix, header
+    if told is None:
+        return None
+    matrix, header = told
+    if matrix.columns < _FEWEST and header.columns != matrix.columns:
+        return None
+    heights = np.array(matrix.rows)
+    if _even(heights[0, 1:]) and _even(heights[1:, 0]):
+        return None  # positions stand beside the heights
+    counted = any(0 <= n - heights.size < matrix.columns for _, n in header.stated)
+    goes_on = matrix.ragged or (counted and matrix.columns <= _MOST_OF_LINE)
+    if goes_on and header.columns is None:
+        return None  # a profile whose heights go on from line to line
+    whole = (heights == np.round(heights)) | np.isnan(heights)
+    if header.gauge_step not in (None, header.height) and whole.all():
+        header = header._replace(height=None)  # counts of that step, perhaps
+    if header.height is None:
+        header = header._replace(height=unit_of_range(header, heights))
+    _refuse(path, matrix, header)
+    assert header.dx and header.dy and header.height  # else refused
+    attrs = {"instrument": "matrix of heights, by its header"}
+    attrs |= {"doubtful": header.doubt} if header.doubt else {}
+    if missing := _without_missing(heights, header):
+        attrs["taken_for_missing"] = missing
+    rows, columns = heights.shape
+    return xr.Dataset(
+        {"height": (("y", "x"), measurable(header.height * heights))},
+        {"y": header.dy * np.arange(rows), "x": header.dx * np.arange(columns)},
+        attrs,
+    )
+
+
+def _without_missing(heights: np.ndarray, header: MapHeader) -> str:
+    """Put NaN where a number stands for no height, and say which it was."""
+    stated = take_stated(heights, header.stated)
+    told = [
+        f"height: {Marked(number, count).words}, as the header states ('{shown(name, 30)}')"
+        for name, number, count in stated
+    ]
+    told += [f"height: {mark.words}" for mark in take_marks([heights.reshape(-1)])]
+    return "; ".join(told)
+
+
+def texts_of(content: bytes) -> list[str]:
+    """Return the content in each encoding that fits; most files fit the first only."""
+    if content.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return [content.decode("utf-16", "replace")]
+    if b"\0" in content[:8192]:
+        return []
+    texts = []
+    for encoding in _ENCODINGS:
+        try:
+            texts.append(content.decode(encoding))
+        except UnicodeDecodeError as error:
+            if len(content) - error.start < _CUT and encoding != "latin-1":
+                texts.append(content[: error.start].decode(encoding))  # a sign cut in two
+        if texts and encoding == "utf-8-sig":
+            break
+    return texts
+
+
+def _matrix(lines: list[str]) -> _Matrix | None:
+    """Find the first rows of numbers of one width, below which no names of columns stand."""
+    for start in range(min(len(lines), _HEAD_LINES)):
+        first = lines[start : start + _ROWS]
+        if len(first) < _ROWS or not first[0].strip():
+            continue
+        for delimiter, mark in GRAMMARS:
+            columns = len(cells_of(first[0], delimiter))
+            trial = _Matrix(lines[:start], [], delimiter, mark, columns)
+            if columns < _ROWS or any(_numbers(line, trial) is None for line in first):
+                continue
+            return None if _is_named(trial) else _filled(lines[start:], trial)
+    return None
+
+
+def _is_named(matrix: _Matrix) -> bool:
+    """Whether names or positions of columns stand above."""
+    last = next((line for line in reversed(matrix.above) if line.strip()), "")
+    return len(cells_of(last, matrix.delimiter)) >= max(_ROWS, matrix.columns - 1)
+
+
+def _filled(lines: Sequence[str], like: _Matrix) -> _Matrix:
+    """Take all rows; `alone` says whether no others follow on what is no row."""
+    rows: list[list[float]] = []
+    for number, line in enumerate(lines):
+        values = _numbers(line, like) if line.strip() else None
+        if values is None:
+            rest = (_numbers(below, like) for below in lines[number:] if below.strip())
+            alone = all(values is None for values in rest)
+            return like._replace(rows=rows, alone=alone, ragged=_is_part(line, like))
+        rows.append(values)
+    return like._replace(rows=rows)
+
+
+def _is_part(line: str, like: _Matrix) -> bool:
+    """Whether a line is a shorter row of numbers."""
+    cells = cells_of(line, like.delimiter) if line.strip() else []
+    part = like._replace(columns=len(cells))
+    return 0 < len(cells) < like.columns and _numbers(line, part) is not None
+
+
+def cells_of(line: str, delimiter: str | None) -> list[str]:
+    """Return the cells of a line; a delimiter at its end begins none."""
+    cells = [cell.strip().strip('"') for cell in line.split(delimiter)]
+    return cells[:-1] if delimiter is not None and line.rstrip().endswith(delimiter) else cells
+
+
+def _numbers(line: str, like: _Matrix) -> list[float] | None:
+    """Return the numbers of a row, NaN where no height is; None of any other line."""
+    cells = cells_of(line, like.delimiter)
+    if len(cells) == like.columns - 1 and like.delimiter is not None:
+        cells.append("")  # the last height is missing
+    if len(cells) != like.columns:
+        return None
+    if like.mark == ".":
+        try:
+            return [*map(float, cells)]
+        except ValueError:
+            pass
+    values = [value_of(cell, like.mark) for cell in cells]
+    return None if None in values else [value for value in values if value is not None]
+
+
+def value_of(cell: str, mark: str) -> float | None:
+    """Return a cell's number, NaN of one without a height, None of any other text."""
+    try:
+        return float(cell if mark == "." else cell.replace(".", "x").replace(mark, "."))
+    except ValueError:
+        bare = cell.lower()
+        return float("nan") if bare in _MARKS or set(bare) <= _SIGNS else None
+
+
+def _even(values: np.ndarray) -> bool:
+    """Whether numbers rise by even steps, as positions do."""
+    steps = np.diff(values)
+    return bool(steps.size > 1 and (np.abs(steps - steps[0]) < 1e-3 * abs(steps[0])).all())
+
+
+def _refuse(path: Path, matrix: _Matrix, header: MapHeader) -> None:
+    """Refuse a matrix that is not whole, or of which too little is said."""
+    rows, columns = len(matrix.rows), matrix.columns
+    apart = "how far its points lie apart along x and y"
+    if header.without_unit:
+        apart = f"the unit of '{shown(header.without_unit, 40)}'"
+    lacking = [
+        what
+        for what, known in (
+            (apart, header.dx and header.dy),
+            ("in which unit its heights are", header.height),
+        )
+        if not known
+    ]
+    if lacking:
+        what = f"a matrix of {rows} x {columns} numbers that does not say {' or '.join(lacking)}"
+        write = "write it above the numbers, as 'Pixel size: 0.5 um' and 'Height unit: um'"
+        along = not (header.dx and header.dy)
+        if along and not header.without_unit:  # of which a name says the unit alone
+            raise NotSaidError(what, where=path, cure=write)
+        cure = unsaid(path, along=along, up=header.height is None)
+        raise NotSaidError(what, where=path, cure=cures.either(write, cure))
+    if not matrix.alone:
+        raise ReadError(
+            f"{path}: several matrices of numbers stand in the file; leave only the heights"
+        )
+    if matrix.ragged:
+        raise ReadError(
+            f"{path}: below {rows} rows of {columns} numbers stands a row of fewer; is it whole?"
+        )
+    if header.rows not in (None, rows) or header.columns not in (None, columns):
+        raise ReadError(
+            f"{path}: {rows} rows of {columns} numbers stand in the file, but it says that they "
+            f"are {header.rows or rows} rows of {header.columns or columns}; is it whole?"
+        )

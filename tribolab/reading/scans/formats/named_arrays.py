@@ -1,0 +1,184 @@
+"""Arrays that files hold by name: NumPy (npz, npy), MATLAB, HDF5 and netCDF."""
+
+from __future__ import annotations
+
+import zipfile
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.errors import ReadError, brief
+from tribolab.reading.raw.containers.mat import read_variables
+from tribolab.reading.raw.hdf5_safety import check_self_contained
+from tribolab.reading.raw.opening import isolated
+from tribolab.reading.scans.formats.profilometer_safety import DAMAGE, refuse_bomb
+from tribolab.untyped import Json
+
+NPY = b"\x93NUMPY"
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+_NETCDF = (b"CDF\x01", b"CDF\x02")
+_MATLAB = (b"MATLAB 5.0", b"MATLAB 7.3")
+_LONGEST = 500  # characters of a text that is kept
+_MOST = 200  # arrays of a file
+
+
+class HeldArray(NamedTuple):
+    """An array of numbers, with what the file says beside it."""
+
+    name: str
+    values: np.ndarray
+    attrs: Json
+
+
+class HeldArrays(NamedTuple):
+    """Arrays, and texts by name."""
+
+    arrays: list[HeldArray]
+    texts: dict[str, str]
+
+
+def is_npz(path: Path) -> bool:
+    """Whether a zip archive is one of NumPy's."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            names = archive.namelist()
+    except (zipfile.BadZipFile, OSError, ValueError):
+        return False
+    return bool(names) and all(name.endswith(".npy") for name in names)
+
+
+def holds_arrays(path: Path, head: bytes) -> bool:
+    """Whether a file is of a format that holds arrays by name."""
+    marks = (NPY, _HDF5, *_NETCDF, *_MATLAB)
+    return head.startswith(marks) or (head.startswith(b"PK\x03\x04") and is_npz(path))
+
+
+def read_arrays(path: Path) -> HeldArrays:
+    """Read all arrays of numbers of a file, and its texts.
+
+    Raises
+    ------
+    ReadError
+        If it is damaged.
+    """
+    with path.open("rb") as file:
+        head = file.read(16)
+    if head.startswith(b"MATLAB 5.0"):
+        return _of_mat(path)
+    reader = _of_numpy
+    if head.startswith(_NETCDF):
+        reader = _of_netcdf
+    elif head.startswith((_HDF5, b"MATLAB 7.3")):
+        reader = _of_hdf5
+    try:
+        return reader(path)
+    except (KeyError, TypeError, MemoryError, *DAMAGE) as error:
+        if isinstance(error, ReadError):
+            raise
+        raise ReadError(f"{path}: the file is damaged: {brief(error)}; save it again") from error
+
+
+@isolated()
+def _of_numpy(path: Path) -> HeldArrays:
+    with path.open("rb") as file:
+        alone = file.read(len(NPY)) == NPY
+    if not alone:
+        refuse_bomb(path)
+    held = HeldArrays([], {})
+    loaded = np.load(path, allow_pickle=False)
+    if alone:
+        _take(held, path.stem, loaded, {})
+        return held
+    with loaded as archive:
+        for name in archive.files[:_MOST]:
+            try:
+                _take(held, name, archive[name], {})
+            except ValueError:  # objects of Python: nothing that is measured
+                continue
+    return held
+
+
+def _of_mat(path: Path) -> HeldArrays:
+    variables = read_variables(path)
+    held = HeldArrays([], {v.name: v.texts[0][:_LONGEST] for v in variables if v.texts})
+    for variable in variables:
+        if variable.numbers is not None:
+            numbers = variable.numbers
+            _take(held, variable.name, numbers.ravel() if 1 in numbers.shape else numbers, {})
+    return held
+
+
+@isolated("scipy.io")
+def _of_netcdf(path: Path) -> HeldArrays:
+    # late: SciPy takes long to load
+    from scipy.io import netcdf_file
+
+    held = HeldArrays([], {})
+    with netcdf_file(path, "r", mmap=False, maskandscale=False) as file:
+        _tell(held, "", {k: _plain(v) for k, v in vars(file)["_attributes"].items()})
+        for name, variable in file.variables.items():
+            attrs = {k: _plain(v) for k, v in vars(variable)["_attributes"].items()}
+            _take(held, name, np.array(variable.data), attrs)
+    return held
+
+
+@isolated("h5py")
+def _of_hdf5(path: Path) -> HeldArrays:
+    # late: h5py takes long to load
+    import h5py
+
+    held = HeldArrays([], {})
+
+    def visit(name: str, item: object) -> None:
+        attrs = {str(k): _plain(v) for k, v in getattr(item, "attrs", {}).items()}
+        if not isinstance(item, h5py.Dataset):
+            _tell(held, name, attrs)
+            return
+        if item.shape is None or len(held.arrays) >= _MOST or item.dtype.names:
+            return
+        if attrs.get("MATLAB_class") == "char":
+            held.texts[name] = "".join(map(chr, np.ravel(item[()])[:_LONGEST].tolist()))
+        elif item.dtype.kind in "OSU":
+            if item.size == 1:
+                held.texts[name] = str(_plain(item[()]))[:_LONGEST]
+        else:
+            values = np.asarray(item[()])
+            if "MATLAB_class" in attrs:  # whose columns are HDF5's rows
+                values = values.T
+                values = values.ravel() if values.ndim == 2 and 1 in values.shape else values
+            _take(held, name, values, attrs)
+
+    check_self_contained(path)
+    with h5py.File(path, "r") as file:
+        visit("", file)
+        file.visititems(visit)
+    return held
+
+
+def _take(held: HeldArrays, name: str, values: np.ndarray, attrs: Json) -> None:
+    if values.dtype.kind in "SU" and values.size == 1:
+        held.texts[name] = str(_plain(values))[:_LONGEST]
+    elif values.dtype.kind in "fiub" and values.size:
+        own = np.squeeze(values) if values.ndim > 2 or values.size == 1 else values
+        held.arrays.append(HeldArray(name, own, attrs))
+    for key, value in attrs.items():
+        if isinstance(value, str):
+            held.texts[f"{name}.{key}"] = value
+
+
+def _tell(held: HeldArrays, name: str, attrs: Json) -> None:
+    """Keep what is said of a group as if it stood in it."""
+    for key, value in attrs.items():
+        full = f"{name}/{key}" if name else key
+        if isinstance(value, str):
+            held.texts[full] = value[:_LONGEST]
+        elif isinstance(value, int | float):
+            held.arrays.append(HeldArray(full, np.asarray(value, dtype=float), {}))
+
+
+def _plain(value: object) -> object:
+    """Return a single value as a number or text."""
+    if isinstance(value, np.ndarray | np.generic) and np.size(value) == 1:
+        value = np.asarray(value).item()
+    return value.decode("utf-8", "replace") if isinstance(value, bytes) else value

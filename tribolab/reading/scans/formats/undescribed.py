@@ -1,0 +1,132 @@
+"""Scans that no dialect describes, by the format that their first bytes show."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import xarray as xr
+
+from tribolab.errors import ReadError
+from tribolab.reading.raw.unpacked import ZIP, of_the_file, unpacked
+from tribolab.reading.scans.formats.arrays import read_scan_arrays
+from tribolab.reading.scans.formats.column_map import read_column_map
+from tribolab.reading.scans.formats.gauges import is_gauge, read_gauge
+from tribolab.reading.scans.formats.labelled_map import read_labelled_map
+from tribolab.reading.scans.formats.matrix import read_matrix
+from tribolab.reading.scans.formats.named_arrays import holds_arrays, is_npz
+from tribolab.reading.scans.formats.named_units import units_in_name
+from tribolab.reading.scans.formats.profilometers import NotSaidError, read_foreign
+from tribolab.reading.scans.formats.sdf import as_standard, is_sdf_draft
+from tribolab.reading.scans.formats.sur import is_sur, plain_sur
+from tribolab.reading.scans.formats.surfer import is_surfer, read_surfer
+from tribolab.reading.scans.formats.x3p import is_iso_xml, main_of, read_iso_xml, read_x3p
+from tribolab.reading.scans.formats.xml_values import is_xml, read_xml_values
+from tribolab.reading.scans.formats.zygo_xyz import is_zygo_xyz, read_zygo_xyz
+
+_HEAD = 1 << 14  # bytes that tell a format
+
+
+def is_own_text(path: Path) -> bool:
+    """Whether a file is text of a format that is read here: what is wrong with it is said."""
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+    named = is_surfer(head) or is_zygo_xyz(head)
+    return named or is_xml(head) or is_iso_xml(head) or is_gauge(head)
+
+
+def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
+    """Read a scan in one of our own formats, or else with SurfaceTopography.
+
+    Parameters
+    ----------
+    path
+        The file; it may be compressed.
+    x_unit, height_unit
+        Units of positions and heights, for files that state none.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``height`` [m] (x) or (y, x); of several profiles in a file (scan, x).
+
+    Raises
+    ------
+    ReadError
+        If it is of no format that is known, or damaged.
+
+    Notes
+    -----
+    Ours are those that SurfaceTopography 1.27 reads in part or not at all: x3p and its bare XML,
+    lists of values in XML, SMD and PRF text of soft gauges, packed Surf files, SDF of the
+    standard's draft, matrices of heights below lines that say their size or between positions
+    along two sides, and arrays by name.
+    """
+    try:
+        return _read(path, x_unit, height_unit)
+    except NotSaidError:
+        named = units_in_name(path)
+        if not ((named.x and x_unit is None) or (named.height and height_unit is None)):
+            raise
+        scan = _read(path, x_unit or named.x, height_unit or named.height)
+        told = [f"x in {named.x}"] if named.x and x_unit is None else []
+        told += [f"heights in {named.height}"] if named.height and height_unit is None else []
+        return scan.assign_attrs(units_by_file_name=", ".join(told))
+
+
+def _read(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+    if holds_arrays(path, head):
+        return _of_arrays(path, x_unit, height_unit)
+    inside = as_standard(path) if is_sdf_draft(head) else unpacked(path, head)
+    if inside != path:
+        try:
+            return _read(inside, x_unit, height_unit)
+        except ReadError as error:
+            raise of_the_file(error, inside, path) from error
+    if is_zygo_xyz(head):
+        return read_zygo_xyz(path, x_unit)
+    if is_surfer(head):
+        return read_surfer(path, x_unit, height_unit)
+    if head.startswith(ZIP) and (main := main_of(path)) is not None:
+        return read_x3p(path, main)
+    if head.startswith(ZIP) and (scan := read_labelled_map(path, x_unit, height_unit)) is not None:
+        return scan
+    if is_iso_xml(head):
+        return read_iso_xml(path)
+    if is_xml(head):
+        return read_xml_values(path, x_unit, height_unit)
+    if is_gauge(head):
+        return read_gauge(path)
+    if b"\0" not in head or head.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return _of_text(path, x_unit, height_unit)
+    return read_foreign(plain_sur(path) if is_sur(head) else path, x_unit, height_unit)
+
+
+def _of_arrays(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
+    """Read arrays by their names, else what SurfaceTopography makes of them."""
+    scan = read_scan_arrays(path, x_unit, height_unit)
+    if scan is None and is_npz(path):
+        raise ReadError(
+            "no array of this archive is named as heights are, such as 'z_um' beside 'x_mm'",
+            where=path,
+        )
+    return read_foreign(path, x_unit, height_unit) if scan is None else scan
+
+
+def _of_text(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
+    """Read a matrix whose lines above say all, else what SurfaceTopography reads."""
+    try:
+        scan = read_matrix(path, x_unit, height_unit)
+    except NotSaidError as lacking:
+        try:
+            return read_foreign(path, x_unit, height_unit)
+        except NotSaidError as error:
+            if x_unit is None:  # what is lacking is said of our own reading
+                raise lacking from error
+            raise
+        except ReadError as error:
+            raise lacking from error
+    scan = read_column_map(path) if scan is None else scan
+    scan = read_labelled_map(path, x_unit, height_unit) if scan is None else scan
+    return read_foreign(path, x_unit, height_unit) if scan is None else scan

@@ -1,0 +1,375 @@
+"""Read scans: profiles and maps of heights, from text by dialect or from profilometers' files."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from tribolab.aliases import PathLike
+from tribolab.errors import Cure, ReadError, shown
+from tribolab.provenance import as_text, made, sha256_of_file
+from tribolab.reading import cures
+from tribolab.reading.content.read_file import read_content
+from tribolab.reading.dialect.find import (
+    Dialect,
+    Instrument,
+    every_dialect,
+    is_scan,
+    load_dialect,
+    scan_dialects,
+)
+from tribolab.reading.dialect.python_reader import PythonReader, with_columns
+from tribolab.reading.file_patterns import is_pattern, matching
+from tribolab.reading.raw.source import check_regular
+from tribolab.reading.scans.extent import measured_part, refuse_impossible
+from tribolab.reading.scans.formats.undescribed import read_undescribed
+from tribolab.reading.scans.grid import even, gridded
+from tribolab.reading.scans.isolated import take_isolated
+from tribolab.reading.scans.passes import find_passes
+from tribolab.reading.text.first_bytes import File, peek, results_error
+from tribolab.stamping import stamp
+from tribolab.units import positive
+from tribolab.untyped import Json
+from tribolab.words import Count
+
+# where the scans of a surface differ, the one that shows least counts for all
+_WORST = {"tip_radius_m": max, "lambda_s_m": max, "lambda_c_m": min}
+_JOINED = ("source", "source_sha256")
+_ONE_BY_ONE = Cure(notebook="read them with stack=False")
+
+
+def read_known_scans(
+    files: Sequence[Path],
+    instrument: Instrument | None = None,
+    *,
+    x_unit: str | None = None,
+    height_unit: str | None = None,
+) -> list[xr.Dataset]:
+    """Read scans of instruments that are known, and of the formats of profilometers.
+
+    Parameters
+    ----------
+    files
+        The files.
+    instrument, x_unit, height_unit
+        As for `tribolab.reading.scan_files.read_scans`.
+
+    Returns
+    -------
+    list of xarray.Dataset
+        One for each file, or for each trace in it: ``height`` [m] (x) or (y, x).
+
+    Raises
+    ------
+    ReadError
+        If there is no such file, it cannot be understood, or it holds results only.
+    """
+    dialect = load_dialect(instrument) if instrument is not None else None
+    if isinstance(dialect, PythonReader) and files:
+        dialect = with_columns(dialect, Path(files[0]))
+    if dialect is not None and not is_scan(dialect):
+        scanning = ", ".join(d.name for d in scan_dialects())
+        raise ReadError(
+            f"instrument '{dialect.name}' writes no profiles (no column is 'x' and 'height', and "
+            f"there is no pitch); those that do are {scanning}"
+        )
+    return [scan for file in files for scan in _read(file, dialect, x_unit, height_unit)]
+
+
+def files_of(paths: PathLike | Sequence[PathLike]) -> list[Path]:
+    """Return the files that a name, a pattern or a list of either stands for.
+
+    Raises
+    ------
+    ReadError
+        If no file is given, or none has such a name.
+    """
+    given = [paths] if isinstance(paths, str | Path) else list(paths)
+    if not given:
+        raise ReadError("no file is given", function="read_scans")
+    files: list[Path] = []
+    for path in given:
+        files.extend(matching(path) if is_pattern(path) else [Path(path)])
+    return files
+
+
+@functools.cache  # the descriptions do not change while a program runs
+def _every_dialect() -> tuple[Dialect, ...]:
+    return tuple(every_dialect())
+
+
+def _read(
+    path: Path, dialect: Dialect | None, x_unit: str | None, height_unit: str | None
+) -> list[xr.Dataset]:
+    check_regular(path)
+    if dialect is None:
+        dialect = _recognised(path)
+    if dialect is not None:
+        scans, sha256 = _by_dialect(path, dialect)
+    else:
+        scans = _apart(read_undescribed(path, x_unit, height_unit))
+        sha256 = sha256_of_file(path)
+    return [_finished(path, scan, sha256) for scan in scans]
+
+
+def _apart(scan: xr.Dataset) -> list[xr.Dataset]:
+    """Return the profiles that a file holds side by side one by one."""
+    if "scan" not in scan.dims:
+        return [scan]
+    number = scan.sizes["scan"]
+    return [scan.isel(scan=k).assign_attrs(traces=str(number)) for k in range(number)]
+
+
+def _finished(path: Path, scan: xr.Dataset, sha256: str) -> xr.Dataset:
+    """Return a scan that was read, if it can be one, with what is known of it."""
+    scan = _without_isolated(scan)
+    if not np.isfinite(scan.height.values).any():
+        raise ReadError(f"{path}: not one height is a number")
+    refuse_impossible(path, scan)
+    name = as_text(path.name)
+    scan = measured_part(
+        scan.assign_attrs(**made(f"read {name}", source=name, source_sha256=sha256))
+    )
+    x = scan.x.values
+    return scan.assign_attrs(
+        pitch_m=float(x[-1] - x[0]) / (x.size - 1),
+        length_m=float(x[-1] - x[0]),
+    )
+
+
+def _without_isolated(scan: xr.Dataset) -> xr.Dataset:
+    """Take an exact height far from all others for missing, and say so."""
+    height = np.array(scan.height.values, dtype=float)
+    marks = take_isolated(height)
+    if not marks:
+        return scan
+    before = [scan.attrs["taken_for_missing"]] if "taken_for_missing" in scan.attrs else []
+    told = [
+        f"height: {1e6 * mark.number:.9g} um {Count(mark.rows):time|times}, far from all other "
+        "heights"
+        for mark in marks
+    ]
+    scan = scan.assign(height=scan.height.copy(data=height))
+    return scan.assign_attrs(taken_for_missing="; ".join([*before, *told]))
+
+
+def _recognised(path: Path) -> Dialect | None:
+    """Return the text dialect that a file is written in; None for other formats."""
+    # late: starting stays quick
+    from tribolab.reading.dialect.recognise import mismatch
+
+    try:
+        file: File = peek(path)
+    except ReadError:
+        if path.stat().st_size == 0:
+            raise
+        return None  # a format that only SurfaceTopography may know
+    if file.format not in ("text", "tdms"):
+        return None
+    if error := results_error(file.head, path):
+        raise error
+    known = [d for d in _every_dialect() if mismatch(file, d) is None]
+    fitting = [d for d in known if is_scan(d)]
+    if known and not fitting:
+        what = f"this looks like a run ({shown(known[0].title)})"
+        raise ReadError(what, where=path, cure=cures.MEND_SIGNALS)
+    if len(fitting) > 1:
+        names = ", ".join(repr(d.name) for d in fitting)
+        raise ReadError(
+            f"more than one dialect fits: {names}",
+            where=path,
+            cure=cures.name_instrument(cures.SURFACE),
+        )
+    return fitting[0] if fitting else None
+
+
+def _by_dialect(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
+    """Return the scans of a file, of columns of heights side by side one for each."""
+    if isinstance(dialect, PythonReader):
+        dialect = with_columns(dialect, path)
+    beside = [c for c in dialect.column if c.key == "height" and not c.optional]
+    if len(beside) < 2:
+        return _of_columns(path, dialect)
+    others = tuple(column for column in dialect.column if column not in beside)
+    scans: list[xr.Dataset] = []
+    for column in beside:
+        mine, checksum = _of_columns(path, dialect.model_copy(update={"column": (*others, column)}))
+        scans += mine
+    for scan in scans:
+        scan.attrs.pop("columns_not_used", None)  # each leaves the others to the others
+        scan.attrs["traces"] = str(len(scans))
+    return scans, checksum
+
+
+def _of_columns(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
+    # late: starting stays quick
+    from tribolab.reading.content.values import single_values
+    from tribolab.reading.scans.traces import traces_of
+
+    content = read_content(path, dialect)
+    pieces = traces_of(path, content.pieces, dialect)
+    attrs = {"instrument": dialect.name, **single_values(content, dialect)}
+    if content.not_used:
+        attrs["columns_not_used"] = "; ".join(content.not_used)
+    if content.left_out:
+        attrs["rows_left_out_why"] = "; ".join(f"{n} {why}" for why, n in content.left_out.items())
+    if "taken_for_missing" in content.notes:
+        attrs["taken_for_missing"] = content.notes["taken_for_missing"]
+    if len(pieces) > 1:
+        attrs["traces"] = str(len(pieces))
+    scans = [scan for piece in pieces for scan in _scans_of(path, piece.columns, attrs, dialect)]
+    return scans, content.sha256
+
+
+def _scans_of(
+    path: Path, columns: Mapping[str, np.ndarray], attrs: Json, dialect: Dialect
+) -> list[xr.Dataset]:
+    """Return the scan that one table is; of a way to and fro one for each pass."""
+    bare = _without_isolated(xr.Dataset({"height": ("row", columns["height"])}, attrs=dict(attrs)))
+    columns, attrs = {**columns, "height": bare.height.values}, dict(bare.attrs)
+    passes = None
+    if "x" in columns and "y" not in columns:
+        passes = find_passes(columns["x"], columns["height"])
+    if passes is None:
+        return [_scan(path, columns, attrs, dialect)]
+    x = passes.pitch * np.arange(passes.heights.shape[1], dtype=float)
+    said = {**attrs, "x_origin_m": passes.start, "resampled": passes.told}
+    if len(passes.heights) > 1:
+        said["traces"] = str(len(passes.heights))
+    return [xr.Dataset({"height": ("x", row)}, {"x": x}, said) for row in passes.heights]
+
+
+def _scan(
+    path: Path, columns: Mapping[str, np.ndarray], attrs: Json, dialect: Dialect
+) -> xr.Dataset:
+    """Return the scan that one table is."""
+    line = _line_of(columns)
+    if "y" in columns and line is None:
+        scan = gridded(str(path), columns["x"], columns["y"], columns["height"])
+        return scan.assign_attrs(attrs)
+    if line is not None:
+        columns = {"x": columns[line], "height": columns["height"]}
+    if "x" not in columns:
+        height = columns["height"]
+        if height.size < 2:
+            raise ReadError(f"{path}: a profile needs at least two points, it has {height.size}")
+        pitch = _stated_pitch(path, dialect, attrs, height.size)
+        x = pitch * np.arange(height.size, dtype=float)
+        return xr.Dataset({"height": ("x", height)}, {"x": x}, attrs)
+    pitch, height, evened = even(str(path), columns["x"], columns["height"])
+    x = pitch * np.arange(height.size, dtype=float)
+    return xr.Dataset({"height": ("x", height)}, {"x": x}, {**attrs, **evened})
+
+
+def _line_of(columns: Mapping[str, np.ndarray]) -> str | None:
+    """Return the axis along which points of a map lie that are one line: the other stands still."""
+    if "y" not in columns or not columns["height"].size > 1:
+        return None
+    still = [name for name in ("x", "y") if np.ptp(columns[name]) == 0]
+    return {"x": "y", "y": "x"}[still[0]] if len(still) == 1 else None
+
+
+def _stated_pitch(
+    path: Path, dialect: Dialect, attrs: Mapping[str, str | float], points: int
+) -> float:
+    """Distance of neighbouring points [m] that the dialect, or the file's header, says.
+
+    A length is parted among the points, each with its share; whether it ends at the last point or
+    a share behind it is seldom said, and changes the distance by less than one part of them.
+    """
+    if dialect.pitch is not None:
+        return positive(dialect.pitch, "m", "pitch")
+    held_by = dialect.pitch_value or dialect.length_value
+    if held_by is None:
+        raise ReadError(
+            f"{path}: heights without positions: put the distance of neighbouring heights into the "
+            f"dialect '{dialect.name}', pitch = \"0.25 um\" in its first lines"
+        )
+    [value] = [value for value in dialect.value if value.name == held_by]
+    said = attrs.get(value.attribute)
+    if said is None or not float(said) > 0:
+        what = "distance of its points" if dialect.pitch_value else "length of the profile"
+        raise ReadError(
+            f"{path}: the {what} does not stand in the file as the dialect "
+            f"'{dialect.name}' expects it ([[value]] '{shown(value.name)}')"
+        )
+    return float(said) if dialect.pitch_value else _rounder(float(said), points)
+
+
+def _rounder(length: float, points: int) -> float:
+    """Return the distance of points over a length, whose last one is its end or one step before.
+
+    >>> _rounder(2e-4, 400), _rounder(1.995e-4, 400)
+    (5e-07, 5e-07)
+    """
+    pitches = [length / parts for parts in (points, max(points - 1, 1))]
+    return min(pitches, key=lambda pitch: len(f"{pitch:.7g}"))
+
+
+def stacked(files: Sequence[Path], scans: Sequence[xr.Dataset]) -> xr.Dataset:
+    """Put scans that were read one by one together, as `scan_files.read_scans` does.
+
+    Raises
+    ------
+    ReadError
+        If they differ in pitch or length, or one of several is a map.
+    """
+    maps = [file for file, scan in zip(files, scans, strict=True) if "y" in scan.dims]
+    if maps and len(maps) < len(scans):
+        raise ReadError("a map cannot be stacked with profiles", where=maps[0], cure=_ONE_BY_ONE)
+    first = scans[0]
+    if maps and len(scans) == 1:
+        return stamp(first)
+    dims = tuple(str(dim) for dim in first.height.dims)
+    for file, scan in zip(files[1:], scans[1:], strict=True):
+        for dim in dims:
+            points, length = first.sizes[dim], float(np.ptp(first[dim].values))
+            drift = abs(float(np.ptp(scan[dim].values)) - length) if points > 1 else 0.0
+            if scan.sizes[dim] == points and drift <= 0.5 * length / max(points - 1, 1):
+                continue
+            own, usual = (
+                1e6 * float(np.ptp(pitch_of[dim].values)) / max(pitch_of.sizes[dim] - 1, 1)
+                for pitch_of in (scan, first)
+            )
+            raise ReadError(
+                f"{scan.sizes[dim]} points of {own:.6g} um, but {files[0].name} has {points} "
+                f"points of {usual:.6g} um: scans of different pitch or length do not stack",
+                where=file,
+                cure=_ONE_BY_ONE,
+            )
+    height = np.stack([scan.height.values for scan in scans])
+    data = xr.Dataset(
+        {"height": (("scan", *dims), height)},
+        {
+            "scan": np.arange(len(scans)),
+            **{dim: first[dim].values for dim in dims},
+            "file": ("scan", [as_text(file.name) for file in files]),
+        },
+    )
+    return stamp(data, **_common([scan.attrs for scan in scans]))
+
+
+def _common(attrs: list[Json]) -> Json:
+    """Attributes of all scans; where they differ, joined as text."""
+    result: Json = {}
+    for key in dict.fromkeys(key for scan in attrs for key in scan):
+        values = [scan.get(key) for scan in attrs]
+        numbers = [value for value in values if isinstance(value, float)]
+        alike = all(value == values[0] for value in values)
+        if alike:
+            result[key] = values[0]
+        elif key == "history":
+            result[key] = "\n".join(map(str, values))
+        elif key in _JOINED or len(numbers) < len(values):
+            result[key] = "; ".join("" if value is None else str(value) for value in values)
+        elif key in ("pitch_m", "length_m"):
+            result[key] = values[0]
+        elif key in _WORST:
+            result[key] = _WORST[key](numbers)
+        else:
+            result[key] = "; ".join(f"{value:.9g}" for value in numbers)
+    return result

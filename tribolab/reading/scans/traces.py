@@ -1,0 +1,82 @@
+"""Several tables of heights in one file: traces of one scan, or one trace in several versions."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from tribolab.errors import ReadError, shown
+from tribolab.reading.content.model import Piece
+from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.text.bounded_patterns import guarded
+
+_TOLD = 5  # tables whose titles are told
+_NUMBERS = re.compile(r"\d+(?:[.,]\d+)*")
+_LETTERS = re.compile(r"[^\W\d_]+")
+# what says of a table that it was worked out of another
+_VERSIONS = re.compile(
+    r"(?i)\b(?:raw|primary|filtered|unfiltered|roughness|waviness|levell?ed|form|residual|"
+    r"roh\w*|gefiltert\w*|rauheit\w*|welligkeit\w*|prim[aä]r\w*|brut|filtr\w+|rugosit\w+|"
+    r"[pwr][-\s]profil\w*)\b"
+)
+
+
+def traces_of(path: Path, pieces: list[Piece], dialect: Dialect) -> list[Piece]:
+    """Return the tables of a file that are traces of one scan.
+
+    Parameters
+    ----------
+    path
+        The file.
+    pieces
+        Its tables.
+    dialect
+        Its description; its `only` says which tables are meant.
+
+    Returns
+    -------
+    list
+        All tables, where the text before them is the same but for numbers.
+
+    Raises
+    ------
+    ReadError
+        If the tables may be one trace in several versions, such as raw and filtered: of two
+        versions of the same heights a mean would be of neither.
+    """
+    if dialect.header.only is not None:
+        pattern = guarded(dialect.header.only)
+        meant = [piece for piece in pieces if pattern.search(_title(piece))]
+        if not meant:
+            titles = _told(pieces)
+            what = f"no table's text matches '{shown(dialect.header.only)}'; there are: {titles}"
+            raise ReadError(what, where=path)
+        return meant
+    if len(pieces) > 1 and not _alike(pieces):
+        raise ReadError(
+            f"{len(pieces)} tables of heights stand in the file, which are no traces of one scan "
+            f"by what is written above them: {_told(pieces)}; say which are meant with only = "
+            f"'{shown(_title(pieces[0]) or '...', 30)}' in [header] of a description of it",
+            where=path,
+        )
+    return pieces
+
+
+def _title(piece: Piece) -> str:
+    """Return the last line of text before a table that holds letters."""
+    lines = [line.strip() for line in piece.before.splitlines() if _LETTERS.search(line)]
+    return lines[-1] if lines else ""
+
+
+def _alike(pieces: list[Piece]) -> bool:
+    titles = [_title(piece) for piece in pieces]
+    if any(_VERSIONS.search(title) for title in titles[1:]) and len(set(titles)) > 1:
+        return False
+    # text above the first table may say more: settings, results
+    return len({_NUMBERS.sub("", title).strip() for title in titles[1:]}) <= 1
+
+
+def _told(pieces: list[Piece]) -> str:
+    titles = [f"'{shown(_title(piece) or 'without a title', 40)}'" for piece in pieces]
+    more = f" and {len(titles) - _TOLD} more" if len(titles) > _TOLD else ""
+    return ", ".join(titles[:_TOLD]) + more

@@ -1,0 +1,1 @@
+"""How text is written, before any dialect: encoding, arrangement, cells, numbers."""

@@ -1,0 +1,269 @@
+"""The first look at a file: is it there, is it text, and if not, which binary format."""
+
+from __future__ import annotations
+
+import functools
+import json
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+from tribolab.errors import ReadError
+from tribolab.reading import cures
+from tribolab.reading.file_patterns import why_missing
+from tribolab.reading.raw.containers.declared_records import declares_records
+from tribolab.reading.raw.containers.xml_workbook import is_xml_workbook
+from tribolab.reading.raw.hdf5_safety import refuse_outside
+from tribolab.reading.raw.readers import answers, installed_readers
+from tribolab.reading.raw.source import check_regular
+from tribolab.reading.raw.unpacked import ZIP, holds_arrays, is_workbook, unpacked
+from tribolab.reading.results_table import find_results_table
+from tribolab.reading.text.arrangements import holds_names
+
+HEAD = 1 << 20  # bytes looked at for preamble and header
+
+_MAGIC = {
+    b"MATLAB 5.0": "mat",
+    b"TDSm": "tdms",
+    b"\x89HDF\r\n\x1a\n": "netcdf",
+    b"CDF\x01": "netcdf",
+    b"CDF\x02": "netcdf",
+    b"MATLAB 7.3": "hdf5",
+    b"PAR1": "parquet",
+    b"ARROW1": "feather",
+    b"FEA1": "feather",
+    b"\xd0\xcf\x11\xe0": "excel",
+}
+_JSON = re.compile(rb'(?:\xef\xbb\xbf)?\s*(?:\{\s*"[^"]*"\s*:|\[\s*[\[{])')
+_SAME = {("netcdf", "hdf5"), ("text", "binary")}  # what else a file of a format may be
+_FOREIGN = {
+    b"PK\x03\x04": "a zip or Office file; export a table as text (csv)",
+    b"%PDF": "a PDF",
+}
+_PERHAPS_PROFILE = (b"PK\x03\x04",)
+_UTF16 = (b"\xff\xfe", b"\xfe\xff")
+_WIDE_HEAD = 4096  # bytes that tell how wide letters are
+_FEWEST_BYTES = 64
+
+
+class File(NamedTuple):
+    """A file that can be read: where, of which format, how long, and its first bytes."""
+
+    path: Path
+    format: str
+    size: int
+    head: bytes
+
+    @property
+    def container(self) -> str:
+        """What holds columns by name: the format, JSON as a whole, or binary records; "" of lines.
+
+        Binary numbers stand behind a text that says how they are to be read.
+        """
+        if self.format != "text":
+            return self.format
+        if _is_json(self.head):
+            return "json"
+        return "declared records" if b"\0" in self.head and not wide_encoding(self.head) else ""
+
+
+def peek(path: str | Path, *, binary: bool = False) -> File:
+    """Look at the start of a file; of a compressed one, at its content.
+
+    Parameters
+    ----------
+    path
+        The file.
+    binary
+        Whether it may be binary of no format that is known, because a dialect describes it.
+
+    Raises
+    ------
+    ReadError
+        If there is no such file, it is no file, is empty, or is of a format that cannot be read.
+    """
+    path = Path(path)
+    try:
+        if path.exists():
+            check_regular(path)
+        with path.open("rb") as file:
+            head = file.read(HEAD)
+            size = file.seek(0, 2)
+    except FileNotFoundError as error:
+        raise ReadError(f"{path}: {why_missing(path)}") from error
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
+        raise ReadError(f"{path}: the file cannot be opened: {error}") from error
+    inner = unpacked(path, head)
+    if inner != path:
+        return peek(inner)
+    wide = bool(wide_encoding(head))
+    if not head.strip(b"\xef\xbb\xbf \t\r\n" + b"\xff\xfe\0" * wide):
+        raise ReadError(f"{path}: the file is empty")
+    found = File(path, _format(path, head, binary=binary), size, head)
+    if found.format in ("hdf5", "netcdf"):
+        refuse_outside(path)
+    return found
+
+
+def wide_encoding(head: bytes) -> str:
+    """Return the encoding of text whose letters are two bytes wide; "" of all else.
+
+    Without a mark at the beginning one byte of nearly every letter is zero, always the same.
+
+    >>> wide_encoding("Zeit [s]".encode("utf-16-le") * 9), wide_encoding(b"Zeit [s]" * 9)
+    ('utf-16-le', '')
+    """
+    if head.startswith(_UTF16):
+        return "utf-16"
+    first = head[:_WIDE_HEAD]
+    if len(first) < _FEWEST_BYTES or b"\0" not in first:
+        return ""
+    for name, zeros, letters in (
+        ("utf-16-le", first[1::2], first[::2]),
+        ("utf-16-be", first[::2], first[1::2]),
+    ):
+        often = zeros.count(0) > 0.9 * len(zeros) and 0 not in letters
+        # letters and signs, and no small numbers of two bytes
+        plain = sum(byte >= 32 or byte in b"\t\r\n" for byte in letters)
+        if often and plain == len(letters):
+            return name
+    return ""
+
+
+def fits_format(format_of_file: str, format_of_dialect: str) -> bool:
+    """Whether a file of a format may be what a dialect describes.
+
+    >>> fits_format("netcdf", "hdf5"), fits_format("text", "mat")
+    (True, False)
+    """
+    return format_of_file == format_of_dialect or (format_of_file, format_of_dialect) in _SAME
+
+
+_MOST_JSON = 1 << 28  # bytes: it is read as a whole
+_LINES = 100  # that tell whether each is a record of its own
+
+
+def _is_json(head: bytes) -> bool:
+    """Whether a file is JSON as a whole, and no table below a line of it."""
+    if not _JSON.match(head):
+        return False
+    text = head.decode("utf-8-sig", errors="replace").lstrip()
+    if holds_names(text.split("\n")[:_LINES]):
+        return False  # a record to a line
+    try:
+        end = json.JSONDecoder().raw_decode(text)[1]
+    except (ValueError, RecursionError):  # it goes on beyond what is looked at, or too deep
+        return True
+    return not text[end:].strip(" \t\r\n,") or text[end:].lstrip()[0] in "{[,"
+
+
+def _format(path: Path, head: bytes, *, binary: bool) -> str:
+    for magic, name in _MAGIC.items():
+        if head.startswith(magic):
+            return name
+    if (head.startswith(ZIP) and is_workbook(path)) or is_xml_workbook(head):
+        return "excel"
+    if head.startswith(ZIP) and holds_arrays(path):
+        return "npz"
+    if binary and b"\0" in head:
+        return "binary"
+    for magic, name in _FOREIGN.items():
+        if head.startswith(magic):
+            profile = magic in _PERHAPS_PROFILE
+            raise ReadError(
+                f"this is {name}", where=path, cure=cures.PERHAPS_PROFILE if profile else ""
+            )
+    if b"\0" in head and not wide_encoding(head):
+        if declares_records(head):
+            return "text"
+        if installed_readers() and answers(head):
+            return "python"
+        raise ReadError(
+            "this is neither text nor a binary format that is known",
+            where=path,
+            cure=cures.PERHAPS_PROFILE,
+        )
+    if _is_json(head) and not _holds_columns(path):
+        cure = "write its columns as a table, e.g. in Python pandas.DataFrame(...).to_csv(...)"
+        raise ReadError("this is JSON, of which no table is read", where=path, cure=cure)
+    return "text"
+
+
+def _holds_columns(path: Path) -> bool:
+    try:
+        state = path.stat()
+    except OSError:
+        return False
+    return state.st_size <= _MOST_JSON and _holds_tables(path, state.st_size, state.st_mtime_ns)
+
+
+@functools.lru_cache(maxsize=16)  # a file is looked at more than once
+def _holds_tables(path: Path, size: int, changed: int) -> bool:
+    # late: starting stays quick
+    from tribolab.reading.raw.containers.json_tables import holds_tables
+
+    try:
+        return holds_tables(path.read_text("utf-8-sig"))
+    except (OSError, UnicodeDecodeError):
+        return False
+
+
+_MODE = re.compile(r"^Mode;RES\s*$", re.MULTILINE)
+
+
+# a roughness parameter, its value (asterisks: not computed) and its unit
+_NAMED = re.compile(
+    r"^\s*(?P<name>[RPWS](?:a|q|z|t|p|v|c|sk|ku|dq|Δq|Sm|z1max|max|3z|k|pk|vk)\d?|(?:λ|[Ll])[cs]"
+    r"|[Cc]ut-? ?off)\s*[:=;,\t ]\s*(?P<value>[-+]?\d+(?:[.,]\d+)?|\*[.,*]*\*)"
+    r"\s*[;,\t]?\s*(?P<unit>[^\s\d;,*][^\s;,]*)?\s*[;,]*\s*$"
+)
+_FEWEST, _MOST = 3, 200  # lines of results
+
+
+def is_results(head: bytes) -> bool:
+    """Whether a file's first bytes are those of results: of a roughness tester, or a table."""
+    return results_error(head, Path()) is not None
+
+
+def results_error(head: bytes, where: Path) -> ReadError | None:
+    """Return the error about a file that holds results where signals are wanted; else None."""
+    if is_surftest_results(head) or len(named_values(head)) >= _FEWEST:
+        what = "the file holds the results of a roughness tester, but no profile"
+        return ReadError(what, where=where, cure=cures.TESTER_RESULTS)
+    table = find_results_table(_text_of(head)) if b"\0" not in head[:4096] else None
+    if table is None:
+        return None
+    cure = "export the profiles, or the records over time"
+    return ReadError(f"the file holds {table.words}", where=where, cure=cure)
+
+
+def _text_of(head: bytes) -> str:
+    try:
+        return head.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return head.decode("latin-1")
+
+
+def is_surftest_results(head: bytes) -> bool:
+    """Whether a file's first bytes are those of a Surftest results file."""
+    text = head[:4096].decode("latin-1").replace("\r", "")
+    return text.startswith("// Header") and _MODE.search(text) is not None
+
+
+def named_values(head: bytes) -> list[tuple[int, tuple[str, str, str]]]:
+    r"""Lines of a roughness parameter: their number from 1, with name, value and unit.
+
+    None of a file in which most lines are something else, such as a profile below its results.
+
+    Examples
+    --------
+    >>> named_values(b"Ra = 0.52 um\nRz\t*.***um\nRsk;-0,31\n")[1:]
+    [(2, ('Rz', '*.***', 'um')), (3, ('Rsk', '-0,31', ''))]
+    """
+    if head.count(b"\n") > _MOST or b"\0" in head[:4096]:
+        return []
+    lines = _text_of(head).replace("\r\n", "\n").replace("\r", "\n").split("\n")
+    told = [(n, match) for n, line in enumerate(lines, 1) if (match := _NAMED.match(line))]
+    if 2 * len(told) < sum(bool(line.strip()) for line in lines):
+        return []
+    return [(n, (match["name"], match["value"], match["unit"] or "")) for n, match in told]

@@ -1,0 +1,1 @@
+"""Files that no dialect describes: layout, columns, header, and the proposed dialect."""

@@ -1,0 +1,163 @@
+"""What unnamed columns of numbers hold, told by how the numbers behave; all of it is a guess."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tribolab.reading.clocks.faults import find_faults, rows_at_fault
+from tribolab.reading.unknown.model import other_units, time_unit
+
+if TYPE_CHECKING:
+    from tribolab.reading.unknown.model import DraftColumn, Kind
+
+_ROWS = 20_000  # rows looked at
+_SAME = 0.9999  # correlation of one signal in two units
+_COMPARED = 1000  # columns held against one another: their pairs grow with the square
+_EVERY = 20  # a smooth signal travels as far when only every so-manyth sample is looked at
+_SMOOTH = 1.12
+_LONGEST_SCAN = 200.0  # mm, the largest traverse of a profilometer
+_HIGHEST = 5.0  # mm, the range of a stylus gauge
+
+
+def by_behaviour(
+    columns: list[DraftColumn], numbers: np.ndarray, units: tuple[str, str] = ("", "")
+) -> tuple[Kind, list[DraftColumn], list[str]]:
+    """Tell a map, a profile, a run or none of them by the numbers of its columns.
+
+    Parameters
+    ----------
+    columns
+        The columns, without names.
+    numbers
+        Their numbers (rows, columns) as written.
+    units
+        Of positions and of heights, as the text before the table states them; "" if it does not.
+
+    Notes
+    -----
+    Three columns whose first two fill a grid are a map. Two columns, the first even and rising, are
+    a profile: a run needs more than one signal. In other tables the first column that rises in
+    every row is time, and one that runs smoothly to and fro is the position.
+    """
+    part = numbers[:_ROWS]
+    width = part.shape[1]
+    if width == 3 and _is_grid(part):
+        return "scan", *_scan(columns, part, units)
+    rising = [i for i in range(width) if len(part) > 2 and (np.diff(part[:, i]) > 0).all()]
+    if width == 2 and rising[:1] == [0] and _is_even(part[:, 0]):
+        return "scan", *_scan(columns, part, units)
+    if not rising:
+        rising = [i for i in range(width) if _is_clock(part[:, i])]
+    if not rising:
+        return "table", columns, []
+    return "run", *_run(columns, part, rising[0])
+
+
+def _is_grid(part: np.ndarray) -> bool:
+    levels = [np.unique(part[:, i]).size for i in (0, 1)]
+    pairs = len(np.unique(part[:, :2], axis=0))
+    n = len(part)
+    return min(levels) > 1 and pairs == n and n <= levels[0] * levels[1] < n + max(levels)
+
+
+def _is_even(x: np.ndarray) -> bool:
+    steps = np.diff(x)
+    return bool(np.ptp(steps) <= 0.05 * np.median(steps))
+
+
+def _is_clock(x: np.ndarray) -> bool:
+    """Whether numbers rise by even steps, start anew now and then, and never go astray."""
+    if len(x) < 2 * _EVERY or not np.isfinite(x).all():
+        return False
+    steps = np.diff(x)
+    falls = int((steps <= 0).sum())
+    usual = np.median(steps)
+    even = np.mean(np.abs(steps - usual) < 0.5 * usual) if usual > 0 else 0.0
+    if not 0 < falls <= len(x) / _EVERY or even < 0.9:
+        return False
+    faults = find_faults(x)
+    anew = x + faults.offsets()
+    return bool(faults.starts) and not rows_at_fault(anew, faults).any()
+
+
+def _scan_units(part: np.ndarray, height: int) -> tuple[str, str]:
+    """Heights as large as the length, number for number, are in a smaller unit than it."""
+    reach, length = np.ptp(part[:, height][np.isfinite(part[:, height])]), np.ptp(part[:, 0])
+    if length > _LONGEST_SCAN:  # metres, in millimetres
+        return "um", "um" if reach < 0.1 * length else "nm"
+    return "mm", "um" if reach > 0.1 * length or reach > _HIGHEST else "mm"
+
+
+def _scan(
+    columns: list[DraftColumn], part: np.ndarray, stated: tuple[str, str]
+) -> tuple[list[DraftColumn], list[str]]:
+    """Return positions with heights behind them; of what units the text states nothing is asked."""
+    names = ("x", "y", "height") if part.shape[1] == 3 else ("x", "height")
+    along, across = stated if all(stated) else _scan_units(part, len(names) - 1)
+    axes = []
+    for column, name in zip(columns, names, strict=True):
+        unit = across if name == "height" else along
+        axis = column._replace(quantity=name, unit=unit, used=True)
+        if not all(stated):
+            others = other_units("height" if name == "height" else "m", unit)
+            axis = axis._replace(guessed=(f"it is {name} in {unit}",), options=others)
+        axes.append(axis)
+    if all(stated):
+        return axes, []
+    if len(names) == 3:
+        return axes, ["it is a map: columns 1 and 2 fill a grid"]
+    return axes, ["it is a profile: two columns, the first rises in even steps"]
+
+
+def _run(
+    columns: list[DraftColumn], part: np.ndarray, time: int
+) -> tuple[list[DraftColumn], list[str]]:
+    unit = time_unit(part[:, time])
+    rises = "it rises in every row"
+    if (np.diff(part[:, time]) <= 0).any():
+        rises = "it rises by even steps, and starts anew now and then"
+    why = f"it is time in {unit}: {rises}"
+    result = list(columns)
+    result[time] = columns[time]._replace(quantity="time", unit=unit, used=True, guessed=(why,))
+    result[time] = result[time]._replace(options=(*other_units("s", unit), "not used"))
+    others = [i for i in range(part.shape[1]) if i != time]
+    kin = _kin(part, others)
+    smooth = [i for i in others if _runs_to_and_fro(part[:, i])]
+    position = max(smooth, key=lambda i: np.ptp(part[:, i]), default=None)
+    for i in others:
+        same = [str(k + 1) for k in kin.get(i, ())]
+        note = f"the same signal as column {', '.join(same)}" if same else "without a name"
+        result[i] = columns[i]._replace(note=note)
+    if position is not None:
+        why = "it is the position in mm: it runs smoothly to and fro"
+        result[position] = columns[position]._replace(
+            quantity="position",
+            unit="mm",
+            used=True,
+            guessed=(why,),
+            options=(*other_units("m", "mm"), "not used"),
+        )
+    return result, []
+
+
+def _kin(part: np.ndarray, places: list[int]) -> dict[int, list[int]]:
+    """For each column those that are a straight line of it: the same signal in another unit."""
+    some = part[:, places[:_COMPARED]]
+    with np.errstate(invalid="ignore"):  # what is not finite does not move
+        moves = np.isfinite(some).all(axis=0) & (np.ptp(some, axis=0) > 0)
+    moving = np.asarray(places[:_COMPARED])[moves]
+    if moving.size < 2:
+        return {}
+    alike = np.abs(np.corrcoef(part[:, moving], rowvar=False)) > _SAME
+    np.fill_diagonal(alike, False)
+    return {int(i): moving[row].tolist() for i, row in zip(moving, alike, strict=True)}
+
+
+def _runs_to_and_fro(x: np.ndarray) -> bool:
+    if len(x) < 10 * _EVERY or not np.isfinite(x).all() or np.ptp(x) == 0:
+        return False
+    fine = np.abs(np.diff(x)).sum()
+    coarse = np.abs(np.diff(x[::_EVERY])).sum()
+    return bool(coarse > 1.5 * np.ptp(x) and fine < _SMOOTH * coarse)

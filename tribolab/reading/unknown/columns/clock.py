@@ -1,0 +1,121 @@
+"""What a drafted dialect has to say of the clock: it starts anew, and what single rows become."""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from tribolab.medians import median
+from tribolab.quantities import unit_conversion
+from tribolab.reading.clocks.faults import find_faults, rows_at_fault
+from tribolab.reading.content.newest_first import is_newest_first
+from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern
+from tribolab.reading.text.cells import split_name
+
+if TYPE_CHECKING:
+    from tribolab.reading.unknown.layout.text_layout import Layout
+    from tribolab.reading.unknown.model import DraftColumn
+
+_FEW_AT_FAULT = 0.01  # of the rows
+_DAY, _HOUR = 86400.0, 3600.0  # [s]
+_INTERVALS = {"dt", "deltat", "δt", "interval", "intervall"}
+OnRepeat = Literal["", "drop", "interpolate"]
+
+
+def summed(columns: list[DraftColumn], numbers: np.ndarray) -> bool:
+    """Sum a column of time that holds intervals by its name and its numbers; whether it does.
+
+    Parameters
+    ----------
+    columns
+        The columns.
+    numbers
+        Their numbers (rows, columns); changed in place.
+    """
+    column = next((c for c in columns if c.used and c.quantity == "time" and not c.form), None)
+    if column is None or normalise_label(split_name(column.label)[0]) not in _INTERVALS:
+        return False
+    passed = numbers[:, column.place - 1]
+    if len(passed) < 2 or not (passed >= 0).all() or (np.diff(passed) > 0).all():
+        return False
+    numbers[:, column.place - 1] = np.cumsum(passed)
+    return True
+
+
+def find_clock(
+    layout: Layout, columns: list[DraftColumn], numbers: np.ndarray
+) -> tuple[OnRepeat, bool, list[DraftColumn]]:
+    """Find out what has to be said for time to increase: of single rows, and of new starts.
+
+    Rows are left out only where nothing is lost with them: the row before says the same, or they
+    are empty.
+    """
+    column = next((c for c in columns if c.used and c.quantity == "time"), None)
+    if column is None:
+        return "", False, columns
+    time = numbers[:, column.place - 1] * unit_conversion(column.read_unit or "s", "time")[0]
+    if len(layout.blocks) == 1 and is_newest_first(time):
+        return "", False, _replaced(columns, _reversed(column))
+    edges = np.cumsum([0, *(len(block.rows) for block in layout.blocks)])
+    restart = any(not time[b] > time[b - 1] for b in edges[1:-1])
+    bad, wraps = np.zeros(len(time), dtype=bool), []
+    for first, last in itertools.pairwise(edges):
+        faults = find_faults(time[first:last])
+        # a time of day starts again at midnight, minutes and seconds at the hour
+        starts = [s for s in faults.starts if not (column.form and s.period in (_DAY, _HOUR))]
+        restart |= bool(starts)
+        bad[first:last] = rows_at_fault(time[first:last] + faults.offsets(), faults)
+        wraps += sorted({start.period for start in starts if start.period})
+    on_repeat: OnRepeat = ""
+    if bad.any():
+        lossless = _loses_nothing(np.delete(numbers, column.place - 1, axis=1), numbers, bad)
+        on_repeat = "drop" if lossless else "interpolate"
+        column = _with_repeats(column, time, bad, lossless=lossless)
+    if wraps:  # no guess: it falls by exactly what such a counter holds
+        note = "; ".join(f"its counter wraps every {p:.9g} s" for p in dict.fromkeys(wraps))
+        column = column._replace(note=f"{column.note}; {note}" if column.note else note)
+    return on_repeat, restart, _replaced(columns, column)
+
+
+def _replaced(columns: list[DraftColumn], column: DraftColumn) -> list[DraftColumn]:
+    return [column if c.place == column.place else c for c in columns]
+
+
+def _reversed(column: DraftColumn) -> DraftColumn:
+    """Return a clock whose newest row comes first; one that may count down is a guess."""
+    note = "the newest row comes first, and the rows are turned round"
+    if part_pattern("time_left").search(normalise_label(split_name(column.label)[0])):
+        return column._replace(note="", guessed=(note,))
+    return column._replace(note=note)
+
+
+def _loses_nothing(others: np.ndarray, numbers: np.ndarray, bad: np.ndarray) -> bool:
+    """Whether rows at fault repeat the row before, or are empty but for their time."""
+    twin = np.zeros(len(numbers), dtype=bool)
+    twin[1:] = ((numbers[1:] == numbers[:-1]) | np.isnan(numbers[1:])).all(axis=1)
+    return bool((twin | np.isnan(others).all(axis=1))[bad].all())
+
+
+def _with_repeats(
+    column: DraftColumn, time: np.ndarray, bad: np.ndarray, *, lossless: bool
+) -> DraftColumn:
+    """Say what becomes of rows whose time does not increase; a guess unless one time fits."""
+    rows = f"{int(bad.sum())} rows whose time is not later than before"
+    if lossless:
+        return column._replace(note=f"{rows} are left out: they say nothing new")
+    note = f"{rows} get times between the others'"
+    if _fill_one_interval(time, bad):
+        return column._replace(note=note)
+    return column._replace(guessed=(*column.guessed, note))
+
+
+def _fill_one_interval(time: np.ndarray, bad: np.ndarray) -> bool:
+    """Whether each row at fault is one of many, and the rows around it leave room for just it."""
+    rows = np.flatnonzero(bad)
+    inside = rows[(rows > 0) & (rows < time.size - 1)]
+    if inside.size < rows.size or rows.size > _FEW_AT_FAULT * time.size:
+        return False
+    span = (time[rows + 1] - time[rows - 1]) / median(np.diff(time))
+    return bool((~bad[rows + 1] & ~bad[rows - 1] & (np.abs(span - 2) < 0.5)).all())

@@ -1,0 +1,117 @@
+"""Dates and times of day in a column of an unknown table."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from tribolab.reading.text.cells import split_row
+from tribolab.reading.text.dates import ISO, ISO_ZONE, has_day, seconds
+from tribolab.reading.unknown.columns.cells import Cells
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.reading.unknown.model import DraftColumn
+
+# Day before month or after it: which one, the dates may tell; where they do not it is a guess.
+_EUROPE, _AMERICA = "%d/%m/%Y %H:%M:%S", "%m/%d/%Y %H:%M:%S"
+_FORMS = (
+    *(ISO, ISO_ZONE),
+    *("%d.%m.%Y %H:%M:%S", "%d.%m.%Y %H:%M:%S.%f", "%d.%m.%Y %H:%M:%S,%f"),
+    *("%Y/%m/%d %H:%M:%S", "%Y/%m/%d %H:%M:%S.%f", "%Y/%m/%d %H:%M:%S,%f"),
+    *(_EUROPE, f"{_EUROPE}.%f", f"{_EUROPE},%f", _AMERICA, f"{_AMERICA}.%f", f"{_AMERICA},%f"),
+    *(f"{day}%I:%M:%S{part} %p" for day in ("", "%m/%d/%Y ") for part in ("", ".%f")),
+    *("%H:%M:%S", "%H:%M:%S.%f", "%H:%M:%S,%f"),
+    *("%M:%S.%f", "%M:%S,%f"),  # with a fraction only: 01:30 may be hours and minutes
+)
+_TRIED = 20
+# in a text of each of these forms: a table of 200 columns of words would take a minute to try them
+_LIKE_A_DATE = re.compile(r"\d:\d|^\s*\d{4}-?\d\d")
+
+
+def find_form(texts: Sequence[str]) -> tuple[str, str]:
+    """Find the form of the dates and times in a column.
+
+    Parameters
+    ----------
+    texts
+        Its cells.
+
+    Returns
+    -------
+    tuple
+        The form, "" if there is none; and one that fits as well, "" if there is none.
+
+    Examples
+    --------
+    >>> find_form(["24.12.2024 10:00:00,5", "24.12.2024 10:00:01,0"])
+    ('%d.%m.%Y %H:%M:%S,%f', '')
+    >>> find_form(["03/04/2024 10:00:00"])[1], find_form(["3.5"])
+    ('%m/%d/%Y %H:%M:%S', ('', ''))
+    """
+    filled = [text for text in texts if text]
+    first = filled[:_TRIED]
+    if not first or not all(map(_LIKE_A_DATE.search, first)):
+        return "", ""
+    fitting = [form for form in _FORMS if _fits(first, form)]
+    fitting = [form for form in fitting if _fits(filled, form)]
+    if not fitting:
+        return "", ""
+    times = seconds(filled, fitting[0])
+    others = (form for form in fitting[1:] if not np.allclose(seconds(filled, form), times))
+    return fitting[0], next(others, "")
+
+
+def _fits(texts: Sequence[str], form: str) -> bool:
+    try:
+        times = seconds(texts, form)
+    except ValueError:
+        return False
+    return bool((np.diff(times) >= 0).all()) or not has_day(form)
+
+
+def take_dates(columns: list[DraftColumn], layout: Layout, cells: Cells) -> list[DraftColumn]:
+    """Take the first column of dates for time if no column of numbers is; its numbers change.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
+    cells
+        From `tribolab.reading.unknown.columns.cells.read_cells`.
+    """
+    numbers, text = cells.numbers, cells.text
+    timed = [c for c in columns if c.quantity == "time" and c.used and not text[c.place - 1]]
+    dates = [] if timed or not any(text) else list(_dates(columns, layout, cells))
+    if not dates:
+        return columns
+    # a date next to a time of day is the same for the whole day
+    column, moments, form, other = next((one for one in dates if np.ptp(one[1]) > 0), dates[0])
+    numbers[:, column.place - 1] = moments
+    dated = column._replace(
+        quantity="time",
+        unit=None,
+        form=form,
+        used=True,
+        guessed=(f"dates are written {form}",) if other else (),
+        options=(other,) if other else (),
+        note="",
+        fill_in="",
+    )
+    others = [c._replace(quantity=None, used=False) if c.quantity == "time" else c for c in columns]
+    return [dated if c is column else o for c, o in zip(columns, others, strict=True)]
+
+
+def _dates(
+    columns: list[DraftColumn], layout: Layout, cells: Cells
+) -> Iterator[tuple[DraftColumn, np.ndarray, str, str]]:
+    """Yield columns of dates with their times [s], their form, and another form that fits."""
+    rows = [split_row(line, layout.delimiter) for line in layout.rows()]
+    for column in columns:
+        index = column.place - 1
+        words = [row[index] if index < len(row) else "" for row in rows]
+        form, other = find_form(words if cells.text[index] else [])
+        if form and len(words) == len(cells.numbers):  # a damaged row is split in two ways
+            yield column, seconds(words, form), form, other

@@ -1,0 +1,209 @@
+"""One decision for all columns: the assignment of quantities that the evidence favours most."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.errors import shown
+from tribolab.quantities import quantity
+from tribolab.reading.interpret.names import KNOWN_WORD, Match
+from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.unknown.columns.evidence import (
+    BOTH_FORCES,
+    NEAR,
+    RULED_OUT,
+    UNSURE,
+    Evidence,
+    Facts,
+    Rule,
+    is_contested,
+)
+from tribolab.reading.unknown.columns.unit_and_sign import FORCES, filled_in
+from tribolab.reading.unknown.model import UNKNOWN_NAME, WHICH_FORCE, DraftColumn
+
+SIGNALS = {
+    "friction_force",
+    "normal_force",
+    "friction_coefficient",
+    "sliding_velocity",
+    "position",
+    "shear_stress",
+    "film_thickness",
+}
+_TORQUE = "a torque: with the radius at which it acts it is a force"
+_NOTHING = -20.0  # log odds of a column that holds no quantity: names propose, others rule out
+_NOT_PROPOSED = -1000.0
+
+
+def decide(facts: Facts, rules: Sequence[Rule]) -> list[DraftColumn]:
+    """Give each quantity to at most one column, as the evidence of all rules favours.
+
+    Parameters
+    ----------
+    facts
+        What is known of the columns.
+    rules
+        Generators of evidence; their order does not matter.
+
+    Returns
+    -------
+    list of DraftColumn
+        The columns with their quantities, what of them is a guess, and why others have none.
+    """
+    evidence = [one for rule in rules for one in rule(facts)]
+    names = sorted({one.quantity for one in evidence if one.proposes})
+    score = _scores(facts, evidence, names)
+    decided = _Assignment(facts, evidence, names, score, _assign(score))
+    return [_described(decided, place) for place in range(len(facts.columns))]
+
+
+class _Assignment(NamedTuple):
+    """Which column holds which quantity, by its place in `names`, and what speaks for it."""
+
+    facts: Facts
+    evidence: Sequence[Evidence]
+    names: Sequence[str]
+    score: np.ndarray
+    chosen: Sequence[int | None]
+
+    def about(self, place: int) -> list[Evidence]:
+        """Return the evidence on one column."""
+        return [one for one in self.evidence if one.place == place]
+
+    def option(self, place: int, name: str) -> Match:
+        """Return how well a column's name suits a quantity, and the unit it is read in."""
+        said = [option for option in self.facts.options[place] if option.quantity == name]
+        option = said[0] if said else Match(name, UNSURE, None)
+        if any(one.sure and one.quantity == name for one in self.about(place)):
+            return option._replace(score=max(option.score, KNOWN_WORD))
+        if option.score < KNOWN_WORD and self.other_force_is_taken(place, name):
+            return option._replace(score=KNOWN_WORD)
+        return option
+
+    def other_force_is_taken(self, place: int, name: str) -> bool:
+        """Whether a column may hold either force, and another surely holds the other one."""
+        other = BOTH_FORCES[name == BOTH_FORCES[0]]
+        if not self.facts.is_either_force(place) or other not in self.names:
+            return False
+        k = self.names.index(other)
+        return k in self.chosen and self.facts.is_named(self.chosen.index(k), other)
+
+    def rivals(self, place: int) -> list[int]:
+        """Return other columns without a quantity that suit this one's about as well."""
+        k = self.chosen[place]
+        if k is None:
+            return []
+        least = self.score[place, k] - NEAR
+        return [
+            other
+            for other, taken in enumerate(self.chosen)
+            if taken is None
+            and self.score[other, k] > RULED_OUT / 2
+            and (
+                self.score[other, k] > least
+                or is_contested(self.facts, other, place, self.names[k])
+            )
+        ]
+
+    def has_spares(self, place: int) -> bool:
+        """Whether of several columns for a force this one is filled; in another file not."""
+        k, rivals = self.chosen[place], self.rivals(place)
+        filled = [np.any(np.isfinite(x) & (x != 0)) for x in self.facts.numbers[:, rivals].T]
+        return k is not None and self.names[k] in FORCES and bool(rivals) and not any(filled)
+
+
+def _scores(facts: Facts, evidence: Sequence[Evidence], names: Sequence[str]) -> np.ndarray:
+    """Return the sum of evidence for each column (rows) and quantity (columns)."""
+    score = np.full((len(facts.columns), len(names)), _NOT_PROPOSED)
+    for one in evidence:
+        if one.proposes:
+            score[one.place, names.index(one.quantity)] = 0.0
+    for one in evidence:
+        if not one.quantity:
+            score[one.place] += one.weight
+        elif one.quantity in names:
+            score[one.place, names.index(one.quantity)] += one.weight
+    return score
+
+
+def _assign(score: np.ndarray) -> list[int | None]:
+    """Return the quantity of each column, by its place in the scores; None for none."""
+    chosen: list[int | None] = [None] * len(score)
+    if not score.size:
+        return chosen
+    rows = np.flatnonzero(score.max(axis=1) > _NOTHING)
+    best = score[rows].argmax(axis=1)
+    if np.unique(best).size < best.size:
+        # late: takes longer to load than a known file to read
+        from scipy.optimize import linear_sum_assignment
+
+        found, best = linear_sum_assignment(-np.maximum(score[rows], _NOTHING))
+        rows = rows[found]
+    for row, k in zip(rows.tolist(), best.tolist(), strict=True):
+        chosen[row] = k if score[row, k] > _NOTHING else None
+    return chosen
+
+
+def _described(decided: _Assignment, place: int) -> DraftColumn:
+    """Return a column with its quantity and what of it is a guess."""
+    k, facts, column = decided.chosen[place], decided.facts, decided.facts.columns[place]
+    if k is None:
+        return _unused(decided, place)
+    name = decided.names[k]
+    option, rivals = decided.option(place, name), decided.rivals(place)
+    if decided.has_spares(place):
+        return _filled(decided, place, name)._replace(optional=True)
+    result = _filled(decided, place, name, several=bool(rivals))
+    options = [*result.options, *(f"column {other + 1}" for other in rivals)]
+    if option.score < KNOWN_WORD:
+        others = [other.quantity for other in facts.options[place] if other.quantity != name]
+        options += [*others, "not used"]
+    about = decided.about(place)
+    doubts = [one.doubt for one in about if one.doubt and one.quantity in (name, "")]
+    if doubts and not options and name in BOTH_FORCES:
+        options = [BOTH_FORCES[name == BOTH_FORCES[0]], "not used"]
+    result = result._replace(options=tuple(options), guessed=(*result.guessed, *doubts))
+    if option.score < KNOWN_WORD and facts.is_either_force(place) and not result.fill_in:
+        return result._replace(used=False, fill_in=WHICH_FORCE.format(shown(column.label)))
+    return result
+
+
+def _filled(decided: _Assignment, place: int, name: str, *, several: bool = False) -> DraftColumn:
+    facts = decided.facts
+    option, values = decided.option(place, name), facts.numbers[:, place]
+    return filled_in(
+        facts.columns[place], facts.bare[place], option, values, facts.kind, several=several
+    )
+
+
+def _unused(decided: _Assignment, place: int) -> DraftColumn:
+    """Return a column without a quantity, with the reason."""
+    facts, names, score = decided.facts, decided.names, decided.score
+    column = facts.columns[place]
+    if not column.label:
+        return column
+    about = decided.about(place)
+    why = next((one.why for one in about if one.weight <= RULED_OUT and one.why), "")
+    k = int(np.argmax(score[place])) if names else 0
+    if not names or score[place, k] < _NOTHING or k not in decided.chosen:
+        return column._replace(note=why or _hint(facts, place))
+    taken = decided.chosen.index(k)
+    if decided.has_spares(taken):
+        note = f"nothing but zeros here; column {taken + 1} is filled"
+        return _filled(decided, place, names[k])._replace(optional=True, note=note)
+    note = f"also looks like {names[k]}; column {taken + 1} is used"
+    return column._replace(quantity=names[k], note=note)
+
+
+def _hint(facts: Facts, place: int) -> str:
+    """Return what a unit says of a column whose name is not known."""
+    unit = facts.bare[place][1]
+    if unit is None:
+        return UNKNOWN_NAME
+    fits = [q for q in SIGNALS if quantity(q).unit != "1" and converts(unit, quantity(q).unit)]
+    if fits:
+        return f"its unit fits {' or '.join(sorted(fits))}"
+    return _TORQUE if converts(unit, "N m") else UNKNOWN_NAME

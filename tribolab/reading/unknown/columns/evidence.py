@@ -1,0 +1,308 @@
+"""What speaks for a column to hold a quantity: its name, its numbers, the text, the other columns.
+
+Each rule is a generator of `Evidence`. Weights are logarithms of odds and add up; their order does
+not matter.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.quantities import QUANTITIES, quantity, unit_conversion
+from tribolab.reading.interpret.names import (
+    KNOWN_WORD,
+    Match,
+    is_axis,
+    is_count,
+    is_stroke_frequency,
+    is_stroke_length,
+)
+from tribolab.reading.lexicon.lexicon import Role, normalise_label, role_of
+from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
+from tribolab.reading.unknown.columns.unit_and_sign import FORCES, Bare
+from tribolab.reading.unknown.model import DraftColumn, Kind
+
+RULED_OUT = -100.0
+NEAR = 0.05  # names whose scores differ by less suit a quantity about as well
+BOTH_FORCES = ("friction_force", "normal_force")  # what a load cell may measure
+FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
+# log odds by the role of a column: of two for a quantity the measured one counts, and what was set
+# or worked out gives way
+_ROLE: dict[Role, float] = {
+    "": 0.0,
+    "measured": math.log(1.1),
+    "derived": math.log(0.6),
+    "set": math.log(0.5),
+    "extreme": math.log(0.4),
+}
+_CONSTANT = math.log(0.9)  # a load that never moves is the one that was set
+_PREFERRED = 0.03  # log odds by size of a name that may stand for two quantities
+_CROSSTALK = 5.0  # times: the force along the motion is so much larger than one across it
+_ACROSS = {"fy"}  # names of a force across the motion
+_RADIAL = {"fr", "frad"}  # friction; but next to a torque the force that presses on the shaft
+UNSURE = 0.5  # score of a name that is asked about
+_MOTION = {"rotation_speed", "sliding_velocity", "position"}
+_DECIDING = FORCES | {"sliding_velocity", "rotation_speed"}
+_MIN_ROWS_FOR_ROTATION = 20
+_EXPLAINED_BY_ROTATION = 0.98  # share of a displacement's variance
+_DIFFERENT = 0.01  # relative difference of two columns that hold different numbers
+
+
+class Evidence(NamedTuple):
+    """How far something speaks for a column (from 0) to hold a quantity; "" for any quantity.
+
+    A negative weight speaks against it. With `sure` nobody is asked, with `doubt` a person is.
+    """
+
+    place: int
+    quantity: str
+    weight: float
+    why: str = ""
+    proposes: bool = False
+    sure: bool = False
+    doubt: str = ""
+
+
+class Facts(NamedTuple):
+    """What is known before columns are decided.
+
+    Attributes
+    ----------
+    columns, bare
+        The columns, and their names without units.
+    options
+        For each the quantities that its name may stand for, the likeliest first.
+    numbers
+        Their numbers (rows, columns) as written.
+    kind
+        What the file is.
+    """
+
+    columns: Sequence[DraftColumn]
+    bare: Sequence[Bare]
+    options: Sequence[Sequence[Match]]
+    numbers: np.ndarray
+    kind: Kind
+
+    def candidates(self, place: int) -> list[Match]:
+        """Return the quantities that a name suits about as well as the first."""
+        options = self.options[place]
+        return [o for o in options if o.score >= options[0].score - NEAR]
+
+    def places(self, name: str) -> list[int]:
+        """Return the columns whose name first of all stands for a quantity."""
+        return [p for p, o in enumerate(self.options) if o and o[0].quantity == name]
+
+    def is_named(self, place: int, name: str = "") -> bool:
+        """Whether a name is surely one of a quantity, or of any."""
+        options = self.options[place]
+        return (
+            bool(options) and options[0].score >= KNOWN_WORD and name in ("", options[0].quantity)
+        )
+
+    def any_named(self, name: str) -> bool:
+        """Whether some column is surely named for a quantity."""
+        return any(self.is_named(place, name) for place in range(len(self.options)))
+
+    def is_either_force(self, place: int) -> bool:
+        """Whether a name does not say which of both forces a column holds."""
+        near = {option.quantity for option in self.candidates(place)}
+        return not self.is_named(place) and set(BOTH_FORCES) <= near
+
+
+Rule = Callable[[Facts], Iterator[Evidence]]
+
+
+def by_name(facts: Facts) -> Iterator[Evidence]:
+    """Propose what a name stands for; a symbol or a whole term weighs more than a part of one."""
+    for place, options in enumerate(facts.options):
+        for rank, option in enumerate(facts.candidates(place) if options else ()):
+            weight = math.log(option.score) - 1e-3 * rank
+            yield Evidence(place, option.quantity, weight, proposes=True)
+
+
+def by_role(facts: Facts) -> Iterator[Evidence]:
+    """Favour what was measured over what was set or worked out."""
+    if facts.kind == "run":
+        for place, (name, _, _) in enumerate(facts.bare):
+            yield Evidence(place, "", _ROLE[role_of(name)])
+
+
+def by_position(facts: Facts) -> Iterator[Evidence]:
+    """Favour the later of two columns of one name: exporters repeat first what was plotted."""
+    filled = (np.isfinite(facts.numbers) & (facts.numbers != 0)).any(axis=0)
+    for place in range(len(facts.columns)):
+        yield Evidence(place, "", 1e-4 * filled[place] + 1e-6 * place / len(facts.columns))
+
+
+def by_numbers(facts: Facts) -> Iterator[Evidence]:
+    """Weigh sizes and steps where a name may stand for two quantities."""
+    has_units = any(unit is not None for _, unit, _ in facts.bare)
+    for place, options in enumerate(facts.options):
+        values = facts.numbers[:, place]
+        for name in FORCES if options and np.ptp(values) == 0 else ():
+            yield Evidence(place, name, _CONSTANT, "it is constant")
+        if not options or facts.bare[place][1] is not None or len(facts.candidates(place)) == 1:
+            continue
+        sizes = np.abs(values[np.isfinite(values)])
+        for option in facts.candidates(place):
+            ratio = option.quantity in QUANTITIES and QUANTITIES[option.quantity].unit == "1"
+            if ratio and (has_units or (sizes.size and np.median(sizes) < 2)):
+                yield Evidence(place, option.quantity, _PREFERRED + NEAR, "its size is a ratio's")
+        if options[0].quantity == "time" and not (np.diff(values) >= 0).all():
+            yield Evidence(place, "time", -_PREFERRED - NEAR, "it does not rise")
+
+
+def by_size(facts: Facts) -> Iterator[Evidence]:
+    """Favour the larger of two forces: a sensor across the motion shows only cross-talk."""
+    places = [p for p in facts.places("friction_force") if facts.is_named(p)]
+    sizes = {place: typical_size(facts, place) for place in places}
+    for place in places:
+        others = [sizes[other] for other in places if other != place]
+        plain = not role_of(facts.bare[place][0])
+        if plain and others and sizes[place] > _CROSSTALK * max(others) > 0:
+            yield Evidence(place, "friction_force", 0.3, "it is the larger force")
+
+
+def by_row_count(facts: Facts) -> Iterator[Evidence]:
+    """Rule out a column "n" that increases by one: it is the number of the row."""
+    for place, (name, unit, _) in enumerate(facts.bare):
+        steps = np.diff(facts.numbers[:, place])
+        if normalise_label(name) == "n" and unit is None and (steps == 1).all():
+            yield Evidence(place, "", RULED_OUT, "it counts the rows")
+
+
+def by_path(facts: Facts) -> Iterator[Evidence]:
+    """Rule out a length that only grows next to a position that reverses: it is the distance."""
+    steps = {
+        place: np.diff(facts.numbers[np.isfinite(facts.numbers[:, place]), place])
+        for place in facts.places("position")
+    }
+    if any((moved < 0).any() and (moved > 0).any() for moved in steps.values()):
+        for place, moved in steps.items():
+            if moved.size and (moved >= 0).all():
+                yield Evidence(place, "", RULED_OUT, "it is the distance travelled")
+
+
+def by_motion(facts: Facts) -> Iterator[Evidence]:
+    """Take a displacement sensor for one across the motion if another column gives the motion."""
+    if not any(facts.any_named(name) for name in _MOTION):
+        return
+    for place, options in enumerate(facts.options):
+        either = {option.quantity for option in options} == {"position", "height_displacement"}
+        if either and not facts.is_named(place):
+            why = "another column gives the motion"
+            yield Evidence(place, "position", RULED_OUT, why)
+            yield Evidence(place, "height_displacement", 0.0, why, sure=True)
+
+
+def by_torque(facts: Facts) -> Iterator[Evidence]:
+    """Take a torque for the friction, and no force across the motion nor an extreme next to it."""
+    torque = torque_of(facts.columns) is not None
+    ratio = facts.any_named("friction_coefficient")
+    pressed = facts.places("normal_force")
+    for place, (name, _, _) in enumerate(facts.bare):
+        short = normalise_label(name)
+        if torque and short in _RADIAL:
+            yield Evidence(place, "", RULED_OUT)
+            yield Evidence(place, "normal_force", math.log(UNSURE) - RULED_OUT, proposes=True)
+        elif torque and facts.is_either_force(place) and not {*pressed} - {place}:
+            why = "the torque is the friction"
+            yield Evidence(place, "friction_force", RULED_OUT, why)
+            yield Evidence(place, "normal_force", 0.0, why, sure=True)
+        elif not facts.options[place] or facts.options[place][0].quantity != "friction_force":
+            continue
+        elif (short in _ACROSS and (torque or ratio)) or (torque and role_of(name) == "extreme"):
+            yield Evidence(place, "", RULED_OUT)
+
+
+def by_strokes(facts: Facts) -> Iterator[Evidence]:
+    """Rule out stroke lengths as positions, and stroke frequencies as rotation speeds."""
+    lengths = {place for place, (name, _, _) in enumerate(facts.bare) if is_stroke_length(name)}
+    often = {p for p, (name, unit, _) in enumerate(facts.bare) if is_stroke_frequency(name, unit)}
+    for place in lengths | often if lengths and often else ():
+        yield Evidence(place, "", RULED_OUT)
+
+
+def by_axes(facts: Facts) -> Iterator[Evidence]:
+    """Rule out the axes of a machine's stage as sliding positions if something rotates."""
+    if facts.places("rotation_speed") or angle_of(facts.columns) is not None:
+        for place in facts.places("position"):
+            if is_axis(facts.bare[place][0]):
+                yield Evidence(place, "position", RULED_OUT)
+
+
+def by_rotation(facts: Facts) -> Iterator[Evidence]:
+    """Rule out a length next to a rotation speed that does not grow as the rotation says."""
+    turning, ways = facts.places("rotation_speed"), facts.places("position")
+    turning = [place for place in turning if facts.bare[place][1] is not None]
+    ways = [place for place in ways if not is_axis(facts.bare[place][0])]
+    if facts.kind != "run" or len(turning) != 1 or len(ways) != 1:
+        return
+    rate, way = facts.numbers[:, turning[0]], facts.numbers[:, ways[0]]
+    known = np.isfinite(rate) & np.isfinite(way)
+    rate, way = rate[known], way[known]
+    if known.sum() < _MIN_ROWS_FOR_ROTATION or not rate.any():
+        return
+    if _explained(way, np.cumsum(rate)) > _EXPLAINED_BY_ROTATION:
+        yield Evidence(ways[0], "position", 0.0, sure=True)
+    elif _explained(np.abs(way), np.cumsum(np.abs(rate))) > _EXPLAINED_BY_ROTATION:
+        why = "the distance slid whatever the direction; the rotation gives the speed"
+        yield Evidence(ways[0], "", RULED_OUT, why)
+    else:
+        why = "a length that does not grow with the rotation: not the distance slid"
+        yield Evidence(ways[0], "", RULED_OUT, why)
+
+
+def _explained(way: np.ndarray, turns: np.ndarray) -> float:
+    """Return the share of a displacement's variance that rotation explains, apart from restarts."""
+    if not np.ptp(turns) > 0 or not np.ptp(way) > 0:
+        return 0.0
+    steps, by_turns = np.diff(way), np.diff(turns)
+    usual = np.abs(steps) < 100 * np.median(np.abs(steps[steps != 0]))
+    way, turns = np.cumsum(np.where(usual, steps, 0)), np.cumsum(np.where(usual, by_turns, 0))
+    if not np.ptp(turns) > 0 or not np.ptp(way) > 0:
+        return 0.0
+    return float(np.corrcoef(way, turns)[0, 1] ** 2)
+
+
+def typical_size(facts: Facts, place: int) -> float:
+    """Return the median magnitude of a column in SI units of what its name stands for."""
+    option, unit = facts.options[place][0], facts.bare[place][1]
+    unit = None if unit is not None and is_count(unit) else unit
+    known = quantity(option.quantity)
+    scale = unit_conversion(option.unit or unit or known.unit, option.quantity)[0]
+    values = np.abs(facts.numbers[:, place])
+    moving = values[np.isfinite(values) & (values > 0)]
+    return float(scale * np.median(moving)) if moving.size else 0.0
+
+
+def is_contested(facts: Facts, place: int, best: int, name: str) -> bool:
+    """Whether a column is as surely named for a quantity as the best, but holds other numbers."""
+    if name not in _DECIDING or role_of(facts.bare[best][0]) == "measured":
+        return False
+    if role_of(facts.bare[place][0]) or not facts.is_named(place, name):
+        return False
+    sizes = typical_size(facts, place), typical_size(facts, best)
+    across = normalise_label(facts.bare[place][0]) in _ACROSS and sizes[0] < sizes[1]
+    return not across and min(sizes) > 0 and abs(sizes[0] / sizes[1] - 1) > _DIFFERENT
+
+
+RULES: tuple[Rule, ...] = (
+    by_name,
+    by_role,
+    by_position,
+    by_numbers,
+    by_size,
+    by_row_count,
+    by_path,
+    by_motion,
+    by_torque,
+    by_strokes,
+    by_axes,
+    by_rotation,
+)

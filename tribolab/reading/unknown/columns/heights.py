@@ -1,0 +1,116 @@
+"""Columns of heights: alone, side by side, or behind their positions."""
+
+from __future__ import annotations
+
+import re
+
+from tribolab.reading.interpret.names import KNOWN_WORD, matches
+from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
+from tribolab.reading.unknown.columns.labels import bare_name
+from tribolab.reading.unknown.model import DraftColumn, other_units
+
+
+def in_stated_unit(columns: list[DraftColumn], unit: str, along: str = "") -> list[DraftColumn]:
+    """Give heights and positions without a unit those that the text before the table states."""
+    return [_in_unit(column, unit, along, alone=len(columns) == 1) for column in columns]
+
+
+def _in_unit(column: DraftColumn, unit: str, along: str, *, alone: bool) -> DraftColumn:
+    name, own, _ = bare_name(column)
+    if own is not None:
+        return column
+    options = matches(name, None, scan=True)
+    quantity = options[0].quantity if options else None
+    if quantity in ("x", "y") and along:
+        return column._replace(unit=along)
+    unknown = alone and quantity is None and not matches(name, None)
+    heights = not column.label or quantity == "height" or unknown
+    return column._replace(unit=unit) if unit and heights else column
+
+
+def side_by_side(columns: list[DraftColumn]) -> bool:
+    """Whether columns are profiles side by side: their names differ by a number alone."""
+    names = [bare_name(column)[0] for column in columns]
+    units = {column.file_unit or column.unit for column in columns}
+    alike = {re.sub(r"\d+", "", name).strip() for name in names}
+    lengths = all(unit is None or converts(unit, "m") for unit in units)
+    return len(set(names)) == len(names) > 1 and len(alike) == 1 and lengths
+
+
+def beside_x(columns: list[DraftColumn]) -> list[DraftColumn] | None:
+    """Return positions and the profiles side by side behind them: x [mm], z1 [um], z2 [um]."""
+    if len(columns) < 3 or not side_by_side(columns[1:]):
+        return None
+    name, unit, say = bare_name(columns[0])
+    along = matches(name, unit, scan=True)
+    bare = [bare_name(column) for column in columns[1:]]
+    numberless = [re.sub(r"[\W_]*\d+$", "", name) for name, _, _ in bare]
+    heights = [
+        matches(name, unit, scan=True) for name, (_, unit, _) in zip(numberless, bare, strict=True)
+    ]
+    if not along or along[0].quantity != "x" or unit is None:
+        return None
+    traces = all(key_pattern("trace_name").search(normalise_label(name)) for name in numberless)
+    if not traces and not all(options and options[0].quantity == "height" for options in heights):
+        return None
+    if any(unit is None for _, unit, _ in bare):
+        return None
+    x = columns[0]._replace(quantity="x", unit=unit if say else None, used=True)
+    return [
+        x,
+        *(
+            column._replace(quantity="height", unit=unit if say else column.unit, used=True)
+            for column, (_, unit, say) in zip(columns[1:], bare, strict=True)
+        ),
+    ]
+
+
+def heights_by_clock(columns: list[DraftColumn]) -> list[DraftColumn] | None:
+    """Return heights behind the moments at which a sensor on its way took them, and nothing else.
+
+    The moments are not used: their interval and how fast the sensor goes make the distance.
+    """
+    if len(columns) != 2:
+        return None
+    (clock, beat, _), (name, unit, say) = (bare_name(column) for column in columns)
+    moments, heights = matches(clock, beat), matches(name, unit, scan=True)
+    if not moments or moments[0].quantity != "time" or beat is None:
+        return None
+    if not heights or heights[0].quantity != "height" or unit is None or not converts(unit, "m"):
+        return None
+    note = "its interval and how fast the sensor goes make the distance of points"
+    height = columns[1]._replace(
+        quantity="height", unit=unit if say else columns[1].unit, used=True
+    )
+    return [columns[0]._replace(unit=beat, note=note), height]
+
+
+def as_heights(column: DraftColumn, *, stated: bool, unit: str = "um") -> DraftColumn:
+    """Take a column without a known name for heights: what a pitch before it is of.
+
+    Parameters
+    ----------
+    column
+        The column.
+    stated
+        Whether the text before the table states the unit of heights.
+    unit
+        What they may be in, if nothing says it.
+    """
+    name, own, say = bare_name(column)
+    if say and own is not None and column.file_unit is None:
+        column = column._replace(unit=own)  # "Hauteurs en µm"
+    known = column.file_unit or column.unit
+    guess = "it is the height" + ("" if known else f" in {unit}")
+    said = matches(name, own, scan=True)
+    named = bool(said and said[0].quantity == "height" and said[0].score >= KNOWN_WORD)
+    named = bool(known and (named or key_pattern("values_name").search(normalise_label(name))))
+    guessed = () if named or (stated and column.unit) else (guess,)
+    return column._replace(
+        quantity="height",
+        unit=column.unit if known else unit,
+        used=True,
+        guessed=guessed,
+        options=() if known else other_units("height", unit),
+    )

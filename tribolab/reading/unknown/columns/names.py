@@ -1,0 +1,84 @@
+"""What the columns of a table hold by their names: a run, a profile, or neither."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tribolab.reading.interpret.names import Match, is_date, matches
+from tribolab.reading.interpret.physics import Proof
+from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.unknown.columns.decide import SIGNALS, decide
+from tribolab.reading.unknown.columns.epochs import counted_from
+from tribolab.reading.unknown.columns.evidence import RULES, Facts
+from tribolab.reading.unknown.columns.labels import bare_name
+from tribolab.reading.unknown.columns.proven import restrict_to_proofs
+from tribolab.reading.unknown.columns.text_evidence import by_legend, by_mean, by_stated_load
+from tribolab.reading.unknown.columns.unit_and_sign import Bare
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.reading.unknown.model import DraftColumn, Kind
+
+_RISES = 0.9  # share of the steps from row to row; a clock may start again
+_BY_UNIT = 0.6  # score of a name that says nothing, if its unit does
+
+
+def says_something(columns: list[DraftColumn]) -> bool:
+    """Whether the header says more than 'Channel 1, Channel 2'."""
+    bare = [bare_name(column)[:2] for column in columns if column.label]
+    return any(unit is not None or matches(name, unit) for name, unit in bare)
+
+
+def by_name(
+    layout: Layout,
+    columns: list[DraftColumn],
+    numbers: np.ndarray,
+    proofs: dict[int, Proof],
+    *,
+    placed: bool = False,
+) -> tuple[Kind, list[DraftColumn]]:
+    """Decide the columns of a table by their names, and with them what kind of file it is.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`: its text explains names.
+    columns, numbers
+        The columns, and their numbers (rows, columns) as written.
+    proofs
+        From `tribolab.reading.unknown.columns.proven.proven`.
+    placed
+        Whether the text states the distance of a profile's points.
+    """
+    bare = [bare_name(column) for column in columns]
+    run = [matches(name, unit) for name, unit, _ in bare]
+    scan = [matches(name, unit, scan=True) for name, unit, _ in bare]
+    run = restrict_to_proofs(_timed(bare, run, numbers), proofs, numbers)
+    best = {options[0].quantity for options in run if options}
+    profile = {options[0].quantity for options in scan if options}
+    if not best & {"time", "friction_force", "normal_force", "sliding_velocity"} and (
+        {"x", "height"} <= profile or (placed and "height" in profile)
+    ):
+        return "scan", decide(Facts(columns, bare, scan, numbers, "scan"), RULES)
+    kind: Kind = "run" if best & ({"time"} | SIGNALS) else "table"
+    rules = (*RULES, by_legend(layout), by_stated_load(layout), by_mean(layout))
+    return kind, decide(Facts(columns, bare, run, numbers, kind), rules)
+
+
+def _timed(bare: list[Bare], run: list[list[Match]], numbers: np.ndarray) -> list[list[Match]]:
+    """Take the only rising column in a unit of time for time if no name says which column it is."""
+    if any(options and options[0].quantity == "time" for options in run):
+        return run
+    for place, (name, unit, _) in enumerate(bare):
+        dated = is_date(name) and not run[place]
+        if dated and counted_from(numbers[:, place], unit, dated=True):
+            named = [Match("time", 1.0, None)]
+            return [named if index == place else options for index, options in enumerate(run)]
+    rising = [
+        place
+        for place, (_, unit, _) in enumerate(bare)
+        if unit is not None and not run[place] and converts(unit, "s")
+        if (np.diff(numbers[:, place]) >= 0).mean() > _RISES
+    ]
+    if len(rising) != 1:
+        return run
+    guess = [Match("time", _BY_UNIT, None)]
+    return [guess if place == rising[0] else options for place, options in enumerate(run)]

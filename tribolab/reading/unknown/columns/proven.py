@@ -1,0 +1,102 @@
+"""Columns whose own numbers prove what they hold, and in which units."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tribolab.quantities import QUANTITIES
+from tribolab.reading.interpret.names import Match, is_count, is_track_radius, matches
+from tribolab.reading.interpret.physics import Candidate, Proof, known_quantities, prove
+from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
+from tribolab.reading.unknown.columns.labels import bare_name
+from tribolab.reading.unknown.model import DraftColumn
+
+_NEAR = 0.1  # of the best score: names that suit a quantity about as well
+_MOST = 100  # columns: of more, too many may be members of a rule
+_NAMED = ("mass", "turns", "distance", "torque")
+
+
+def proven(columns: Sequence[DraftColumn], numbers: np.ndarray) -> dict[int, Proof]:
+    """Return what rules of physics prove of columns, by their place from 0.
+
+    Parameters
+    ----------
+    columns
+        The columns by their labels.
+    numbers
+        Their numbers (rows, columns) as written; NaN for a column of text.
+    """
+    bare = [bare_name(column) for column in columns]
+    if len(columns) > _MOST or all(unit is not None for _, unit, _ in bare):
+        return {}  # nothing is left to be proven
+    candidates = [_candidate(*one, values) for one, values in zip(bare, numbers.T, strict=True)]
+    return prove(candidates, numbers)
+
+
+def add_proven_units(columns: Sequence[DraftColumn], proofs: dict[int, Proof]) -> list[DraftColumn]:
+    """Return columns with the units that are proven, where the file says none."""
+    return [
+        column._replace(unit=proof.unit, name=column.name or bare_name(column)[0])
+        if (proof := proofs.get(place)) is not None and bare_name(column)[1] is None
+        else column
+        for place, column in enumerate(columns)
+    ]
+
+
+def _candidate(name: str, unit: str | None, say: bool, values: np.ndarray) -> Candidate:
+    moves = bool(np.isfinite(values).any()) and not (unit is not None and is_count(unit))
+    if not moves:
+        return Candidate(frozenset(), unit)
+    plain = normalise_label(name)
+    options = matches(name, unit)
+    near = {o.quantity for o in options if o.score >= options[0].score - _NEAR}
+    quantities = near & known_quantities()
+    quantities |= {concept for concept in _NAMED if key_pattern(concept).search(plain)}
+    if is_track_radius(plain):
+        quantities = {"track_radius"}
+    if "distance" in quantities and not converts(unit or "m", "m"):
+        quantities.discard("distance")
+    if "sliding_velocity" in quantities and unit is None:
+        quantities.add("rotation_speed")  # "Speed" may be either
+    return Candidate(frozenset(quantities), unit)
+
+
+def restrict_to_proofs(
+    matched: Sequence[list[Match]], proofs: dict[int, Proof], numbers: np.ndarray
+) -> list[list[Match]]:
+    """Return what names may stand for, given what is proven: it leaves others no choice.
+
+    Parameters
+    ----------
+    matched
+        For each column the quantities that its name may stand for.
+    proofs
+        From `proven`.
+    numbers
+        The columns' numbers (rows, columns) as written.
+    """
+    taken: dict[str, int] = {}
+    for place in sorted(proofs):
+        taken.setdefault(proofs[place].quantity, place)
+    # how fast it slides is known: a way tells no more
+    settled = {*taken, "position"} if "sliding_velocity" in taken else set(taken)
+
+    def options_of(place: int, options: list[Match]) -> list[Match]:
+        proof = proofs.get(place)
+        if proof is None or proof.quantity not in QUANTITIES:
+            kept = [option for option in options if option.quantity not in settled]
+            return kept if proof is None or proof.quantity != "distance" else []
+        if place == taken[proof.quantity] or not _same(numbers, place, taken[proof.quantity]):
+            # a load in g is read in gf, as its name alone would say
+            unit = next((o.unit for o in options if o.quantity == proof.quantity), None)
+            return [Match(proof.quantity, 1.0, unit)]
+        return []
+
+    return [options_of(place, options) for place, options in enumerate(matched)]
+
+
+def _same(numbers: np.ndarray, one: int, other: int) -> bool:
+    return bool(np.array_equal(numbers[:, one], numbers[:, other], equal_nan=True))

@@ -1,0 +1,135 @@
+"""Columns of what turns, which are no quantity of a run: a torque, an angle, a radius."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from tribolab.reading.interpret.names import is_count, is_track_radius, split_unit
+from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
+from tribolab.reading.text.cells import split_name
+from tribolab.reading.unknown.model import DraftColumn
+
+_TORQUE = key_pattern("torque")
+_TORQUE_UNIT = re.compile(r"[cmkuµμ]?N\s?[·⋅・∙•*.]?\s?[cmuµμ]?m")  # and no J
+_ANGLE = re.compile(r"angle|winkel|angolo|angulo|角|phi|^(?:theta|rotation)$")
+# what turns, where its unit is one of angles
+_TURNS_IN_ANGLES = re.compile(
+    r"encoder|resolver|codeur|drehgeber|turntable|drehteller|drehtisch|spindle|spindel|dis[ck]|scheibe|rotor"
+    r"|shaft|welle|rotat|turn|dreh|giro|編碼|编码|回転|旋转|encod"
+)
+_TURNS = re.compile(
+    r"^(?:number|no|nr|n)?(?:of)?(?:revolution|turn|rev|rotation|umdrehung)(?:s|en)?$"
+)
+_UNITS_OF_TURNS = {"", "-", "1", "rev", "revs", "turn", "turns", "U", "revolutions"}
+_WHOLE = 0.5  # share of whole numbers from which a count goes on by whole turns
+
+
+def torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
+    """Return the one column that holds a torque by its name, else by its unit; with its unit.
+
+    What a person called so goes before both.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    """
+    if (said := _said(columns, "torque")) is not None:
+        return said
+    units = [_name_and_unit(column)[1] for column in columns if not column.used]
+    told = sum(bool(_TORQUE_UNIT.fullmatch(unit)) for unit in units) == 1
+    named = _only_column(columns, _TORQUE.search, "N m")
+    return named or (_only_column(columns, str, "N m") if told else None)
+
+
+def unscaled_torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
+    """Return the one column that is named as a torque, but holds divisions, counts or volts.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    """
+    if torque_of(columns) is not None:
+        return None
+    fitting = []
+    for column in columns:
+        name, unit = _name_and_unit(column)
+        bare = name.split(",")[0]
+        other = unit and not (converts(unit, "V") or is_count(unit))
+        if not column.used and _TORQUE.search(normalise_label(bare)) and not other:
+            fitting.append(column)
+    return fitting[0] if len(fitting) == 1 else None
+
+
+def angle_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
+    """Return the one column that holds an angle of rotation, with its unit.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    """
+    named = _said(columns, "angle") or _only_column(columns, _ANGLE.search, "rad")
+    return named or _only_column(columns, _TURNS_IN_ANGLES.search, "rad")
+
+
+def turns_of(columns: Sequence[DraftColumn], numbers: np.ndarray) -> DraftColumn | None:
+    """Return the one column that counts turns and parts of them, which is an angle.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    numbers
+        Their numbers (rows, columns) as written: whole ones are counted cycles.
+    """
+    fitting = []
+    for column in columns:
+        name, unit = _name_and_unit(column)
+        turns = numbers[:, column.place - 1]
+        parts = np.isfinite(turns).all() and np.mean(turns == np.round(turns)) < _WHOLE
+        called = _TURNS.search(normalise_label(name)) and unit in _UNITS_OF_TURNS
+        if called and parts and not column.used:
+            fitting.append(column._replace(unit="turn"))
+    return fitting[0] if len(fitting) == 1 else None
+
+
+def radius_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
+    """Return the one column that holds the radius of a track, with its unit.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    """
+    return _only_column(columns, is_track_radius, "m")
+
+
+def _said(columns: Sequence[DraftColumn], name: str) -> DraftColumn | None:
+    """Return the column that a person called so."""
+    return next((column for column in columns if column.said == name), None)
+
+
+def _only_column(
+    columns: Sequence[DraftColumn], is_named: Callable[[str], object], si_unit: str
+) -> DraftColumn | None:
+    fitting = []
+    for column in columns:
+        name, unit = _name_and_unit(column)
+        if not column.used and is_named(normalise_label(name)) and converts(unit, si_unit):
+            said = column.unit is None and column.file_unit and column.name is not None
+            own = None if said else unit
+            fitting.append(column._replace(unit=own))
+    return fitting[0] if len(fitting) == 1 else None
+
+
+def _name_and_unit(column: DraftColumn) -> tuple[str, str]:
+    name, unit = split_name(column.label)
+    if unit is None and column.file_unit is None and column.unit is None:
+        name, unit = split_unit(name)
+    return name, column.unit or column.file_unit or unit or ""

@@ -1,0 +1,85 @@
+"""Friction that is counted against the motion: its sign is the instrument's, not the contact's."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tribolab.reading.unknown.model import DraftColumn
+
+_MOVES, _RESTS = 0.05, 0.005  # of the highest speed
+_FREE = 0.1  # of the highest load, below which nothing presses
+_FEWEST = 20  # rows
+_NEARLY_ALL = 0.95  # of the rows that move
+_CLEAR = 3.0  # times the scatter
+_SPEEDS = ("sliding_velocity", "rotation_speed")
+_PARTS = 2000  # stretches over which a position tells a speed: from row to row it is noise
+_JUMP = 0.25  # of its range, from which a position is set back between two of them
+COUNTED_SO = "it is counted against the motion: no friction drives what slides"
+
+
+def against_motion(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[DraftColumn]:
+    """Turn a friction force that points along the motion wherever it slides.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    numbers
+        Their numbers (rows, columns) as written.
+
+    Notes
+    -----
+    It has to be so with what the signal shows at rest, or where nothing presses, taken off and with
+    it, as an offset of the sensor has any sign. Of a record without rests nothing is known: what
+    creeps at a low speed rests by no means, and may have more friction than what goes fast.
+    """
+    force = [c for c in columns if c.used and c.quantity == "friction_force" and not c.optional]
+    if len(force) != 1 or force[0].sign != 1:
+        return list(columns)
+    load = next((c for c in columns if c.used and c.quantity == "normal_force"), None)
+    pressed = np.abs(numbers[:, load.place - 1]) if load is not None else np.ones(len(numbers))
+    read = np.column_stack([numbers[:, force[0].place - 1], pressed])
+    velocity, (signal, pressed) = _moving(columns, numbers, read.T)
+    known = np.isfinite(velocity) & np.isfinite(signal) & np.isfinite(pressed)
+    size = np.abs(velocity)
+    free = known & (pressed < _FREE * np.max(pressed[known], initial=0.0))
+    top = float(np.max(size[known & ~free], initial=0.0))
+    moves = known & ~free & (size > _MOVES * top)
+    by_load = np.count_nonzero(free) >= _FEWEST
+    rests = free if by_load else known & (size < _RESTS * top)
+    if min(np.count_nonzero(rests), np.count_nonzero(moves)) < _FEWEST:
+        return list(columns)
+    if not by_load and abs(np.median(velocity[rests])) > _CLEAR * _scatter(velocity[rests]):
+        return list(columns)  # it slides, only slowly
+    way, zero = np.sign(velocity[moves]), float(np.median(signal[rests]))
+    shown, along = way * signal[moves], way * (signal[moves] - zero)
+    against = min((shown < 0).mean(), (along < 0).mean()) > _NEARLY_ALL
+    if not against or not -np.median(along) > max(_CLEAR * _scatter(signal[rests]), abs(zero)):
+        return list(columns)
+    turned = force[0]._replace(sign=-1, note=force[0].note or COUNTED_SO)
+    return [turned if column is force[0] else column for column in columns]
+
+
+def _moving(
+    columns: Sequence[DraftColumn], numbers: np.ndarray, signals: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return how fast it goes, in any unit, and signals beside it; nothing if it is not said."""
+    held = {c.quantity: c for c in columns if c.used}
+    speed = next((held[name] for name in _SPEEDS if name in held), None)
+    if speed is not None:
+        return speed.sign * numbers[:, speed.place - 1], signals
+    position = held.get("position")
+    if position is None or not len(numbers):
+        return np.empty(0), signals[:, :0]
+    step = max(len(numbers) // _PARTS, 1)
+    places = numbers[::step, position.place - 1]
+    ways = position.sign * np.diff(places)
+    known = places[np.isfinite(places)]
+    ways[np.abs(ways) > _JUMP * (np.ptp(known) if known.size else 0.0)] = np.nan
+    return ways, signals[:, ::step][:, : ways.size]
+
+
+def _scatter(values: np.ndarray) -> float:
+    return 1.4826 * float(np.median(np.abs(values - np.median(values))))

@@ -1,0 +1,236 @@
+"""What the text of a file says of its columns: the axes of a sensor, and the stated load."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterator, Sequence
+
+import numpy as np
+
+from tribolab.errors import shown
+from tribolab.quantities import unit_conversion
+from tribolab.reading.interpret.amounts import Amount
+from tribolab.reading.interpret.names import matches
+from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern, role_of
+from tribolab.reading.unknown.columns.evidence import (
+    BOTH_FORCES,
+    FRICTION,
+    RULED_OUT,
+    Evidence,
+    Facts,
+    Rule,
+)
+from tribolab.reading.unknown.columns.labels import bare_name
+from tribolab.reading.unknown.columns.rotating_parts import torque_of
+from tribolab.reading.unknown.header.lengths import find_arm
+from tribolab.reading.unknown.header.load import find_load, stated_number
+from tribolab.reading.unknown.header.settings import numeric_settings
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.reading.unknown.model import NO_NUMBERS, DraftColumn
+
+_LONGEST_LINE = 300  # characters of a line that are looked at
+_AXIS = re.compile(r"(?:f|force|kraft|sila|forza)?(?:[xyz]|[1-3])")  # names of a sensor's axes
+_WORDS = (
+    r"(?:[^\W\d][^;|,；，]|[぀-ヿ一-鿿가-힣])[^;|,；，]{1,60}"  # two of such letters make a word
+)
+_KNOWN_SHARE = 0.3  # of an explanation that a known word makes up
+_LETTERS_OF_NAME = 4  # of a name that a text mentions
+_STATED = 8.0  # log odds of what the text says outright
+_BY_LOAD = 3.0
+_LOADED = 0.4  # of the largest reading
+_MOST_READINGS = 0.98  # the few above are faults
+_MOTION = ("position", "sliding_velocity", "set_speed")
+_MOST_OF_SLED = 5.0  # times its weight: no dry contact has a higher coefficient of friction
+_READS_LOAD = (0.75, 1.33)  # times the stated load: a reading of the load itself
+
+
+def by_legend(layout: Layout) -> Rule:
+    """Return the rule that a text names the axes of a sensor: "Fx = vertical"."""
+
+    def rule(facts: Facts) -> Iterator[Evidence]:
+        if facts.kind != "run":
+            return
+        lines = [line[:_LONGEST_LINE] for line in layout.text_above()]
+        for place in range(len(facts.columns)):
+            about = _explanation(facts.bare[place][0], lines) if _is_axis(facts, place) else ""
+            if not about:
+                continue
+            said = f"the text says what it is: '{shown(about, 40)}'"
+            named = _explained_force(about)
+            if named in BOTH_FORCES:
+                yield Evidence(place, named, _STATED, said, proposes=True, sure=True)
+                other = BOTH_FORCES[named == BOTH_FORCES[0]]
+                yield Evidence(place, other, RULED_OUT, said)
+            elif named:
+                yield Evidence(place, "", RULED_OUT, said)
+            else:
+                yield Evidence(place, "", 0.0, doubt=f"{said}, in words that are not known")
+
+    return rule
+
+
+def _is_axis(facts: Facts, place: int) -> bool:
+    name, unit, _ = facts.bare[place]
+    return bool(_AXIS.fullmatch(normalise_label(name))) and unit is not None and converts(unit, "N")
+
+
+def _explanation(name: str, lines: Sequence[str]) -> str:
+    """Return what a line says a name is: "Fx = vertical", or "vertical force (Fx)"."""
+    name = re.escape(name.strip())
+    after = re.compile(
+        rf"(?<![^\W_]){name}(?![^\W_])\s{{0,3}}[=:：＝–—-]\s{{0,3}}(?P<about>{_WORDS})"
+    )
+    before = re.compile(rf"(?P<about>[^\W\d][^;|,()]{{2,40}})\(\s*{name}\s*\)")
+    for line in lines:
+        if match := after.search(line) or before.search(line):
+            return match["about"].strip()
+    return ""
+
+
+def _explained_force(about: str) -> str:
+    """Return the force that an explanation means; "across" the motion, "" if it is not known.
+
+    >>> _explained_force("vertical (normal) force"), _explained_force("tangential")
+    ('normal_force', 'friction_force')
+    >>> _explained_force("radial"), _explained_force("left")
+    ('across', '')
+    """
+    words = normalise_label(about)
+    patterns = {
+        "normal_force": "force_presses",
+        "friction_force": "force_along",
+        "across": "force_across",
+    }
+    kinds = [kind for kind, part in patterns.items() if part_pattern(part).search(words)]
+    if len(kinds) == 1:
+        return kinds[0]
+    options = [option for option in matches(about, "N") if option.score >= _KNOWN_SHARE]
+    return options[0].quantity if options and options[0].quantity in kinds else ""
+
+
+def by_stated_load(layout: Layout) -> Rule:
+    """Return the rule that a cell reading the stated load presses, and any other cell drags."""
+
+    def rule(facts: Facts) -> Iterator[Evidence]:
+        cells = _undecided_cells(facts) if facts.kind == "run" else []
+        if len(cells) != 1:
+            return
+        place = cells[0]
+        stated = numeric_settings(layout)
+        load = find_load(stated)
+        if load is None:
+            if _is_called_force(facts, place) and any(map(facts.places, _MOTION)):
+                why = "it is the only force on what slides; the load is not stated"
+                yield Evidence(place, "friction_force", _BY_LOAD, why, proposes=True, sure=True)
+            elif _is_load_of_tester(facts, place) and torque_of(facts.columns) is None:
+                # the load cell of a testing machine that pulls: "Load" next to a travel
+                doubt = "it is the normal force, although no other column is the friction"
+                yield Evidence(place, "normal_force", 0.0, doubt=doubt)
+            return
+        # no cell reads the weight of a sled
+        sled = part_pattern("sled").search(normalise_label(load.text)) is not None
+        share = _share_of_load(facts, place, load)
+        if not 0 < share < (_MOST_OF_SLED if sled else _READS_LOAD[1]):
+            return
+        presses = share > _READS_LOAD[0] and not sled
+        if presses and not facts.is_either_force(place):
+            return
+        name, other = BOTH_FORCES[presses], BOTH_FORCES[not presses]
+        why = f"'{load.text}' is the load"
+        doubt = f"it is the friction force: {why}"
+        if presses:
+            why = doubt = f"it is the normal force: it reads what '{load.text}' says"
+        # at a lever arm a cell reads otherwise
+        only = _is_called_force(facts, place) and find_arm(stated) is None
+        sure = not presses and (sled or only)
+        yield Evidence(
+            place, name, _BY_LOAD, why, proposes=True, sure=True, doubt="" if sure else doubt
+        )
+        yield Evidence(place, other, RULED_OUT)
+
+    return rule
+
+
+def _undecided_cells(facts: Facts) -> list[int]:
+    """Return the columns of which the stated load may tell which force they hold."""
+    places = range(len(facts.columns))
+    either = [place for place in places if facts.is_either_force(place)]
+    held = {o[0].quantity for p, o in enumerate(facts.options) if o and p not in either}
+    if not either and not held & FRICTION:  # "Load" of a machine that pulls a sled
+        either = facts.places("normal_force")
+    if not either and "normal_force" not in held:  # "Force" next to a dead weight
+        named = [place for place in places if _is_called_force(facts, place)]
+        either = [p for p in named if p in facts.places("friction_force") and not facts.is_named(p)]
+        if not either and not held & FRICTION:
+            either = [p for p in named if converts(facts.bare[p][1] or "", "N")]
+    return either
+
+
+def _is_called_force(facts: Facts, place: int) -> bool:
+    name = normalise_label(facts.bare[place][0])
+    return part_pattern("force_name").fullmatch(name) is not None
+
+
+def _is_load_of_tester(facts: Facts, place: int) -> bool:
+    """Whether a column is called as testing machines call what pulls, next to a travel."""
+    name = normalise_label(facts.bare[place][0])
+    return bool(facts.places("position")) and bool(part_pattern("tester_load").fullmatch(name))
+
+
+def _share_of_load(facts: Facts, place: int, load: Amount) -> float:
+    """Return what a cell reads under load, in terms of the stated load."""
+    stated = stated_number(load) * unit_conversion(load.unit or "N", "normal_force")[0]
+    values = facts.numbers[:, place]
+    read = np.abs(values[np.isfinite(values)])
+    read = read * unit_conversion(facts.bare[place][1] or "N", "normal_force")[0]
+    most = float(np.quantile(read, _MOST_READINGS)) if read.size else 0.0
+    return float(np.median(read[read > _LOADED * most])) / stated if most > 0 else 0.0
+
+
+def by_mean(layout: Layout) -> Rule:
+    """Return the rule that the instrument's mean coefficient adds nothing to forces in the file."""
+
+    def rule(facts: Facts) -> Iterator[Evidence]:
+        if facts.kind != "run" or not facts.places("friction_force"):
+            return
+        for place in facts.places("friction_coefficient"):
+            if role_of(facts.columns[place].label) not in ("derived", "extreme"):
+                continue
+            if facts.places("normal_force") or find_load(numeric_settings(layout)) is not None:
+                why = "worked out by the instrument; the forces give it"
+                yield Evidence(place, "", RULED_OUT, why)
+
+    return rule
+
+
+def unused_force_columns(
+    layout: Layout, columns: Sequence[DraftColumn], used: Collection[int]
+) -> list[str]:
+    """List columns in units of force that are not used although the text above mentions them.
+
+    One of them may have to be subtracted or added.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
+    columns
+        As they are understood.
+    used
+        Places of those that a formula uses.
+    """
+    lines = [line[:_LONGEST_LINE] for line in layout.text_above()]
+    said = []
+    for column in columns:
+        name, unit, _ = bare_name(column)
+        short = normalise_label(name)
+        if column.used or column.place in used or len(short) < _LETTERS_OF_NAME:
+            continue
+        if unit is None or not converts(unit, "N") or column.note.startswith(NO_NUMBERS):
+            continue
+        line = next((line for line in lines if short in normalise_label(line)), "")
+        if line:
+            what = f"column {column.place} '{shown(name, 20)}' is not used, of which the text says "
+            said.append(f"{what}'{shown(line.strip(), 60)}'")
+    return said

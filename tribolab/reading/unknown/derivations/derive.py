@@ -1,0 +1,128 @@
+"""What follows of columns and stated values where no column holds it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from tribolab.quantities import unit_conversion
+from tribolab.reading.interpret.amounts import Amount
+from tribolab.reading.interpret.derive import Derivation, Given, derive
+from tribolab.reading.unknown.derivations.candidate_lines import find_stated_load
+from tribolab.reading.unknown.derivations.known_amounts import KnownRun, find_known
+from tribolab.reading.unknown.derivations.model import SAYS_FRICTION, SAYS_LOAD, Follows, Source
+from tribolab.reading.unknown.derivations.speed import add_speed
+from tribolab.reading.unknown.header.load import lifted_on_return, stated_number
+from tribolab.reading.unknown.header.stroke_settings import stated_strokes
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.reading.unknown.model import DraftColumn, Understood
+
+_MEASURED = (
+    *("friction_reading", "arm_force", "friction_force_signal", "friction_force_raw"),
+    *("friction_reading_signal",),
+)
+_PRESSED = 0.5  # of the largest load: what is less is no contact
+_HELD = 1.1  # times what was set, or as much less: a measured load that is held at it
+
+
+def what_follows(layout: Layout, understood: Understood) -> Follows:
+    """Find out what follows of a run where no column holds it.
+
+    Parameters
+    ----------
+    layout, understood
+        What was found out about the file.
+
+    Notes
+    -----
+    The rules are those of physics.toml; only what is stated with its unit is used.
+    """
+    if understood.kind != "run":
+        return Follows()
+    known = find_known(layout, understood)
+    result = Follows(zero_in_doubt=known.zero_in_doubt, given=known.given, facts=known.facts)
+    turning = derive("rotation_speed", known.given)
+    if turning is not None and turning.rule is not None:
+        result = result.with_derivation(turning)
+        known.given["rotation_speed"] = Given("rotation_speed", "rotation_speed", None)
+    result = add_speed(result, layout, understood, known)
+    result = _add_friction(result, known, understood)
+    return _add_load(result, layout, understood, known)
+
+
+def held_quantities(understood: Understood) -> set[str]:
+    """Return what columns hold; with a unit still to be filled in, a column is there all the same.
+
+    Parameters
+    ----------
+    understood
+        What was found out about the columns.
+    """
+    return {c.quantity for c in understood.columns if c.quantity and (c.used or c.fill_in)}
+
+
+def _add_friction(result: Follows, known: KnownRun, understood: Understood) -> Follows:
+    """Add the formula of the friction force, where no column is it."""
+    friction = derive("friction_force", known.given, known.facts)
+    others = held_quantities(understood) & (SAYS_FRICTION - {"friction_force"})
+    by_area = "contact_area" in known.given and "normal_force" in known.given
+    wanted = not others or by_area or any(name in known.given for name in _MEASURED)
+    if friction is None or friction.rule is None or not wanted:
+        return result
+    return result.with_derivation(friction)
+
+
+def _add_load(result: Follows, layout: Layout, understood: Understood, known: KnownRun) -> Follows:
+    """Add the formula of the load, where nothing measures that on the contacts."""
+    names = held_quantities(understood)
+    friction = names | {formula.quantity for formula in result.formulas}
+    if "position" in names and result.speed is None:
+        result = result.with_values(*stated_strokes(known.values))
+    load = derive("normal_force", known.given, known.facts)
+    set_to = _set_load(load)
+    if load is not None and load.rule is not None and set_to is None:
+        of_forces = "axial_force" not in known.given or "friction_force" in friction
+        return result.with_derivation(load) if of_forces else result
+    stated = None if understood.load else find_stated_load(known.values, understood)
+    wanted = friction & SAYS_FRICTION and not names & SAYS_LOAD
+    if set_to is not None and load is not None and wanted:
+        out = stated is not None and "position" in names and lifted_on_return(layout)
+        about = f"nothing measures it: {_quoted(set_to)} is taken for all of the run"
+        about += ", but for ways back, on which it is lifted" if out else ""
+        return result.with_derivation(load, about, "out" if out else "")
+    measured = names & {"normal_force", "normal_stress", "set_normal_force"}
+    if stated is not None and (not measured or _is_held(stated, understood)):
+        # under which a coefficient stands, or what the measured one was set to
+        return result.with_values(stated)
+    return result
+
+
+def _set_load(load: Derivation[Source] | None) -> Source | str:
+    """Return the load that was set, stated or said, where the load follows from nothing else."""
+    for leaf in load.leaves if load is not None and load.rule is not None else ():
+        measured = isinstance(leaf.source, DraftColumn) and leaf.source.quantity == "normal_force"
+        if leaf.quantity in ("set_normal_force", "axial_force") and not measured:
+            return leaf.source if leaf.source is not None else leaf.symbol
+    return None
+
+
+def _quoted(source: Source | str) -> str:
+    if isinstance(source, Amount):
+        return f"'{source.text}'"
+    return "the load that was set" if isinstance(source, DraftColumn) else f"{source}, as was said,"
+
+
+def _is_held(load: Amount, understood: Understood) -> bool:
+    """Whether the one column of the load stays at what the text states: it is its set-point."""
+    columns = [c for c in understood.columns if c.used and c.quantity == "normal_force"]
+    if len(columns) != 1 or load.source != "preamble":
+        return False
+    if "set_normal_force" in held_quantities(understood):
+        return False
+    scale, _ = unit_conversion(columns[0].read_unit or "N", "normal_force")
+    values = np.abs(columns[0].scale * scale * understood.numbers[:, columns[0].place - 1])
+    pressed = values[values > _PRESSED * np.nanmax(values, initial=0.0)]
+    set_to = stated_number(load) * unit_conversion(load.unit or "N", "normal_force")[0]
+    if not pressed.size or not set_to > 0:
+        return False
+    low, high = np.nanquantile(pressed, (0.05, 0.95)) / set_to
+    return bool(low > 1 / _HELD and high < _HELD)

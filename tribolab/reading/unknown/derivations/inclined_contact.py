@@ -1,0 +1,155 @@
+"""Contacts that lie at an angle: what presses along the axis is not the load on them.
+
+A ball on three plates, or one ball on three others, wedges itself in: the normal forces of all
+contacts together are the axial force over the cosine of the angle between them and the axis.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from tribolab.errors import shown
+from tribolab.reading.interpret.amounts import Amount
+from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern
+from tribolab.reading.unknown.columns.labels import bare_name
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.reading.unknown.model import DraftColumn
+
+_LONGEST = 300  # characters of a line that are looked at
+_DEGREES = re.compile(
+    r"(?<![\d.,])(?P<angle>\d{1,2}(?:[.,]\d+)?)\s?(?:°|º|deg(?:rees?)?\b|grad\b|gradi\b|grados\b)(?!\s?[CFK])",
+    re.IGNORECASE,
+)
+_DIAMETERS = ("d", "dia", "diameter", "durchmesser")
+_THREE_PLATES = 45.0  # degrees between axis and contacts of plates and pyramids, Anton Paar BC 12.7
+_COS_OF_FOUR = math.sqrt(2 / 3)  # the centres of four equal balls make a regular tetrahedron
+_SIN_OF_FOUR = math.sqrt(1 / 3)
+
+
+class Inclined(NamedTuple):
+    """Contacts at an angle: where it is said, and the cosine and sine of their angle to the axis.
+
+    Both are 0 where the angle is neither stated nor usual; with `guess` it is to be asked.
+    """
+
+    text: str
+    cosine: float
+    sine: float
+    guess: str = ""
+
+
+@functools.cache
+def _pattern(kind: str) -> re.Pattern[str]:
+    """Return a pattern for contacts in normalised words: "ball on 3 plates", "four ball"."""
+    ball, three, on = (part_pattern(f"contact_{name}").pattern for name in ("ball", "three", "on"))
+    plate, cone = (part_pattern(f"contact_{name}").pattern for name in ("plate", "cone"))
+    between = rf"\w{{0,3}} ?(?:{on} )?"
+    named = part_pattern(kind).pattern
+    if kind == "four_ball":  # and no bearing of four balls
+        named = rf"(?:{named})(?!s)(?!\w* (?:bearing|lager|screw))"
+    arranged = {
+        "three_plates": rf"{ball}{between}{three} ?{plate}",
+        "four_ball": rf"{ball}{between}{three} ?{ball}",
+        "inclined": rf"{ball}{between}{cone}|{cone}{between}(?:{three} ?)?{ball}",
+    }
+    return re.compile(rf"(?<!\w)(?:{named}|{arranged[kind]})")
+
+
+def _words(text: str) -> str:
+    parts = re.split(r"[\W_]+", text[:_LONGEST])
+    return " ".join(normalise_label(part) for part in parts if part)
+
+
+def find_inclined(layout: Layout) -> Inclined | None:
+    """Return the inclined contacts that the text above a table, or the file's name, speaks of.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
+    """
+    lines = [line.strip()[:_LONGEST] for line in layout.text_above()]
+    texts = {text: _words(text) for text in (*lines, layout.file.path.stem)}
+    found = {
+        kind: next((t for t, words in texts.items() if _pattern(kind).search(words)), "")
+        for kind in ("four_ball", "three_plates", "inclined")
+    }
+    if found["four_ball"]:
+        return Inclined(found["four_ball"], _COS_OF_FOUR, _SIN_OF_FOUR)
+    plates = found["three_plates"]
+    text = plates or found["inclined"]
+    if not text:
+        return None
+    angles = part_pattern("contact_angle")
+    lines = [line for line, words in texts.items() if angles.search(words.replace(" ", ""))]
+    degrees = [_DEGREES.search(line) for line in (text, *lines)]
+    angle = next((float(match["angle"].replace(",", ".")) for match in degrees if match), None)
+    angle = _THREE_PLATES if plates and angle is None else angle
+    if angle is None:
+        guess = (
+            f"'{shown(text, 40)}': the load on inclined contacts is the axial force over the "
+            "cosine of their angle, which is not said; the force is read as it stands"
+        )
+        return Inclined(text, 0.0, 0.0, guess)
+    cosine, sine = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    sure = plates and angle == _THREE_PLATES
+    guess = f"'{shown(text, 40)}': the load on the contacts is the axial force / {cosine:.4g}"
+    return Inclined(text, cosine, sine, "" if sure else guess)
+
+
+def axial_force_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
+    """Return the one column of the force along the axis, if it is not called that on the contacts.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    """
+    held = [c for c in columns if c.used and c.quantity == "normal_force" and not c.optional]
+    on_contacts = part_pattern("on_contacts")
+    named = [c for c in held if not on_contacts.search(normalise_label(bare_name(c)[0]))]
+    return named[0] if len(held) == len(named) == 1 else None
+
+
+def guesses_of_inclined(layout: Layout, columns: Sequence[DraftColumn]) -> list[str]:
+    """Say what has to be guessed of the load on inclined contacts; nothing if it is known.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
+    columns
+        The columns as they are understood.
+    """
+    inclined = find_inclined(layout)
+    held = {column.quantity for column in columns if column.used}
+    if inclined is None or "friction_coefficient" in held:
+        return []
+    if inclined.guess:
+        return [inclined.guess]
+    if "friction_force" in held and axial_force_of(columns) is not None:
+        where = shown(inclined.text, 40)
+        return [f"'{where}': the normal force is the axial one, of which the contacts carry more"]
+    return []
+
+
+def radius_of_ball(values: Sequence[Amount]) -> Amount | None:
+    """Return the radius of the ball, if just one size of it is stated.
+
+    Parameters
+    ----------
+    values
+        From `tribolab.reading.unknown.header.settings.numeric_settings`.
+    """
+    ball = part_pattern("contact_ball")
+    sizes = [v for v in values if v.unit and converts(v.unit, "m")]
+    sizes = [v for v in sizes if ball.search(v.key) or v.key in _DIAMETERS]
+    if len(sizes) != 1:
+        return None
+    radius = sizes[0]._replace(name="ball_radius", to="m")
+    return radius if re.search("radi|rayon", radius.key) else radius._replace(scale=0.5)

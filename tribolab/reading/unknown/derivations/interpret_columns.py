@@ -1,0 +1,343 @@
+"""What the columns of an unknown table hold: by their names and units, else by their numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.errors import shown
+from tribolab.reading.interpret.amounts import Amount
+from tribolab.reading.interpret.names import matches
+from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.text.cells import split_row
+from tribolab.reading.unknown.columns.cells import Cells, read_cells
+from tribolab.reading.unknown.columns.coefficient import disagreement, force_or_ratio
+from tribolab.reading.unknown.columns.dates import take_dates
+from tribolab.reading.unknown.columns.heights import (
+    as_heights,
+    beside_x,
+    heights_by_clock,
+    in_stated_unit,
+    side_by_side,
+)
+from tribolab.reading.unknown.columns.labels import bare_name, labelled
+from tribolab.reading.unknown.columns.names import by_name, says_something
+from tribolab.reading.unknown.columns.proven import add_proven_units, proven
+from tribolab.reading.unknown.columns.results_table import are_points
+from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
+from tribolab.reading.unknown.columns.sign_against_motion import against_motion
+from tribolab.reading.unknown.columns.unloaded_start import with_zero
+from tribolab.reading.unknown.derivations.calibrations import find_calibrations
+from tribolab.reading.unknown.derivations.distance_sensor import of_sensor
+from tribolab.reading.unknown.derivations.inclined_contact import guesses_of_inclined
+from tribolab.reading.unknown.derivations.load_cells import adding_up, loads_that_add
+from tribolab.reading.unknown.derivations.nodata_values import take_stated_missing
+from tribolab.reading.unknown.derivations.two_bodies import (
+    exclude_surface_speeds,
+    find_surface_speeds,
+)
+from tribolab.reading.unknown.header.columns_from_settings import columns_from_settings
+from tribolab.reading.unknown.header.counts import apply_count_scale
+from tribolab.reading.unknown.header.factors import unapplied_factors, unapplied_height_factors
+from tribolab.reading.unknown.header.lengths import confirm_lever_arm_force
+from tribolab.reading.unknown.header.profiles import (
+    find_height_unit,
+    find_pitch,
+    find_point_density,
+    find_profile_length,
+    find_unit_along,
+    pitch_of_clock,
+)
+from tribolab.reading.unknown.header.sampling import find_pace, find_sampling
+from tribolab.reading.unknown.header.slip import as_entrainment_speed
+from tribolab.reading.unknown.header.zero import load_zeros_in_doubt
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.reading.unknown.model import NO_NUMBERS, DraftColumn, Kind, Understood
+from tribolab.units import conversion, positive
+
+_REACH = 0.05  # of a scan's length; heights that reach farther are in a smaller unit
+
+
+class _Spacing(NamedTuple):
+    """What the text above a table says of the distance of a profile's points."""
+
+    pitch: Amount | None
+    density: str
+    length: Amount | None
+
+    @property
+    def is_stated(self) -> bool:
+        """Whether heights without positions have their places."""
+        return self.pitch is not None or bool(self.density) or self.length is not None
+
+
+class _Interpretation(NamedTuple):
+    """What kind of file it is, its columns, and what of them is a guess."""
+
+    kind: Kind
+    columns: list[DraftColumn]
+    guesses: Sequence[str] = ()
+    pitch: str = ""
+    lacks: str = ""
+    pitched: bool = False  # heights have no positions, but a pitch that is or has to be stated
+
+
+def understand(layout: Layout) -> Understood:
+    """Interpret the columns of a file.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
+    """
+    cells = read_cells(layout)
+    spacing = _stated_spacing(layout)
+    found = _interpret(layout, cells, spacing)
+    guesses = [*unapplied_factors(layout), *found.guesses]
+    columns = found.columns
+    if found.kind == "run":
+        columns, doubts = _combined_forces(layout, columns, cells.numbers)
+        guesses += doubts
+    columns = apply_count_scale(layout, columns, cells.numbers)
+    columns = _without_words(take_dates(columns, layout, cells), cells)
+    found = found._replace(columns=columns, guesses=guesses)
+    if found.kind == "run":
+        return _of_run(layout, cells, found)
+    return _of_other(layout, cells, spacing, found)
+
+
+def _stated_spacing(layout: Layout) -> _Spacing:
+    pitch = find_pitch(layout)
+    density = "" if pitch is not None else find_point_density(layout)
+    length = None if pitch is not None or density else find_profile_length(layout)
+    return _Spacing(pitch, density, length)
+
+
+def _interpret(layout: Layout, cells: Cells, spacing: _Spacing) -> _Interpretation:
+    """Tell profiles, runs and other tables apart: by what is stated, by names, or by numbers."""
+    numbers, unit = cells.numbers, find_height_unit(layout)
+    along = find_unit_along(layout)
+    columns = in_stated_unit(labelled(layout), unit, along)
+    proofs = proven(columns, numbers)
+    columns = add_proven_units(columns, proofs)
+    profile = _profile_of(layout, columns, numbers, spacing, stated=bool(unit))
+    if profile is not None:
+        return profile
+    if says_something(columns):
+        kind, columns = by_name(layout, columns, numbers, proofs, placed=spacing.is_stated)
+        return _Interpretation(kind, columns, pitch=spacing.density, pitched=spacing.is_stated)
+    # late: starting stays quick
+    from tribolab.reading.unknown.columns.behaviour import by_behaviour
+
+    kind, columns, guesses = by_behaviour(columns, numbers, (along, unit))
+    return _Interpretation(kind, columns, guesses, pitch=spacing.density, pitched=spacing.is_stated)
+
+
+def _profile_of(
+    layout: Layout,
+    columns: list[DraftColumn],
+    numbers: np.ndarray,
+    spacing: _Spacing,
+    *,
+    stated: bool,
+) -> _Interpretation | None:
+    """Return columns as profiles if they are side by side, behind positions, or of a sensor."""
+    alone = layout.width == 1 and _may_be_heights(columns[0])
+    if spacing.is_stated and (alone or side_by_side(columns)):
+        likely = _likely_unit(layout, numbers, spacing.pitch, spacing.density)
+        columns = [as_heights(column, stated=stated, unit=likely) for column in columns]
+        return _Interpretation("scan", columns, pitch=spacing.density, pitched=True)
+    if (placed := beside_x(columns)) is not None:
+        return _Interpretation("scan", placed, pitch=spacing.density, pitched=spacing.is_stated)
+    if (timed := heights_by_clock(columns)) is not None:
+        pitch = pitch_of_clock(layout, _seconds(timed[0], numbers))
+        if pitch:
+            return _Interpretation("scan", timed, pitch=pitch, pitched=True)
+    sensed = None if spacing.is_stated else of_sensor(layout, columns, numbers)
+    if sensed is None:
+        return None
+    pitched = bool(sensed.pitch or sensed.lacks)
+    return _Interpretation(
+        "scan", sensed.columns, pitch=sensed.pitch, lacks=sensed.lacks, pitched=pitched
+    )
+
+
+def _combined_forces(
+    layout: Layout, columns: list[DraftColumn], numbers: np.ndarray
+) -> tuple[list[DraftColumn], list[str]]:
+    """Combine what several columns say of the forces and speeds of a run; list its doubts."""
+    columns = force_or_ratio(columns)
+    columns = exclude_surface_speeds(columns, find_surface_speeds(layout, columns, numbers))
+    columns = confirm_lever_arm_force(layout, columns)
+    columns = as_entrainment_speed(layout, adding_up(layout, columns, numbers))
+    doubts = disagreement(columns, numbers) + guesses_of_inclined(layout, columns)
+    return columns, doubts + load_zeros_in_doubt(layout, columns)
+
+
+def _without_words(columns: list[DraftColumn], cells: Cells) -> list[DraftColumn]:
+    """Leave out columns of words."""
+    return [
+        column._replace(
+            used=False,
+            guessed=(),
+            fill_in="",
+            note=f"{NO_NUMBERS}'{shown(cells.text[column.place - 1])}'",
+        )
+        if cells.text[column.place - 1] and not column.form
+        else column
+        for column in columns
+    ]
+
+
+def _of_run(layout: Layout, cells: Cells, found: _Interpretation) -> Understood:
+    """Return what is understood of a run: its clock, its zero, and how often it is sampled."""
+    # late: starting stays quick
+    from tribolab.reading.unknown.columns.clock import find_clock, summed
+
+    numbers, guesses = cells.numbers, [*found.guesses]
+    # a factor with which a force is calculated is not ignored
+    calibrations = find_calibrations(layout, found.columns)
+    applied = [shown(made.text, 40) for made in calibrations if made.text]
+    guesses = [said for said in guesses if not any(text in said for text in applied)]
+    columns = _without_counter(layout, found.columns, numbers)
+    period = summed(columns, numbers)
+    columns = against_motion(columns_from_settings(layout, columns, numbers), numbers)
+    on_repeat, restart, columns = find_clock(layout, columns, numbers)
+    columns = with_zero(layout, columns, numbers)
+    kind = _kind_by_columns("run", layout, columns)
+    result = Understood(
+        kind,
+        tuple(columns),
+        numbers,
+        _missing_words(cells, columns),
+        on_repeat,
+        restart,
+        tuple(guesses),
+        period,
+    )
+    if kind != "run":
+        return result
+    if are_points(columns, numbers):
+        return result._replace(points=True)
+    return _sampled(layout, result)
+
+
+def _of_other(
+    layout: Layout, cells: Cells, spacing: _Spacing, found: _Interpretation
+) -> Understood:
+    """Return what is understood of a scan, or of a table that is neither scan nor run."""
+    # late: starting stays quick
+    from tribolab.reading.unknown.columns.clock import find_clock, summed
+
+    numbers, guesses = cells.numbers, [*found.guesses]
+    period = summed(found.columns, numbers)
+    on_repeat, restart, columns = find_clock(layout, found.columns, numbers)
+    marks: list[str] = []
+    if found.kind == "scan":
+        heights = [c.place - 1 for c in columns if c.used and c.quantity == "height"]
+        factors = unapplied_height_factors(layout, numbers[:, heights], columns)
+        guesses += [said for said in factors if said[-45:] not in " ".join(guesses)]
+        marks = take_stated_missing(layout, columns, numbers)
+    words = tuple(dict.fromkeys([*marks, *_missing_words(cells, columns)]))
+    placed = any(c.used and c.quantity == "x" for c in columns)
+    if found.kind == "scan" and found.pitched and not placed:
+        pitch, length = spacing.pitch, spacing.length
+        guesses += [length.guess] if length is not None and length.guess else []
+        return Understood(
+            "scan",
+            tuple(columns),
+            numbers,
+            words,
+            "",
+            False,
+            tuple(guesses),
+            pitch_pattern=pitch.pattern if pitch is not None else "",
+            length_pattern=length.pattern if length is not None else "",
+            pitch=found.pitch,
+            lacks=found.lacks,
+        )
+    kind = _kind_by_columns(found.kind, layout, columns)
+    result = Understood(
+        kind, tuple(columns), numbers, words, on_repeat, restart, tuple(guesses), period
+    )
+    return _sampled(layout, result) if kind == "run" else result
+
+
+def _missing_words(cells: Cells, columns: Sequence[DraftColumn]) -> tuple[str, ...]:
+    """Return the words for a missing value in the columns that are read."""
+    used = (cells.missing[column.place - 1] for column in columns if column.used)
+    return tuple(dict.fromkeys(word for words in used for word in words))
+
+
+def _kind_by_columns(kind: Kind, layout: Layout, columns: list[DraftColumn]) -> Kind:
+    """Return what a file is, given its columns: time alone is a run if a force can be derived."""
+    if kind == "table" or any(c.used and c.quantity != "time" for c in columns):
+        return kind
+    timed = any(c.quantity == "time" and c.used for c in columns)
+    made = torque_of(columns) is not None or angle_of(columns) is not None
+    made = made or bool(find_calibrations(layout, columns))
+    return "run" if timed or made or loads_that_add(columns) else "table"
+
+
+def _sampled(layout: Layout, result: Understood) -> Understood:
+    """Add how often a run without a clock is sampled."""
+    columns = list(result.columns)
+    if any(column.used and column.quantity == "time" for column in columns):
+        return result
+    sampling = find_sampling(layout)
+    if sampling is None:
+        sampling = find_pace(layout, columns, result.numbers)
+        result = result._replace(restart=sampling is not None and len(layout.blocks) > 1)
+    if sampling is None:
+        return result
+    return result._replace(
+        rate_pattern=sampling.pattern,
+        rate_unit=sampling.unit,
+        guesses=(*result.guesses, *([sampling.guess] if sampling.guess else [])),
+    )
+
+
+def _without_counter(
+    layout: Layout, columns: list[DraftColumn], numbers: np.ndarray
+) -> list[DraftColumn]:
+    """Take no count of the rows for a clock where the text states how often they come."""
+    clock = next((c for c in columns if c.used and c.quantity == "time"), None)
+    if clock is None or not clock.guessed or clock.file_unit is not None:
+        return columns
+    sampling = find_sampling(layout)
+    if sampling is None or sampling.guess or (np.diff(numbers[:, clock.place - 1]) != 1).any():
+        return columns
+    note = "it counts the rows, whose rate the text states"
+    other = clock._replace(quantity=None, unit=None, used=False, guessed=(), options=(), note=note)
+    return [other if column is clock else column for column in columns]
+
+
+def _seconds(column: DraftColumn, numbers: np.ndarray) -> np.ndarray:
+    """Return the numbers of a column of time in seconds."""
+    return conversion(column.read_unit or "s", "s")[0] * numbers[:, column.place - 1]
+
+
+def _may_be_heights(column: DraftColumn) -> bool:
+    """Whether a single column may be heights: its name is not known, nor its unit another's."""
+    name, unit, _ = bare_name(column)
+    if unit is None:
+        return not matches(name, None)
+    scan = matches(name, unit, scan=True)
+    height = not scan or scan[0].quantity == "height"
+    return converts(unit, "m") and height and not matches(name, unit)
+
+
+def _likely_unit(layout: Layout, numbers: np.ndarray, pitch: Amount | None, density: str) -> str:
+    """Return the unit that heights may be in: um, or nm where they were as large as the scan."""
+    step = (
+        pitch.si("m") if pitch is not None else positive(density, "m", "pitch") if density else 0.0
+    )
+    reach = float(np.nanmax(numbers) - np.nanmin(numbers)) if np.isfinite(numbers).any() else 0.0
+    return "nm" if 0 < step * len(numbers) * _REACH < 1e-6 * reach else "um"
+
+
+def first_cells_of(layout: Layout, number: int) -> list[list[str]]:
+    """Cells of the first rows as they stand in the file."""
+    return [split_row(line, layout.delimiter) for line in layout.rows(number)]

@@ -1,0 +1,101 @@
+"""What a run lacks for a friction coefficient over the sliding speed, and nothing states."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from tribolab.errors import shown
+from tribolab.reading.interpret.derive import Given
+from tribolab.reading.interpret.missing import MissingInput, missing_inputs
+from tribolab.reading.unknown.columns.rotating_parts import (
+    angle_of,
+    radius_of,
+    torque_of,
+    unscaled_torque_of,
+)
+from tribolab.reading.unknown.derivations.calibrations import column_in_volts
+from tribolab.reading.unknown.derivations.derive import held_quantities
+from tribolab.reading.unknown.derivations.model import CRANK, SAYS_FRICTION, Follows
+from tribolab.reading.unknown.model import NO_NUMBERS, WHICH_FORCE, DraftColumn, Understood
+from tribolab.reversals import reversals
+
+
+class Uncalibrated(NamedTuple):
+    """A column of friction or torque of which it is not known what one number is worth."""
+
+    column: DraftColumn
+    torque: bool = False
+    member: str = "calibration"
+    goals: tuple[str, ...] = ("friction",)
+
+    def __str__(self) -> str:
+        """Say what is missing, and how it is stated."""
+        label = shown(self.column.label, 30)
+        if self.torque:
+            return (
+                f"what one number of the torque '{label}' is, for the friction: unit and scale of "
+                'its [[column]] with symbol = "torque" in a dialect'
+            )
+        return (
+            f"what a volt of '{label}' is worth (such as 8.2 N/V), for the friction: 'tribolab "
+            "dialect' asks for it in a terminal"
+        )
+
+
+def lacking(understood: Understood, follows: Follows) -> list[MissingInput | Uncalibrated]:
+    """Return what a friction coefficient over speed needs, and neither columns nor text hold.
+
+    Parameters
+    ----------
+    understood, follows
+        What was found out about the file.
+    """
+    columns = understood.columns
+    known = {name: follows.given[name] for name in follows.given}
+    at_arm = "arm_force" in known
+    names = held_quantities(understood) - ({"friction_force"} if at_arm else set())
+    names |= {formula.quantity for formula in follows.formulas}
+    if any(c.fill_in == WHICH_FORCE.format(shown(c.label)) for c in columns):
+        names |= {"friction_force", "normal_force"}  # it is asked which of both
+    if follows.speed is not None and follows.speed.source != "none":
+        names.add("sliding_velocity")
+    if any(value.name == "set_normal_force" for value in follows.values):
+        names.add("normal_force")
+    held = held_quantities(understood) | names
+    torque = unscaled_torque_of(columns)
+    torque = None if held & SAYS_FRICTION or torque_of(columns) is not None else torque
+    if torque is not None or (torque_of(columns) is None and not at_arm and unknown_of(columns)):
+        names.add("friction_force")  # it is asked what one is worth, or whether one holds it
+    facts = set(follows.facts)
+    if any(value.name == CRANK for value in follows.values):
+        facts.add("crank")
+    signals = (c for c in columns if c.used and c.quantity in SAYS_FRICTION)
+    if any(reversals(understood.numbers[:, c.place - 1]) for c in signals):
+        facts.add("reversals")
+    known |= {name: Given(name, name, None) for name in names}
+    lacks: list[MissingInput | Uncalibrated] = [*missing_inputs(known, facts)]
+    volts = None if held & SAYS_FRICTION else column_in_volts(columns, "friction_force")
+    uncalibrated = [Uncalibrated(torque, torque=True)] if torque is not None else []
+    uncalibrated += [Uncalibrated(volts)] if volts is not None else []
+    return [*uncalibrated, *lacks]
+
+
+def unknown_of(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
+    """Return the columns of which nothing is known, but those of what turns.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    """
+    turning = (
+        torque_of(columns),
+        angle_of(columns),
+        radius_of(columns),
+        unscaled_torque_of(columns),
+    )
+    places = {column.place for column in turning if column is not None}
+    noted = (c for c in columns if c.note and not c.note.startswith(NO_NUMBERS))
+    unknown = (c for c in noted if not c.quantity and c.label)
+    return [column for column in unknown if column.place not in places]

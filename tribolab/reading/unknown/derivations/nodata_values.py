@@ -1,0 +1,52 @@
+"""Numbers in columns of heights that the header states to stand for no height."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tribolab.reading.scans.stated_missing import take_stated
+from tribolab.reading.text.cells import split_row
+from tribolab.reading.unknown.derivations.distance_sensor import lost_values
+from tribolab.reading.unknown.header.settings import numeric_settings
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.reading.unknown.model import DraftColumn
+
+
+def take_stated_missing(
+    layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray
+) -> list[str]:
+    """Put NaN where a number stands for no height, and return what is written there.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
+    columns
+        The columns as they are understood.
+    numbers
+        Their numbers (rows, columns) as written; changed in place.
+    """
+    stated = [
+        (v.text, v.number) for v in numeric_settings(layout, bare=True) if v.number == v.number
+    ]
+    stated += lost_values(layout.text_above(bare=True))
+    heights = [c.place - 1 for c in columns if c.used and c.quantity == "height"]
+    taken = {number for place in heights for _, number, _ in take_stated(numbers[:, place], stated)}
+    if not taken:
+        return []
+    cells = {
+        row[place]
+        for row in (split_row(line, layout.delimiter) for line in layout.rows())
+        for place in heights
+        if place < len(row)
+    }
+    return sorted(cell for cell in cells if _number(cell, layout.decimal) in taken)
+
+
+def _number(cell: str, decimal: str) -> float | None:
+    try:
+        return float(cell.replace(decimal, "."))
+    except ValueError:
+        return None

@@ -1,0 +1,143 @@
+"""How a dialect says how fast it slides, by the rule from which it follows."""
+
+from __future__ import annotations
+
+import re
+
+from tribolab.reading.interpret.amounts import Amount
+from tribolab.reading.interpret.derive import Derivation, derive
+from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern
+from tribolab.reading.unknown.derivations.candidate_lines import confirmed_value
+from tribolab.reading.unknown.derivations.known_amounts import KnownRun
+from tribolab.reading.unknown.derivations.model import DraftedFormula, Follows, Source, SpeedBy
+from tribolab.reading.unknown.header.settings import text_settings
+from tribolab.reading.unknown.header.slip import stated_rotation
+from tribolab.reading.unknown.header.stroke_settings import Strokes
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.reading.unknown.model import Understood
+
+_ANOTHER_SPEED = re.compile(
+    r"\b(?:max\w*|min(?:imum|imal)\w*|limit\w*|return\w*|approach\w*|feed\w*|rück\w*|retour\w*|idle\w*"
+    r"|top)\b",
+    re.IGNORECASE,
+)
+
+
+def add_speed(result: Follows, layout: Layout, understood: Understood, known: KnownRun) -> Follows:
+    """Return what follows, with how fast it slides, where no column says so.
+
+    Parameters
+    ----------
+    result
+        What follows so far.
+    layout, understood
+        What was found out about the file.
+    known
+        What is known of the run.
+    """
+    agreed = confirmed_value(known.values, understood.agreed, "speed")
+    if agreed is not None:
+        said = agreed._replace(name="set_speed", unit=agreed.own_unit, to=None, guess="")
+        return result.with_values(said)._replace(speed=SpeedBy("set speed"))
+    if understood.speed:
+        about = "it was said that it slides so fast all along"
+        formula = DraftedFormula("set_speed", f"'{understood.speed}'", about)
+        speed = SpeedBy("set speed")
+        return result._replace(formulas=(*result.formulas, formula), speed=speed)
+    sliding = derive("sliding_velocity", known.given, known.facts)
+    if sliding is None:
+        return result.with_values(known.crank)
+    if sliding.rule is None:
+        return result.with_values(stated_rotation(known.values))
+    by_rule = {
+        "position": _by_position,
+        "rotation": _by_rotation,
+        "set speed": _by_set_speed,
+    }.get(sliding.rule.speed)
+    if by_rule is not None:
+        return by_rule(result, sliding)
+    if sliding.rule.speed == "stroke" and known.strokes is not None:
+        return _by_strokes(result, known.strokes, layout, understood, sliding)
+    result = result.with_derivation(sliding)._replace(speed=SpeedBy("none"))
+    rotation = known.given.get("set_rotation")
+    if sliding.is_doubtful and rotation is not None and isinstance(rotation.source, Amount):
+        about = "is how fast it turns all along"
+        result = result._replace(speed=_asked(SpeedBy("none"), rotation.source, about))
+    rolling = derive("rolling_speed", known.given, known.facts)
+    if rolling is not None and rolling.rule is not None:
+        result = result.with_derivation(rolling, "their mean speed")
+    return result
+
+
+def _by_position(result: Follows, sliding: Derivation[Source]) -> Follows:
+    (position,) = sliding.needs
+    if position.rule is None:
+        return result
+    return result.with_derivation(position)._replace(speed=SpeedBy("position"))
+
+
+def _by_rotation(result: Follows, sliding: Derivation[Source]) -> Follows:
+    """Let what turns, and one radius, be the speed; radii of each step are in a formula."""
+    track = next(need for need in sliding.needs if need.quantity == "track_radius")
+    radius = track.given
+    if radius is not None and radius.source is None:
+        return result._replace(speed=SpeedBy("rotation", (("radius", radius.symbol.strip("'")),)))
+    if radius is not None and isinstance(radius.source, Amount):
+        if radius.source.source not in ("step", "programme"):
+            speed = SpeedBy("rotation", (("radius_value", radius.symbol),))
+            return result.with_values(radius.source)._replace(speed=speed)
+    return result.with_derivation(sliding)._replace(speed=SpeedBy("none"))
+
+
+def _by_set_speed(result: Follows, sliding: Derivation[Source]) -> Follows:
+    """Let the speed that the text states be that of the run, which is asked about."""
+    (stated,) = (leaf.source for leaf in sliding.leaves)
+    if not isinstance(stated, Amount):
+        return result
+    speed = _asked(SpeedBy("set speed"), stated, "is the sliding speed all along")
+    return result.with_values(stated)._replace(speed=speed)
+
+
+def _asked(speed: SpeedBy, value: Amount, about: str) -> SpeedBy:
+    """Ask whether a speed of some name holds all along; what each step states holds in it."""
+    its = key_pattern("own_speed").search(value.key) and not _ANOTHER_SPEED.search(value.text)
+    if value.source in ("step", "programme") or its:
+        return speed
+    return speed._replace(guess=f"'{value.text}' {about}", options=("not known",))
+
+
+def _by_strokes(
+    result: Follows,
+    strokes: Strokes,
+    layout: Layout,
+    understood: Understood,
+    sliding: Derivation[Source],
+) -> Follows:
+    """Let strokes be the speed: a sine where a crank drives them, which is asked about."""
+    result = result.with_values(*strokes.values).with_symbols(*strokes.symbols)
+    if sliding.rule is not None and sliding.rule.condition == "crank":
+        settings = (*strokes.settings, ("drive", "crank"))
+        return result._replace(speed=SpeedBy("stroke", settings, strokes.guess))
+    drive, guesses = understood.drive, [strokes.guess] if strokes.guess else []
+    options: tuple[str, ...] = ()
+    said = _said_of_drive(layout, strokes)
+    if not drive and any(part_pattern("even_speed").search(text) for text in said):
+        drive = "constant speed"
+    elif not drive and not any(part_pattern("sine").search(text) for text in said):
+        guesses.insert(0, "a crank drives it: the speed is a sine")
+        options = ("constant speed",)
+    settings = (*strokes.settings, ("drive", drive or "crank"))
+    return result._replace(speed=SpeedBy("stroke", settings, "; ".join(guesses), options))
+
+
+def _said_of_drive(layout: Layout, strokes: Strokes) -> list[str]:
+    """Return, normalised, what the text says of the drive."""
+    said = []
+    for key, text in text_settings(layout):
+        name, words = normalise_label(key), normalise_label(text)
+        if key_pattern("drive").search(name):
+            said.append(words)
+        # a constant load is a mode, too, and a stroke may be said to be a sine
+        elif key_pattern("mode").search(name) or key_pattern("stroke").search(name):
+            said += [words] if part_pattern("sine").search(words) else []
+    return said + [normalise_label(v.text) for v in strokes.values if v.source == "file name"]

@@ -1,0 +1,196 @@
+"""Two surfaces that both move: a ball and a disc, two rollers; they slide at the difference."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.reading.interpret.amounts import Amount
+from tribolab.reading.interpret.names import matches
+from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.lexicon.lexicon import (
+    key_pattern,
+    normalise_label,
+    pairs_of_bodies,
+    part_pattern,
+    role_of,
+)
+from tribolab.reading.unknown.columns.labels import bare_name
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.reading.unknown.model import DraftColumn
+from tribolab.turns import reciprocal
+from tribolab.unit_names import plain_unit
+
+_LONGEST = 200  # characters of a line that are looked at
+_SURFACE = "the speed of one of two surfaces"
+_SPEEDS = {"rotation_speed": "Hz", "sliding_velocity": "m/s"}
+# so little tells bodies apart only where the text speaks of two
+_NUMBERED = (re.compile("1$"), re.compile("2$"))
+
+
+class Pair(NamedTuple):
+    """The columns of how fast both surfaces go, as linear speeds or as turns, and their names."""
+
+    columns: tuple[DraftColumn, DraftColumn]
+    turns: bool
+    opposed: bool
+    bodies: tuple[re.Pattern[str], re.Pattern[str]]
+
+
+def find_surface_speeds(
+    layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray
+) -> Pair | None:
+    """Return the two columns of how fast two surfaces go, where their names are those of bodies.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
+    columns
+        The columns as they are understood.
+    numbers
+        Their numbers (rows, columns) as written.
+    """
+    speeds = [(column, _speed_of(column)) for column in columns]
+    texts = (layout.file.path.stem, *layout.text_above())
+    for quantity in _SPEEDS:
+        mine = [column for column, held in speeds if held == quantity]
+        twin = part_pattern("two_bodies")
+        is_twin = len(mine) == 2 and any(twin.search(normalise_label(t[:_LONGEST])) for t in texts)
+        for bodies in (*pairs_of_bodies(), *((_NUMBERED,) if is_twin else ())):
+            pairs = [(a, b) for a in mine for b in mine if a is not b and _are(bodies, a, b)]
+            if len(pairs) == 1:
+                first, second = (numbers[:, c.place - 1] for c in pairs[0])
+                opposed = bool(np.nanmedian(np.sign(first * second)) < 0)
+                return Pair(pairs[0], quantity == "rotation_speed", opposed, bodies)
+    return None
+
+
+def _are(bodies: tuple[re.Pattern[str], re.Pattern[str]], a: DraftColumn, b: DraftColumn) -> bool:
+    names = [normalise_label(bare_name(column)[0]) for column in (a, b)]
+    own = [pattern.search(name) for pattern, name in zip(bodies, names, strict=True)]
+    other = [pattern.search(name) for pattern, name in zip(bodies[::-1], names, strict=True)]
+    return all(own) and not any(other)
+
+
+def _speed_of(column: DraftColumn) -> str:
+    """Return which speed a column's name and unit are of; "" if none, or one that was set."""
+    name, unit, _ = bare_name(column)
+    if not column.label or role_of(name) in ("set", "extreme"):
+        return ""
+    unit = column.unit or unit
+    options = [match.quantity for match in matches(name, unit)]
+    if unit is None or (options and not set(options) & set(_SPEEDS)):
+        return ""
+    return next((held for held, si in _SPEEDS.items() if converts(unit, si)), "")
+
+
+def exclude_surface_speeds(columns: Sequence[DraftColumn], pair: Pair | None) -> list[DraftColumn]:
+    """Return columns of which neither surface's speed is that of the sliding.
+
+    Parameters
+    ----------
+    columns
+        The columns as they are understood.
+    pair
+        From `find_surface_speeds`.
+    """
+    places = {column.place for column in pair.columns} if pair is not None else set()
+    return [
+        c._replace(quantity=None, used=False, guessed=(), options=(), fill_in="", note=_SURFACE)
+        if c.place in places
+        else c
+        for c in columns
+    ]
+
+
+def radii_of_surfaces(pair: Pair, values: Sequence[Amount]) -> tuple[Amount, ...]:
+    """Return the radii of two bodies that the text states; one of both where it states but one.
+
+    Parameters
+    ----------
+    pair
+        From `find_surface_speeds`.
+    values
+        From `tribolab.reading.unknown.header.settings.numeric_settings`.
+    """
+    sizes = [v._replace(to="m") for v in values if v.unit and converts(v.unit, "m")]
+    sizes = [
+        v._replace(scale=0.5) if v.means("diameter") else v
+        for v in sizes
+        if v.means("diameter", "track_radius")
+    ]
+    found = [
+        [v for v in sizes if own.search(v.key) and not other.search(v.key)]
+        for own, other in (pair.bodies, pair.bodies[::-1])
+    ]
+    if all(len(of_body) == 1 for of_body in found):
+        return tuple(v[0]._replace(name=f"radius_{n}") for n, v in enumerate(found, 1))
+    if len(sizes) == 1 and not any(found):
+        return (sizes[0]._replace(name="radius_1"),)
+    return ()
+
+
+def second_is_faster(
+    pair: Pair, radii: Sequence[Amount], numbers: np.ndarray, friction: DraftColumn | None
+) -> bool:
+    """Whether friction is positive where the second surface is the faster one.
+
+    Parameters
+    ----------
+    pair, radii
+        From `find_surface_speeds` and `radii_of_surfaces`.
+    numbers
+        The numbers of all columns (rows, columns) as written.
+    friction
+        The column of a force or a torque.
+    """
+    if friction is None:
+        return False
+    first, second = (np.abs(numbers[:, column.place - 1]) for column in pair.columns)
+    sizes = [value.number * value.scale for value in radii]
+    one, other = sizes if len(sizes) == 2 else (1.0, 1.0)
+    signal = numbers[:, friction.place - 1]
+    slip = (one * first - other * second) * (signal - np.nanmedian(signal[:1]))
+    return bool(np.nansum(slip) < 0)
+
+
+def speed_symbol(column: DraftColumn, name: str) -> tuple[DraftColumn, str]:
+    """Return a column of a speed as a symbol, and that symbol as an angular or linear speed.
+
+    Turns count cycles; a formula wants radians.
+    """
+    _, unit, say = bare_name(column)
+    counted = reciprocal(plain_unit(unit or ""))
+    in_cycles = counted is not None and counted.counts != "radians"
+    symbol = f"2 * pi * {name}" if in_cycles else name
+    return column._replace(unit=unit if say else None, used=True), symbol
+
+
+def shaft_of_torque(layout: Layout, pair: Pair) -> int | None:
+    """Return on which body's shaft (0, 1) the torque is measured, if a line says so.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
+    pair
+        From `find_surface_speeds`.
+    """
+    torque = key_pattern("torque")
+    clauses = [
+        normalise_label(clause)
+        for line in layout.text_above()
+        for clause in re.split(r"[,;.:\uff0c\uff1b\u3002\uff1a]", line[:_LONGEST])
+    ]
+    shafts = {
+        index
+        for clause in clauses
+        if torque.search(clause)
+        for index, (own, other) in enumerate((pair.bodies, pair.bodies[::-1]))
+        if own.search(clause) and not other.search(clause)
+    }
+    return shafts.pop() if len(shafts) == 1 else None

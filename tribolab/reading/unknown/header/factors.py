@@ -1,0 +1,133 @@
+"""Levers, gains and contacts that the text above a table states: factors that signals may lack."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from tribolab.errors import shown
+from tribolab.reading.interpret.phrases import phrases, ratios_in, single_number, weight_on_lever
+from tribolab.reading.lexicon.lexicon import (
+    key_pattern,
+    plain_text,
+    plain_words,
+    says,
+    text_pattern,
+)
+from tribolab.reading.numbers import Number, numbers_in
+from tribolab.reading.unknown.header.counts import count_scale
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.reading.unknown.model import DraftColumn
+
+_LONGEST = 200  # characters of a line that are looked at
+_MOST_CONTACTS = 12
+
+
+def unapplied_factors(layout: Layout) -> list[str]:
+    """List the factors by which signals may still have to be multiplied: levers, gains, contacts.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
+
+    Returns
+    -------
+    list of str
+        A sentence for each line that states one. Factors of one and single contacts are left out.
+    """
+    said = (_unapplied(line[:_LONGEST].strip()) for line in layout.text_above())
+    return [sentence for sentence in said if sentence]
+
+
+def unapplied_height_factors(
+    layout: Layout, heights: np.ndarray, columns: Sequence[DraftColumn]
+) -> list[str]:
+    """List the factors by which heights may still have to be multiplied, or what one step is.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
+    heights
+        Their numbers as written. Of whole numbers a stated step of the gauge may be the unit.
+    columns
+        As they are understood: what one count is is known if their unit holds it.
+    """
+    scaled = any(column.used and column.counted and column.unit for column in columns)
+    present = heights[np.isfinite(heights)]
+    whole = bool(present.size) and bool((present == np.round(present)).all())
+    said = []
+    for line in layout.text_above(bare=True):
+        text = line[:_LONGEST].strip()
+        single = single_number(text)
+        factor = single and not single[2] and says("height_factor", single[0]) and single[1] != 1
+        step = whole and says("step_of_gauge", text) and not _states_one(text)
+        counted = any("/" in n.unit for n in numbers_in(text)) and count_scale(text) is not None
+        if factor or ((step or counted) and not scaled):
+            said.append(f"heights are read as they stand, not times '{shown(text, 40)}'")
+    return said
+
+
+def _states_one(text: str) -> bool:
+    """Whether the last number of a text is one: "z resolution: 1 nm"."""
+    numbers = numbers_in(text)
+    return bool(numbers) and numbers[-1].value == 1
+
+
+def _unapplied(line: str) -> str:
+    """Say what a line states that the signals may not hold yet; "" if nothing.
+
+    >>> _unapplied("Multiply friction force by 1.25")
+    "signals are read as they stand, and not as the file says: 'Multiply friction force by 1.25'"
+
+    >>> _unapplied("Lever 1:5"), _unapplied("Gain: 1"), _unapplied("Time 1:05")
+    ("signals are read as they stand, not times 'Lever 1:5'", '', '')
+    >>> _unapplied("Number of contacts: 2")
+    "friction and load are both of all contacts, or both of one: 'Number of contacts: 2'"
+    """
+    numbers = numbers_in(line)
+    if any(_counts_contacts(line, number) for number in numbers):
+        return f"friction and load are both of all contacts, or both of one: '{shown(line, 40)}'"
+    if weight_on_lever(line):
+        return ""  # the load is the weight times the lever
+    as_they_stand = f"signals are read as they stand, not times '{shown(line, 40)}'"
+    for ratio in ratios_in(line):
+        key = line[: ratio.start]
+        named = ratio.sign == ":" and (says("factor", key) or says("transmission", key))
+        if named and any(key_pattern("load").search(s.key) for s in phrases(line[ratio.end :])):
+            return ""  # what the lever makes of a weight is said behind it
+        if named and ratio.one != ratio.other:
+            return as_they_stand
+    if any(_multiplies(line, number) and number.value != 1 for number in numbers):
+        return f"signals are read as they stand, and not as the file says: '{shown(line, 60)}'"
+    single = single_number(line)
+    if single is None or single[2] or single[1] == 1:
+        return ""
+    if says("factor", single[0]):
+        return as_they_stand
+    if says("gear", single[0]):
+        return f"speeds are read as they stand, not divided by '{shown(line, 40)}'"
+    return ""
+
+
+def _counts_contacts(line: str, number: Number) -> bool:
+    """Whether a number is that of several contacts: "2 pins", "Number of contacts: 2"."""
+    if not number.text.isdigit() or not 1 < number.value <= _MOST_CONTACTS:
+        return False
+    bodies = text_pattern("bodies_in_contact")
+    before, behind = plain_text(line[: number.start]), plain_text(line[number.stop :])
+    if bodies.match(behind.lstrip()):
+        return True
+    last = not behind.strip(" ;")
+    return last and bool(says("contacts", before) or bodies.fullmatch(before.strip(" ;") + " "))
+
+
+def _multiplies(line: str, number: Number) -> bool:
+    """Whether a line says to multiply or to divide by a number."""
+    before = line[: number.start].rstrip().rpartition(" ")
+    if before[2].lower() not in plain_words("times_by"):
+        return False
+    words = before[0].rpartition(".")[2] if not any(map(str.isdigit, before[0])) else ""
+    return says("multiply", words) or says("multiply", line[number.stop :][:30])

@@ -1,0 +1,84 @@
+"""The load that the text before a table states."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tribolab.reading.interpret.amounts import Amount, Amounts
+from tribolab.reading.lexicon.lexicon import plain_text, says, text_pattern
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.unit_names import WEIGHTS
+
+_LONGEST = 300  # characters of a line that are looked at
+_DENIED_WITHIN = 12  # characters before a word
+_SAME_FORCE = 0.01  # relative difference of a weight and of the force of it, both rounded
+
+
+def find_load(values: Sequence[Amount]) -> Amount | None:
+    """Return the load that the text before the table states, as a force; None if none, or several.
+
+    If the text states none, that of the file's name. A load of zero is none.
+
+    Parameters
+    ----------
+    values
+        From `numeric_settings`.
+    """
+    fitting = Amounts(
+        value._replace(name="set_normal_force", unit=_force_unit(value), to=None)
+        for value in Amounts(values).of("load", unit="N")
+        # "step 0: no contact (load 0 N)": nothing that friction is divided by
+        if value.source != "file name" and (value.source == "step" or stated_number(value) != 0)
+    )
+    if not fitting:
+        named = (v for v in values if v.source == "file name" and v.name == "set_normal_force")
+        return next(named, None)
+    if len(fitting) == 2 and _are_one(*fitting):
+        return fitting[fitting[0].unit in WEIGHTS.values()]  # the force, as it is stated
+    return fitting.only()
+
+
+def _force_unit(value: Amount) -> str:
+    return WEIGHTS.get(value.own_unit or "", value.own_unit or "")
+
+
+def _are_one(one: Amount, other: Amount) -> bool:
+    """Whether two loads are a weight and the force of it, as "2.5 kg" and "24.5 N"."""
+    if "step" in (one.source, other.source) or one.unit == other.unit:
+        return False
+    sizes = one.si("N"), other.si("N")
+    return abs(sizes[0] - sizes[1]) <= _SAME_FORCE * max(sizes)
+
+
+def lifted_on_return(layout: Layout) -> bool:
+    """Whether the text says that nothing presses on the way back: a sled that is lifted.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
+    """
+    lines = (line[:_LONGEST] for line in layout.text_above())
+    return any(_says_lifted(line) and says("on_return", line) for line in lines)
+
+
+def _says_lifted(line: str) -> bool:
+    """Whether a line says so, and no word before it denies it.
+
+    >>> _says_lifted("Sled lifted, cell not tared"), _says_lifted("The sled is not lifted")
+    (True, False)
+    """
+    text = plain_text(line)
+    lifted = text_pattern("lifted").search(text)
+    return lifted is not None and not says("not", text[: lifted.start()][-_DENIED_WITHIN:])
+
+
+def stated_number(value: Amount) -> float:
+    """Return the number that an amount's text states, in its unit; NaN if it is none.
+
+    Parameters
+    ----------
+    value
+        From `numeric_settings`.
+    """
+    return value.scale * value.number

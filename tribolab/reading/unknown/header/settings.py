@@ -1,0 +1,93 @@
+"""What a file states besides its table, as amounts and texts: in its lines, and in its name."""
+
+from __future__ import annotations
+
+import re
+
+from tribolab.reading.interpret.amounts import Amount, Amounts
+from tribolab.reading.interpret.file_names import amounts_of_name
+from tribolab.reading.interpret.settings import amounts_of, texts_of
+from tribolab.reading.unknown.layout.text_layout import Layout
+
+_MOST = 12  # a long preamble is not repeated in the dialect
+_MOST_OF_SCAN = 200  # settings of a profilometer, among which the few that count may come last
+
+
+def numeric_settings(layout: Layout, *, bare: bool = False) -> Amounts:
+    """Return the amounts that a file and its name state.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
+    bare
+        Whether heights are meant: a table may have no header, and instruments write many settings.
+
+    Returns
+    -------
+    Amounts
+        A dozen at most, of heights more.
+    """
+    found = {amount.name: amount for amount in amounts_of_name(layout.file.path.name)}
+    above = _text_above(layout, bare=bare)
+    for amount in amounts_of(above, (_MOST_OF_SCAN if bare else _MOST) - len(found)):
+        name, number = amount.name, 1
+        while name in found and not name.startswith("set_"):
+            number += 1
+            name = f"{amount.name}_{number}"
+        found.setdefault(name, amount._replace(name=name))
+    return Amounts(_of_steps(amount, layout) for amount in found.values() if _holds(amount, layout))
+
+
+def text_settings(layout: Layout, *, bare: bool = False) -> tuple[tuple[str, str], ...]:
+    """Return what the text above the table says in words: "Drive: crank" as ("Drive", "crank").
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
+    bare
+        Whether to look above a table without a header, too.
+    """
+    return texts_of(_text_above(layout, bare=bare))
+
+
+def lines_without_unit(layout: Layout, *, bare: bool = False) -> list[str]:
+    """Return the lines that state a length, a load or how often strokes come, but no unit of it.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
+    bare
+        Whether heights are meant: lines that state how far they lie apart, or how long they are.
+    """
+    of_run = ("track_radius", "track_diameter", "arm", "stroke", "frequency", "load")
+    wanted = ("pitch", "profile_length") if bare else of_run
+    return [amount.text for amount in numeric_settings(layout, bare=bare).of(*wanted, unit="")]
+
+
+def _text_above(layout: Layout, *, bare: bool) -> tuple[str, ...]:
+    return tuple(layout.text_above(bare=bare or layout.width == 1))
+
+
+def _holds(amount: Amount, layout: Layout) -> bool:
+    """Whether no line between the rows states another: "Step 2: 30 rpm" below "Step 1: 10 rpm"."""
+    if layout.skip_lines is None or amount.source != "preamble":
+        return True
+    skipped = re.compile(layout.skip_lines)
+    inside = [line for block in layout.blocks for line in layout.lines[block.start : block.stop]]
+    texts = "\n".join(line for line in inside if line.strip() and skipped.match(line))
+    said = {match[1] for match in re.finditer(amount.pattern, texts, re.MULTILINE)}
+    first = re.search(amount.pattern, amount.text)
+    return not said - {first[1] if first else ""}
+
+
+def _of_steps(amount: Amount, layout: Layout) -> Amount:
+    """Return an amount as one of each step, if the text before later tables states another."""
+    if not layout.repeats or amount.source != "preamble":
+        return amount
+    edges = [0, *(edge for block in layout.blocks for edge in (block.start, block.stop))]
+    texts = ["\n".join(layout.lines[a:b]) for a, b in zip(edges[::2], edges[1::2], strict=False)]
+    said = {match[1] for t in texts for match in re.finditer(amount.pattern, t, re.MULTILINE)}
+    return amount._replace(source="step") if len(said) > 1 else amount

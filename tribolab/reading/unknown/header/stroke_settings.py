@@ -1,0 +1,200 @@
+"""Length and frequency of strokes: where a file states them, above the table or in columns."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.errors import shown
+from tribolab.reading.interpret.amounts import Amount, Amounts
+from tribolab.reading.interpret.names import is_stroke_frequency, is_stroke_length, split_unit
+from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.lexicon.lexicon import alternatives, role_of, says
+from tribolab.reading.numbers import numbers_in
+from tribolab.reading.text.cells import split_name
+from tribolab.reading.unknown.model import DraftColumn, Understood
+
+_CHANGED = 1.1  # times the lowest: a setting is no longer the same
+_LIST = re.compile(rf"\d\s?(?:[/;|]|\b{alternatives('then')}\b)\s?\d", re.IGNORECASE)
+_EITHER_WAY = re.compile(r"(?:\+/?-|±)\s?\d")  # from the middle
+
+
+class Strokes(NamedTuple):
+    """Length and frequency of strokes: what [speed] says of them, where they stand, a guess."""
+
+    settings: tuple[tuple[str, str], ...]
+    values: tuple[Amount, ...] = ()
+    symbols: tuple[tuple[str, DraftColumn], ...] = ()
+    guess: str = ""
+
+
+def find_strokes(values: Sequence[Amount], understood: Understood) -> Strokes | None:
+    """Return length and frequency of strokes, of the text above the table and of columns.
+
+    A column takes precedence over the text: it says when the setting changes.
+
+    Parameters
+    ----------
+    values
+        From `numeric_settings`.
+    understood
+        What is known of the columns.
+    """
+    lengths, frequencies = _of_columns(understood)
+    stroke, frequency, guess = _stated(values)
+    above = find_strokes_above(values)
+    if above is not None and not _change(understood, frequencies):
+        return above
+    symbols: list[tuple[str, DraftColumn]] = []
+    kept: list[Amount] = []
+    if len(lengths) == 1 and not lengths[0].used:
+        symbols.append(("stroke", lengths[0]))
+        guess = ""
+    elif stroke is not None:
+        kept.append(stroke)
+    if len(frequencies) == 1:
+        symbols.append(("stroke_frequency", frequencies[0]))
+    elif frequency is not None:
+        kept.append(frequency)
+    if len(symbols) + len(kept) < 2:
+        return None
+    length = next((name for name, _ in symbols if name == "stroke"), "") or kept[0].name
+    often = next((name for name, _ in symbols if name != "stroke"), "") or kept[-1].name
+    settings = (("stroke_value", length), ("frequency_value", often))
+    return Strokes(settings, tuple(kept), tuple(symbols), guess)
+
+
+def strokes_from_answer(values: Sequence[Amount], said: tuple[str, str]) -> Strokes | None:
+    """Return the strokes that a person said, with what the text states of what was not said.
+
+    Parameters
+    ----------
+    values
+        From `numeric_settings`.
+    said
+        Length and frequency with their units; "" for what was not said.
+    """
+    stated = _stated(values)[:2]
+    settings, kept = [], []
+    for name, text, value in zip(("stroke", "frequency"), said, stated, strict=True):
+        if text:
+            settings.append((name, text))
+        elif value is not None:
+            settings.append((f"{name}_value", value.name))
+            kept.append(value)
+    return Strokes(tuple(settings), tuple(kept)) if len(settings) == len(said) else None
+
+
+def find_strokes_above(values: Sequence[Amount]) -> Strokes | None:
+    """Return the length and frequency of strokes that stand above the table.
+
+    Parameters
+    ----------
+    values
+        From `numeric_settings`.
+    """
+    stroke, frequency, guess = _stated(values)
+    if stroke is None or frequency is None:
+        return None
+    settings = (("stroke_value", stroke.name), ("frequency_value", frequency.name))
+    return Strokes(settings, (stroke, frequency), guess=guess)
+
+
+def strokes_of_turns(values: Sequence[Amount], often: DraftColumn) -> Strokes | None:
+    """Return strokes of a length that the text states, of which a crank makes one each turn.
+
+    Parameters
+    ----------
+    values
+        From `numeric_settings`.
+    often
+        The column that says how fast the crank turns.
+    """
+    stroke, _, guess = _stated(values)
+    if stroke is None:
+        return None
+    settings = (("stroke_value", stroke.name), ("frequency_value", "stroke_frequency"))
+    return Strokes(settings, (stroke,), (("stroke_frequency", often),), guess)
+
+
+def stated_strokes(values: Sequence[Amount]) -> tuple[Amount, ...]:
+    """Return what stands above the table of strokes, to be held against a recorded position.
+
+    Parameters
+    ----------
+    values
+        From `numeric_settings`.
+    """
+    strokes = find_strokes_above(values)
+    if strokes is None or strokes.guess:
+        return ()
+    if any(value.source in ("step", "programme") for value in strokes.values):
+        return ()
+    length, frequency = strokes.values
+    cycles = Amounts(values).only("number_of_cycles", unit="")
+    return (
+        length._replace(name="stated_stroke"),
+        frequency._replace(name="stated_stroke_frequency"),
+        *(() if cycles is None else (cycles._replace(name="stated_cycles"),)),
+    )
+
+
+def _stated(values: Sequence[Amount]) -> tuple[Amount | None, Amount | None, str]:
+    """Return the length and the frequency of strokes as the text has them, and what is guessed."""
+    stroke, frequency, guess = _only(values, "stroke", "m"), _only(values, "frequency", "Hz"), ""
+    if stroke is not None and _EITHER_WAY.search(stroke.text):
+        stroke = stroke._replace(scale=2.0)
+    if stroke is None and (half := _only(values, "half_stroke", "m")) is not None:
+        whole = says("end_to_end", half.text)
+        stroke = half if whole else half._replace(scale=2.0)
+        if not whole and "half" not in half.name and not _EITHER_WAY.search(half.text):
+            guess = f"'{half.text}' is half of a stroke"
+    several = [v for v in (stroke, frequency) if v is not None and _says_several(v)]
+    if several:
+        guess = f"of '{shown(several[0].text, 60)}' the first holds all along"
+    return stroke, frequency, guess
+
+
+def _only(values: Sequence[Amount], concept: str, unit: str) -> Amount | None:
+    """Return the one amount of a concept; a sample rate is no frequency of strokes."""
+    with_unit = Amounts(value for value in values if value.unit)
+    one = with_unit.only(concept, unit=unit, but=("sampling_rate",))
+    return None if one is None else one._replace(to=unit)
+
+
+def _says_several(value: Amount) -> bool:
+    """Whether a line states more than one number of its unit: '2 Hz, then 5 Hz', '2 / 5 Hz'."""
+    if value.source != "preamble" or not value.own_unit:
+        return False
+    said = {n.value for n in numbers_in(value.text) if n.unit == value.own_unit}
+    return len(said) > 1 or _LIST.search(value.text) is not None
+
+
+def _of_columns(understood: Understood) -> tuple[list[DraftColumn], list[DraftColumn]]:
+    """Return the columns that hold lengths of strokes, and those of how often they come."""
+    lengths, frequencies = [], []
+    for column in understood.columns:
+        name, unit = split_name(column.label)
+        if column.file_unit is None and unit is None:
+            name, unit = split_unit(column.label)
+            column = column._replace(unit=column.unit or unit)
+        unit = column.file_unit or column.unit or unit
+        if unit is not None and converts(unit, "m") and is_stroke_length(name):
+            lengths.append(column)
+        elif is_stroke_frequency(name, unit) and not column.used:
+            frequencies.append(column)
+    # what is measured, if what was set is recorded, too
+    measured = [c for c in frequencies if role_of(c.label) != "set"]
+    return lengths, measured if len(frequencies) > 1 else frequencies
+
+
+def _change(understood: Understood, columns: Sequence[DraftColumn]) -> bool:
+    """Whether the one column of a setting holds several."""
+    if len(columns) != 1:
+        return False
+    values = understood.numbers[:, columns[0].place - 1]
+    values = values[np.isfinite(values) & (values > 0)]
+    return bool(values.size) and float(values.max()) > _CHANGED * float(values.min())

@@ -1,0 +1,135 @@
+"""The zero of a friction signal that the text above a table states, as a force or a torque."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tribolab.reading.interpret.amounts import Amount, Amounts
+from tribolab.reading.interpret.names import matches
+from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.lexicon.lexicon import part_pattern, says
+from tribolab.reading.text.cells import split_name
+from tribolab.reading.unknown.header.settings import numeric_settings
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.reading.unknown.model import DraftColumn
+
+_LONGEST = 300  # characters of a line that are looked at
+STILL = "it is still in the signal"
+_OTHER = {"normal_force", "set_normal_force", "temperature", "position"}
+
+
+def find_zero(layout: Layout, values: Sequence[Amount], unit: str, said: str = "") -> Amount | None:
+    """Return the zero of the friction signal that a file states and that is still in the signal.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
+    values
+        From `numeric_settings`.
+    unit
+        "N" of a force, "N m" of a torque, "V" of a signal.
+    said
+        What a person said of it: "taken off", or "in it".
+
+    Returns
+    -------
+    Amount or None
+        None, too, if nothing says whether it was taken off: see `zero_in_doubt`.
+    """
+    zero = _stated(values, unit)
+    in_it = said == "in it" or (not said and _is_still_in(layout, zero))
+    if zero is None or not in_it:
+        return None
+    name = {"N m": "torque_zero", "V": "friction_signal_zero"}.get(unit, "friction_zero")
+    return zero._replace(name=name, unit=zero.own_unit, to=unit)
+
+
+def zero_in_doubt(
+    layout: Layout, values: Sequence[Amount], unit: str, said: str = ""
+) -> Amount | None:
+    """Return a stated zero of which nothing says whether it was taken off the signal.
+
+    Parameters
+    ----------
+    layout, values, unit, said
+        As for `find_zero`.
+    """
+    zero = _stated(values, unit)
+    if zero is None or said or _is_still_in(layout, zero):
+        return None
+    taken_off = says("zero_taken_off", zero.text[zero.text.find(":") + 1 :])
+    return None if taken_off or _another_line_says("zero_is_taken_off", layout, zero) else zero
+
+
+def load_zeros_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> list[str]:
+    """Say of stated zeros of the load that the numbers of its one column are read without them.
+
+    Parameters
+    ----------
+    layout
+        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
+    columns
+        As they are understood.
+    """
+    forces = any(c.used and c.quantity == "normal_force" for c in columns)
+    volts = any(converts(c.file_unit or split_name(c.label)[1] or "", "V") for c in columns)
+    zeros = [
+        value
+        for value in numeric_settings(layout)
+        for read in [value._replace(unit=value.own_unit)]
+        if value.source == "preamble" and value.means("zero") and value.number
+        if (forces and read.is_in("N")) or (volts and read.is_in("V"))
+        if _is_of_load(part_pattern("zero").sub("", value.key))
+    ]
+    return [
+        f"'{zero.text}' was taken off the load"
+        for zero in zeros
+        if not says("zero_taken_off", zero.text[zero.text.find(":") + 1 :])
+        and not _another_line_says("zero_is_taken_off", layout, zero)
+    ]
+
+
+def friction_column(columns: Sequence[DraftColumn]) -> DraftColumn | None:
+    """Return the column that holds the friction force, of which a zero may be taken off.
+
+    Parameters
+    ----------
+    columns
+        As they are understood.
+    """
+    held = [c for c in columns if c.used and c.quantity == "friction_force" and not c.optional]
+    return held[0] if len(held) == 1 else None
+
+
+def _is_still_in(layout: Layout, zero: Amount | None) -> bool:
+    own = zero is not None and says("zero_not_taken_off", zero.text)
+    return own or _another_line_says("zero_not_taken_off", layout, zero)
+
+
+def _another_line_says(name: str, layout: Layout, zero: Amount | None) -> bool:
+    lines = (line for line in layout.text_above() if zero is None or line.strip() != zero.text)
+    return any(says(name, line[:_LONGEST]) for line in lines)
+
+
+def _stated(values: Sequence[Amount], unit: str) -> Amount | None:
+    fitting = [value for value in values if _is_zero(value, unit)]
+    if len(fitting) > 1:  # that of the load next to it is another
+        fitting = [value for value in fitting if not _is_of_load(value.key)]
+    zero = Amounts(fitting).only()
+    return zero if zero is not None and zero.number else None
+
+
+def _is_of_load(key: str) -> bool:
+    cell = part_pattern("load_cell").sub("", key)
+    return part_pattern("of_load").search(cell) is not None
+
+
+def _is_zero(value: Amount, unit: str) -> bool:
+    if value.source != "preamble" or not value.own_unit:
+        return False
+    if not (value.means("zero") and value._replace(unit=value.own_unit).is_in(unit)):
+        return False
+    bare = part_pattern("zero").sub("", value.key)
+    options = matches(bare, value.own_unit) if bare else []
+    return not options or options[0].quantity not in _OTHER

@@ -1,0 +1,1 @@
+"""How an unknown file is laid out: lines, header, tables."""

@@ -1,0 +1,71 @@
+"""Rows of numbers that belong together, and which of several tables is the main one."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from tribolab.reading.unknown.layout.header import find_heading
+from tribolab.reading.unknown.layout.lines import Grammar
+from tribolab.reading.unknown.layout.step_marks import Block
+
+
+def find_blocks(lines: tuple[str, ...], grammar: Grammar) -> list[Block]:
+    """Rows of numbers of equal width that only blank lines part."""
+    blocks: list[Block] = []
+    rows: list[int] = []
+    width = 0
+
+    def close() -> None:
+        if rows:
+            heading = find_heading(lines, rows[0], grammar, width)
+            blocks.append(Block(rows[0], rows[-1] + 1, tuple(rows), width, heading))
+            rows.clear()
+
+    last = max((index for index, line in enumerate(lines) if line.strip()), default=0)
+    for index, line in enumerate(lines):
+        if not line.strip():
+            continue
+        cells = grammar.width(line)
+        if cells and rows and _is_footer(line, lines[rows[0]], grammar):
+            cells = 0
+        if not cells and rows and grammar.goes_on(line, width):
+            cells = width
+        if rows and cells > width and grammar.filled(line) <= width:
+            cells = width  # delimiters too many at its end
+        elif len(rows) == 1 and 0 < cells < width and grammar.filled(lines[rows[0]]) <= cells:
+            width = cells  # so had the first row
+        if cells != width and not (rows and index == last and 0 < cells < width):
+            close()
+            width = cells
+        if cells == width and cells:
+            rows.append(index)
+    close()
+    return blocks
+
+
+def _is_footer(line: str, first: str, grammar: Grammar) -> bool:
+    """Whether a word begins a line of numbers, and none the first row above it."""
+    if grammar.is_plain(line):
+        return False
+    return grammar.is_footer(line) and not grammar.is_footer(first)
+
+
+def main_blocks(blocks: list[Block]) -> tuple[list[Block], int]:
+    """Return the blocks under the same header that hold most numbers; how many others there are."""
+    weight: Counter[tuple[tuple[str, ...] | None, int]] = Counter()
+    for block in blocks:
+        weight[_key(block)] += len(block.rows) * block.width
+    key = weight.most_common(1)[0][0]
+    main = [block for block in blocks if _key(block) == key]
+    if key[0] is None:  # without a header nothing joins several tables
+        main = [max(main, key=lambda block: len(block.rows))]
+    return main, len(blocks) - len(main)
+
+
+def _key(block: Block) -> tuple[tuple[str, ...] | None, int]:
+    heading = block.heading
+    if heading is None:
+        return None, block.width
+    # the order of columns may change from step to step, where names tell which is which
+    cells = tuple(sorted(heading.cells)) if heading.aligned else heading.cells
+    return cells, block.width

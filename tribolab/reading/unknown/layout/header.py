@@ -1,0 +1,209 @@
+"""The header above a table of numbers: which line it is, names, units."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+from tribolab.reading.interpret.unit_texts import is_unit
+from tribolab.reading.lexicon.lexicon import known_words
+
+if TYPE_CHECKING:
+    from tribolab.reading.unknown.layout.lines import Grammar
+
+_ABOVE = 8  # lines above the first row that are looked at
+_LONGEST_MARK = 80  # characters of it
+_TELLING = 200  # cells that tell whether a row is one of units
+_WORD = re.compile(r"\S+")
+# A name of words with its unit in brackets, or a word. No name is longer than so: without an end to
+# look for it, a long line without brackets would be gone through once for each of its words
+_BRACKETED = re.compile(r"\S[^\[\]()]{0,200}?[\[(][^\[\]()]{0,100}[\])]|\S+")
+# "単位,μm" and "点数,1500" say something, and name no column
+_SAYS = re.compile(
+    r"[^\W\d]\W*[,;]\W*(?:[nmkuµμ]?m|Å|мкм|мм|нм|微米|纳米|毫米|[-+]?\d[\d.,]*)\W*$"
+    r"|^\W*(?:units?|einheit(?:en)?|unit[éà]s?|unidad(?:es)?|单位|単位)\s+[^\W\d]{1,3}\W*$"
+    r"|(?<![\w.,(\[])\d+(?:[.,]\d+|[.,]?\d*\s?(?:[nmkuµμ]?m|Å|Hz|N|s|mm/s|°C)(?![^\W\d_]))(?![^()\[\]]*[)\]])",
+    re.IGNORECASE,
+)
+# what parts the header from the numbers, and names no column
+_MARK = re.compile(
+    r"\W*(?:(?:end|eoh|begin|start|fin|fine|ende|beginn|anfang|d[ée]but|inicio|inizio|fim|einde|slut"
+    r"|koniec|konec|loppu|конец|начало)(?=[\W_]|$)[\s_\-]*(?:of|der|des|de[lr]?|du|dell[ao']|da|do|van)?"
+    r"[\s_\-]*(?:the|la|l')?[\s_\-]*(?:file|datei)?[\s_\-]*"
+    r"(?:header|head|kopf\w*|vorspann|en-?t[êe]te|cabecera|encabezado|cabe[çc]alho|intestazione|koptekst"
+    r"|data|daten|messwerte|values|donn[ée]es|datos|dati|dados|nag[łl]\w*|hlavi[čc]k\w*|заголов\w*|данн\w*)?"
+    r"|(?:header|data|header[\s_\-]*section)[\s_\-]*(?:end|start|begin)s?|(?:头|表头|数据)(?:结束|开始))\W*",
+    re.IGNORECASE,
+)
+_STEMS = frozenset(stem for word in known_words("run") for stem in (*word.stems, *word.vague))
+_SYMBOLS = frozenset(symbol for word in known_words("run") for symbol in word.symbols)
+
+
+class Heading(NamedTuple):
+    """A header: index of its line, that of the row of units, and what they say.
+
+    `aligned` is False where the delimiter does not part the names as it parts the numbers; they
+    are then given by position.
+    """
+
+    names: int
+    units: int | None
+    cells: tuple[str, ...]
+    unit_cells: tuple[str, ...]
+    aligned: bool
+
+
+def find_heading(lines: Sequence[str], start: int, grammar: Grammar, width: int) -> Heading | None:
+    """Find the header of the table whose first row is line `start` (from 0).
+
+    Parameters
+    ----------
+    lines
+        Lines of the file.
+    start
+        Index of the first row of numbers.
+    grammar
+        How cells are parted.
+    width
+        Number of cells of a row of numbers.
+    """
+    above: list[int] = []
+    for index in range(start - 1, max(start - _ABOVE, 0) - 1, -1):
+        if numbers := grammar.width(lines[index]):
+            if index == start - 1 and numbers == width - 1 > 1:
+                continue  # the first row lacks its last cell, and is left out
+            break
+        told = lines[index][:_LONGEST_MARK]
+        if width == 1 and (_MARK.fullmatch(told) or _SAYS.search(told)):
+            break  # a column is named right above its numbers
+        if lines[index].strip():
+            above.append(index)
+    split = {index: _cells(lines[index], grammar, width) for index in above[:3]}
+    fitting = {
+        i: c
+        for i, c in split.items()
+        if _fits(lines[i], c[0], grammar, width) or _is_row_of_units(c[0], grammar, width)
+    }
+    fitting |= {i: c for i, c in _units_below_names(lines, above[:3], fitting, width).items()}
+    fitting = {index: fitting[index] for index in above[:3] if index in fitting}
+    for index, (cells, aligned) in fitting.items():
+        over = [above for above in fitting if above < index]
+        if _are_units(cells) and over:
+            # between names and units may stand numbers of channels, or a row of delimiters
+            best = max(over, key=lambda above: (_known(fitting[above][0]), above))
+            names, named = fitting[best]
+            return Heading(best, index, names, cells, aligned and named)
+    if not fitting:
+        return None
+    index, (cells, aligned) = next(iter(fitting.items()))
+    return Heading(index, None, cells, (), aligned)
+
+
+def first_cells(line: str, delimiter: str) -> str:
+    """Return the start of a line up to the end of its second cell."""
+    if delimiter == "whitespace":
+        return line.strip()
+    cells = line.split(delimiter)
+    return delimiter.join(cells[:2]) + (delimiter if len(cells) > 2 else "")
+
+
+def _cells(line: str, grammar: Grammar, width: int) -> tuple[tuple[str, ...], bool]:
+    """Cells of a header, and whether the reader will find the same ones."""
+    cells = tuple(grammar.cells(line))
+    if grammar.delimiter != "whitespace" or len(cells) == width:
+        return cells, True
+    bare = line.strip().lstrip("#%/*;!\"' ").strip()
+    for parts in (bare.split(), re.split(r"\t+|\s{2,}", bare), _BRACKETED.findall(bare)):
+        if len(parts) == width:
+            return tuple(part.strip().strip('"') for part in parts), False
+    return cells, False
+
+
+def _fits(line: str, cells: Sequence[str], grammar: Grammar, width: int) -> bool:
+    """Whether a line can be the header of a table of a given width."""
+    filled = [cell for cell in cells if cell]
+    words = [cell for cell in filled if not grammar.is_number(cell)]
+    if not filled or len(words) < 0.7 * len(filled) or _MARK.fullmatch(line[:_LONGEST_MARK]):
+        return False
+    if re.match(r"\s*(#|%|//|;|\*|!)", line) and re.search(r"[:=]", line):
+        return False  # a comment that says something: "# rate: 10 Hz"
+    # "Interval data:" may stand before the names of all columns, "Operator:" before a name
+    first = 1 if len(cells) == width and len(filled) > 3 else 0
+    if any(cell.endswith((":", "=")) for cell in filled[first:]) or not re.search(r"\w", line):
+        return False
+    if grammar.delimiter == "whitespace" and len(cells) != width:
+        return False
+    if width == 1:
+        return len(filled) == 1 and len(line) < 60 and not re.search(r"[:=]\s*\S", line)
+    return len(filled) >= 2 and 0.5 * width <= len(cells) <= 1.5 * width + 2
+
+
+def _is_row_of_units(cells: Sequence[str], grammar: Grammar, width: int) -> bool:
+    """Whether a row is one of units of which few columns have one: ";N"."""
+    if grammar.delimiter == "whitespace" or len(cells) != width:
+        return False
+    return any(cells) and all(is_unit(cell.strip("[]() ")) for cell in cells if cell)
+
+
+def _units_below_names(
+    lines: Sequence[str],
+    above: Sequence[int],
+    fitting: Mapping[int, tuple[tuple[str, ...], bool]],
+    width: int,
+) -> dict[int, tuple[tuple[str, ...], bool]]:
+    """Return rows of units that blanks part, of which some columns have none, by their places."""
+    found: dict[int, tuple[tuple[str, ...], bool]] = {}
+    for index in above:
+        words = list(_WORD.finditer(lines[index]))
+        if index in fitting or not width // 2 <= len(words) < width:
+            continue
+        if not any(map(str.isalpha, lines[index])):
+            continue  # a mark of comments is no percentage
+        if not all(is_unit(word[0].strip("[]()")) for word in words):
+            continue
+        over = next((i for i in above if i < index and i in fitting), None)
+        names = list(_WORD.finditer(lines[over])) if over is not None else []
+        if len(names) != width:
+            continue
+        cells = [""] * width
+        for word in words:
+            near = min(range(width), key=lambda k: _offset(names[k].span(), word.span()))
+            cells[near] = word[0]
+        if sum(map(bool, cells)) == len(words):
+            found[index] = tuple(cells), False
+    return found
+
+
+def _offset(one: tuple[int, int], other: tuple[int, int]) -> int:
+    """Return by how much two words do not stand below each other, at the end that fits better."""
+    return min(abs(one[0] - other[0]), abs(one[1] - other[1]))
+
+
+def names_any(cell: str, *quantities: str) -> bool:
+    """Whether a name may be that of one of some quantities.
+
+    >>> names_any("FUERZA", "friction_force"), names_any("z [um]", "friction_force", "time")
+    (True, False)
+    """
+    name = unicodedata.normalize("NFD", re.split(r"[\[(]", cell)[0].lower())
+    text = "".join(filter(str.isalnum, name))  # without accents
+    bare = text.rstrip("0123456789")  # the number of a table or a sensor
+    return any(
+        bare in word.symbols or any(stem in text for stem in (*word.stems, *word.vague))
+        for word in known_words("run")
+        if word.quantity in quantities
+    )
+
+
+def _known(cells: Sequence[str]) -> int:
+    """How many cells hold a known word or are a known symbol."""
+    texts = ["".join(filter(str.isalnum, cell.lower())) for cell in cells[:_TELLING]]
+    return sum(text in _SYMBOLS or any(stem in text for stem in _STEMS) for text in texts)
+
+
+def _are_units(cells: Sequence[str]) -> bool:
+    filled = [cell.strip("[]() ") for cell in cells if cell][:_TELLING]
+    units = sum(1 for cell in filled if is_unit(cell) or is_unit(cell.lower()) or cell == "-")
+    return units >= 0.6 * len(filled)

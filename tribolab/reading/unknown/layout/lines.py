@@ -1,0 +1,249 @@
+"""How the lines of a text file are written: encoding, line ends, delimiter, decimal mark."""
+
+from __future__ import annotations
+
+import codecs
+import functools
+import re
+from collections import Counter
+from collections.abc import Sequence
+
+from tribolab.reading.lexicon.lexicon import eastern_words, known_words
+from tribolab.reading.text.cells import split_row
+from tribolab.reading.text.east_asian_encodings import eastern_encoding
+from tribolab.reading.text.first_bytes import HEAD, wide_encoding
+
+_EASTERN = ("gb18030", "cp932", "big5", "cp949", "cp1251")
+_BLANKS = 1.02  # by how much blanks have to part the lines better than a mark
+_VOTERS = 300  # lines at the start and at the end that decide on the delimiter
+DELIMITERS = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar", "whitespace": "blanks"}
+_NUMBER = {
+    ".": r"[+-]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][+-]?\d++)?",  # digits are never given back
+    ",": r"[+-]?(?:\d++(?:,\d*+)?|,\d++)(?:[eE][+-]?\d++)?",
+}
+# what instruments write where a value should stand; and dates and times of day
+_INSTEAD = r"nan|[+-]?inf|null|n/?a|-{1,8}|[*#][*.#]*[a-zµμ]*!?|err\w*|over\w*|ovl|none"
+_MISSING = re.compile(rf"(?i){_INSTEAD}")
+_NO_NUMBER = re.compile(
+    rf"(?i){_INSTEAD}|"
+    r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}(?:[T ]\d.*)?|"
+    r"\d{1,2}:\d\d(?::\d\d)?(?:[.,]\d+)?(?: ?[ap]\.?m\.?)?"
+)
+
+
+_HALVES = re.compile(r"([+-]?\d+),(\d+)")
+_ROWS = 16  # rows that tell
+_ONE_NAME = re.compile(r"[^\[\](),;\t]+[\[(][^\[\](),;\t]+[\])]")  # a heading as "Height [nm]"
+
+
+class Grammar:
+    """One way to read lines: a delimiter and a decimal mark."""
+
+    def __init__(self, delimiter: str, decimal: str):
+        self.delimiter, self.decimal = delimiter, decimal
+        self._mark = None if delimiter == "whitespace" else delimiter
+        number = _NUMBER[decimal]
+        self._number = re.compile(number)
+        gap = r"\s+" if delimiter == "whitespace" else re.escape(delimiter)
+        cell = f"(?:{number})" if delimiter == "whitespace" else f" *(?:{number})? *"
+        self._plain = re.compile(f"{cell}(?:{gap}{cell})*")
+
+    def cells(self, line: str) -> list[str]:
+        """Cells of a line."""
+        return split_row(line, self.delimiter)
+
+    def is_number(self, cell: str) -> bool:
+        """Whether a cell is a number."""
+        return self._number.fullmatch(cell) is not None
+
+    def merit(self, line: str) -> tuple[int, int]:
+        """Return the number of cells, and by how much numbers outweigh text (0: not a row)."""
+        if self.is_plain(line):
+            parts = line.split(self._mark)
+            return len(parts), sum(1 for part in parts if part.strip())
+        cells = self.cells(line)
+        filled = [cell for cell in cells if cell]
+        others = [cell for cell in filled if not self.is_number(cell)]
+        numbers = len(filled) - len(others)
+        text = sum(1 for cell in others if not _NO_NUMBER.fullmatch(cell))
+        is_row = numbers > 0 and 2 * (len(filled) - text) > len(filled)
+        return len(cells), max(numbers - text, 1) if is_row else 0
+
+    def is_plain(self, line: str) -> bool:
+        """Whether a line holds numbers and empty cells, and nothing else."""
+        stripped = line.strip() if self.delimiter == "whitespace" else line
+        return bool(self._plain.fullmatch(stripped)) and any(map(str.isdigit, stripped))
+
+    def width(self, line: str) -> int:
+        """Return the number of cells of a row of numbers; 0 for any other line."""
+        if self.is_plain(line):
+            return len(line.split(self._mark))
+        width, merit = self.merit(line)
+        return width if merit else 0
+
+    def filled(self, line: str) -> int:
+        """Return the number of cells of a line up to the last that holds something."""
+        if self._mark is None:
+            return len(self.cells(line))
+        return len(line.rstrip(f"{self._mark} ").split(self._mark))
+
+    def is_footer(self, line: str) -> bool:
+        """Whether a line of numbers begins with a word: "Mean" below a column of times."""
+        first = self.cells(line)[0]
+        return bool(first) and not self.is_number(first) and not _NO_NUMBER.fullmatch(first)
+
+    def goes_on(self, line: str, width: int) -> bool:
+        """Whether a line can be a row in the midst of others: half of it may be error codes."""
+        cells = self.cells(line)
+        if width == 1:  # a value that is missing: where rows are counted it has to stay
+            return len(cells) == 1 and bool(_MISSING.fullmatch(cells[0]))
+        numbers = sum(map(self.is_number, cells))
+        filled = sum(1 for cell in cells if cell)
+        return len(cells) == width and self.is_number(cells[0]) and 2 * numbers >= filled
+
+
+def find_encoding(head: bytes) -> tuple[str, list[str]]:
+    """Return the encoding, and what was guessed of it (which changes no number)."""
+    if wide := wide_encoding(head):
+        return wide, []
+    try:
+        # the head may end inside a character
+        head[: max(len(head) - 3, 0) if len(head) == HEAD else None].decode("utf-8")
+    except UnicodeDecodeError:
+        if eastern := _eastern(head) or eastern_encoding(head, whole=len(head) < HEAD):
+            return eastern, [f"the encoding is {eastern}: names of columns are words in it"]
+        name = _of_single_bytes(head)
+        return name, [f"the encoding is {name}: the file is not UTF-8"]
+    return "utf-8", []
+
+
+# Words of Cyrillic letters are bytes above 0xc0 side by side, as Western words never are; between
+# ASCII letters, a few bytes are letters in the middle of Europe or in Turkey and signs elsewhere
+_CYRILLIC = re.compile(rb"[\xc0-\xff\xa8\xb8]{3,}")
+_CENTRAL = re.compile(rb"[A-Za-z][\xb3\xb9\xbf\x9f\x9d\xbe\xbc](?=[a-z])|(?<![^\s;,])\xa3(?=[a-z])")
+_TURKISH = re.compile(rb"[A-Za-z][\xf0\xfe]|\xfe(?=[a-z])|[A-Za-z]\xfd[a-z]{2}\w*\xfd")
+_MOSTLY, _HALF = 0.8, 0.5
+_BEGINNING = 1 << 15  # bytes: settings and names stand there
+_SINGLE_BYTES = (
+    *("latin-1", "cp1252", "cp1250", "iso8859-2", "cp1254", "cp1251", "koi8-r", "cp1253"),
+    *("cp437", "cp852", "cp866", "mac-roman"),
+)
+_COMMON_LETTERS = {  # half and more of any text in these languages
+    "cp1251": frozenset("оеаинтсрвлк"),
+    "koi8-r": frozenset("оеаинтсрвлк"),
+    "cp1253": frozenset("αοιετσνρηά"),
+}
+
+
+def _common(words: bytes, encoding: str) -> float:
+    """Return which share of bytes are common letters in an encoding, small ones above."""
+    text = words.decode(encoding, errors="replace")
+    share = sum(sign in _COMMON_LETTERS[encoding] for sign in text.lower()) / max(len(text), 1)
+    return share + 0.01 * sum(map(str.islower, text)) / max(len(text), 1)
+
+
+def _of_single_bytes(head: bytes) -> str:
+    """Return in which encoding of one byte a letter a text is, by which of them stand together."""
+    if told := _by_terms(head):
+        return told
+    high = sum(byte >= 0x80 for byte in head)
+    words = b"".join(_CYRILLIC.findall(head))
+    if len(words) >= _MOSTLY * high:
+        common = {name: _common(words, name) for name in _COMMON_LETTERS}
+        best = max(common, key=lambda name: common[name])
+        if common[best] >= _HALF:
+            return best
+    if _CENTRAL.search(head):
+        return "cp1250"
+    if _TURKISH.search(head):
+        return "cp1254"
+    return "cp1252" if re.search(rb"[\x80-\x9f]", head) else "latin-1"
+
+
+@functools.cache
+def _terms_with_own_letters() -> frozenset[str]:
+    every = (t.lower() for word in known_words() for terms in word.terms.values() for t in terms)
+    return frozenset(term for term in every if not term.isascii() and len(term) > 2)
+
+
+def _by_terms(head: bytes) -> str:
+    """Return the encoding in which most is said in terms of laboratories; "" where none is."""
+    said = {}
+    for name in _SINGLE_BYTES:
+        text = head[:_BEGINNING].decode(name, errors="replace").lower()
+        said[name] = sum(len(term) for term in _terms_with_own_letters() if term in text)
+    best = max(said, key=lambda name: said[name])  # of equals the first
+    return best if said[best] else ""
+
+
+def _eastern(head: bytes) -> str:
+    """Return the East Asian or Cyrillic encoding in which a file says known words; "" for none."""
+    known: dict[str, int] = {}
+    for name in _EASTERN:
+        try:
+            text = codecs.getincrementaldecoder(name)().decode(head, final=len(head) < HEAD)
+        except UnicodeDecodeError:
+            continue
+        written = "".join(text.lower().split())  # as words are in the vocabulary
+        known[name] = sum(word in written for word in eastern_words())
+    best = max(known, key=lambda name: known[name], default="")
+    return best if best and known[best] else ""
+
+
+def find_line_ends(raw: bytes) -> str:
+    """Say how lines end, the commonest first."""
+    twice = raw.count(b"\r\r\n")
+    both = raw.count(b"\r\n") - twice
+    counts = {
+        "LF": raw.count(b"\n") - both - twice,
+        "CR LF": both,
+        "CR": raw.count(b"\r") - both - 2 * twice,
+        "CR CR LF": twice,
+    }
+    ends = sorted((name for name in counts if counts[name]), key=lambda name: -counts[name])
+    return " and ".join(ends) or "none"
+
+
+def find_grammar(lines: Sequence[str]) -> Grammar | None:
+    """Return the delimiter and decimal mark that make most numbers of the lines."""
+    filled = [line for line in lines if line.strip()]
+    voters = filled[:_VOTERS] + filled[max(_VOTERS, len(filled) - _VOTERS) :]
+    best, highest = None, 0
+    alone = False  # what stands in no line leaves each whole, and so does the next that does
+    for delimiter in DELIMITERS:
+        if delimiter != "whitespace" and not any(delimiter in line for line in voters):
+            if alone:
+                continue
+            alone = delimiter != ","
+        for decimal in (".", ","):
+            if delimiter == decimal:
+                continue
+            grammar = Grammar(delimiter, decimal)
+            votes: Counter[int] = Counter()
+            for line in voters:
+                width, merit = grammar.merit(line)
+                votes[width] += merit
+            top = max(votes.values(), default=0)
+            # in the order of DELIMITERS: a tab is also a blank, which joins a few lines more
+            if top > (_BLANKS if delimiter == "whitespace" else 1.0) * highest:
+                best, highest = grammar, top
+    return Grammar("\t", ",") if best and _one_column(best, voters) else best
+
+
+def _one_column(grammar: Grammar, voters: Sequence[str]) -> bool:
+    """Whether commas are decimal marks of one column, and do not part two of whole numbers.
+
+    The heading above tells that it names one, or that numbers follow a comma as in 3,05.
+    """
+    if grammar.delimiter != ",":
+        return False
+    halves = [_HALVES.fullmatch(line.strip()) for line in voters]
+    parts = [told for told in halves if told]
+    if len(parts) < _ROWS or 2 * len(parts) < len(voters):
+        return False
+    first = next(place for place, told in enumerate(halves) if told)
+    if first and _ONE_NAME.fullmatch(voters[first - 1].strip()):
+        return True
+    # no whole number is written 0312
+    leading = sum(told[2].startswith("0") and len(told[2]) > 1 for told in parts)
+    return 50 * leading >= len(parts)

@@ -1,0 +1,296 @@
+"""How an unknown text file is written: encoding, line ends, delimiter, decimal mark, tables.
+
+Only the first megabyte is looked at line by line, and the end of a longer file for a footer.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from tribolab.errors import ReadError
+from tribolab.reading.dialect.delimited.normalised_text import line_feeds
+from tribolab.reading.raw import limits
+from tribolab.reading.text.arrangements import Arrangement
+from tribolab.reading.text.cells import split_row
+from tribolab.reading.text.first_bytes import HEAD, File
+from tribolab.reading.text.number_spelling import (
+    has_commas_in_quotes,
+    is_unusual,
+    usual,
+    without_commas_in_quotes,
+)
+from tribolab.reading.text.thousands import Mark, find_thousands, without_thousands
+from tribolab.reading.text.wrapped_lines import numbers_in, unwrapped
+from tribolab.reading.unknown.layout.arrangement import arranged, arranged_table
+from tribolab.reading.unknown.layout.blocks import find_blocks, main_blocks
+from tribolab.reading.unknown.layout.header import Heading
+from tribolab.reading.unknown.layout.lines import (
+    DELIMITERS,
+    Grammar,
+    find_encoding,
+    find_grammar,
+    find_line_ends,
+)
+from tribolab.reading.unknown.layout.patterns import (
+    end_pattern,
+    header_pattern,
+    last_lines,
+    step_pattern,
+)
+from tribolab.reading.unknown.layout.step_marks import Block, without_marks
+
+_MOST_IN_A_LINE = 64
+_LONGEST = 200  # characters of a line that are looked at
+_COUNT = re.compile(r"(?<![\d.,])(\d{2,7})(?![\d.,])[^\d]{0,20}$")  # "Number of points: 5600"
+_FEW = 20  # lines at the end that tell what parts cells
+_CELLS = 4  # times as many marks as columns: blanks that align, commas of decimals
+_WIDE, _FEWEST_OF_WIDE = 1000, 5  # columns, and rows: a line end that is lost makes such a line
+_MOST_TURNED = 1 << 28  # bytes of a file of few long lines
+_MOST_ABOVE = 500  # lines of text above a table that are looked at
+
+
+class Held(NamedTuple):
+    """Where columns are in a file that names them: its format, and of a workbook the sheet.
+
+    `increment` is the time [s] from row to row where the file has a clock and no column of it;
+    `others` names tables besides the chosen one that have columns of the same names. `steps` is
+    the pattern of the names of tables that are steps, `zero` where a zero is read, as a dialect
+    says both.
+    """
+
+    form: str
+    sheet: str = ""
+    line: int = 1
+    units_below: bool = False
+    increment: float = 0.0
+    others: str = ""
+    steps: str = ""
+    zero: str = ""
+
+
+class Layout(NamedTuple):
+    """How a file is written, and the lines of its main table (or of its repeated tables).
+
+    `numbers` are those of the rows (rows, columns) where the file holds them as numbers: `lines`
+    are then what it says above them.
+    """
+
+    file: File
+    encoding: str
+    line_ends: str
+    delimiter: str
+    decimal: str
+    width: int
+    lines: tuple[str, ...]
+    blocks: tuple[Block, ...]
+    others: int
+    heading: Heading | None
+    header_line: int | None
+    header_pattern: str | None
+    skip: int
+    repeats: bool
+    step: str | None
+    end: str | None
+    skip_lines: str | None
+    whole: bool
+    notes: tuple[str, ...]
+    guesses: tuple[str, ...]
+    held: Held | None = None
+    thousands: Mark = ""
+    quoted: bool = False
+    wrapped: bool = False
+    arrangement: Arrangement = "below names"
+    foot: tuple[str, ...] = ()
+    numbers: np.ndarray | None = None
+
+    @property
+    def delimiter_name(self) -> str:
+        """The delimiter in a word."""
+        return DELIMITERS[self.delimiter]
+
+    def text_above(self, *, bare: bool = False) -> tuple[str, ...]:
+        """Return the lines above the table, its first ones at most: none are above bare numbers.
+
+        Where a file begins with its table they are those below it.
+
+        Parameters
+        ----------
+        bare
+            Whether numbers without a header have text above them, too: heights do.
+        """
+        stop = self.blocks[0].start if bare and self.blocks else 0
+        stop = self.heading.names if self.heading is not None else stop
+        above = self.lines[: min(stop, _MOST_ABOVE)]
+        nothing = self.heading is not None and not any(line.strip() for line in above)
+        return self.foot[:_MOST_ABOVE] if nothing else above
+
+    @property
+    def units_line(self) -> int:
+        """In which line below the names the units stand; a row of delimiters does not count."""
+        heading = self.heading
+        if heading is None or heading.units is None:
+            return 0
+        rows = self.lines[heading.names + 1 : heading.units + 1]
+        return sum(1 for line in rows if line.strip())
+
+    @property
+    def row_count(self) -> int:
+        """How many rows of numbers were looked at."""
+        return sum(len(block.rows) for block in self.blocks)
+
+    def rows(self, most: int | None = None) -> list[str]:
+        """Lines of numbers of all blocks, their cells in the order of the first; the first ones."""
+        if self.numbers is not None:
+            return ["\t".join(f"{x:.9g}" for x in row) for row in self.numbers[:most]]
+        return [line for block in self.blocks for line in self._in_order(block)][:most]
+
+    def _in_order(self, block: Block) -> list[str]:
+        lines = [self.lines[index] for index in block.rows]
+        if self.heading is None or block.heading is None:
+            return lines
+        if block.heading.cells == self.heading.cells:
+            return lines
+        left = list(enumerate(block.heading.cells))
+        places = []
+        for name in self.heading.cells:  # of a name used twice, the first stays the first
+            place = next(place for place, cell in left if cell == name)
+            left.remove((place, name))
+            places.append(place)
+        rows = (split_row(line, self.delimiter) for line in lines)
+        mark = " " if self.delimiter == "whitespace" else self.delimiter
+        return [mark.join(row[p] if p < len(row) else "" for p in places) for row in rows]
+
+
+def _refuse_wide(file: File, lines: Sequence[str]) -> None:
+    """Refuse a table whose rows have far too many cells, before they are looked at one by one."""
+    filled = [line for line in lines if line.strip()]
+    widths = [max(len(line.split()), *map(line.count, "\t;,")) for line in filled]
+    wide = [width for width in widths if width > _CELLS * limits.COLUMNS.value]
+    if 2 * len(wide) > len(filled):
+        raise ReadError(
+            f"some {wide[0]} columns are more than a measurement has",
+            where=file.path,
+            cure="save those of the run in a file of their own; is each row on a line of its own?",
+        )
+
+
+def find_layout(file: File) -> Layout:
+    """Find out how a text file is written.
+
+    Parameters
+    ----------
+    file
+        The file, looked at by `tribolab.reading.text.first_bytes.peek`.
+
+    Raises
+    ------
+    ReadError
+        If it holds no table of numbers.
+    """
+    encoding, notes = find_encoding(file.head)
+    guesses: list[str] = []
+    raw = file.head if file.size <= HEAD else file.head[: file.head.rfind(b"\n") + 1]
+    if file.size > HEAD and raw.count(b"\n") < _FEW and file.size <= _MOST_TURNED:
+        raw = file.path.read_bytes()  # a signal to a row
+    text = raw.decode(encoding, errors="replace").removeprefix("\ufeff")
+    text = usual(text) if is_unusual(text) else text
+    quoted = has_commas_in_quotes(text)
+    text = without_commas_in_quotes(text) if quoted else text
+    lines = tuple(line_feeds(text).split("\n"))
+    if thousands := find_thousands(lines):
+        apart = any("\t" in line or ";" in line for line in lines[-_FEW:])
+        lines = tuple(without_thousands(x, thousands, ";" if apart else ",") for x in lines)
+    lines, arrangement = arranged(lines)
+    _refuse_wide(file, lines)
+    grammar = find_grammar(lines)
+    if grammar is None:
+        raise ReadError(
+            f"{file.path}: no table of numbers stands in the file; a dialect describes text with "
+            "at least one row of numbers"
+        )
+    blocks, skip_lines = without_marks(lines, find_blocks(lines, grammar), grammar)
+    main, others = main_blocks(blocks)
+    plain = arrangement == "below names"
+    if plain and (other := arranged_table(lines, main[0], grammar.delimiter)):
+        lines, arrangement = other
+        blocks, skip_lines = without_marks(lines, find_blocks(lines, grammar), grammar)
+        main, others = main_blocks(blocks)
+    wrapped = file.size <= HEAD and _go_on(lines, main, grammar)
+    if wrapped:
+        table = "\n".join(lines[main[0].start :])
+        lines = (*lines[: main[0].start], *unwrapped(table, grammar.delimiter).split("\n"))
+        blocks, skip_lines = without_marks(lines, find_blocks(lines, grammar), grammar)
+        main, others = main_blocks(blocks)
+    first = main[0]
+    rows = sum(len(block.rows) for block in main)
+    if first.width > limits.COLUMNS.value or (first.width > _WIDE and rows < _FEWEST_OF_WIDE):
+        raise ReadError(
+            f"{file.path}: {first.width} columns in {rows} rows are more than an instrument "
+            "writes; is it the right file, and is each row on a line of its own?"
+        )
+    heading = first.heading
+    pattern, repeats = header_pattern(lines, main, grammar) if heading else (None, False)
+    if heading and pattern is None and len(main) > 1:
+        main, others = main[:1], others + len(main) - 1
+        guesses.append("only the first of several tables is read: their headers are not unique")
+    tail = last_lines(file, encoding) if arrangement == "below names" else []
+    end = end_pattern(lines, main, tail, grammar)
+    if tail and pattern is not None and end is not None:
+        repeats = True  # only then is the whole file searched for the end of the table
+    if heading:
+        below = (heading.names if heading.units is None else heading.units) + 1
+        skip = sum(1 for index in range(below, first.start) if lines[index].strip())
+        skip = 0 if skip == 0 else first.start - below
+    else:
+        skip = first.start
+    return Layout(
+        file=file,
+        encoding=encoding,
+        line_ends=find_line_ends(raw),
+        delimiter=grammar.delimiter,
+        decimal=grammar.decimal,
+        width=first.width,
+        lines=lines,
+        blocks=tuple(main),
+        others=others,
+        heading=heading,
+        header_line=heading.names + 1 if heading and pattern is None else None,
+        header_pattern=pattern,
+        skip=skip,
+        repeats=repeats,
+        step=step_pattern(lines, main) if repeats else None,
+        end=end,
+        skip_lines=skip_lines,
+        whole=file.size <= HEAD or arrangement == "a signal to a row",
+        notes=tuple(notes),
+        guesses=tuple(guesses),
+        thousands=thousands,
+        quoted=quoted,
+        wrapped=wrapped,
+        arrangement=arrangement,
+        foot=_foot(lines, main, tail, grammar) if end is not None and len(main) == 1 else (),
+    )
+
+
+def _foot(
+    lines: Sequence[str], main: Sequence[Block], tail: Sequence[str], grammar: Grammar
+) -> tuple[str, ...]:
+    """Return the lines below the table."""
+    if not tail:
+        return tuple(lines[main[-1].stop :])
+    last = max((n for n, row in enumerate(tail, 1) if grammar.width(row)), default=len(tail))
+    return tuple(tail[last:])
+
+
+def _go_on(lines: Sequence[str], main: Sequence[Block], grammar: Grammar) -> bool:
+    """Whether one column goes on from line to line: as many numbers as the text above says."""
+    first = main[0]
+    if len(main) > 1 or first.heading is not None or not 1 < first.width <= _MOST_IN_A_LINE:
+        return False
+    count = numbers_in("\n".join(lines[first.start :]), grammar.delimiter)
+    above = (_COUNT.search(line[:_LONGEST]) for line in lines[: first.start])
+    return len(first.rows) > 1 and count in {int(match[1]) for match in above if match}

@@ -1,0 +1,1 @@
+"""The proposed dialect: shown, asked about, written."""

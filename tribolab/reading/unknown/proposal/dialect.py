@@ -1,0 +1,312 @@
+"""The dialect that reads a file as it was understood."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any, NamedTuple, overload
+
+from pydantic import BaseModel
+
+from tribolab.errors import ReadError, TribolabError
+from tribolab.reading.dialect.column_rule import Column
+from tribolab.reading.dialect.file_layout import TEXT_CONTAINERS, Header, Text
+from tribolab.reading.dialect.model import Derived, Dialect
+from tribolab.reading.dialect.time_rule import Time
+from tribolab.reading.dialect.value_rule import Value
+from tribolab.reading.dialect.write import plain
+from tribolab.reading.interpret.amounts import Amount
+from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.text.dates import has_day
+from tribolab.reading.unknown.columns.rotating_parts import torque_of
+from tribolab.reading.unknown.derivations.derive import what_follows
+from tribolab.reading.unknown.derivations.model import SAYS_FRICTION, SAYS_LOAD, Follows
+from tribolab.reading.unknown.header.profiles import find_pitch, find_profile_length, find_stated
+from tribolab.reading.unknown.header.settings import numeric_settings
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.reading.unknown.model import DraftColumn, Understood
+
+_MOST = 12  # values that a long preamble states
+
+
+class Described(NamedTuple):
+    """What was understood of a file, as a dialect says it.
+
+    `stated` are single values of the file that are used, `proposed` others.
+    """
+
+    layout: Layout
+    understood: Understood
+    follows: Follows
+    stated: tuple[Amount, ...]
+    proposed: tuple[Amount, ...]
+
+    @property
+    def columns(self) -> list[DraftColumn]:
+        """The columns that are read as quantities."""
+        taken = {column.place for _, column in self.follows.symbols}
+        return [c for c in self.understood.columns if c.used and c.place not in taken]
+
+    @property
+    def load(self) -> str:
+        """The load that a person stated, where nothing else tells it."""
+        return self.understood.load if self.lacks_load else ""
+
+    @property
+    def lacks_load(self) -> bool:
+        """Whether a run holds friction, and nothing that presses."""
+        columns, known = self.understood.columns, self.known
+        if self.understood.kind != "run" or any(column.fill_in for column in columns):
+            return False
+        held = known & SAYS_FRICTION or torque_of(columns) is not None
+        return bool(held) and not known & SAYS_LOAD
+
+    @property
+    def known(self) -> set[str]:
+        """Quantities that columns hold, if only their unit is missing, or that follow."""
+        columns = self.understood.columns
+        known = {c.quantity for c in columns if c.quantity and (c.used or c.fill_in)}
+        return known | {formula.quantity for formula in self.follows.formulas}
+
+
+def describe(layout: Layout, understood: Understood) -> Described:
+    """Return what a dialect has to say of a file.
+
+    Parameters
+    ----------
+    layout, understood
+        What was found out about the file.
+    """
+    follows = what_follows(layout, understood)
+    proposed, stated = _values(layout, understood, follows)
+    if layout.delimiter == "whitespace":
+        layout = layout._replace(
+            header_pattern=any_blanks(layout.header_pattern),
+            step=any_blanks(layout.step),
+            end=any_blanks(layout.end),
+            skip_lines=any_blanks(layout.skip_lines),
+        )
+        understood = understood._replace(rate_pattern=any_blanks(understood.rate_pattern))
+        proposed = [value._replace(pattern=any_blanks(value.pattern)) for value in proposed]
+        stated = [value._replace(pattern=any_blanks(value.pattern)) for value in stated]
+    used = {value.pattern for value in stated}
+    proposed = [value for value in proposed if value.pattern not in used]
+    return Described(layout, understood, follows, tuple(stated), tuple(proposed))
+
+
+def dialect_of(name: str, described: Described) -> Dialect:
+    """Return the dialect that reads a file as it was understood.
+
+    Parameters
+    ----------
+    name
+        Name of the dialect.
+    described
+        From `describe`.
+
+    Raises
+    ------
+    ReadError
+        If no dialect can describe the file.
+    """
+    layout, understood, follows, stated, _ = described
+    held = layout.held
+    form = held.form if held is not None else "text"
+    text = {"arrangement": form} if form in TEXT_CONTAINERS else {}
+    formulas = [
+        formula_content(formula.quantity, formula.formula, formula.zero, formula.way)
+        for formula in follows.formulas
+    ]
+    if described.load:
+        formulas.append(formula_content("normal_force", f"'{described.load}'"))
+    content = {
+        "name": name,
+        "title": plain(f"files like {layout.file.path.name}"),
+        "format": None if text or form == "text" else form,
+        "recognise": _recognise(described),
+        "text": set_keys(Text, text if held is not None else _text(layout, understood)),
+        "header": set_keys(Header, _header(layout) if held is None else _sheet(layout)),
+        "tables": {"steps": held.steps} if held is not None and held.steps else None,
+        "time": set_keys(Time, _time(understood)),
+        "rows": {"are": "points"} if understood.points else None,
+        "speed": _speed(described),
+        "pitch": understood.pitch or None,
+        "pitch_value": "pitch" if understood.pitch_pattern else None,
+        "length_value": "profile_length" if understood.length_pattern else None,
+        "column": [
+            *map(column_content, described.columns),
+            *(column_content(c, symbol) for symbol, c in follows.symbols),
+        ],
+        "value": [*map(value_content, stated)],
+        "derived": formulas,
+    }
+    try:
+        return Dialect.model_validate({key: said for key, said in content.items() if said})
+    except (ValueError, TribolabError) as error:
+        raise ReadError(
+            f"the file was understood, but no dialect can say it: {error}", where=layout.file.path
+        ) from error
+
+
+def set_keys(model: type[BaseModel], content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what is said otherwise than by default."""
+    fields = model.model_fields
+    return {key: said for key, said in content.items() if said != fields[key].default}
+
+
+def column_content(column: DraftColumn, symbol: str = "") -> dict[str, Any]:
+    """Return what [[column]] says of a column, which a symbol may name for formulas."""
+    said = {
+        **({"symbol": symbol} if symbol else {"quantity": column.quantity}),
+        "name": column.name,
+        "position": column.place if column.name is None else None,
+        "occurrence": column.occurrence if column.name is not None else 1,
+        "group": column.group or None,
+        "unit": column.unit,
+        "scale": column.scale,
+        "offset": column.offset,
+        "sign": column.sign,
+        "zero": column.zero or None,
+        "optional": column.optional,
+    }
+    return set_keys(Column, said)
+
+
+def value_content(value: Amount) -> dict[str, Any]:
+    """Return what [[value]] says of a single value."""
+    keys = ("name", "source", "pattern", "unit", "scale", "to")
+    return set_keys(Value, {key: getattr(value, key) for key in keys})
+
+
+def formula_content(quantity: str, formula: str, zero: str = "", way: str = "") -> dict[str, Any]:
+    """Return what [[derived]] says of a quantity that follows from others."""
+    said = {"quantity": quantity, "formula": formula, "zero": zero or None, "way": way or "both"}
+    return set_keys(Derived, said)
+
+
+def _recognise(described: Described) -> Mapping[str, Any]:
+    layout = described.layout
+    if not layout.heading:
+        return {"columns": layout.width}
+    if layout.held is not None and layout.held.form == "tdms" and not layout.held.steps:
+        return {}  # channels of groups are not known by their names alone
+    names = (c.name for c in described.columns if c.name and not c.optional)
+    return {"header": tuple(dict.fromkeys(names))}
+
+
+def _text(layout: Layout, understood: Understood) -> Mapping[str, Any]:
+    return {
+        "encoding": layout.encoding,
+        "delimiter": layout.delimiter,
+        "decimal": "," if layout.decimal != "." or layout.quoted else ".",
+        "arrangement": layout.arrangement,
+        "wrapped": layout.wrapped,
+        "thousands": layout.thousands,
+        "missing": understood.missing,
+        "end": layout.end or None,
+        "skip_lines": layout.skip_lines or None,
+    }
+
+
+def _sheet(layout: Layout) -> Mapping[str, Any]:
+    held = layout.held
+    if held is None or not (held.form == "excel" if held.steps else held.sheet):
+        return {}
+    units = "row" if held.units_below else "brackets"
+    sheet = None if held.steps else held.sheet
+    return {"line": held.line, "units": units, "sheet": sheet}
+
+
+def _header(layout: Layout) -> Mapping[str, Any]:
+    heading = layout.heading
+    if not heading:
+        return {"skip": layout.skip}
+    units = "row" if heading.units is not None else "brackets"
+    units = units if heading.aligned else "dialect"
+    between = heading.units - heading.names if heading.units is not None else 0
+    return {
+        "line": None if layout.header_pattern else layout.header_line,
+        "pattern": layout.header_pattern or None,
+        "units": units,
+        "units_line": max(layout.units_line, 1) if units == "row" else 1,
+        "repeats": layout.repeats,
+        "step": layout.step or None,
+        "skip": layout.skip + (between if units == "dialect" else 0),
+    }
+
+
+def _time(understood: Understood) -> dict[str, Any]:
+    clocks = [c for c in understood.columns if c.used and c.quantity == "time"]
+    said: dict[str, Any] = {"restart": "continue" if understood.restart else "error"}
+    if understood.on_repeat:
+        said["on_repeat"] = understood.on_repeat
+    for column in (c for c in understood.columns if c.used):
+        if column.form:
+            said["format"] = column.form
+            if not has_day(column.form):
+                hours = "%H" in column.form or "%I" in column.form
+                said["wrap"] = "24 h" if hours else "60 min"
+        elif column.epoch:
+            said["epoch"] = column.epoch
+    if clocks:
+        said["source"] = "period" if understood.period else "column"
+    elif understood.rate_pattern:
+        paced = converts(understood.rate_unit, "m/s")  # as fast as a machine goes on
+        said["source"] = "position" if paced else "rate"
+        said |= {"rate_pattern": understood.rate_pattern, "rate_unit": understood.rate_unit}
+    elif understood.rate:
+        said |= {"source": "rate", "rate": understood.rate}
+    else:
+        said["source"] = "none"
+    return said
+
+
+def _speed(described: Described) -> Mapping[str, Any]:
+    speed = described.follows.speed
+    if speed is not None:
+        return {"source": speed.source, **dict(speed.settings)}
+    names = {column.quantity for column in described.understood.columns if column.used}
+    if described.understood.kind == "run" and "sliding_velocity" in names:
+        return {}
+    with_position = described.understood.kind == "run" and "position" in names
+    return {"source": "position" if with_position else "none"}
+
+
+def _values(
+    layout: Layout, understood: Understood, follows: Follows
+) -> tuple[list[Amount], list[Amount]]:
+    """Return the single values that the file states, and those of them that are used."""
+    used = list(follows.values)
+    if understood.kind != "scan":
+        return list(numeric_settings(layout)), used
+    values = list(numeric_settings(layout, bare=True))
+    pitch = find_pitch(layout) if understood.pitch_pattern else None
+    pitch = find_profile_length(layout) if understood.length_pattern else pitch
+    if pitch is not None:
+        values = [pitch, *(value for value in values if value.text != pitch.text)]
+        used.append(pitch)
+    quantities = {column.quantity for column in understood.columns if column.used}
+    if "y" not in quantities:
+        known = {value.pattern for value in used}
+        stated = find_stated(layout, placed="x" in quantities)
+        used += [value for value in stated if value.pattern not in known]
+    return values[:_MOST], used
+
+
+@overload
+def any_blanks(pattern: str) -> str: ...
+
+
+@overload
+def any_blanks(pattern: str | None) -> str | None: ...
+
+
+def any_blanks(pattern: str | None) -> str | None:
+    r"""Return a pattern that holds for any number of blanks or tabs where it has some.
+
+    In a table whose cells are separated by blanks, the reader sees one tab for each run of blanks.
+
+    >>> any_blanks(r"^\s*# sample  rate:\s*(\d+)")
+    '^\\s*#[ \\t]+sample[ \\t]+rate:\\s*(\\d+)'
+    """
+    return None if pattern is None else re.sub(r"(?:(?<!\\) |\\t)+", r"[ \\t]+", pattern)

@@ -1,0 +1,159 @@
+"""What was understood of an unknown file, and the dialect that reads it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+
+from tribolab.errors import TribolabError, shown
+from tribolab.quantities import unit_conversion
+from tribolab.reading.dialect.model import Dialect
+from tribolab.reading.dialect.write import FILL_IN, dialect_toml
+from tribolab.reading.runs.read_run import read_log
+from tribolab.reading.unknown.columns.text_evidence import unused_force_columns
+from tribolab.reading.unknown.derivations.derive import what_follows
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.reading.unknown.model import Kind, Understood
+from tribolab.reading.unknown.proposal.dialect import Described, describe, dialect_of
+from tribolab.reading.unknown.proposal.remarks import remarks_of
+
+SHOWN = 10  # rows shown as understood
+
+
+@dataclass(frozen=True, eq=False)
+class Drafted:
+    """What was understood of a file.
+
+    Attributes
+    ----------
+    path, name
+        The file, and the name of the dialect.
+    kind
+        ``run``, ``scan``, or ``table``: numbers that are neither, for which there is no dialect.
+    layout, understood
+        How the file is written and what its columns hold; None for a file of results.
+    answer
+        For a table: what the file is, and what reads it.
+    cells
+        The first rows as they stand in the file.
+    known
+        The known instrument that reads the file already; empty if there is none.
+    """
+
+    path: Path
+    name: str
+    kind: Kind
+    layout: Layout | None = None
+    understood: Understood | None = None
+    answer: str = ""
+    cells: tuple[tuple[str, ...], ...] = ()
+    known: str = ""
+
+    @cached_property
+    def _described(self) -> Described | None:
+        if self.kind == "table" or self.layout is None or self.understood is None:
+            return None
+        return describe(self.layout, self.understood)
+
+    @cached_property
+    def dialect(self) -> Dialect | None:
+        """The dialect; None for a table.
+
+        Raises
+        ------
+        ReadError
+            If no dialect can describe the file.
+        """
+        return None if self._described is None else dialect_of(self.name, self._described)
+
+    @cached_property
+    def toml(self) -> str:
+        """The dialect as TOML, with remarks as comments; empty for a table."""
+        if self.dialect is None or self._described is None:
+            return ""
+        return dialect_toml(self.dialect, remarks_of(self._described))
+
+    def with_understood(self, understood: Understood) -> Self:
+        """Return the draft of a file that is understood otherwise."""
+        return replace(self, kind=understood.kind, understood=understood)
+
+    @property
+    def named(self) -> bool:
+        """Whether names in a header, and not the numbers alone, say what the columns hold."""
+        columns = self.understood.columns if self.understood else ()
+        if any(column.label and column.quantity for column in columns):
+            return True
+        if self.layout is None or self.understood is None or self.kind != "run":
+            return False
+        # what a text states of signals that have numbers for names
+        return any(c.label for _, c in what_follows(self.layout, self.understood).symbols)
+
+    @property
+    def guesses(self) -> tuple[str, ...]:
+        """What was guessed, in the order of the file."""
+        if self.layout is None or self.understood is None:
+            return ()
+        columns = [
+            f"column {column.place}"
+            + (f" '{shown(column.label)}': " if column.label else ": ")
+            + guess
+            for column in self.understood.columns
+            for guess in column.guessed
+        ]
+        follows = what_follows(self.layout, self.understood)
+        speed = [follows.speed.guess] if follows.speed is not None and follows.speed.guess else []
+        used = {column.place for _, column in follows.symbols}
+        speed += unused_force_columns(self.layout, self.understood.columns, used)
+        return (
+            *self.layout.notes,
+            *self.layout.guesses,
+            *self.understood.guesses,
+            *columns,
+            *speed,
+            *(value.guess for value in follows.values if value.guess),
+        )
+
+    @property
+    def to_fill_in(self) -> Mapping[int, str]:
+        """Lines of the TOML that want to be filled in, and with what."""
+        return {
+            number: line.split(f"{FILL_IN}: ", 1)[1].removesuffix(", then remove the '#' below")
+            for number, line in enumerate(self.toml.splitlines(), start=1)
+            if FILL_IN in line
+        }
+
+    def first_rows(self, number: int = SHOWN) -> dict[str, np.ndarray]:
+        """Return the first rows in SI, by quantity."""
+        if self.understood is None:
+            return {}
+        rows = {}
+        for column in self.understood.columns:
+            if column.used and column.quantity:
+                scale, offset = unit_conversion(column.read_unit or "", column.quantity)
+                values = self.understood.numbers[:number, column.place - 1]
+                values = column.sign * (column.scale * values + column.offset)
+                rows[column.quantity] = scale * values + offset
+        return rows
+
+    def signals(self) -> dict[str, np.ndarray]:
+        """Return all signals in SI, by quantity; of a short run those that follow from others, too.
+
+        They are as the dialect reads them, if it does: a clock that starts anew is joined.
+        """
+        if self.understood is None:
+            return {}
+        columns = self.first_rows(len(self.understood.numbers))
+        dialect = self.dialect
+        if self.kind != "run" or dialect is None or self.layout is None or not self.layout.whole:
+            return columns
+        try:
+            log = read_log(self.path, dialect)
+        except TribolabError:  # something is to be filled in yet
+            return columns
+        read = {"time": log.time, **log.columns}
+        return {name: read[name] for name in (*columns, *read) if name in read}

@@ -1,0 +1,334 @@
+"""What a file of an unknown instrument leaves open: guesses, and what else may be meant."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Collection, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from tribolab.errors import ReadError, shown
+from tribolab.quantities import quantity
+from tribolab.reading import cures
+from tribolab.reading.interpret.missing import MissingInput
+from tribolab.reading.interpret.phrases import phrases
+from tribolab.reading.interpret.unit_texts import converts
+from tribolab.reading.raw.source import check_regular
+from tribolab.reading.text.cells import split_name
+from tribolab.reading.unknown.columns.rotating_parts import torque_of
+from tribolab.reading.unknown.columns.text_evidence import unused_force_columns
+from tribolab.reading.unknown.derivations.candidate_lines import candidate_lines
+from tribolab.reading.unknown.derivations.derive import what_follows
+from tribolab.reading.unknown.derivations.missing_inputs import Uncalibrated, lacking, unknown_of
+from tribolab.reading.unknown.derivations.model import Follows
+from tribolab.reading.unknown.header.settings import lines_without_unit
+from tribolab.reading.unknown.header.zero import STILL
+from tribolab.reading.unknown.layout.step_marks import further_words, is_numbered
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.reading.unknown.model import NO_NUMBERS, DraftColumn, Understood
+from tribolab.reading.unknown.proposal.model import Drafted
+from tribolab.unit_names import WEIGHTS
+
+COUNTED = "heights in counts, of which the file does not say how much one is"
+HEIGHTS = (
+    "heights without positions, of which the file does not say how far they lie apart: that is to "
+    'be filled in, pitch = "(a length)"'
+)
+_OF_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
+_WANTED = {*_OF_FRICTION, "normal_force", "normal_stress", "sliding_velocity", "position", "time"}
+_LIKE_NUMBER = re.compile(r"[<>~]?\s*[+-]?\d[\d.,' ]*(?:[eE][+-]?\d+)?\s*[A-Za-z%µ°/]{0,6}")
+_TOLD = 12  # questions of one file that are told in a line
+_LINES = 3  # of five, that say what is unclear or missing
+_LISTED = 6  # columns that are listed as understood
+_UNKNOWN = "no known instrument writes such a file, and it does not say all itself"
+_MOST_BESIDE = 50  # descriptions in the file's folder that are looked at
+_RADII = ("another length",)
+_RATE = ("a sample rate, e.g. 100 Hz", "a column of time")
+
+
+class Question(NamedTuple):
+    """One thing that the file does not say: about what, the guess, what else it may be."""
+
+    about: str
+    guess: str
+    options: tuple[str, ...] = ()
+
+    @property
+    def line(self) -> str:
+        """All of it in a line."""
+        others = f" (or {', '.join(self.options)})" if self.options else ""
+        return f"{self.about}: {self.guess}{others}"
+
+
+_COMMENTS = ("#", "%", "//")
+_FORCES = ("normal_force", "set_normal_force")
+_MOTIONS = ("sliding_velocity", "rotation_speed", "position", "set_speed", "rolling_speed")
+
+
+def questions(draft: Drafted) -> list[Question]:
+    """Return what had to be guessed of a file, or is missing; none if its header says it all.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.reading.unknown.proposal.draft.draft_dialect`.
+    """
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return []
+    asked = [Question("table", guess) for guess in (*layout.guesses, *understood.guesses)]
+    if layout.skip_lines and not _are_titles(layout, understood):
+        asked.append(Question("lines of text", "the table goes on below", ("it ends there",)))
+    if (
+        understood.kind == "run"
+        and not (understood.rate_pattern or understood.rate or understood.points)
+        and not any(c.used and c.quantity == "time" for c in understood.columns)
+    ):
+        asked.append(Question("time", "rows are counted as seconds", _RATE))
+    asked += _of_texts(understood)
+    follows = what_follows(layout, understood)
+    if understood.kind == "run":
+        places = {column.place for _, column in follows.symbols}
+        aside = unused_force_columns(layout, understood.columns, places)
+        asked += [Question("forces", said, ("to be taken off, or added",)) for said in aside]
+    asked += _of_roles(understood, follows)
+    held = {column.quantity for column in understood.columns if column.used}
+    asks = any(column.guessed or column.fill_in for column in understood.columns)
+    if understood.kind == "scan" and "height" not in held and not asks:
+        names = [f"column {c.place} '{shown(c.label, 20)}'" for c in understood.columns]
+        asked.append(Question("heights", "no column is known to hold them", (*names,)))
+    moves = bool(held & {"sliding_velocity", "position"}) and "time" in held
+    for column in understood.columns:
+        if moves and column.quantity == "rotation_speed" and column.fill_in:
+            continue  # how it moves is told without it
+        if column.guessed or column.fill_in:
+            asked.append(_of_column(column))
+    return asked
+
+
+def _are_titles(layout: Layout, understood: Understood) -> bool:
+    """Whether all lines of text between the rows are comments, or titles of steps counted on.
+
+    What titles say besides has to be what a column holds, too: a load or a radius of each step
+    alone would be lost.
+    """
+    skipped = re.compile(layout.skip_lines or "$^")
+    between = [
+        line
+        for block in layout.blocks
+        for line in layout.lines[block.start : block.stop]
+        if line.strip() and skipped.match(line)
+    ]
+    if is_numbered(between) or all(line.lstrip().startswith(_COMMENTS) for line in between):
+        return True
+    said = further_words(between)
+    if said is None:
+        return False
+    names = {c.quantity for c in understood.columns if c.used}
+    units = {phrase.unit for words in said for phrase in phrases(words)}
+    return all(_is_held(unit, names) for unit in units)
+
+
+def _is_held(unit: str, names: Collection[str | None]) -> bool:
+    """Whether what is stated in a unit is held by a column, too, or is no setting of a contact."""
+    for si_unit, held in (("N", _FORCES), ("m/s", _MOTIONS), ("rad/s", _MOTIONS), ("m", ())):
+        if converts(unit, si_unit):
+            return any(name in names for name in held)
+    return unit not in WEIGHTS
+
+
+def _of_texts(understood: Understood) -> list[Question]:
+    """Ask for what is written where numbers should stand: nothing of it is lost in silence."""
+    asked = []
+    held = {column.quantity for column in understood.columns if column.used}
+    for column in understood.columns:
+        if column.note.startswith(NO_NUMBERS) and column.quantity in _WANTED - held:
+            about = f"column {column.place} '{shown(column.label, 30)}'"
+            asked.append(Question(about, f"left out, {column.note}"))
+    if understood.kind == "run":
+        odd = [word for word in understood.missing if _LIKE_NUMBER.fullmatch(word)]
+        asked += [Question("cells", f"'{shown(word, 20)}' is taken for no value") for word in odd]
+    return asked
+
+
+def _of_roles(understood: Understood, follows: Follows) -> list[Question]:
+    """Ask what drives the motion, and for the friction where a column of unknown name may be it."""
+    asked = []
+    if follows.speed is not None and follows.speed.guess:
+        asked.append(Question("speed", follows.speed.guess, follows.speed.options))
+    if follows.zero_in_doubt is not None:
+        guess = f"'{follows.zero_in_doubt.text}' was taken off the signal"
+        asked.append(Question("zero", guess, (STILL,)))
+    asked += [Question("radius", v.guess, _RADII) for v in follows.values if v.guess]
+    names = {column.quantity for column in understood.columns}
+    names |= {formula.quantity for formula in follows.formulas}
+    unknown = unknown_of(understood.columns)
+    torque = torque_of(understood.columns) is not None
+    if understood.kind == "run" and unknown and not torque and not names & _OF_FRICTION:
+        options = tuple(f"column {c.place} '{shown(c.label, 30)}'" for c in unknown[:_TOLD])
+        asked.append(Question("friction", "no column is known to hold it", options))
+    return asked
+
+
+def _of_column(column: DraftColumn) -> Question:
+    about = f"column {column.place}" + (f" '{shown(column.label, 30)}'" if column.label else "")
+    guess = "; ".join(column.guessed)
+    if column.fill_in and (column.counted or column.read_unit is None):
+        asks = "what is one count?" if column.counted else "in which unit?"
+        unsaid = f"{column.quantity}, {asks}"
+        guess = f"{guess}; {unsaid}" if guess else unsaid
+    return Question(about, guess, tuple(dict.fromkeys(column.options)))
+
+
+def lacks_friction(draft: Drafted) -> bool:
+    """Whether a run holds a torque of which no radius is known, and no friction else.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.reading.unknown.proposal.draft.draft_dialect`.
+    """
+    lacks = (lack for lack in _lacks(draft) if lack.member != "friction_force")
+    return any("friction" in lack.goals for lack in lacks)
+
+
+def missing_words(draft: Drafted) -> list[str]:
+    """Return what a run's file does not say and a friction coefficient over speed needs.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.reading.unknown.proposal.draft.draft_dialect`.
+    """
+    lacks = _lacks(draft)
+    unused = [f"the unit of '{line}', which is not used" for line in _unused(draft, lacks)]
+    if draft.layout is None or draft.understood is None:
+        return [str(lack) for lack in lacks] + unused
+    follows = what_follows(draft.layout, draft.understood)
+    told = [(str(lack), candidate_lines(draft.layout, follows, lack.member)) for lack in lacks]
+    return [lack + (f"; is it {line}?" if line else "") for lack, line in told] + unused
+
+
+def without_unit_and_missed(draft: Drafted) -> list[str]:
+    """Return the lines that may say what a run lacks, had they a unit: 'Stroke=12'.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.reading.unknown.proposal.draft.draft_dialect`.
+    """
+    return _unused(draft, _lacks(draft))
+
+
+def _lacks(draft: Drafted) -> list[MissingInput | Uncalibrated]:
+    if draft.layout is None or draft.understood is None or draft.kind != "run":
+        return []
+    return lacking(draft.understood, what_follows(draft.layout, draft.understood))
+
+
+def _unused(draft: Drafted, lacks: Sequence[object]) -> list[str]:
+    lines = lines_without_unit(draft.layout) if draft.layout and lacks else []
+    return [shown(line, 40) for line in lines]
+
+
+def unsaid_distance(draft: Drafted) -> str:
+    """Return what heights without positions leave open, with the line that says too little of it.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.reading.unknown.proposal.draft.draft_dialect`; its answer is `HEIGHTS`.
+    """
+    lines = lines_without_unit(draft.layout, bare=True) if draft.layout else []
+    said = ", ".join(f"'{shown(line, 40)}'" for line in lines)
+    return f"{HEIGHTS}; of {said} the unit is not said" if lines else HEIGHTS
+
+
+class GuessedError(ReadError):
+    """A file could be read only by guessing: at most five lines say what is open.
+
+    In a campaign everything stands in one line.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        asked: Sequence[Question],
+        table: str = cures.RUN,
+        lacks: Sequence[str] = (),
+        understood: Sequence[str] = (),
+    ) -> None:
+        super().__init__(_UNKNOWN, where=path, cure=cures.unknown_instrument(path, table))
+        self.args = (path, tuple(asked), table, tuple(lacks), tuple(understood))
+        self.asked = tuple(asked)
+        self.lacks = tuple(lacks)
+        self.understood = tuple(understood)
+
+    def told(self, audience: str) -> str:
+        """Return the message for an audience."""
+        cure = self.cure if isinstance(self.cure, str) else self.cure.told(audience)
+        unclear = [f"Unclear: {question.line}" for question in self.asked]
+        missing = [f"Missing: {lack}" for lack in self.lacks]
+        told = f"Understood: {', '.join(self.understood) or 'nothing yet'}"
+        if audience == "campaign":
+            lines = [question.line for question in self.asked[:_TOLD]]
+            lines += _and_more(len(self.asked) - _TOLD)
+            said = [f"unclear: {'; '.join(lines)}"] if lines else []
+            said += [f"missing: {'; '.join(self.lacks)}"] if self.lacks else []
+            return "; ".join([f"{self.where}: {self.what}", *said, cure])
+        kept = [f"--instrument {name} is a description of it" for name in _drafts_of(self.where)]
+        first = unclear[: max(_LINES - len(missing), _LINES - 1)]
+        lines = [*first, *missing[: _LINES - len(first)]]
+        more = " ".join(_and_more(len(unclear) + len(missing) - len(lines)))
+        lines[-1:] = [f"{line} ({more})" if more else line for line in lines[-1:]]
+        return "\n".join([f"{self.where}: {self.what}. {told}", *lines, *(kept or [cure])])
+
+
+def _and_more(count: int) -> list[str]:
+    return [f"and {count} more"] if count > 0 else []
+
+
+def understood_columns(draft: Drafted) -> list[str]:
+    """Return the columns that are understood: quantity, name in the file, unit.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.reading.unknown.proposal.draft.draft_dialect`.
+    """
+    said = []
+    for column in draft.understood.columns if draft.understood else ():
+        if column.used and column.quantity and not column.guessed:
+            name = split_name(column.label)[0]
+            label = f"'{shown(name, 20)}'" if name else f"in column {column.place}"
+            unit = column.read_unit or quantity(column.quantity).unit
+            said.append(f"{column.quantity} {label}" + ("" if unit == "1" else f" ({unit})"))
+    return said[:_LISTED] + _and_more(len(said) - _LISTED)
+
+
+def _drafts_of(path: object) -> list[str]:
+    """Return the descriptions beside a file that were drafted from it, as they are named there."""
+    file = Path(str(path))
+    first = f"# Drafted from '{file.name}'."
+    found = []
+    for beside in sorted(file.parent.glob("*.toml"))[:_MOST_BESIDE]:
+        try:
+            check_regular(beside)
+            with beside.open(encoding="utf-8") as text:
+                found += [str(beside)] if text.readline().startswith(first) else []
+        except (OSError, ValueError, ReadError):
+            continue
+    return found[:1]
+
+
+def how_to_keep(path: Path | str) -> str:
+    """Return the command that writes down what is drafted from a file, by its name or as given.
+
+    >>> how_to_keep(Path("raw/odd one.csv"))
+    "tribolab info 'odd one.csv' --write my.toml"
+    >>> how_to_keep("raw/odd one.csv")
+    "tribolab info 'raw/odd one.csv' --write my.toml"
+    """
+    file = shlex.quote(path.name if isinstance(path, Path) else path)
+    return f"tribolab info {file} --write my.toml"

@@ -1,0 +1,212 @@
+"""Read a run of any instrument: one that is not known is described from its file, if that says all.
+
+The face of `tribolab.reading.runs.read_run` for whoever does not know beforehand what wrote a file.
+"""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, Unpack
+
+from tribolab.aliases import PathLike
+from tribolab.errors import LacksError, ReadError
+from tribolab.reading import cures
+from tribolab.reading.dialect.find import Dialect, Instrument, UnknownFileError
+from tribolab.reading.raw.source import read_unchanged
+from tribolab.reading.runs import read_run as runs
+from tribolab.reading.signals import Signals
+from tribolab.reading.text.first_bytes import peek
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from tribolab.reading.unknown.proposal.draft import Draft
+
+DRAFTED = "drafted from the file"
+
+
+class _Described(Protocol):
+    """A run in any form: it has attributes."""
+
+    @property
+    def attrs(self) -> dict[Any, Any]: ...
+
+
+_Run = TypeVar("_Run", bound=_Described)
+_Reader = Callable[[Instrument | None, bool], _Run]
+
+
+def read_run(
+    path: PathLike | Sequence[PathLike],
+    instrument: Instrument | None = None,
+    **said: Unpack[runs.Reading],
+) -> xr.Dataset:
+    """Read one run; a file that no dialect knows is read by one that is drafted from it.
+
+    Parameters
+    ----------
+    path, instrument, **said
+        As for `tribolab.reading.runs.read_run.read_run`.
+
+    Returns
+    -------
+    xarray.Dataset
+        As from `tribolab.read`. Of what was drafted, ``instrument`` says so, ``to_keep_it``
+        how to write it down, ``without_unit`` what could not be used for want of a unit,
+        ``left_out`` columns that are doubtful and not needed, and
+        ``drafted_layout`` is one checksum for files of one layout.
+
+    Raises
+    ------
+    ReadError
+        If the file cannot be read; of one that says too little itself, with the guesses.
+    ConfigError
+        If there is no such instrument.
+    """
+    paths = [Path(path)] if isinstance(path, PathLike) else [Path(name) for name in path]
+
+    def read(dialect: Instrument | None, drafted: bool) -> xr.Dataset:
+        how: runs.Reading = {**said, "pair": False} if drafted else said
+        return runs.read_run(path, dialect, **how)
+
+    return read_unchanged(paths, lambda: _by_any(paths, instrument, read))
+
+
+def read_log(path: PathLike, instrument: Instrument | None = None) -> Signals:
+    """Read one raw file by itself, as arrays; see `read_run` and `read_run.read_log`."""
+
+    def read(dialect: Instrument | None, _: bool) -> Signals:
+        return runs.read_log(path, dialect)
+
+    file = Path(path)
+    return read_unchanged([file], lambda: _by_any([file], instrument, read))
+
+
+def _by_any(paths: list[Path], instrument: Instrument | None, read: _Reader[_Run]) -> _Run:
+    """Read by the dialect that is known, else by one that is drafted from the file."""
+    told: dict[str, str] = {}
+    try:
+        return read(instrument, False)
+    except UnknownFileError as error:
+        if Path(error.where) != paths[0]:
+            raise  # some files of the run are a known instrument's
+        dialect = _drafted(paths[0], error)
+    except LacksError as error:
+        other = None if instrument is not None or len(paths) > 1 else _says_all(paths[0])
+        if other is None:
+            raise
+        dialect, told = other, {"known_layout_lacks": str(error.what)}
+    run = read(dialect, True)
+    run.attrs.update(_told(paths[0]) | told)
+    return run
+
+
+def holds_run(path: Path, *, by_name: bool = True) -> bool:
+    """Whether a file that no dialect knows holds a run, by names in its header or at all."""
+    draft = draft_of(path)
+    if draft is None:
+        return _holds_signals(path)
+    in_columns = draft.layout is not None and draft.layout.held is not None  # which have names
+    return draft.kind == "run" and (draft.named or not by_name or in_columns)
+
+
+def _holds_signals(path: Path) -> bool:
+    """Whether a file is of a format that no profilometer writes."""
+    try:
+        return peek(path).format in ("tdms", "parquet", "feather")
+    except ReadError:
+        return False
+
+
+def _drafted(path: Path, error: UnknownFileError) -> Dialect:
+    """Return the dialect that a file's own header makes; else say what it leaves open."""
+    # late: starting stays quick
+    from tribolab.reading.unknown.proposal.optional_columns import leave_out_doubtful
+    from tribolab.reading.unknown.proposal.questions import (
+        COUNTED,
+        HEIGHTS,
+        GuessedError,
+        lacks_friction,
+        missing_words,
+        questions,
+        understood_columns,
+    )
+
+    draft = draft_of(path)
+    if draft is not None and draft.answer.startswith((HEIGHTS, COUNTED)):
+        raise ReadError(draft.answer, where=path, cure=error.cure) from error
+    if draft is None or draft.kind == "table":
+        raise error
+    draft, _ = leave_out_doubtful(draft)
+    asked = questions(draft)
+    known = understood_columns(draft)
+    if unsaid := lacks_distance(draft):
+        raise GuessedError(path, asked, cures.SURFACE, unsaid, known) from error
+    if asked or lacks_friction(draft):
+        raise GuessedError(path, asked, cures.RUN, missing_words(draft), known) from error
+    if draft.kind == "scan" and peek(path).format != "text":
+        raise error
+    if draft.kind == "scan":
+        what = "no known instrument writes such a file; it looks like a profile or map"
+        raise ReadError(what, where=path, cure=cures.PROFILE) from error
+    assert draft.dialect is not None  # only tables have none
+    return draft.dialect
+
+
+def lacks_distance(draft: Draft) -> list[str]:
+    """Return what is missing of the distance of a profile's points; empty if nothing is."""
+    understood = draft.understood
+    return [understood.lacks] if understood is not None and understood.lacks else []
+
+
+def _says_all(path: Path) -> Dialect | None:
+    """Return the dialect that a file's own header makes, if it leaves nothing open."""
+    # late: starting stays quick
+    from tribolab.reading.unknown.proposal.questions import missing_words, questions
+
+    draft = draft_of(path)
+    if draft is None or draft.kind != "run" or questions(draft) or missing_words(draft):
+        return None
+    return draft.dialect
+
+
+def draft_of(path: Path) -> Draft | None:
+    """Draft a dialect; None of what it cannot be drafted from, or holds no table."""
+    try:
+        status = path.stat()
+        return _draft_as_it_was(path, status.st_size, status.st_mtime_ns)
+    except (ReadError, OSError, ImportError):
+        return None
+
+
+@functools.lru_cache(maxsize=1)  # whether it is a run is asked just before it is read
+def _draft_as_it_was(path: Path, size: int, changed: int) -> Draft:
+    # late: starting stays quick
+    from tribolab.reading.unknown.proposal.draft import draft_dialect
+
+    return draft_dialect(path)
+
+
+def _told(path: Path) -> dict[str, str]:
+    # late: starting stays quick
+    from tribolab.reading.unknown.proposal.optional_columns import leave_out_doubtful
+    from tribolab.reading.unknown.proposal.questions import how_to_keep, without_unit_and_missed
+
+    told = {"instrument": DRAFTED, "to_keep_it": how_to_keep(path)}
+    draft = draft_of(path)
+    if draft is None:
+        return told
+    draft, left = leave_out_doubtful(draft)
+    told |= {"left_out": "; ".join(left)} if left else {}
+    missed = without_unit_and_missed(draft)
+    told |= {"without_unit": "; ".join(missed)} if missed else {}
+    return {**told, "drafted_layout": _checksum(draft)}
+
+
+def _checksum(draft: Draft) -> str:
+    """Return what files of one layout have in common: the dialect, but for its name."""
+    said = "" if draft.dialect is None else draft.dialect.model_dump_json(exclude={"name", "title"})
+    return hashlib.sha256(said.encode()).hexdigest()[:16]
