@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 from reporting import made_outcome, made_run, with_run
 
+from tribolab.figures.spec import Axis, FigureSpec, Panel, Series
 from tribolab.qc.flags import attach
-from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series
 from tribolab.report.results import write_report
 
 RUNS = [
@@ -173,7 +173,7 @@ def live_of(data):
     panels = tuple(Panel(*pair) for pair in axes)
     series = tuple(Series(**one) for one in data["series"])
     words = dict.fromkeys(("section", "title", "note", "alt"), "")
-    return LiveFigure(**words | data | {"panels": panels, "series": series})
+    return FigureSpec(**words | data | {"panels": panels, "series": series})
 
 
 def _unpacked(text):

@@ -16,8 +16,8 @@ from reporting import SPEEDS, made_curve, made_run
 import tribolab as tl
 from tribolab import plot
 from tribolab.errors import AnalysisError
-from tribolab.plot.look.style import DOUBLE_MM, SINGLE_MM, surface_styles
-from tribolab.plot.runs.signals import main_signal
+from tribolab.figures.look.style import DOUBLE_MM, SINGLE_MM, surface_styles
+from tribolab.figures.signals import main_signal
 from tribolab.reading.netcdf.netcdf import write_netcdf
 from tribolab.report.figures.sliding import Shown, SlipFigure, draw_sliding
 from tribolab.stamping import stamp

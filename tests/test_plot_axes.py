@@ -222,4 +222,4 @@ def test_what_is_drawn_later_comes_into_sight_and_into_the_legend(drawings):
     axes.legend()
     assert axes.get_xlim()[0] < 1e-9 and axes.get_ylim()[1] > 9
     names = [text.get_text() for text in axes.get_legend().get_texts()]
-    assert names == ["measured", "model", OWN]
+    assert names == ["model", "measured", OWN]

@@ -8,7 +8,7 @@ from matplotlib.colors import to_hex
 
 from tribolab import plot
 from tribolab.errors import AnalysisError
-from tribolab.plot.look.style import BLUE, GREEN, VERMILLION
+from tribolab.figures.look.style import BLUE, GREEN, VERMILLION
 from tribolab.stamping import stamp
 
 NAMES = ("Smooth", "Sb-S", "Sb-R")

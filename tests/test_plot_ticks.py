@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from matplotlib.ticker import LogLocator
 
+from tribolab.figures.look.decades import SmallTicks, power_of_ten
+from tribolab.figures.look.frame import logarithmic
+from tribolab.figures.look.guests import one_panel
 from tribolab.plot import svg
-from tribolab.plot.look.decades import SmallTicks, power_of_ten
-from tribolab.plot.look.frame import logarithmic
-from tribolab.plot.look.panel import one_panel
 
 
 @pytest.mark.parametrize(

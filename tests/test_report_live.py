@@ -80,12 +80,12 @@ def test_the_first_screen_is_the_answer(browser, results):
 @pytest.mark.slow
 def test_points_say_what_their_error_holds_and_lead_to_their_run(browser, results):
     series = figures_of(results)["card-1"]["series"][0]
-    words = series["told"][0]
+    words = series["hover"][0]
     assert "(U95, between runs)" in words and "U95 within one run: " in words
     # only the uncertainty of the mean has a ±
     assert "mean of 3 runs\n" in words and words.count("±") == 1
     assert "scatter of the runs: 0.016" in words
-    assert re.search(r"\d+ independent samples\nsb-r_1$", series["told"][0])
+    assert re.search(r"\d+ independent samples\nsb-r_1$", series["hover"][0])
     with browser.page(results / "report.html") as page:
         drawn(page, "card-1")
         page.run(
@@ -102,7 +102,7 @@ def test_points_say_what_their_error_holds_and_lead_to_their_run(browser, result
             " return [told.textContent, of(told).bottom < point.top || of(told).top > point.bottom]"
             " })()"
         )
-        assert words == series["told"][0] and apart
+        assert words == series["hover"][0] and apart
         page.click("#card-1 .points .point")
         page.wait("document.querySelector('#run-1').open && location.hash === '#run-1'")
 

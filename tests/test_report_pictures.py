@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from report_pages import DRAW_ALL, OPEN_ALL, figures_of, live_of
 
-from tribolab.report.live.axes import comparable
-from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, legend, plain_data
-from tribolab.report.live.still import first_view
+from tribolab.figures.axes import comparable
+from tribolab.figures.page.still import first_view
+from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, legend, plain_data
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +75,7 @@ def figure_of(*series, x=None, y=None):
     """A figure of made-up series, in as many panels as they say."""
     panel = Panel(x or Axis("x"), y or Axis("y"))
     count = 1 + max(one.panel for one in series)
-    return LiveFigure("made", "", "", "", "", (panel,) * count, series)
+    return FigureSpec("made", "", "", "", "", (panel,) * count, series)
 
 
 WIDE = [1e-6, 1e-4, 1e-2]
@@ -94,10 +94,10 @@ KINDS = {
     ),
     "compared with others": figure_of(
         Series("a", WIDE, [1.0, 0.2, 0.01], "points"),
-        x=Axis("v", log=True, also=(1e-8, 1e-3)),
-        y=Axis("mu", log=True, also=(1e-3, 2.0)),
+        x=Axis("v", log=True, include=(1e-8, 1e-3)),
+        y=Axis("mu", log=True, include=(1e-3, 2.0)),
     ),
-    "compared, linear": figure_of(Series("a", WIDE, WIDE), y=Axis("y", also=(-2.0, 1.0))),
+    "compared, linear": figure_of(Series("a", WIDE, WIDE), y=Axis("y", include=(-2.0, 1.0))),
     "panels": figure_of(
         Series("a", [1.0, 2.0], [2.0, 2.1]), Series("b", [0.0, 9.0], [-3, 4], panel=1)
     ),
@@ -121,8 +121,8 @@ def test_figures_that_are_compared_show_the_same_and_all_of_it():
         for mu, errors in (([1.0, 0.2, 0.01], [0.5, 0.1, 0.001]), ([2.0, 2.0, 1.5], [0.1] * 3))
     )
     panel = comparable([(figure.panels[0], figure.series) for figure in (one, other)])
-    assert panel.x.also == (1e-6, 1e-2)
-    assert panel.y.also == pytest.approx((0.009, 2.1))
+    assert panel.x.include == (1e-6, 1e-2)
+    assert panel.y.include == pytest.approx((0.009, 2.1))
     seen = [first_view(replace(figure, panels=(panel,)))[1] for figure in (one, other)]
     assert seen[0] == seen[1]
 
@@ -157,7 +157,7 @@ def test_a_picture_of_any_kind_has_the_limits_of_the_live_figure(browser, result
 def test_one_point_or_noise_in_a_last_digit_does_not_fill_an_axis(y, low, high):
     points = Series("a", [1e-3] * len(y), y, style="points", error=[6e-5] * len(y))
     axes = (Axis("v", log=True), Axis("mu", log=True))
-    figure = LiveFigure("one", "one", "", "", "", (Panel(*axes),), (points,))
+    figure = FigureSpec("one", "one", "", "", "", (Panel(*axes),), (points,))
     across, up = first_view(figure)[1][0]
     assert 10**across.low < 0.6e-3 and 10**across.high > 1.6e-3
     assert low < 10**up.low < 0.3 and 0.34 < 10**up.high < high

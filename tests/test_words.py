@@ -82,10 +82,10 @@ def words_of_the_field():
 NO_SENTENCES = {
     "campaign/store/catalogue.py",
     "reading/unknown/proposal/show.py",
-    "plot/look/style.py",
-    "report/live/axes.py",
-    "report/live/marks.py",
-    "report/live/still.py",
+    "figures/axes.py",
+    "figures/look/style.py",
+    "figures/page/marks.py",
+    "figures/page/still.py",
     "trials.py",
     "unit_display.py",
 }

@@ -38,7 +38,7 @@ class Picture:
     def address(self) -> str:
         """The figure as an address that holds it."""
         # late: starting stays quick
-        from tribolab.plot.look.style import svg
+        from tribolab.figures.look.style import svg
 
         return data_address(svg(self.figure))
 

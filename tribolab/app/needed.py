@@ -29,7 +29,7 @@ ANALYSIS = (
     "tribolab.mode.evidence",
     "tribolab.mode.words",
     "matplotlib.backends.backend_svg",
-    "tribolab.plot.friction.curves",
+    "tribolab.figures.curves",
     "tribolab.plot.surface.spectra",
     "tribolab.plot.surface.contact",
     "tribolab.plot.model.mixed",

@@ -6,10 +6,10 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tribolab.plot.friction.curves import half_loop, stribeck
-    from tribolab.plot.friction.spread import friction_spread
-    from tribolab.plot.look.knobs import knobs
-    from tribolab.plot.look.style import figure_data, paper_style, save, svg
+    from tribolab.figures.curves import friction_spread, half_loop, stribeck
+    from tribolab.figures.envelope import envelope
+    from tribolab.figures.look.knobs import knobs
+    from tribolab.figures.look.style import figure_data, paper_style, save, svg
     from tribolab.plot.metrology.budget import uncertainty_budget
     from tribolab.plot.metrology.compared import differences, forest
     from tribolab.plot.metrology.over_time import control
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
         shear_stress_over_speed,
     )
     from tribolab.plot.model.sensitivity import model_sensitivity
-    from tribolab.plot.runs.reduce import envelope
     from tribolab.plot.runs.starts import cycles, static_friction
     from tribolab.plot.runs.strokes import strokes
     from tribolab.plot.runs.trace import trace
@@ -51,25 +50,25 @@ _HOMES = {
     "control": "tribolab.plot.metrology.over_time",
     "cycles": "tribolab.plot.runs.starts",
     "differences": "tribolab.plot.metrology.compared",
-    "envelope": "tribolab.plot.runs.reduce",
-    "figure_data": "tribolab.plot.look.style",
+    "envelope": "tribolab.figures.envelope",
+    "figure_data": "tribolab.figures.look.style",
     "film_profiles": "tribolab.plot.model.film",
     "forest": "tribolab.plot.metrology.compared",
     "friction_factor_effect": "tribolab.plot.model.mixed",
-    "friction_spread": "tribolab.plot.friction.spread",
+    "friction_spread": "tribolab.figures.curves",
     "gaps": "tribolab.plot.surface.contact",
-    "half_loop": "tribolab.plot.friction.curves",
+    "half_loop": "tribolab.figures.curves",
     "joint_fit": "tribolab.plot.model.joint",
-    "knobs": "tribolab.plot.look.knobs",
+    "knobs": "tribolab.figures.look.knobs",
     "line_pressure": "tribolab.plot.surface.contact",
     "lubrication_factors": "tribolab.plot.model.film",
     "mixed_curve": "tribolab.plot.model.mixed",
     "model_sensitivity": "tribolab.plot.model.sensitivity",
     "modulus": "tribolab.plot.surface.spectra",
-    "paper_style": "tribolab.plot.look.style",
+    "paper_style": "tribolab.figures.look.style",
     "precision": "tribolab.plot.metrology.repeats",
     "runs_needed": "tribolab.plot.metrology.planned",
-    "save": "tribolab.plot.look.style",
+    "save": "tribolab.figures.look.style",
     "shear_stress": "tribolab.plot.model.mixed",
     "shear_stress_over_speed": "tribolab.plot.model.mixed",
     "slip_events": "tribolab.plot.slip.stick_slip",
@@ -78,9 +77,9 @@ _HOMES = {
     "slip_traces": "tribolab.plot.slip.stick_slip",
     "spectra": "tribolab.plot.surface.spectra",
     "static_friction": "tribolab.plot.runs.starts",
-    "stribeck": "tribolab.plot.friction.curves",
+    "stribeck": "tribolab.figures.curves",
     "strokes": "tribolab.plot.runs.strokes",
-    "svg": "tribolab.plot.look.style",
+    "svg": "tribolab.figures.look.style",
     "trace": "tribolab.plot.runs.trace",
     "uncertainty_budget": "tribolab.plot.metrology.budget",
     "viscoelastic": "tribolab.plot.surface.spectra",

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
+from tribolab.figures.labels import column
 from tribolab.friction.coefficient.steadiness import STEADINESS_WORDS
-from tribolab.plot.look.labels import column
 from tribolab.records.parts import Row
 from tribolab.records.wording import plain_value
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribolab.plot.look.labels import column
+from tribolab.figures.labels import column
 from tribolab.records.part_records import SurfaceRows
 from tribolab.records.parts import Row
 from tribolab.records.wording import plain_value, validity_of

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tribolab.figures.envelope import envelope_index
+from tribolab.figures.signals import Signal, main_signal
 from tribolab.pieces import one_by_one, samples_where
-from tribolab.plot.runs.reduce import envelope_index
-from tribolab.plot.runs.signals import Signal, main_signal
 from tribolab.qc.flags import FAIL, SUSPECT
 from tribolab.quantities import quantity
 from tribolab.records.packed import Clock, clock_of, packed_points

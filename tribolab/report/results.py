@@ -11,6 +11,7 @@ from tribolab.campaign.engine.stage import Progress, begun, silent
 from tribolab.campaign.joint.stage import JointFits
 from tribolab.campaign.modes import Modes
 from tribolab.campaign.recorded import done_and_failed
+from tribolab.figures.spec import FigureSpec
 from tribolab.records.joint_record import JointRecord
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord, FigureRecord, ModelRecord, SurfaceRecord
@@ -34,7 +35,6 @@ from tribolab.report.figures.sliding import draw_sliding, plan_sliding_figures
 from tribolab.report.figures.stage import Figures, FigureTask, planned
 from tribolab.report.figures.surfaces import draw_surfaces, plan_surface_figures
 from tribolab.report.live.along import MOST_RUNS, Strokes, along_figures, strokes_of
-from tribolab.report.live.figure import LiveFigure
 from tribolab.report.live.gather import begun_live_figures
 from tribolab.report.live.points import RunPoint, run_points
 from tribolab.report.page.page import prepare_page, write_page
@@ -179,7 +179,7 @@ def _documents(outcome: Outcome) -> Iterator[Json]:
 
 def _runs(
     outcome: Outcome,
-) -> tuple[list[Json], list[Notice], dict[str, list[RunPoint]], list[LiveFigure]]:
+) -> tuple[list[Json], list[Notice], dict[str, list[RunPoint]], list[FigureSpec]]:
     """Return what is brief of every run and said of it, its friction over speed and by strokes."""
     briefs: list[Json] = []
     said: list[Notice] = []

@@ -6,10 +6,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tribolab.metrology.budget_result import UncertaintyBudget
-from tribolab.plot.look.labels import plain
-from tribolab.plot.look.panel import name_all, name_panel, several_panels
-from tribolab.plot.look.style import (
+from tribolab.figures.labels import plain
+from tribolab.figures.look.guests import name_all, name_panel, several_panels
+from tribolab.figures.look.style import (
     BLUE,
     GREY,
     ORANGE,
@@ -20,6 +19,7 @@ from tribolab.plot.look.style import (
     new_figure,
     tidy,
 )
+from tribolab.metrology.budget_result import UncertaintyBudget
 
 _ROW, _FRAME = 5.0, 20.0  # mm, of a bar and of what is around them
 _SMALL = 1e-3  # of the largest part: less is no bar

@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.look.frame import legend_above, speed_axis
-from tribolab.plot.look.labels import plain
-from tribolab.plot.look.panel import name_all, name_panel, one_panel, whole_figure
-from tribolab.plot.look.style import (
+from tribolab.figures.labels import plain
+from tribolab.figures.look.frame import legend_above, speed_axis
+from tribolab.figures.look.guests import name_all, name_panel, one_panel, whole_figure
+from tribolab.figures.look.style import (
     BLUE,
     DOUBLE_MM,
     GREY,

@@ -9,9 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.look.labels import plain
-from tribolab.plot.look.panel import one_panel
-from tribolab.plot.look.style import BLUE, GREY, ORANGE, VERMILLION, keep
+from tribolab.figures.labels import plain
+from tribolab.figures.look.guests import one_panel
+from tribolab.figures.look.style import BLUE, GREY, ORANGE, VERMILLION, keep
 
 
 def control(table: pd.DataFrame, *, title: str = "", ax: Axes | None = None) -> Figure:

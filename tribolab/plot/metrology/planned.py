@@ -8,10 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.look.frame import speed_axis
-from tribolab.plot.look.labels import plain
-from tribolab.plot.look.panel import one_panel
-from tribolab.plot.look.style import (
+from tribolab.figures.labels import plain
+from tribolab.figures.look.frame import speed_axis
+from tribolab.figures.look.guests import one_panel
+from tribolab.figures.look.style import (
     condition_style,
     keep,
 )

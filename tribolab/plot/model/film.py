@@ -11,10 +11,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.typing import LineStyleType
 
-from tribolab.plot.look.frame import colours, logarithmic, name_surfaces
-from tribolab.plot.look.labels import plain
-from tribolab.plot.look.panel import Panels, name_all, name_panel, several_panels
-from tribolab.plot.look.style import (
+from tribolab.figures.labels import plain
+from tribolab.figures.look.frame import colours, logarithmic, name_surfaces
+from tribolab.figures.look.guests import Panels, name_all, name_panel, several_panels
+from tribolab.figures.look.style import (
     DOUBLE_MM,
     GREY,
     PaperFigure,

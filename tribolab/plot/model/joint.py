@@ -11,11 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from tribolab.plot.look.error_bars import COVERAGE
-from tribolab.plot.look.frame import shaded_band, speed_axis
-from tribolab.plot.look.labels import column, label, plain
-from tribolab.plot.look.panel import Panels, name_all, name_panel, several_panels
-from tribolab.plot.look.style import (
+from tribolab.figures.error_bars import COVERAGE
+from tribolab.figures.labels import column, label, plain
+from tribolab.figures.look.frame import shaded_band, speed_axis
+from tribolab.figures.look.guests import Panels, name_all, name_panel, several_panels
+from tribolab.figures.look.style import (
     GREY,
     LOAD_MARKERS,
     SINGLE_MM,

@@ -12,8 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from tribolab.plot.look.error_bars import COVERAGE, ErrorBars, draw_error_bars, error_bar
-from tribolab.plot.look.frame import (
+from tribolab.figures.error_bars import COVERAGE, ErrorBars, draw_error_bars, error_bar
+from tribolab.figures.labels import column, label, plain
+from tribolab.figures.look.frame import (
     SurfaceOrSeveral,
     by_surface,
     colours,
@@ -21,9 +22,8 @@ from tribolab.plot.look.frame import (
     shaded_band,
     speed_axis,
 )
-from tribolab.plot.look.labels import column, label, plain
-from tribolab.plot.look.panel import Panels, name_all, name_panel, one_panel, several_panels
-from tribolab.plot.look.style import (
+from tribolab.figures.look.guests import Panels, name_all, name_panel, one_panel, several_panels
+from tribolab.figures.look.style import (
     BLACK,
     GREY,
     SINGLE_MM,

@@ -9,10 +9,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tribolab.plot.look.frame import logarithmic, shaded_band
-from tribolab.plot.look.labels import label, plain
-from tribolab.plot.look.panel import Panels, name_all, name_panel, several_panels
-from tribolab.plot.look.style import (
+from tribolab.figures.labels import label, plain
+from tribolab.figures.look.frame import logarithmic, shaded_band
+from tribolab.figures.look.guests import Panels, name_all, name_panel, several_panels
+from tribolab.figures.look.style import (
     BLUE,
     DOUBLE_MM,
     GREY,

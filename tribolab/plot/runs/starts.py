@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.look.frame import logarithmic
-from tribolab.plot.look.labels import column, label
-from tribolab.plot.look.panel import one_panel
-from tribolab.plot.look.style import BLACK, BLUE, GREEN, GREY, PURPLE, SKY, VERMILLION, keep
+from tribolab.figures.labels import column, label
+from tribolab.figures.look.frame import logarithmic
+from tribolab.figures.look.guests import one_panel
+from tribolab.figures.look.style import BLACK, BLUE, GREEN, GREY, PURPLE, SKY, VERMILLION, keep
 
 _COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, SKY)
 _WIDE = 10.0  # ratio of the longest to the shortest rest from which their axis is logarithmic

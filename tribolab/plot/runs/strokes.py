@@ -15,9 +15,10 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Bbox, TransformedBbox
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.look.labels import column, plain
-from tribolab.plot.look.panel import whole_figure
-from tribolab.plot.look.style import (
+from tribolab.figures.envelope import envelope
+from tribolab.figures.labels import column, plain
+from tribolab.figures.look.guests import whole_figure
+from tribolab.figures.look.style import (
     BACKWARD,
     DOUBLE_MM,
     FORWARD,
@@ -27,8 +28,7 @@ from tribolab.plot.look.style import (
     new_figure,
     paper_style,
 )
-from tribolab.plot.runs.reduce import envelope
-from tribolab.plot.runs.signals import Signal, Stroke, main_signal, strokes_of
+from tribolab.figures.signals import Signal, Stroke, main_signal, strokes_of
 from tribolab.untyped import Arguments
 from tribolab.words import MINUS, aligned, number, speed_text
 

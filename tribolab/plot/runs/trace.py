@@ -14,9 +14,10 @@ from matplotlib.path import Path
 from matplotlib.ticker import FixedLocator, NullLocator
 from matplotlib.transforms import blended_transform_factory
 
-from tribolab.plot.look.labels import column, label, plain
-from tribolab.plot.look.panel import Panels, name_all, name_panel, several_panels, width_mm
-from tribolab.plot.look.style import (
+from tribolab.figures.envelope import envelope
+from tribolab.figures.labels import column, label, plain
+from tribolab.figures.look.guests import Panels, name_all, name_panel, several_panels, width_mm
+from tribolab.figures.look.style import (
     BACKWARD,
     DOUBLE_MM,
     FORWARD,
@@ -28,8 +29,7 @@ from tribolab.plot.look.style import (
     new_figure,
     tidy,
 )
-from tribolab.plot.runs.reduce import envelope
-from tribolab.plot.runs.signals import Signal, Stroke, main_signal, strokes_of
+from tribolab.figures.signals import Signal, Stroke, main_signal, strokes_of
 from tribolab.words import speed_text
 
 _COLUMNS = 420  # pixel columns of a double-column panel: two to a typographic point

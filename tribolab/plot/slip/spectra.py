@@ -10,11 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.look.frame import logarithmic
-from tribolab.plot.look.labels import plain
-from tribolab.plot.look.panel import Panels, name_all, several_panels
-from tribolab.plot.look.several import RunLabel, by_label
-from tribolab.plot.look.style import (
+from tribolab.figures.labels import plain
+from tribolab.figures.look.frame import logarithmic
+from tribolab.figures.look.guests import Panels, name_all, several_panels
+from tribolab.figures.look.several import RunLabel, by_label
+from tribolab.figures.look.style import (
     BLACK,
     DOUBLE_MM,
     ORANGE,

@@ -11,11 +11,11 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.look.decades import power_of_ten
-from tribolab.plot.look.frame import logarithmic
-from tribolab.plot.look.labels import plain
-from tribolab.plot.look.panel import Panels, several_panels
-from tribolab.plot.look.style import BLACK, DOUBLE_MM, PaperFigure, keep, margins, new_figure
+from tribolab.figures.labels import plain
+from tribolab.figures.look.decades import power_of_ten
+from tribolab.figures.look.frame import logarithmic
+from tribolab.figures.look.guests import Panels, several_panels
+from tribolab.figures.look.style import BLACK, DOUBLE_MM, PaperFigure, keep, margins, new_figure
 from tribolab.untyped import Arguments
 from tribolab.words import speed_text
 

@@ -13,13 +13,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
-from tribolab.friction.oscillation.slip_curve import one_curve
-from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR
-from tribolab.plot.look.frame import colours, logarithmic
-from tribolab.plot.look.labels import plain
-from tribolab.plot.look.panel import Panels, name_all, several_panels
-from tribolab.plot.look.several import OneOrSeveral, RunLabel, by_label, parts
-from tribolab.plot.look.style import (
+from tribolab.figures.envelope import envelope
+from tribolab.figures.labels import plain
+from tribolab.figures.look.frame import colours, logarithmic
+from tribolab.figures.look.guests import Panels, name_all, several_panels
+from tribolab.figures.look.several import OneOrSeveral, RunLabel, by_label, parts
+from tribolab.figures.look.style import (
     BLACK,
     DOUBLE_MM,
     GREY,
@@ -32,8 +31,9 @@ from tribolab.plot.look.style import (
     new_figure,
     shade,
 )
-from tribolab.plot.runs.reduce import envelope
-from tribolab.plot.runs.signals import main_signal
+from tribolab.figures.signals import main_signal
+from tribolab.friction.oscillation.slip_curve import one_curve
+from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR
 from tribolab.untyped import Arguments
 from tribolab.words import number
 

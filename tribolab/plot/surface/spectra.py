@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.look.frame import (
+from tribolab.figures.labels import column, label, plain
+from tribolab.figures.look.frame import (
     SurfaceOrSeveral,
     by_surface,
     colours,
@@ -19,9 +20,8 @@ from tribolab.plot.look.frame import (
     name_surfaces,
     shaded_band,
 )
-from tribolab.plot.look.labels import column, label, plain
-from tribolab.plot.look.panel import one_panel
-from tribolab.plot.look.style import BLACK, VERMILLION, keep
+from tribolab.figures.look.guests import one_panel
+from tribolab.figures.look.style import BLACK, VERMILLION, keep
 
 _MEASURED = 0
 

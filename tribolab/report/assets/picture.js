@@ -2,6 +2,13 @@
 // One figure as the library wants it: from what it shows, its traces and its layout.
 report.Picture = (() => {
   const { HUES, DARKER, SYMBOLS, DASHES, FONT, PAPER, HALF, THIRD, isOneOfMany, still, state, isDark, text, lines, force, axis, heightOf } = report.drawing;
+  // Loads of one surface are shades of its colour: towards the ink for low loads, towards the paper for high ones.
+  function shaded(hue, shade) {
+    if (!shade) return hue;
+    const target = shade < 0 === isDark() ? 255 : 0, part = Math.abs(shade);
+    return `#${[1, 3, 5].map((at) => Math.round(parseInt(hue.slice(at, at + 2), 16) * (1 - part) + target * part).toString(16).padStart(2, "0")).join("")}`;
+  }
+
   const MOST_LABELS = 8; // in the legend of a card
 
   return class {
@@ -52,19 +59,20 @@ report.Picture = (() => {
       const marking = report.view.get("mark"), shown = this.shown(), named = this.named(shown);
       for (const one of shown) {
         const panel = one.panel ?? 0, place = one.colour ?? 0, style = one.style ?? "line";
-        const hue = hues[place % hues.length];
+        const hue = shaded(hues[place % hues.length], one.shade ?? 0);
         const faded = marking && !report.view.marks([one.label, ...(one.runs ?? [])].join(" "));
         const base = {
           name: text(one.label), legendrank: style === "band" ? 1001 : 1000, legendgroup: one.label, showlegend: named.has(one.label) && !seen.has(one.label) && (style !== "band" || named.get(one.label) === "band"),
           x: one.x, y: one.y, xaxis: axis("x", panel), yaxis: axis("y", panel), opacity: faded ? 0.15 : 1,
-          visible: this.off.get(one.label) ? "legendonly" : true, meta: one.goes_to,
-          hovertemplate: `${lines(one.told?.length === 1 ? one.told[0] : one.label)}<br>%{x}, %{y}<extra></extra>`,
+          visible: this.off.get(one.label) ? "legendonly" : true, meta: one.link,
+          hovertemplate: `${lines(one.hover?.length === 1 ? one.hover[0] : one.label)}<br>%{x}, %{y}<extra></extra>`,
         };
         // what is told of a point stands beside it, see tellOf
-        if (one.told?.length > 1 || (one.told?.length && style === "points")) Object.assign(base, { customdata: one.x.map((_, k) => one.told[k] ?? one.told[0]), hoverinfo: "none", hovertemplate: null });
+        if (one.hover?.length > 1 || (one.hover?.length && style === "points")) Object.assign(base, { customdata: one.x.map((_, k) => one.hover[k] ?? one.hover[0]), hoverinfo: "none", hovertemplate: null });
         if (base.showlegend) seen.add(one.label);
-        const symbol = SYMBOLS[place % SYMBOLS.length] + (one.open ? "-open" : "");
-        if (style === "points") traces.push({ ...base, mode: "markers", marker: { color: hue, size: 8, symbol, line: { width: one.open ? 1.6 : 0, color: hue } }, ...this.bars(one, hue) });
+        const symbol = SYMBOLS[(one.marker ?? place) % SYMBOLS.length] + (one.open ? "-open" : "");
+        const size = one.sizes ? one.sizes.map((area) => 8 * Math.sqrt(area ?? 0)) : 8;
+        if (style === "points") traces.push({ ...base, mode: one.joined ? "lines+markers" : "markers", line: { color: hue, width: 1, dash: one.open ? "dash" : "solid" }, marker: { color: hue, size, symbol, line: { width: one.open ? 1.6 : 0, color: hue } }, ...this.bars(one, hue) });
         else if (style === "band") traces.push(...this.band(one, base, hue));
         else if (style === "bars") traces.push({ ...base, type: "bar", orientation: "h", textposition: "none", marker: { color: hue } });
         // colours are levels here, so conditions are told by their markers, in the legend too
@@ -77,8 +85,9 @@ report.Picture = (() => {
     bars(one, hue) {
       if (!one.error?.some((value) => value > 0)) return {};
       const array = one.error.map((value) => value ?? 0), { least } = this.data.panels[one.panel ?? 0].y;
-      const below = least === undefined ? {} : { symmetric: false, arrayminus: array.map((value, k) => Math.max(0, Math.min(value, one.y[k] - least))) };
-      return { error_y: { type: "data", array, ...below, color: hue, thickness: 1.4, width: 4 } };
+      const foot = one.error_below?.map((value) => value ?? 0) ?? array, rows = typeof one.y[0] === "string";
+      const below = least === undefined && foot === array ? {} : { symmetric: false, arrayminus: least === undefined ? foot : foot.map((value, k) => Math.max(0, Math.min(value, one.y[k] - least))) };
+      return { [rows ? "error_x" : "error_y"]: { type: "data", array, ...below, color: hue, thickness: one.pale ? 4 : 1.4, width: 4 } };
     }
 
     band(one, base, hue) {
@@ -91,8 +100,18 @@ report.Picture = (() => {
       ];
     }
 
+    // Straight lines across a panel, and shaded stretches of it.
+    get lines() {
+      const hues = isDark() ? DARKER : HUES, dashes = { ...DASHES, line: "solid" };
+      return (this.data.marks ?? []).map(({ side, value, until, style, colour = 6, opacity = 1, panel = 0 }) => {
+        const ends = [value, until ?? value], hue = hues[colour % hues.length], own = axis(side, panel), other = `${axis(side === "x" ? "y" : "x", panel)} domain`;
+        const along = side === "x" ? { x0: ends[0], x1: ends[1], y0: 0, y1: 1, xref: own, yref: other } : { y0: ends[0], y1: ends[1], x0: 0, x1: 1, yref: own, xref: other };
+        return until === undefined ? { type: "line", layer: "below", ...along, opacity, line: { color: hue, width: 1, dash: dashes[style ?? "line"] } } : { type: "rect", layer: "below", ...along, opacity, fillcolor: hue, line: { width: 0 } };
+      });
+    }
+
     // Bands may reach far beyond what was measured: the first view is that of points and lines.
-    // The picture that stands here before (live/axes.py) shows the same.
+    // The picture that stands here before (figures/axes.py) shows the same.
     range(side, panel) {
       const log = this.isLog(side, panel), names = side === "y" ? this.names(panel) : 0;
       if (names) return [-0.5, names - 0.5];
@@ -104,11 +123,11 @@ report.Picture = (() => {
         if ((one.panel ?? 0) !== panel || one.style === "band" || this.off.get(one.label)) continue;
         const values = side === "x" ? one.x : one.y;
         for (let k = 0; k < values.length; k++) {
-          const value = values[k], bar = side === "y" ? one.error?.[k] ?? 0 : 0;
+          const value = values[k], bar = (side === "y") === (typeof one.y[k] === "number") ? one.error?.[k] ?? 0 : 0, under = bar && (one.error_below?.[k] ?? bar);
           if (typeof value !== "number") continue;
           if (side === "y" && !within(one.x[k])) continue;
           const foot = one.style === "bars" ? [log ? 0.8 * value : 0] : []; // where a bar begins
-          for (const end of [Math.max(value - bar, least), value + bar, value, ...foot]) {
+          for (const end of [Math.max(value - under, least), value + bar, value, ...foot]) {
             if (log && !(end > 0)) continue;
             if (log && end < value / 20) continue;
             low = Math.min(low, end);
@@ -116,7 +135,7 @@ report.Picture = (() => {
           }
         }
       }
-      for (const end of this.data.panels[panel][side].also ?? []) if (!log || end > 0) [low, high] = [Math.min(low, end), Math.max(high, end)];
+      for (const end of this.data.panels[panel][side].include ?? []) if (!log || end > 0) [low, high] = [Math.min(low, end), Math.max(high, end)];
       if (!(high >= low)) return undefined;
       const decades = this.data.panels[panel][side].decades;
       if (log) [low, high] = [Math.log10(low), Math.log10(high)];
@@ -152,7 +171,7 @@ report.Picture = (() => {
         margin: { l: 64, r: 14, t: 10, b: 48 }, showlegend: this.written > 1,
         hoverlabel: { align: "left", bgcolor: dark ? "#1d2329" : "#ffffff", bordercolor: grid, font: { color: ink, size: narrow ? 12 : 13 } },
         legend: { orientation: "h", x: 0, y: 1.02, yanchor: "bottom", font: { size: small ? 9 : narrow ? 11 : 12 }, maxheight: this.sizes.cut ? this.sizes.legend : undefined, groupclick: "togglegroup", itemsizing: "constant" },
-        shapes: this.shapes?.() ?? [],
+        shapes: this.shapes?.() ?? this.lines,
         ...(this.more?.() ?? {}),
       };
       const gap = 0.09, tall = (1 - gap * (count - 1)) / count;
@@ -184,7 +203,7 @@ report.Picture = (() => {
       return layout;
     }
 
-    // A band stands in the legend where it has a name that no line or point has (live/figure.py).
+    // A band stands in the legend where it has a name that no line or point has (figures/spec.py).
     named(shown) {
       const named = new Map();
       for (const one of shown) if (one.style !== "band") named.set(one.label, one.style);

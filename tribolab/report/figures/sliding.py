@@ -12,8 +12,8 @@ import numpy as np
 from tribolab import plot
 from tribolab.campaign.curves import SLIP
 from tribolab.campaign.store.data_files import read_data
+from tribolab.figures.signals import LOOKED_AT
 from tribolab.friction.decisions.rejected import kept
-from tribolab.plot.runs.signals import LOOKED_AT
 from tribolab.reading.netcdf.netcdf import read_groups
 from tribolab.records.mode_record import ModeRecord, condition
 from tribolab.report.figures.files import Drawn

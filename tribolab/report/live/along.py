@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.plot.runs.reduce import envelope_index
+from tribolab.figures.envelope import envelope_index
+from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, places
 from tribolab.records.parts import Row, number_of
 from tribolab.records.same_speed import of_one_speed
-from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, places
 from tribolab.words import many
 
 MOST_RUNS = 8  # that are shown
@@ -58,7 +58,7 @@ def strokes_of(name: str, segments: Sequence[Row]) -> Strokes | None:
     return Strokes(name, time[order], mu[order])
 
 
-def along_figures(strokes: Sequence[Strokes], count: int) -> list[LiveFigure]:
+def along_figures(strokes: Sequence[Strokes], count: int) -> list[FigureSpec]:
     """Return the figure of friction from stroke to stroke, if there are runs with many.
 
     Parameters
@@ -81,14 +81,14 @@ def along_figures(strokes: Sequence[Strokes], count: int) -> list[LiveFigure]:
                 each.mu[kept],
                 style="points",
                 colour=colours[each.run],
-                told=(each.run,),
+                hover=(each.run,),
                 runs=(each.run,),
-                goes_to=(each.run,),
+                link=(each.run,),
             )
         )
     which = f" The first {len(strokes)} of {count} such runs." if count > len(strokes) else ""
     return [
-        LiveFigure(
+        FigureSpec(
             id="curves-along",
             section="curves",
             title="Friction from stroke to stroke",

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from tribolab.figures.colours import surface_colours
+from tribolab.figures.curves import FRICTION_AXIS, SPEED_AXIS
+from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, SeriesLabels, places
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import number_of
 from tribolab.records.wording import with_error
 from tribolab.report.live.curves import (
-    FRICTION_AXIS,
-    SPEED_AXIS,
     FrictionOverSpeed,
     labels_of,
     system_name,
     systems,
     told_apart,
 )
-from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, SeriesLabels, places
 from tribolab.report.live.points import RunPoint, of_curve
 from tribolab.report.plain import plain_speed
 from tribolab.words import force_text, load_text, many, number, span
@@ -25,12 +25,12 @@ _SHARE = Axis("µ over its highest value")
 _HALF = 0.5
 
 
-def comparisons(known: FrictionOverSpeed) -> list[LiveFigure]:
+def comparisons(known: FrictionOverSpeed) -> list[FigureSpec]:
     """Return all curves relative to their highest friction, and all single runs of repeats.
 
     What a curve itself is stands in its card and is not repeated.
     """
-    colours = places([*known.surfaces, *(curve.outcome.surface for curve in known.curves)])
+    colours = surface_colours([*known.surfaces, *(c.outcome.surface for c in known.curves)])
     return [*_falling(known, colours), _every_run(known, colours)]
 
 
@@ -39,7 +39,7 @@ def _load(curve: CurveRecord) -> str:
     return load_text(None, curve.outcome.load_from) if force is None else force_text(force)
 
 
-def _falling(known: FrictionOverSpeed, colours: Mapping[str, int]) -> list[LiveFigure]:
+def _falling(known: FrictionOverSpeed, colours: Mapping[str, int]) -> list[FigureSpec]:
     """Return at which speed each curve leaves its highest friction; of one alone nothing."""
     alone = len(systems(known)) == 1  # then loads are compared, and have the colours
     loads = places(map(_load, known.curves))
@@ -54,7 +54,7 @@ def _falling(known: FrictionOverSpeed, colours: Mapping[str, int]) -> list[LiveF
         return []
     speeds = [v for drawn in series for v in drawn.x]
     half = Series("half of it", [min(speeds), max(speeds)], [_HALF, _HALF], "dotted", colour=6)
-    figure = LiveFigure(
+    figure = FigureSpec(
         id="curves-compared",
         section="curves",
         title="At which speed friction falls",
@@ -91,17 +91,17 @@ def _shares(curve: CurveRecord, label: str, colour: int) -> Series | None:
         style="points",
         colour=colour,
         error=errors,
-        told=[
+        hover=[
             f"v = {plain_speed(number_of(row, 'sliding_speed_m_s'))}\n"
             f"{with_error(share, error)} of {number(top)}, the highest µ"
             for row, share, error in zip(rows, shares, errors, strict=True)
         ],
-        goes_to=curve.outcome.run_names[:1],
+        link=curve.outcome.run_names[:1],
         **labels_of(curve.outcome),
     )
 
 
-def _every_run(known: FrictionOverSpeed, colours: Mapping[str, int]) -> LiveFigure:
+def _every_run(known: FrictionOverSpeed, colours: Mapping[str, int]) -> FigureSpec:
     """Return all runs of the curves that have repeats; of the others the curve is the run."""
     series: list[Series] = []
     for curve in known.curves:
@@ -119,7 +119,7 @@ def _every_run(known: FrictionOverSpeed, colours: Mapping[str, int]) -> LiveFigu
                 )
                 for name in names
             ]
-    return LiveFigure(
+    return FigureSpec(
         id="curves-runs",
         section="curves",
         title="Every run of the repeats",
@@ -146,8 +146,8 @@ def _run(
         style="points",
         colour=colour,
         error=[point.within for point in points],
-        told=[_told(point) for point in points],
-        goes_to=(name,),
+        hover=[_told(point) for point in points],
+        link=(name,),
         **(labels | {"runs": (name,)}),
     )
 

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+import xarray as xr
+
+from tribolab.figures.axes import comparable
+from tribolab.figures.colours import GREY
+from tribolab.figures.curves import SPEED_AXIS, stribeck
+from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, SeriesLabels, Style, safe
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome, number_of
 from tribolab.records.wording import with_error
 from tribolab.report.document.models import ModelRow
-from tribolab.report.live.axes import comparable
-from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, SeriesLabels, Style, safe
 from tribolab.report.live.points import RunPoint, at_speed, of_curve, point_error, told_point
 from tribolab.report.live.record import Band, Missed
 from tribolab.report.plain import listed, plain_speed
@@ -20,11 +25,9 @@ from tribolab.words import is_dry, load_text, many, number, span, speeds
 if TYPE_CHECKING:
     from tribolab.records.parts import Row
 
-SPEED_AXIS = Axis("sliding speed v", "m/s", log=True)
 _MOST_NAMED = 3  # runs that a title names
-_UNDECIDED = 6  # a grey that no load has
+_AS_FOUND = "without decisions by hand"
 _SPEED, _MU = "sliding_speed_m_s", "friction_coefficient"  # columns
-FRICTION_AXIS = Axis("friction coefficient µ", log=True)
 
 
 @dataclass(frozen=True)
@@ -93,7 +96,7 @@ def told_apart(media: Collection[str], in_liquid: str, dry: str) -> str:
     return f"{in_liquid[:1].upper()}{in_liquid[1:]}: in a liquid{unnamed}; {dry}: dry."
 
 
-def card_figures(known: FrictionOverSpeed) -> list[LiveFigure]:
+def card_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
     """Return one figure for each surface and medium: measured, and the model with its band.
 
     Those of one medium have the same axes, so that surfaces are compared at a glance.
@@ -111,31 +114,41 @@ def card_figures(known: FrictionOverSpeed) -> list[LiveFigure]:
 
 def _card(
     known: FrictionOverSpeed, place: int, surface: str, medium: str, curves: Sequence[CurveRecord]
-) -> LiveFigure:
-    series: list[Series] = []
-    for number_, curve in enumerate(curves):
+) -> FigureSpec:
+    measured, models = [], []
+    for curve in curves:
         model = known.models.get(curve.outcome.name)
         if model is not None and _has_stress(model):
-            series += _modelled(known, model, curve, number_, "model")
-        series.append(_measured(known, curve, number_, curve_label(curve.outcome, curves)))
-        series += _as_found(curve)
+            models += _modelled(known, model, curve)
+        measured.append(_measured(known, curve, curve_label(curve.outcome, curves)))
+        measured += _as_found(curve)
     all_runs = dict.fromkeys(run for curve in curves for run in curve.outcome.run_names)
     name = system_name(surface, medium, list(all_runs))
     rows = [row for curve in curves for row in curve.points]
     values, every = ([number_of(row, name) for row in rows] for name in (_MU, _SPEED))
-    return LiveFigure(
+    one_load = bool(surface or medium)  # runs that name neither are of as many systems
+    spec = stribeck.spec(measured, models, surfaces=known.surfaces, scale="log")
+    return replace(
+        spec,
         id=f"card-{place}",
         section=f"card-{place}",
         title=f"{name}: friction over sliding speed",
-        note="",
         alt=f"Friction coefficient over sliding speed of {name}: {many(len(curves), 'load')}, "
         f"{speeds(every)}, µ {span(values)}.",
-        panels=(Panel(SPEED_AXIS, FRICTION_AXIS),),
-        series=tuple(series),
-        one_load=bool(surface or medium),  # runs that name neither are of as many systems
+        series=tuple(_on_card(series, one_load) for series in spec.series),
+        one_load=one_load,
         width="card",
         height=230,
     )
+
+
+def _on_card(series: Series, one_load: bool) -> Series:
+    """Return a series as cards have it: points not joined, one load in its surface's colour."""
+    if series.label == _AS_FOUND:
+        return replace(series, colour=GREY, shade=0.0, open=True, joined=False)
+    if one_load:
+        series = replace(series, shade=0.0, marker=None)
+    return replace(series, joined=False)
 
 
 def curve_label(curve: CurveOutcome, curves: Sequence[CurveRecord]) -> str:
@@ -160,28 +173,37 @@ def labels_of(curve: CurveOutcome) -> SeriesLabels:
     }
 
 
-def _measured(known: FrictionOverSpeed, curve: CurveRecord, colour: int, label: str) -> Series:
+def _dataset(
+    outcome: CurveOutcome, rows: Sequence[Row], label: str, **more: Sequence[str]
+) -> xr.Dataset:
+    """Return a measured or computed curve as the figures take it."""
+    known = [row for row in rows if row.get(_MU) is not None]
+    names = [_MU, *(f"{_MU}_{end}" for end in ("U95",) if any(f"{_MU}_{end}" in r for r in known))]
+    columns = {name: _floats(number_of(row, name) for row in known) for name in names}
+    labels = {"label": label, "surface": outcome.surface, "medium": outcome.medium}
+    return xr.Dataset(
+        {name: ("sliding_speed", values) for name, values in {**columns, **more}.items()},
+        {"sliding_speed": _floats(number_of(row, _SPEED) for row in known)},
+        labels | {"normal_force_N": outcome.normal_force, "runs": tuple(outcome.run_names)},
+    )
+
+
+def _floats(values: Iterable[float | None]) -> np.ndarray:
+    return np.array([np.nan if value is None else value for value in values], float)
+
+
+def _measured(known: FrictionOverSpeed, curve: CurveRecord, label: str) -> xr.Dataset:
     outcome = curve.outcome
     of_runs = (p for name in outcome.run_names for p in known.points.get(name, ()))
     every = of_curve(of_runs, outcome.normal_force)
-    words, errors, targets = [], [], []
-    for row in curve.points:
-        points = at_speed(every, float(row["sliding_speed_m_s"] or 0.0))
+    words, targets = [], []
+    rows = [row for row in curve.points if row.get(_MU) is not None]
+    for row in rows:
+        points = at_speed(every, float(row[_SPEED] or 0.0))
         error = point_error(row, points)
         words.append(told_point(row, error, points, _briefly(curve.uncertainty_says)))
-        errors.append(error.size)
         targets.append(points[0].run if points else curve.outcome.run_names[0])
-    return Series(
-        label,
-        [row["sliding_speed_m_s"] for row in curve.points],
-        [row["friction_coefficient"] for row in curve.points],
-        style="points",
-        colour=colour,
-        error=errors,
-        told=words,
-        goes_to=targets,
-        **labels_of(curve.outcome),
-    )
+    return _dataset(outcome, rows, label, hover=words, link=targets)
 
 
 def _briefly(says: str) -> str:
@@ -189,28 +211,15 @@ def _briefly(says: str) -> str:
     return says.partition(";")[0].partition(", because")[0]
 
 
-def _as_found(curve: CurveRecord) -> list[Series]:
-    """Return the curve without a person's decisions, where there are any: they must be seen."""
-    rows = [row for row in curve.points_as_found if row["friction_coefficient"] is not None]
-    if not rows:
-        return []
-    return [
-        Series(
-            "without decisions by hand",
-            [row["sliding_speed_m_s"] for row in rows],
-            [row["friction_coefficient"] for row in rows],
-            style="points",
-            colour=_UNDECIDED,
-            error=[row.get("friction_coefficient_U95") for row in rows],
-            told=[
-                "without decisions by hand\n"
-                f"v = {plain_speed(number_of(row, _SPEED))}\n"
-                f"µ = {with_error(number_of(row, _MU), number_of(row, f'{_MU}_U95'))}"
-                for row in rows
-            ],
-            **(labels_of(curve.outcome) | {"open": True}),
-        )
+def _as_found(curve: CurveRecord) -> list[xr.Dataset]:
+    """Return the curve without a person's decisions, if there are any: they must be seen."""
+    rows = [row for row in curve.points_as_found if row[_MU] is not None]
+    words = [
+        f"{_AS_FOUND}\nv = {plain_speed(number_of(row, _SPEED))}\n"
+        f"µ = {with_error(number_of(row, _MU), number_of(row, f'{_MU}_U95'))}"
+        for row in rows
     ]
+    return [_dataset(curve.outcome, rows, _AS_FOUND, hover=words)] if rows else []
 
 
 def _has_stress(model: ModelRow) -> bool:
@@ -224,33 +233,20 @@ def _within(rows: Sequence[Row], curve: CurveRecord) -> list[Row]:
     return [row for row in rows if low <= float(row["sliding_speed_m_s"] or 0) <= high]
 
 
-def _modelled(
-    known: FrictionOverSpeed, model: ModelRow, curve: CurveRecord, colour: int, label: str
-) -> list[Series]:
-    labels = labels_of(curve.outcome)
+def _modelled(known: FrictionOverSpeed, model: ModelRow, curve: CurveRecord) -> list[xr.Dataset]:
+    """Return the computed curve with its band, at the speeds that matter."""
     rows = _within(model.curve, curve)
-    line = Series(
-        label,
-        [row["sliding_speed_m_s"] for row in rows],
-        [row["friction_coefficient"] for row in rows],
-        colour=colour,
-        **labels,
-    )
-    if curve.outcome.name not in known.bands or not rows:
-        return [line]
-    speed, low, high = known.bands[curve.outcome.name]
-    first, last = (float(row["sliding_speed_m_s"] or 0) for row in (rows[0], rows[-1]))
-    kept = [k for k, v in enumerate(speed) if v is not None and first <= v <= last]
-    band = Series(
-        "uncertainty",
-        [speed[k] for k in kept],
-        [low[k] for k in kept],
-        style="band",
-        high=[high[k] for k in kept],
-        colour=colour,
-        **labels,
-    )
-    return [band, line]
+    if not rows:
+        return []
+    data = _dataset(curve.outcome, rows, "model")
+    if curve.outcome.name in known.bands:
+        speed, low, high = map(_floats, known.bands[curve.outcome.name])
+        fine = np.isfinite(speed) & np.isfinite(low) & np.isfinite(high)
+        v = data["sliding_speed"].values
+        for end, values in (("low", low), ("high", high)):
+            at_speeds = np.interp(v, speed[fine], values[fine], np.nan, np.nan)
+            data[f"{_MU}_{end}"] = ("sliding_speed", at_speeds)
+    return [data]
 
 
 _PART = Axis("friction coefficient µ", log=True, decades=4)
@@ -261,7 +257,7 @@ _PARTS: tuple[tuple[str, str, Style, int], ...] = (
 )
 
 
-def model_figures(known: FrictionOverSpeed) -> list[LiveFigure]:
+def model_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
     """Return one figure for each surface and medium: the model's parts, and what it misses."""
     figures = []
     for (surface, medium), curves in systems(known).items():
@@ -272,7 +268,7 @@ def model_figures(known: FrictionOverSpeed) -> list[LiveFigure]:
                 series += _taken_apart(model, curve, known.missed.get(curve.outcome.name))
         name = system_name(surface, medium)
         figures.append(
-            LiveFigure(
+            FigureSpec(
                 id=f"model-{safe(name)}",
                 section="model",
                 title=f"{name}: the model taken apart",
@@ -318,7 +314,7 @@ def _missed(missed: Missed, curve: CurveRecord, labels: SeriesLabels) -> Series:
         style="points",
         panel=1,
         error=missed.error,
-        told=words,
-        goes_to=(curve.outcome.run_names[0],),
+        hover=words,
+        link=(curve.outcome.run_names[0],),
         **labels,
     )

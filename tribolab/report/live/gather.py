@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from tribolab.campaign.engine.stage import begun
 from tribolab.campaign.recorded import done_and_failed
+from tribolab.figures.spec import FigureSpec
 from tribolab.records.joint_record import JointRecord
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord
@@ -16,7 +17,6 @@ from tribolab.records.parts import Notice
 from tribolab.report.document.models import ModelRow
 from tribolab.report.live.compared import comparisons
 from tribolab.report.live.curves import FrictionOverSpeed, card_figures, model_figures
-from tribolab.report.live.figure import LiveFigure
 from tribolab.report.live.joint import record_of_joint_fits
 from tribolab.report.live.models import record_of_models
 from tribolab.report.live.points import RunPoint
@@ -34,7 +34,7 @@ def begun_live_figures(
     outcome: OpenOutcome,
     curves: Sequence[CurveRecord],
     points: Mapping[str, Sequence[RunPoint]],
-    along: Sequence[LiveFigure],
+    along: Sequence[FigureSpec],
     rows: Mapping[str, ModelRow],
     modes: Mapping[str, ModeRecord],
     joints: Sequence[JointRecord],

@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 
 from tribolab.campaign.store.data_files import read_data
+from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, safe
 from tribolab.records.joint_record import JointRecord
 from tribolab.report.live.curves import system_name
-from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, safe
 from tribolab.report.live.record import LiveRecord
 from tribolab.report.live.shown import shown_figures
 from tribolab.words import many
@@ -30,7 +30,7 @@ def record_of_joint_fits(joints: Sequence[JointRecord], folder: Path) -> LiveRec
     return LiveRecord(shown_figures(_figure(joint, folder) for joint in joints))
 
 
-def _figure(joint: JointRecord, folder: Path) -> LiveFigure:
+def _figure(joint: JointRecord, folder: Path) -> FigureSpec:
     points, curves = (read_data(folder / joint.file, part) for part in ("points", "curves"))
     series: list[Series] = []
     for number, name in enumerate(curves["curve"].values.tolist()):
@@ -38,7 +38,7 @@ def _figure(joint: JointRecord, folder: Path) -> LiveFigure:
         series += _of_load(str(name), number, mine, curves.sel(curve=name))
     name = system_name(joint.surface, joint.medium)
     x = Axis("sliding speed v", "m/s", log=True)
-    return LiveFigure(
+    return FigureSpec(
         f"model-joint-{safe(name)}",
         "model",
         f"{name}: all loads in one fit",

@@ -9,14 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tribolab.campaign.store.data_files import read_data
-from tribolab.records.model_words import shear_stress_u95, stress_interval
-from tribolab.records.parts import number_of
-from tribolab.records.wording import with_error
-from tribolab.report.document.models import ModelRow
-from tribolab.report.live.curves import system_name
-from tribolab.report.live.figure import (
+from tribolab.figures.spec import (
     Axis,
-    LiveFigure,
+    FigureSpec,
     Panel,
     Series,
     SeriesLabels,
@@ -25,6 +20,11 @@ from tribolab.report.live.figure import (
     safe,
     thinned,
 )
+from tribolab.records.model_words import shear_stress_u95, stress_interval
+from tribolab.records.parts import number_of
+from tribolab.records.wording import with_error
+from tribolab.report.document.models import ModelRow
+from tribolab.report.live.curves import system_name
 from tribolab.report.live.record import Band, LiveRecord, Missed
 from tribolab.report.live.shown import shown_figures
 from tribolab.report.plain import plain_speed
@@ -89,7 +89,7 @@ def _labels(row: ModelRow) -> SeriesLabels:
     return {"surface": model.surface, "medium": model.medium, "load": model.normal_force}
 
 
-def shear_stress_figure(models: Sequence[ModelRow], colours: Mapping[str, int]) -> LiveFigure:
+def shear_stress_figure(models: Sequence[ModelRow], colours: Mapping[str, int]) -> FigureSpec:
     """Return the fitted shear stresses over the load."""
     series = []
     for (surface, medium), rows in _by_system(models).items():
@@ -110,12 +110,12 @@ def shear_stress_figure(models: Sequence[ModelRow], colours: Mapping[str, int]) 
                     surface=surface,
                     medium=medium,
                     error=[shear_stress_u95(fit, fit[error]) * _MPA for _, fit in known],
-                    told=[_told(row, fit, name) for row, fit in known],
+                    hover=[_told(row, fit, name) for row, fit in known],
                     open=open_,
                 )
             )
     series = [drawn for drawn in series if drawn.x]
-    return LiveFigure(
+    return FigureSpec(
         "model-shear_stress",
         "model",
         "Shear stress in the contact",
@@ -146,7 +146,7 @@ def _by_system(models: Sequence[ModelRow]) -> dict[tuple[str, str], list[ModelRo
     return by_system
 
 
-def sensitivity(models: Sequence[ModelRow], colours: Mapping[str, int]) -> LiveFigure:
+def sensitivity(models: Sequence[ModelRow], colours: Mapping[str, int]) -> FigureSpec:
     """Return how far each thing that is not known moves the model."""
     series = []
     for row in models:
@@ -160,11 +160,11 @@ def sensitivity(models: Sequence[ModelRow], colours: Mapping[str, int]) -> LiveF
                 [str(change["variation"]) for change in varied],
                 style="bars",
                 colour=colours[row.model.surface],
-                told=[_moved(change) for change in varied],
+                hover=[_moved(change) for change in varied],
                 **_labels(row),
             )
         )
-    return LiveFigure(
+    return FigureSpec(
         "model-sensitivity",
         "model",
         "What moves the model most",
@@ -196,7 +196,7 @@ _PROFILES = (
 _NOTHING = 1e-3  # of the highest pressure: beyond, nothing of a profile is to be seen
 
 
-def _profiles(models: Sequence[ModelRow], folder: Path) -> list[LiveFigure]:
+def _profiles(models: Sequence[ModelRow], folder: Path) -> list[FigureSpec]:
     figures = []
     for (surface, medium), rows in _by_system(models).items():
         series: list[Series] = []
@@ -206,7 +206,7 @@ def _profiles(models: Sequence[ModelRow], folder: Path) -> list[LiveFigure]:
         name = system_name(surface, medium)
         x = Axis("across the contact", "mm")
         figures.append(
-            LiveFigure(
+            FigureSpec(
                 f"model-profiles-{safe(name)}",
                 "model",
                 f"{name}: across the contact",
@@ -244,7 +244,7 @@ _FACTORS: tuple[tuple[str, str, Style, int], ...] = (
 )
 
 
-def _factors(models: Sequence[ModelRow], folder: Path, colours: Mapping[str, int]) -> LiveFigure:
+def _factors(models: Sequence[ModelRow], folder: Path, colours: Mapping[str, int]) -> FigureSpec:
     series, seen = [], set()
     for row in models:
         surface = row.model.surface
@@ -262,11 +262,11 @@ def _factors(models: Sequence[ModelRow], folder: Path, colours: Mapping[str, int
                     colours[surface],
                     panel,
                     surface=surface,
-                    told=(words,),
+                    hover=(words,),
                 )
             )
     x = Axis("mean separation", "µm", log=True)
-    return LiveFigure(
+    return FigureSpec(
         "model-factors",
         "model",
         "Flow and friction factors",

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from tribolab.figures.page.still import first_series, still
+from tribolab.figures.spec import FigureSpec, legend, plain_data, written_labels
 from tribolab.records.packed import deflated
 from tribolab.records.traces import script_json
-from tribolab.report.live.figure import LiveFigure, legend, plain_data, written_labels
-from tribolab.report.live.still import first_series, still
 from tribolab.words import force_text
 
 
@@ -19,7 +19,7 @@ class ShownFigure:
     Parameters
     ----------
     id, section, title, note, alt, height, rows
-        As of `LiveFigure`.
+        As of `FigureSpec`.
     surface, medium
         What all of it is of; "" where there are several.
     loads
@@ -48,12 +48,12 @@ class ShownFigure:
     still: str
 
 
-def shown_figures(figures: Iterable[LiveFigure]) -> tuple[ShownFigure, ...]:
+def shown_figures(figures: Iterable[FigureSpec]) -> tuple[ShownFigure, ...]:
     """Return what the page has of figures; one without anything to show is left out."""
     return tuple(_shown(figure) for figure in figures if figure.series)
 
 
-def _shown(figure: LiveFigure) -> ShownFigure:
+def _shown(figure: FigureSpec) -> ShownFigure:
     return ShownFigure(
         figure.id,
         figure.section,

@@ -8,14 +8,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tribolab.plot.runs.reduce import envelope_index
-from tribolab.plot.runs.signals import LOOKED_AT, main_signal
-from tribolab.records.mode_record import ModeRecord
-from tribolab.records.parts import CurveOutcome
-from tribolab.report.live.curves import SPEED_AXIS, labels_of, system_name, told_apart
-from tribolab.report.live.figure import (
+from tribolab.figures.curves import SPEED_AXIS
+from tribolab.figures.envelope import envelope_index
+from tribolab.figures.signals import LOOKED_AT, main_signal
+from tribolab.figures.spec import (
     Axis,
-    LiveFigure,
+    FigureSpec,
     Panel,
     Series,
     SeriesLabels,
@@ -24,6 +22,9 @@ from tribolab.report.live.figure import (
     places,
     thinned,
 )
+from tribolab.records.mode_record import ModeRecord
+from tribolab.records.parts import CurveOutcome
+from tribolab.report.live.curves import labels_of, system_name, told_apart
 from tribolab.report.live.record import LiveRecord
 from tribolab.report.live.shown import shown_figures
 from tribolab.report.plain import plain_speed
@@ -102,7 +103,7 @@ def _name(curve: CurveOutcome) -> str:
     return name if curve.normal_force is None else f"{name}, {force_text(curve.normal_force)}"
 
 
-def _waveforms(judged: Sequence[Judged]) -> LiveFigure:
+def _waveforms(judged: Sequence[Judged]) -> FigureSpec:
     """Return which waveform is seen at every speed."""
     series = []
     colours = places(str(row["waveform"]) for contact in judged for row in contact.mode.speeds)
@@ -116,12 +117,12 @@ def _waveforms(judged: Sequence[Judged]) -> LiveFigure:
                     [_name(contact.curve)] * len(rows),
                     style="points",
                     colour=colours[waveform],
-                    told=[_seen(contact, row) for row in rows],
-                    goes_to=(contact.curve.run_names[0],),
+                    hover=[_seen(contact, row) for row in rows],
+                    link=(contact.curve.run_names[0],),
                     **(labels_of(contact.curve) | {"open": waveform in _STEADY}),
                 )
             )
-    return LiveFigure(
+    return FigureSpec(
         "sliding-waveforms",
         "sliding",
         "Steady or stick-slip at every speed",
@@ -152,7 +153,7 @@ def _seen(contact: Judged, row: Mapping[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def _frequencies(judged: Sequence[Judged], colours: Mapping[str, int]) -> LiveFigure:
+def _frequencies(judged: Sequence[Judged], colours: Mapping[str, int]) -> FigureSpec:
     series = []
     for contact in judged:
         rows = [row for row in contact.mode.speeds if row["dominant_frequency_Hz"]]
@@ -164,12 +165,12 @@ def _frequencies(judged: Sequence[Judged], colours: Mapping[str, int]) -> LiveFi
                     [row["dominant_frequency_Hz"] for row in rows],
                     style="points",
                     colour=colours[contact.curve.name],
-                    told=[_seen(contact, row) for row in rows],
-                    goes_to=(contact.curve.run_names[0],),
+                    hover=[_seen(contact, row) for row in rows],
+                    link=(contact.curve.run_names[0],),
                     **labels_of(contact.curve),
                 )
             )
-    return LiveFigure(
+    return FigureSpec(
         "sliding-frequencies",
         "sliding",
         "Frequency of the strongest oscillation",
@@ -200,8 +201,8 @@ class _Open(NamedTuple):
         style: Style,
         *,
         high: Values = (),
-        told: str = "",
-        goes_to: Sequence[str] = (),
+        hover: str = "",
+        link: Sequence[str] = (),
     ) -> Series:
         return Series(
             label,
@@ -210,8 +211,8 @@ class _Open(NamedTuple):
             style,
             self.colour,
             high=high,
-            told=(told,) if told else (),
-            goes_to=goes_to,
+            hover=(hover,) if hover else (),
+            link=link,
             **self.labels,
         )
 
@@ -269,7 +270,7 @@ def _by_line(opened: Sequence[_Open], first: str, second: str) -> str:
 _UNITS_OF_WAY = (("m", 1e-6, 1e6), ("mm", 1e-3, 1e4), ("µm", 1.0, 0.0))  # from so many µm on
 
 
-def _traces(opened: Sequence[_Open]) -> LiveFigure:
+def _traces(opened: Sequence[_Open]) -> FigureSpec:
     series = []
     longest = max((d[-1] for c in opened for _, d, _ in c.traces if d.size), default=0.0)
     unit, scale = next((u, s) for u, s, least in _UNITS_OF_WAY if longest >= least)
@@ -278,10 +279,10 @@ def _traces(opened: Sequence[_Open]) -> LiveFigure:
             style = _STYLES[number_ > 0][contact.labels["open"]]
             told, run = f"{contact.name}, {plain_speed(speed)}", (contact.run,)
             line = contact.series(
-                contact.name, scale * distance, values, style, told=told, goes_to=run
+                contact.name, scale * distance, values, style, hover=told, link=run
             )
             series.append(line)
-    return LiveFigure(
+    return FigureSpec(
         "sliding-traces",
         "sliding",
         "Friction over sliding distance at the slowest speeds",
@@ -293,7 +294,7 @@ def _traces(opened: Sequence[_Open]) -> LiveFigure:
     )
 
 
-def _spectra(opened: Sequence[_Open]) -> LiveFigure:
+def _spectra(opened: Sequence[_Open]) -> FigureSpec:
     series = []
     for contact in opened:
         if not contact.slip.sizes.get("frequency", 0):
@@ -305,8 +306,8 @@ def _spectra(opened: Sequence[_Open]) -> LiveFigure:
         power, limit = (spectrum[name].values[kept] for name in ("psd", "psd_significant"))
         told = f"{contact.name}: limit of noise"
         series.append(contact.series(contact.name, f[kept], power, of))
-        series.append(contact.series(contact.name, f[kept], limit, noise, told=told))
-    return LiveFigure(
+        series.append(contact.series(contact.name, f[kept], limit, noise, hover=told))
+    return FigureSpec(
         "sliding-spectra",
         "sliding",
         "Spectra of friction at the slowest speed",
@@ -318,7 +319,7 @@ def _spectra(opened: Sequence[_Open]) -> LiveFigure:
     )
 
 
-def _events(opened: Sequence[_Open]) -> LiveFigure:
+def _events(opened: Sequence[_Open]) -> FigureSpec:
     series = []
     for contact in opened:
         if not contact.slip.sizes.get("event", 0):
@@ -329,7 +330,7 @@ def _events(opened: Sequence[_Open]) -> LiveFigure:
         share = (np.arange(drops.size) + 1) / max(drops.size, 1)
         name, style = f"{contact.name}: {drops.size} drops", _STYLES[0][contact.labels["open"]]
         series.append(contact.series(name, drops[kept], share[kept], style))
-    return LiveFigure(
+    return FigureSpec(
         "sliding-events",
         "sliding",
         "How far friction drops",
@@ -341,7 +342,7 @@ def _events(opened: Sequence[_Open]) -> LiveFigure:
     )
 
 
-def _spectrogram(opened: Sequence[_Open]) -> LiveFigure:
+def _spectrogram(opened: Sequence[_Open]) -> FigureSpec:
     """Return power over that of noise, for every speed and frequency; nothing of one speed."""
     series: list[Series] = []
     low, high = np.inf, 0.0
@@ -362,7 +363,7 @@ def _spectrogram(opened: Sequence[_Open]) -> LiveFigure:
         low, high = (end(speed[kept], initial=was) for end, was in ((np.min, low), (np.max, high)))
         drawn = contact.series(contact.name, speed[kept], f[kept], "heat", high=values)
         series += [drawn] if values else []
-    return LiveFigure(
+    return FigureSpec(
         "sliding-spectrogram",
         "sliding",
         "Power over that of noise, at every speed and frequency",

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribolab.campaign.store.data_files import read_data
-from tribolab.plot.runs.reduce import envelope
-from tribolab.report.live.figure import Axis, LiveFigure, Panel, Series, places, thinned
+from tribolab.figures.envelope import envelope
+from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, places, thinned
 from tribolab.report.live.record import LiveRecord
 from tribolab.report.live.shown import shown_figures
 from tribolab.surface.form import remove_form
@@ -43,7 +43,7 @@ class _Surface(NamedTuple):
 
     def series(self, what: str, x: Any, y: Any, **more: Any) -> Series:
         told = (f"{self.label}: {what}",) if what else ()
-        labels: Arguments = {"colour": self.colour, "surface": self.name, "told": told}
+        labels: Arguments = {"colour": self.colour, "surface": self.name, "hover": told}
         return Series(self.label, x, y, **(labels | more))
 
 
@@ -85,7 +85,7 @@ def record_of_surfaces(
             alt = f"{kind.title}: {', '.join(dict.fromkeys(drawn.surface for drawn in series))}."
             panels = (Panel(kind.x, kind.y),)
             figures.append(
-                LiveFigure(
+                FigureSpec(
                     f"{kind.section}-{kind.name}",
                     kind.section,
                     kind.title,

@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from tribolab.plot.look.decades import few_ticks
-from tribolab.plot.look.labels import label, plain
-from tribolab.plot.look.style import (
+from tribolab.figures.labels import label, plain
+from tribolab.figures.look.decades import few_ticks
+from tribolab.figures.look.style import (
     GREY,
     SINGLE_MM,
     PaperFigure,

@@ -22,6 +22,36 @@ def symbol(name: str) -> str:
     return "$" + _SUBSCRIPT.sub(r"_{\\mathrm{\1}}", text) + "$" if text else ""
 
 
+def plain_symbol(name: str) -> str:
+    """Return the quantity's symbol as plain text; "" if it has an index, which needs mathtext.
+
+    Examples
+    --------
+    >>> plain_symbol("friction_coefficient"), plain_symbol("sliding_speed"), plain_symbol("gap")
+    ('µ', 'v', 'u')
+    """
+    text = _GREEK.get(quantity(name).symbol, quantity(name).symbol)
+    return "" if re.search(r"[_\\{]", text) else text
+
+
+def plain_unit(name: str) -> str:
+    """Return the quantity's unit as plain text, ``""`` for a pure number.
+
+    Examples
+    --------
+    >>> plain_unit("psd_2d"), plain_unit("work_of_adhesion"), plain_unit("friction_coefficient")
+    ('m⁴', 'J/m²', '')
+    """
+    text = quantity(name).unit
+    return (
+        "" if text == "1" else re.sub(r"(?<=[A-Za-z])\d", lambda m: m[0].translate(_RAISED), text)
+    )
+
+
+_GREEK = {"\\mu": "µ", "\\omega": "ω", "\\zeta": "ζ", "\\gamma": "γ", "\\xi": "ξ"}
+_RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
 def unit(name: str) -> str:
     """Return the quantity's unit as it stands on an axis, ``""`` for a pure number.
 

@@ -11,9 +11,9 @@ from matplotlib.figure import Figure, SubFigure
 from numpy.typing import NDArray
 
 from tribolab.errors import AnalysisError
-from tribolab.plot.look.frame import legend_above
-from tribolab.plot.look.labels import plain
-from tribolab.plot.look.style import SINGLE_MM, PaperFigure, new_figure, paper_style
+from tribolab.figures.labels import plain
+from tribolab.figures.look.frame import legend_above
+from tribolab.figures.look.style import SINGLE_MM, PaperFigure, new_figure, paper_style
 
 # Several axes, as `plt.subplots` returns them or as a list.
 Panels = Sequence[Axes] | NDArray[np.object_]
@@ -42,7 +42,7 @@ def one_panel(
             yield own, axes
             legend_above(own, axes, title, left)
     else:
-        with _guest([ax]):
+        with guests([ax]):
             yield whole_figure(ax), ax
         name_all(ax)
         name_panel(ax, title)
@@ -78,7 +78,7 @@ def several_panels(
             f"axes: {len(wanted)} {'is' if len(wanted) == 1 else 'are'} wanted, for "
             f"{', '.join(map(plain, wanted))}; got {len(given)}"
         )
-    with _guest(given):
+    with guests(given):
         yield whole_figure(given[0]), given
 
 
@@ -113,7 +113,7 @@ def whole_figure(part: Axes | SubFigure) -> Figure:
 
 
 @contextlib.contextmanager
-def _guest(panels: Iterable[Axes]) -> Iterator[None]:
+def guests(panels: Iterable[Axes]) -> Iterator[None]:
     """Draw into the user's axes: what was in sight stays so, what comes later is brought so."""
     before = [(ax, ax.has_data(), ax.get_xlim(), ax.get_ylim()) for ax in panels]
     yield

@@ -14,19 +14,21 @@ from typing import Any
 
 from markupsafe import escape
 
-from tribolab.report.live import marks
-from tribolab.report.live.axes import Scale, scales, ticks
-from tribolab.report.live.figure import (
+from tribolab.figures.axes import Scale, bar_lengths, scales, ticks
+from tribolab.figures.page import marks
+from tribolab.figures.page.marks import PlacedPoint, coordinate
+from tribolab.figures.spec import (
     Axis,
-    LiveFigure,
+    FigureSpec,
+    Mark,
     Series,
+    Style,
     Width,
     legend,
     plain_data,
     thinned,
     written_labels,
 )
-from tribolab.report.live.marks import PlacedPoint, coordinate
 from tribolab.words import MINUS, number
 
 _WIDTHS: dict[Width, int] = {"card": 340, "half": 400, "whole": 680}  # [px], as on paper or so
@@ -62,7 +64,7 @@ def _near(share: float) -> float:
     return min(max(share, -1.0), 2.0)
 
 
-def still(figure: LiveFigure) -> str:
+def still(figure: FigureSpec) -> str:
     """Return a figure as SVG: of one load at a time the lowest."""
     width = _WIDTHS[figure.width]
     series, seen = first_view(figure)
@@ -81,7 +83,7 @@ def still(figure: LiveFigure) -> str:
     )
 
 
-def first_view(figure: LiveFigure) -> tuple[list[Series], list[tuple[Scale, Scale]]]:
+def first_view(figure: FigureSpec) -> tuple[list[Series], list[tuple[Scale, Scale]]]:
     """Return the series of a figure before anything was chosen, and what is seen of each panel."""
     series = first_series(figure)
     seen = [scales(panel, place, series) for place, panel in enumerate(figure.panels)]
@@ -91,7 +93,7 @@ def first_view(figure: LiveFigure) -> tuple[list[Series], list[tuple[Scale, Scal
     return series, seen
 
 
-def first_series(figure: LiveFigure) -> list[Series]:
+def first_series(figure: FigureSpec) -> list[Series]:
     """Return what is seen at first, its values as plain numbers."""
     shown = []
     for curve in figure.series:
@@ -135,7 +137,7 @@ def _boxes(
     ]
 
 
-def _panel(figure: LiveFigure, place: int, box: _Box, series: Sequence[Series]) -> Iterator[str]:
+def _panel(figure: FigureSpec, place: int, box: _Box, series: Sequence[Series]) -> Iterator[str]:
     panel = figure.panels[place]
     last = place == len(figure.panels) - 1
     yield from _across(box, panel.x, shown=last)
@@ -143,6 +145,7 @@ def _panel(figure: LiveFigure, place: int, box: _Box, series: Sequence[Series]) 
     sides = ("x", box.left), ("y", box.top), ("width", box.width), ("height", box.height)
     size = " ".join(f'{name}="{coordinate(value)}"' for name, value in sides)
     yield f"<svg {size}>"
+    yield from (_line(mark, box) for mark in figure.marks if mark.panel == place)
     mine = [curve for curve in series if curve.panel == place]
     bars = [curve for curve in mine if curve.style == "bars"]
     for curve in sorted(mine, key=lambda curve: curve.style != "band"):
@@ -154,6 +157,24 @@ def _panel(figure: LiveFigure, place: int, box: _Box, series: Sequence[Series]) 
     yield f'<path class="axis" d="{_corner(box)}"/>'
 
 
+def _line(mark: Mark, box: _Box) -> str:
+    """Return a line across a panel at a value, or a shaded stretch of it."""
+    scale, size = (box.x, box.width) if mark.side == "x" else (box.y, box.height)
+    ends = [scale.place(value) for value in (mark.value, mark.until) if value is not None]
+    at = [size * (_near(e) if mark.side == "x" else 1 - _near(e)) for e in ends if e is not None]
+    hue, low, high = marks.hue(mark.colour), min(at, default=-1.0), max(at, default=-1.0)
+    if mark.until is not None and len(at) == 2:
+        place = {"x": low, "y": 0.0, "width": high - low, "height": box.height}
+        if mark.side == "y":
+            place = {"x": 0.0, "y": low, "width": box.width, "height": high - low}
+        sides = " ".join(f'{name}="{coordinate(value)}"' for name, value in place.items())
+        return f'<rect class="{hue} full" opacity="{mark.opacity:g}" {sides}/>'
+    across = [(low, 0.0), (low, box.height)]
+    across = across if mark.side == "x" else [(0.0, low), (box.width, low)]
+    line = Series("", (), (), mark.style, mark.colour, thin=True)
+    return "".join(marks.drawn_line(list(across), line))
+
+
 def _corner(box: _Box) -> str:
     bottom = box.top + box.height
     return marks.path([(box.left, box.top), (box.left, bottom), (box.left + box.width, bottom)])
@@ -162,8 +183,13 @@ def _corner(box: _Box) -> str:
 def _drawn(curve: Series, box: _Box, axis: Axis) -> Iterator[str]:
     if curve.style == "points":
         at = [box.at(x, y) for x, y in zip(curve.x, curve.y, strict=True)]
-        bars = marks.error_bars(_bars(curve, box, axis), 3)
-        yield from marks.drawn_points([point for point in at if point], curve, bars)
+        bars = marks.error_bars(_bars(curve, box, axis), 3, lying=bool(box.y.names))
+        if curve.joined:
+            dash: Style = "dashed" if curve.open else "line"
+            yield from marks.drawn_line(at, replace(curve, style=dash, thin=True))
+        sizes = curve.sizes if len(curve.sizes) else [1.0] * len(at)
+        shown = [(point, size) for point, size in zip(at, sizes, strict=True) if point]
+        yield from marks.drawn_points([p for p, _ in shown], curve, bars, [s for _, s in shown])
     elif curve.style == "band":
         lower = [box.at(x, _above(y, box)) for x, y in zip(curve.x, curve.y, strict=True)]
         upper = [box.at(x, y) for x, y in zip(curve.x, curve.high, strict=True)]
@@ -186,13 +212,16 @@ def _above(value: Any, box: _Box) -> Any:
 
 def _bars(curve: Series, box: _Box, axis: Axis) -> Iterator[tuple[float, float, float]]:
     least = -math.inf if axis.least is None else axis.least
-    errors = curve.error or [None] * len(curve.y)
-    for x, y, error in zip(curve.x, curve.y, errors, strict=True):
+    for x, y, above, below in zip(curve.x, curve.y, *bar_lengths(curve), strict=True):
         middle = box.at(x, y)
-        if middle is None or not error or not error > 0:
+        if middle is None or not above > 0:
             continue
-        high = box.at(x, y + error)
-        low = box.at(x, _above(max(y - error, least), box))
+        if isinstance(y, str):
+            ends = box.at(x - below, y), box.at(x + above, y)
+            yield from ((middle[1], ends[0][0], ends[1][0]) for _ in (1,) if ends[0] and ends[1])
+            continue
+        high = box.at(x, y + above)
+        low = box.at(x, _above(max(y - below, least), box))
         if low is not None and high is not None:
             yield middle[0], low[1], high[1]
 

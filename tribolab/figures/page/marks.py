@@ -7,11 +7,12 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from tribolab.report.live.figure import Series, Style
+from tribolab.figures.spec import Series, Style
 
 PlacedPoint = tuple[float, float]
 _HUES = 8  # of the palette, as in `assets/report.css`
 _DASHES: dict[Style, str] = {"dashed": "6 4", "dotted": "2 3", "dashdot": "6 3 2 3"}
+_MARKER = 3.6  # half the width of a marker [px]
 _SEEN = 0.3  # how far a line may pass from a point of it [px]
 _LEVELS = 5  # colours of a heat map
 _LOW, _HIGH = 0.3, 3.0  # its ends, as in `assets/chart.js`
@@ -89,10 +90,12 @@ def _straight(part: Sequence[PlacedPoint]) -> Iterator[PlacedPoint]:
     yield from (part[k] for k in sorted(kept))
 
 
-def markers(points: Sequence[PlacedPoint], colour: int, size: float) -> str:
-    """Return the outline of a marker at each point; its shape goes with the colour."""
-    corners, turn = _CORNERS[colour % _HUES]
-    return "".join(_marker(x, y, size, corners, turn) for x, y in points)
+def markers(points: Sequence[PlacedPoint], marker: int, sizes: Iterable[float]) -> str:
+    """Return the outline of a marker of a size [px] at each point."""
+    corners, turn = _CORNERS[marker % _HUES]
+    return "".join(
+        _marker(*at, size, corners, turn) for at, size in zip(points, sizes, strict=True)
+    )
 
 
 def _marker(x: float, y: float, size: float, corners: int, turn: float) -> str:
@@ -106,28 +109,44 @@ def _marker(x: float, y: float, size: float, corners: int, turn: float) -> str:
     return path(at) + "z"
 
 
-def error_bars(bars: Iterable[tuple[float, float, float]], cap: float) -> str:
-    """Return bars, each at x from one y to another [px], with caps."""
+def error_bars(
+    bars: Iterable[tuple[float, float, float]], cap: float, *, lying: bool = False
+) -> str:
+    """Return bars with caps, each at x from one y to another [px]; `lying` ones at y along x."""
     parts = []
-    for x, low, high in bars:
-        parts.append(path([(x, low), (x, high)]))
-        parts += [path([(x - cap, y), (x + cap, y)]) for y in (low, high)]
+    for at, low, high in bars:
+        lines = [[(at, low), (at, high)]]
+        lines += [[(at - cap, end), (at + cap, end)] for end in (low, high)]
+        parts += [path([(y, x) for x, y in line] if lying else line) for line in lines]
     return "".join(parts)
 
 
-def drawn_points(points: Sequence[PlacedPoint], series: Series, bars: str) -> Iterator[str]:
-    """Give the markers of a series, and its error bars before them."""
+def drawn_points(
+    points: Sequence[PlacedPoint], series: Series, bars: str = "", areas: Sequence[float] = ()
+) -> Iterator[str]:
+    """Give the markers of a series, of the relative `areas`, and its error bars before them."""
     if bars:
-        yield f'<path class="{hue(series.colour)} bar" d="{bars}"/>'
+        kind = "bar pale" if series.pale else "bar"
+        yield f'<path class="{_hue(series)} {kind}" d="{bars}"/>'
     kind = "open" if series.open else "full"
-    yield f'<path class="{hue(series.colour)} {kind}" d="{markers(points, series.colour, 3.6)}"/>'
+    sizes = [_MARKER * math.sqrt(max(area or 0.0, 0.0)) for area in areas or [1.0] * len(points)]
+    shape = markers(points, series.colour if series.marker is None else series.marker, sizes)
+    yield f'<path class="{_hue(series)} {kind}" d="{shape}"/>'
 
 
 def drawn_line(points: Sequence[PlacedPoint | None], series: Series) -> Iterator[str]:
     """Give the line of a series."""
     dash = _DASHES.get(series.style)
-    dashed = f' stroke-dasharray="{dash}"' if dash else ""
-    yield f'<path class="{hue(series.colour)} line"{dashed} d="{path(straightened(points))}"/>'
+    look = f' stroke-dasharray="{dash}"' if dash else ""
+    kind = "line thin" if series.thin else "line"
+    yield f'<path class="{_hue(series)} {kind}"{look} d="{path(straightened(points))}"/>'
+
+
+def _hue(series: Series) -> str:
+    """Return the classes of a colour and its shade, which `still.css` mixes with ink or paper."""
+    tenths = round(10 * series.shade)
+    shade = f" {'dark' if tenths < 0 else 'pale'}{abs(tenths)}" if tenths else ""
+    return hue(series.colour) + shade
 
 
 def drawn_band(
@@ -136,7 +155,7 @@ def drawn_band(
     """Give the area between two lines."""
     if low and high:
         around = straightened([*low, *reversed(high)])
-        yield f'<path class="{hue(series.colour)} band" d="{path(around)}z"/>'
+        yield f'<path class="{_hue(series)} band" d="{path(around)}z"/>'
 
 
 def drawn_heat(points: Sequence[tuple[PlacedPoint, float]]) -> Iterator[str]:

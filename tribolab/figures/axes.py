@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from tribolab.report.live.figure import Axis, Panel, Series
+from tribolab.figures.spec import Axis, Panel, Series
 
 _ROOM = 0.06  # of the span, on both sides
 _SAME = 1e-5  # of the size, or decades: values that differ by less are one
@@ -64,10 +64,10 @@ def comparable(panels: Sequence[tuple[Panel, Sequence[Series]]]) -> Panel:
     """Return a panel whose axes at first show what is in any of some figures of one panel each."""
     alike = panels[0][0]
     along = [x for panel, series in panels for x in _along(series, panel.x)]
-    x = replace(alike.x, also=_ends(along, alike.x))
+    x = replace(alike.x, include=_ends(along, alike.x))
     seen = _scale(x, iter(()), level=False)
     up = [y for panel, series in panels for y in _up(series, panel.y, seen)]
-    return Panel(x, replace(alike.y, also=_ends(up, alike.y)))
+    return Panel(x, replace(alike.y, include=_ends(up, alike.y)))
 
 
 def _ends(values: Sequence[float], axis: Axis) -> tuple[float, ...]:
@@ -80,7 +80,11 @@ def _along(series: Iterable[Series], axis: Axis) -> Iterator[float]:
         if curve.style == "bars":
             yield from (0.8 * float(x) if axis.log else 0.0 for x in curve.x)
         if curve.style != "band":
-            yield from (float(x) for x in curve.x if x is not None)
+            named = len(curve.y) and isinstance(curve.y[0], str)
+            above, below = bar_lengths(curve) if named else ([0.0] * len(curve.x),) * 2
+            for x, up, down in zip(curve.x, above, below, strict=True):
+                if x is not None:
+                    yield from (float(x), float(x) + up, float(x) - down)
 
 
 def _up(series: Iterable[Series], axis: Axis, x: Scale) -> Iterator[float]:
@@ -88,18 +92,28 @@ def _up(series: Iterable[Series], axis: Axis, x: Scale) -> Iterator[float]:
     for curve in series:
         if curve.style == "band":
             continue
-        errors = curve.error or [None] * len(curve.y)
-        for at, y, error in zip(curve.x, curve.y, errors, strict=True):
+        for at, y, above, below in zip(curve.x, curve.y, *bar_lengths(curve), strict=True):
             place = x.place(at)
             if y is None or place is None or not 0 <= place <= 1:
                 continue
-            bar = error or 0.0
-            ends = (max(y - bar, least), y + bar, float(y))
+            ends = (max(y - below, least), y + above, float(y))
             yield from (end for end in ends if not axis.log or end >= y / _BELOW)
 
 
+def bar_lengths(curve: Series) -> tuple[list[float], list[float]]:
+    """Return the half lengths of the bars upward and downward; 0 where there is none."""
+    above = [_known(e) for e in curve.error] if len(curve.error) else [0.0] * len(curve.y)
+    below = [_known(e) for e in curve.error_below] if len(curve.error_below) else above
+    return above, below
+
+
+def _known(value: object) -> float:
+    """Return the half length of an error bar; 0 where it is unknown."""
+    return float(value) if isinstance(value, int | float) and math.isfinite(value) else 0.0
+
+
 def _scale(axis: Axis, values: Iterator[float], *, level: bool) -> Scale:
-    ends = _ends([*values, *axis.also], axis)
+    ends = _ends([*values, *axis.include], axis)
     if not ends:
         return Scale(0.0, 1.0, axis.log)
     low, high = ends

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from matplotlib.figure import Figure
 
-from tribolab.plot.look.style import PaperFigure
+from tribolab.figures.look.style import PaperFigure
 from tribolab.untyped import Arguments
 
 Draw = TypeVar("Draw", bound=Callable[..., Figure])

@@ -12,11 +12,19 @@ from typing import Any, cast
 import numpy as np
 from matplotlib import rcParams
 from matplotlib.artist import Artist
+from matplotlib.axes import Axes
 from matplotlib.axis import Axis, XAxis
 from matplotlib.backend_bases import RendererBase
 from matplotlib.lines import Line2D
 from matplotlib.markers import TICKDOWN, TICKLEFT, TICKRIGHT, TICKUP, MarkerStyle
-from matplotlib.ticker import FuncFormatter, Locator, LogLocator, NullFormatter, NullLocator
+from matplotlib.ticker import (
+    FixedLocator,
+    FuncFormatter,
+    Locator,
+    LogLocator,
+    NullFormatter,
+    NullLocator,
+)
 
 from tribolab.words import number
 
@@ -38,6 +46,26 @@ def few_ticks(axis: Axis, low: float, high: float, decades: int = 8, *, small: b
     there = (a for a in axis.axes.artists if isinstance(a, SmallTicks))
     if small and not any(ticks.axis is axis for ticks in there):
         axis.axes.add_artist(SmallTicks(axis, LogLocator(subs=subs, numticks=90)))
+
+
+def symlog(axes: Axes, linear_below: float, low: float, high: float) -> None:
+    """Scale an ordinate logarithmically on both sides of zero, linearly below a value."""
+    first = int(np.floor(np.log10(linear_below) + 1e-9))
+    largest = max(abs(low), abs(high), linear_below)
+    last = max(first, int(np.ceil(np.log10(largest) - 0.1)))  # a little overshoot needs no decade
+    axes.set_yscale("symlog", linthresh=10.0**first, linscale=0.8)
+    step = max(1, -(-(last - first) // 2))
+    # the lowest decade would overlap the zero
+    decades = 10.0 ** np.arange(last, first - (step == 1), -step)
+    both = low < -(10.0**first)
+    axes.yaxis.set_major_locator(FixedLocator(np.r_[-decades if both else [], 0.0, decades]))
+    axes.yaxis.set_major_formatter(FuncFormatter(_signed_decade))
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.set_ylim(-(10.0 ** (last + 0.4)) if both else -(10.0**first), 10.0 ** (last + 0.4))
+
+
+def _signed_decade(value: float, place: int | None = None) -> str:
+    return "0" if value == 0 else ("\u2212" if value < 0 else "") + power_of_ten(abs(value))
 
 
 def power_of_ten(value: float, place: int | None = None) -> str:

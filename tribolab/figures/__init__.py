@@ -1,0 +1,1 @@
+"""Figures: one description per subject, drawn for papers and for the page."""

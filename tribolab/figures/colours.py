@@ -1,0 +1,66 @@
+"""One colour and marker for each surface, in every figure: on paper and on the page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from tribolab.words import is_dry
+
+# Okabe and Ito's palette, which people with any common colour deficiency tell apart
+# (Color Universal Design, 2008); `assets/drawing.js` and `still.css` have the same, also for dark.
+PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#6B6B6B", "#000000")
+MARKERS = ("o", "s", "D", "^", "v", "p", "h", "*")  # one per colour; for loads, by rank
+BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, GREY, BLACK = range(8)
+# The colours of the reference study: Smooth green, Sb-S blue, Sb-R red.
+_REFERENCE = {"smooth": GREEN, "sb-s": BLUE, "sb-r": VERMILLION}
+_ORDER = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK, GREY)
+_DARKEST, _LIGHTEST = -0.35, 0.45  # share of black or white in the shades of loads
+
+
+def surface_colours(surfaces: Iterable[str]) -> dict[str, int]:
+    """Return the place of each surface in the palette: the order decides.
+
+    The surfaces of the reference study keep the colours of the paper.
+
+    Examples
+    --------
+    >>> surface_colours(["steel", "brass"]), surface_colours(["Sb-R", "steel"])
+    ({'steel': 0, 'brass': 1}, {'Sb-R': 1, 'steel': 0})
+    """
+    names = list(dict.fromkeys(surfaces))
+    # a remark in brackets after a surface's name does not change its colour
+    bare = {name: name.partition(" (")[0].strip().lower() for name in names}
+    fixed = {name: _REFERENCE[bare[name]] for name in names if bare[name] in _REFERENCE}
+    free = [place for place in _ORDER if place not in fixed.values()] or list(_ORDER)
+    others = [name for name in names if name not in fixed]
+    chosen = {name: free[k % len(free)] for k, name in enumerate(others)}
+    return {name: fixed.get(name, chosen.get(name, 0)) for name in names}
+
+
+def shade_of(rank: int, count: int) -> float:
+    """Return the shade of the `rank`-th of `count` loads: dark for the lowest, 0 for a single one.
+
+    Examples
+    --------
+    >>> shade_of(0, 1), shade_of(0, 3), shade_of(2, 3)
+    (0.0, -0.35, 0.45)
+    """
+    if count < 2:
+        return 0.0
+    return round(_DARKEST + (_LIGHTEST - _DARKEST) * rank / (count - 1), 3)
+
+
+def medium_styles(media: Iterable[str]) -> Mapping[str, str]:
+    """Return a line style for each medium: dashed or dotted if it is dry.
+
+    Examples
+    --------
+    >>> medium_styles(["water", "oil", "dry"])
+    {'water': 'line', 'oil': 'dashdot', 'dry': 'dashed'}
+    """
+    names = list(dict.fromkeys(media))
+    wet = [name for name in names if not is_dry(name)]
+    return {
+        name: "dashed" if is_dry(name) else ("line", "dashdot")[wet.index(name) % 2]
+        for name in names
+    }

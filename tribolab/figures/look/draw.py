@@ -1,0 +1,310 @@
+"""Draw a figure with matplotlib: in a figure of its own or in given axes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex, to_rgb
+from matplotlib.figure import Figure
+from matplotlib.ticker import AutoMinorLocator, FuncFormatter, MaxNLocator
+from matplotlib.typing import LineStyleType
+
+from tribolab.errors import AnalysisError
+from tribolab.figures.axes import Scale, scales
+from tribolab.figures.colours import MARKERS, PALETTE
+from tribolab.figures.labels import plain
+from tribolab.figures.look.decades import SmallTicks, few_ticks, symlog
+from tribolab.figures.look.guests import Panels, guests, name_all, whole_figure
+from tribolab.figures.look.sheet import Sheet, finish, new_sheet
+from tribolab.figures.look.style import keep, paper_style
+from tribolab.figures.spec import FigureSpec, Key, Mark, Series
+from tribolab.untyped import Arguments
+
+_LINES: dict[str, LineStyleType] = {
+    "line": "-", "dashed": "--", "dotted": (0, (1, 1.2)), "dashdot": "-.",
+}  # fmt: skip
+_RAMP = "cividis"
+_LEVELS = 0.3, 3.0  # log10 of the ratios in a map, as on the page
+
+
+def draw(
+    spec: FigureSpec, *, title: str = "", ax: Axes | Panels | None = None, width: float = 0.0
+) -> Figure:
+    """Draw a figure.
+
+    Parameters
+    ----------
+    spec
+        What it shows.
+    title
+        Text above it.
+    ax
+        Axes to draw in, one for each panel; they keep their look. Without them a figure is made.
+    width
+        Of a figure of its own [mm]: 86 (one column) or 178 (two); 0 leaves it to the figure.
+
+    Raises
+    ------
+    AnalysisError
+        If there is nothing to draw, or the number of axes is not that of the panels.
+    """
+    spec = replace(spec, series=tuple(plain_values(series) for series in spec.series))
+    if ax is None:
+        with paper_style():
+            sheet = new_sheet(spec, title, width)
+            _fill(spec, sheet)
+            finish(spec, sheet)
+            return sheet.figure
+    given = [ax] if isinstance(ax, Axes) else list(np.ravel(np.asarray(ax, dtype=object)))
+    if len(given) != len(spec.panels):
+        count = len(spec.panels)
+        names = ", ".join(plain(panel.name or panel.y.label) for panel in spec.panels)
+        raise AnalysisError(
+            f"axes: {count} {'is' if count == 1 else 'are'} wanted, for {names}; got {len(given)}"
+        )
+    with guests(given):
+        sheet = Sheet(whole_figure(given[0]), given)
+        _fill(spec, sheet)
+    for panel in given:
+        name_all(panel)
+    if title:
+        given[0].set_title(plain(title))
+    return sheet.figure
+
+
+def plain_values(series: Series) -> Series:
+    """Return a series with lists of plain numbers, which limits are found from."""
+    names = ("x", "y", "high", "error", "error_below", "sizes")
+    numbers = {name: np.asarray(getattr(series, name)).tolist() for name in names}
+    return replace(series, **numbers, columns=_columns_of(series))
+
+
+def _columns_of(series: Series) -> dict[str, Any] | None:
+    if series.columns is None:
+        return {"": (series.x, series.y, series.high, series.error)}
+    return {name: np.asarray(values) for name, values in series.columns.items()}
+
+
+def _fill(spec: FigureSpec, sheet: Sheet) -> None:
+    seen = [scales(panel, k, spec.series) for k, panel in enumerate(spec.panels)]
+    for number, (axes, panel) in enumerate(zip(sheet.panels, spec.panels, strict=True)):
+        mine = [series for series in spec.series if series.panel == number]
+        x, y = seen[number]
+        if panel.x.log:
+            axes.set_xscale("log")
+        if panel.y.log:
+            axes.set_yscale("log")
+        for mark in spec.marks:
+            if mark.panel == number:
+                _mark(axes, mark)
+        for series in sorted(mine, key=lambda series: series.style != "band"):
+            _series(axes, series, y, mine)
+            _keep(sheet.figure, spec, series)
+        _scale_axis(axes, "x", panel.x, _shared(spec, number, seen))
+        _scale_axis(axes, "y", panel.y, y)
+        last = not sheet.shared or number == len(spec.panels) - 1
+        axes.set_xlabel(_label(panel.x) if last else "")
+        if not y.names:
+            axes.set_ylabel(_label(panel.y))
+    for key in spec.keys:
+        _key(sheet.panels[0], key)
+
+
+def _shared(spec: FigureSpec, number: int, seen: Sequence[tuple[Scale, Scale]]) -> Scale:
+    """Return what is seen along a panel: the same for panels with the same abscissa."""
+    own = spec.panels[number].x
+    alike = [x for panel, (x, _) in zip(spec.panels, seen, strict=True) if panel.x == own]
+    return replace(alike[0], low=min(x.low for x in alike), high=max(x.high for x in alike))
+
+
+def _label(axis: Any) -> str:
+    words = axis.paper or axis.label
+    return f"{words} ({axis.unit})" if axis.unit and axis.unit != "date" else words
+
+
+def _scale_axis(axes: Axes, name: str, axis: Any, seen: Scale) -> None:
+    low, high = seen.low, seen.high
+    own = getattr(axes, f"{name}axis")
+    limits = getattr(axes, f"set_{name}lim")
+    if seen.names:
+        axes.set_yticks(range(len(seen.names)), [_wrapped(text) for text in seen.names])
+        axes.tick_params(axis="y", which="both", length=0)
+        limits(low, high)
+    elif axis.linear_below is not None:
+        symlog(axes, axis.linear_below, low, high)
+    elif seen.log:
+        limits(10.0**low, 10.0**high)
+        few_ticks(own, 10.0**low, 10.0**high)
+        _name_parts(own, low, high)
+    elif axis.unit == "date":
+        _dates(axes)
+        limits(low, high)
+    else:
+        limits(low, high)
+        if axis.unit == "" and axis.label.startswith(("number", "cycle", "pair")):
+            own.set_major_locator(MaxNLocator(8, integer=True))
+        if not any(isinstance(a, SmallTicks) and a.axis is own for a in axes.artists):
+            axes.add_artist(SmallTicks(own, AutoMinorLocator()))
+
+
+def _name_parts(axis: Any, low: float, high: float) -> None:
+    """Name 1, 2 and 5 of each decade where a logarithmic axis shows hardly more than one."""
+    if high - low < 1.7:
+        axis.set_major_locator(_parts_locator(high - low))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+
+
+def _parts_locator(decades: float) -> Any:
+    # late: matplotlib's locators take a moment to load
+    from matplotlib.ticker import LogLocator
+
+    return LogLocator(subs=(1, 2, 5) if decades > 0.35 else (1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9))
+
+
+def _dates(axes: Axes) -> None:
+    # late: dates take long to load
+    import matplotlib.dates as mdates
+
+    locator = mdates.AutoDateLocator(maxticks=6)
+    axes.xaxis.set_major_locator(locator)
+    axes.xaxis.set_major_formatter(mdates.ConciseDateFormatter(locator))
+
+
+def _wrapped(text: str) -> str:
+    # late: needed for long names only
+    import textwrap
+
+    apart = str(text).replace("_", "_ ")  # a long name breaks at its underscores
+    lines = textwrap.wrap(apart, 25, max_lines=3, placeholder=" …") or [""]
+    return "\n".join(plain(line.replace("_ ", "_")) for line in lines)
+
+
+def colour_of(series: Series | Mark | Key) -> str:
+    """Return the colour of a series: that of the palette in the shade of its load."""
+    base = PALETTE[series.colour % len(PALETTE)]
+    shade = getattr(series, "shade", 0.0)
+    if not shade:
+        return base
+    rgb, target = np.array(to_rgb(base)), np.full(3, float(shade > 0))
+    return to_hex(rgb + abs(shade) * (target - rgb))
+
+
+def _floats(values: Any) -> np.ndarray:
+    return np.array([np.nan if value is None else value for value in values], float)
+
+
+def _series(axes: Axes, series: Series, y_seen: Scale, every: Sequence[Series]) -> None:
+    colour, label = colour_of(series), plain(series.label) or "_nolegend_"
+    x = _floats(series.x)
+    y = _floats(map(y_seen.names.index, series.y)) if y_seen.names else _floats(series.y)
+    if series.style == "points":
+        _points(axes, series, x, y, colour, label, lying=bool(y_seen.names))
+    elif series.style == "band":
+        high, least = _floats(series.high), 10.0 ** (y_seen.low - 3) if y_seen.log else -np.inf
+        fine = np.isfinite(y) & np.isfinite(high)
+        axes.fill_between(
+            x[fine], np.maximum(y[fine], least), high[fine], color=colour, alpha=0.2, linewidth=0,
+            label=label,
+        )  # fmt: skip
+    elif series.style == "bars":
+        bars = [one for one in every if one.style == "bars"]
+        thick = 0.8 / len(bars)
+        shift = ((len(bars) - 1) / 2 - next(k for k, b in enumerate(bars) if b is series)) * thick
+        axes.barh(y + shift, x, 0.9 * thick, color=colour, label=label)
+    elif series.style == "heat":
+        axes.scatter(
+            x, y, 5.0, _floats(series.high), marker="s", cmap=_RAMP, vmin=_LEVELS[0],
+            vmax=_LEVELS[1], linewidths=0, rasterized=True, label=label,
+        )  # fmt: skip
+    else:
+        if y_seen.log:
+            y = np.where(y > 0, y, np.nan)
+        axes.plot(
+            x, y, color=colour, linestyle=_LINES[series.style], linewidth=0.5 if series.thin else
+            1.1, label=label, zorder=3, markevery=[],
+        )  # fmt: skip
+
+
+def _points(
+    axes: Axes, series: Series, x: np.ndarray, y: np.ndarray, colour: str, label: str,
+    *, lying: bool,
+) -> None:  # fmt: skip
+    marker = MARKERS[(series.colour if series.marker is None else series.marker) % len(MARKERS)]
+    if len(series.error):
+        above = _floats(series.error)
+        below = _floats(series.error_below) if len(series.error_below) else above
+        known = np.isfinite(above) & np.isfinite(x) & np.isfinite(y)
+        bars = np.nan_to_num(np.stack([below, above]))[:, known]
+        look: Arguments = (
+            {"elinewidth": 2.4, "alpha": 0.28}
+            if series.pale
+            else {"elinewidth": 0.8, "capsize": 1.8, "capthick": 0.8}
+        )
+        if known.any():
+            axes.errorbar(
+                x[known], y[known], **{"xerr" if lying else "yerr": bars}, fmt="none",
+                ecolor=colour, zorder=2.5, **look,
+            )  # fmt: skip
+    face = "white" if series.open else colour
+    if len(series.sizes):
+        axes.scatter(
+            x, y, 17.6 * _floats(series.sizes), marker=marker, facecolors=face, edgecolors=colour,
+            linewidths=0.9, label=label, zorder=4,
+        )  # fmt: skip
+        return
+    line = ("--" if series.open else "-") if series.joined else "none"
+    axes.plot(
+        x, y, color=colour, marker=marker, markersize=4.2 if not series.thin else 2.0,
+        markeredgewidth=0.9, markerfacecolor=face, linestyle=line, linewidth=0.7, label=label,
+        zorder=4,
+    )  # fmt: skip
+
+
+def _mark(axes: Axes, mark: Mark) -> None:
+    colour, words = colour_of(mark), plain(mark.text) or "_nolegend_"
+    if mark.until is not None:
+        across = axes.axvspan if mark.side == "x" else axes.axhspan
+        across(
+            mark.value, mark.until, color=colour, alpha=mark.opacity, linewidth=0, label=words,
+            zorder=1,
+        )  # fmt: skip
+    else:
+        line = axes.axvline if mark.side == "x" else axes.axhline
+        line(
+            mark.value, color=colour, linestyle=_LINES[mark.style], linewidth=0.7, zorder=0.5,
+            alpha=mark.opacity, label=words,
+        )  # fmt: skip
+
+
+def _key(axes: Axes, key: Key) -> None:
+    colour = colour_of(key)
+    if key.style == "band":
+        axes.fill_between([], [], [], color=colour, alpha=0.2, linewidth=0, label=plain(key.label))
+        return
+    axes.plot(
+        [], [], color=colour, linewidth=1.1, label=plain(key.label),
+        linestyle="none" if key.style == "points" else _LINES[key.style],
+        marker="o" if key.marker or key.style == "points" else "", markersize=4,
+        markerfacecolor="white" if key.open else colour,
+    )  # fmt: skip
+
+
+def _keep(figure: Figure, spec: FigureSpec, series: Series) -> None:
+    """Remember the numbers of a series for `figure_data`."""
+    columns, panel = series.columns or {}, spec.panels[series.panel]
+    if "" in columns:
+        x, y, high, error = columns[""]
+        names = [axis.column or axis.label or "name" for axis in (panel.x, panel.y)]
+        ends = ("_low", "_high") if series.style == "band" else ("", "_level")
+        columns = {names[0]: np.asarray(x), names[1] + ends[0]: np.asarray(y)}
+        if len(high):
+            columns[names[1] + ends[1]] = np.asarray(high)
+        if len(error):
+            columns[names[1] + ("_std" if series.pale else "_U95")] = np.asarray(error, float)
+    if columns:
+        numbers = {name: np.asarray(values) for name, values in columns.items()}
+        keep(figure, panel.name or panel.y.label, series.name or series.label, **numbers)

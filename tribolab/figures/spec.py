@@ -1,0 +1,331 @@
+"""What a figure shows: axes with quantity and unit, series, marks, words; three renderers draw it.
+
+A function of this package turns results into a `FigureSpec`. `look.draw` draws it for papers and
+notebooks, `page.still` for the page before its script runs, `assets/chart.js` on the live page.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any, Literal, TypedDict
+
+import numpy as np
+
+from tribolab.figures.labels import column, plain_symbol, plain_unit, symbol
+from tribolab.quantities import quantity
+
+Style = Literal["points", "line", "dashed", "dotted", "dashdot", "band", "bars", "heat"]
+Width = Literal["card", "half", "whole"]
+Values = Sequence[Any] | np.ndarray
+_MAX_CARD_LABELS = 8  # in the legend of a card, as in `assets/picture.js`
+_DIGITS = 6  # more than any screen resolves
+_NOT_ON_PAGE = frozenset({"columns", "keys", "paper", "column", "across", "name", "pale", "thin"})
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One side of a panel: its quantity and unit, and which part of it is seen at first.
+
+    Parameters
+    ----------
+    label, unit
+        Name of the quantity and the unit in which it is drawn.
+    log
+        Whether it is logarithmic at first.
+    decades
+        How many decades below the highest value are seen at first; 0 shows all.
+    least
+        Smallest possible value: error bars end there.
+    include
+        Values that are seen at first whatever is drawn.
+    paper, column
+        Label for papers, with the symbol as mathtext, and name of the column in `figure_data`; by
+        default both follow from `label`.
+    linear_below
+        Of an axis that is logarithmic on both sides of zero: where it is linear.
+    """
+
+    label: str
+    unit: str = ""
+    log: bool = False
+    decades: int = 0
+    least: float | None = None
+    include: tuple[float, ...] = ()
+    paper: str = ""
+    linear_below: float | None = None
+    column: str = ""
+
+
+def axis_of(name: str, words: str = "", unit: str = "", **more: Any) -> Axis:
+    """Return the axis of a quantity: by default with its long name and in its SI unit.
+
+    Examples
+    --------
+    >>> axis_of("sliding_speed", log=True).label, axis_of("pressure", unit="MPa").unit
+    ('sliding speed v', 'MPa')
+    """
+    known = quantity(name)
+    words = words or known.long_name
+    paper = " ".join(filter(None, (words, symbol(name))))
+    of_unit = column(name) if unit in ("", plain_unit(name)) else f"{name}_{unit}"
+    label = f"{words} {plain_symbol(name)}".strip()
+    return Axis(label, unit or plain_unit(name), paper=paper, column=of_unit, **more)
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes, with words above it, its relative height, and its name in `figure_data`."""
+
+    x: Axis
+    y: Axis
+    title: str = ""
+    height: float = 1.0
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class Series:
+    """One curve, band or set of points.
+
+    Parameters
+    ----------
+    label
+        In the legend; series with the same label are switched together.
+    x, y
+        In the units of the panel's axes; None or NaN where a value is unknown.
+    style
+        How it is drawn. Of a "band", `y` is the lower edge and `high` the upper one; of "bars",
+        `y` has names and `x` the lengths; of "heat", `high` has the colours.
+    colour
+        Place in the palette: that of the surface in comparisons, else in the order of appearance.
+    panel
+        Number of the panel, from 0.
+    surface, medium, load
+        What is shown, for the choice of loads and the filters; ``""`` and None apply to all.
+    error
+        Half lengths of the error bars, in the unit of `y` (of `x` if `y` has names).
+    error_below
+        Half lengths downward where they differ from those upward.
+    hover
+        What the pointer shows: a text for each point, or one for all of them.
+    runs
+        Names of the runs in it: it is hidden when all of them are.
+    link
+        The run that a click on a point opens; one for all points, or one for each.
+    open
+        Whether its markers are open, as those of dry runs are.
+    joined
+        Whether a thin line joins the points.
+    shade
+        Darker (below 0) or lighter (above 0) than the colour of the palette: the rank of the load.
+    marker
+        Its marker; None for that of the colour.
+    sizes
+        Area of each marker relative to the usual one.
+    pale, thin
+        Wide pale error bars (a standard deviation, no uncertainty); a thin line (a long trace).
+    columns, name
+        Numbers and name for `figure_data`, by column with the unit in its name; by default what is
+        drawn, under its label.
+    """
+
+    label: str
+    x: Values
+    y: Values
+    style: Style = "line"
+    colour: int = 0
+    panel: int = 0
+    high: Values = ()
+    surface: str = ""
+    medium: str = ""
+    load: float | None = None
+    error: Values = ()
+    error_below: Values = ()
+    hover: Sequence[str] = ()
+    runs: Sequence[str] = ()
+    link: Sequence[str] = ()
+    open: bool = False
+    joined: bool = False
+    shade: float = 0.0
+    marker: int | None = None
+    sizes: Values = ()
+    pale: bool = False
+    thin: bool = False
+    name: str = ""
+    columns: Mapping[str, Values] | None = None
+
+
+class SeriesLabels(TypedDict, total=False):
+    """What several series show: fields of `Series`."""
+
+    surface: str
+    medium: str
+    load: float | None
+    runs: Sequence[str]
+    open: bool
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A straight line across a panel at a value, or a shaded stretch from `value` to `until`."""
+
+    side: Literal["x", "y"]
+    value: float
+    until: float | None = None
+    text: str = ""
+    style: Style = "line"
+    colour: int = 6
+    opacity: float = 1.0
+    panel: int = 0
+
+
+@dataclass(frozen=True)
+class Key:
+    """An entry of a paper's legend that explains a style used by all surfaces, in grey."""
+
+    label: str
+    style: Style = "line"
+    open: bool = False
+    marker: bool = False
+    colour: int = 6
+
+
+@dataclass(frozen=True)
+class FigureSpec:
+    """A figure, independent of what draws it.
+
+    Parameters
+    ----------
+    title, note, alt
+        What it shows; how to read it; and what it shows in words for who does not see it.
+    panels, series, marks, keys
+        What is drawn.
+    id
+        Its address on the page, and the name of its files.
+    section
+        Section of the page, or card of the answer, that it belongs to.
+    one_load
+        Whether the page shows one load at a time, the lowest at first.
+    width
+        Whether it fits a card, half the page or the whole width; on paper "whole" is 178 mm.
+    height
+        Of its panel on the page [px]; 0 is as usual.
+    rows
+        Whether names are listed along the ordinate, so that it cannot be made lower.
+    across
+        Number of panels in a row on paper.
+    """
+
+    id: str = ""
+    section: str = ""
+    title: str = ""
+    note: str = ""
+    alt: str = ""
+    panels: tuple[Panel, ...] = ()
+    series: tuple[Series, ...] = ()
+    one_load: bool = False
+    width: Width = "half"
+    height: int = 0
+    rows: bool = False
+    across: int = 1
+    marks: tuple[Mark, ...] = ()
+    keys: tuple[Key, ...] = ()
+
+    @property
+    def loads(self) -> list[float]:
+        """Loads among which one is chosen, the lowest first; none where all are shown at once."""
+        if not self.one_load:
+            return []
+        return sorted({curve.load for curve in self.series if curve.load is not None})
+
+    @property
+    def surface(self) -> str:
+        """Surface that all of it is of; "" where there are several."""
+        return only({curve.surface for curve in self.series})
+
+    @property
+    def medium(self) -> str:
+        """Medium that all of it is of; "" where there are several."""
+        return only({curve.medium for curve in self.series})
+
+
+def only(names: set[str]) -> str:
+    """Return the name that there is; "" where there are several."""
+    return min(names) if len(names) == 1 else ""
+
+
+def written_labels(figure: FigureSpec, labels: Collection[str]) -> int:
+    """Return how many labels the legend shows: a card has no room for many, points say theirs."""
+    return 0 if figure.width == "card" and len(labels) > _MAX_CARD_LABELS else len(labels)
+
+
+def legend(series: Iterable[Series]) -> dict[str, Series]:
+    """Return what stands in a legend: a band where it has a name that no line or point has."""
+    named: dict[str, Series] = {}
+    for curve in sorted(series, key=lambda curve: curve.style == "band"):
+        if curve.label or curve.style != "band":
+            named.setdefault(curve.label, curve)
+    return named
+
+
+def plain_data(value: Any) -> Any:
+    """Return a figure as plain data, without what is as usual and with the digits that are seen."""
+    if is_dataclass(value) and not isinstance(value, type):
+        values = {field.name: getattr(value, field.name) for field in fields(value)}
+        usual = {field.name: field.default for field in fields(value)}
+        return {
+            name: plain_data(item)
+            for name, item in values.items()
+            if name not in _NOT_ON_PAGE
+            and item is not usual[name]
+            and not (isinstance(item, str | tuple | list) and not item)
+        }
+    if isinstance(value, np.ndarray):
+        return plain_data(value.tolist())
+    if isinstance(value, list | tuple):
+        return [_seen(item) if type(item) is float else plain_data(item) for item in value]
+    if isinstance(value, np.generic):
+        return plain_data(value.item())
+    return _seen(value) if isinstance(value, float) else value
+
+
+def _seen(value: float) -> float | None:
+    return float(f"{value:.{_DIGITS}g}") if math.isfinite(value) else None
+
+
+def thinned(count: int, most: int = 400) -> np.ndarray:
+    """Return which of so many points of a smooth curve are kept, both ends among them.
+
+    Examples
+    --------
+    >>> thinned(5).tolist(), thinned(1000, 5).tolist()
+    ([0, 1, 2, 3, 4], [0, 250, 500, 749, 999])
+    """
+    if count <= most:
+        return np.arange(count)
+    return np.round(np.linspace(0, count - 1, most)).astype(int)
+
+
+def places(names: Iterable[str]) -> dict[str, int]:
+    """Return the place of each name in the palette, in the order of appearance.
+
+    Examples
+    --------
+    >>> places(["Smooth", "Sb-R", "Smooth"])
+    {'Smooth': 0, 'Sb-R': 1}
+    """
+    return {name: place for place, name in enumerate(dict.fromkeys(names))}
+
+
+def safe(text: str) -> str:
+    """Return text as a part of an address or a file's name.
+
+    Examples
+    --------
+    >>> safe("Sb-R, glycerol")
+    'sb-r_glycerol'
+    """
+    kept = "".join(c if c.isascii() and (c.isalnum() or c == "-") else " " for c in text.lower())
+    return "_".join(kept.split()) or "unnamed"
