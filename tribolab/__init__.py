@@ -36,6 +36,7 @@ _PUBLIC = {
     "moving_mass": "tribolab.friction.moving_mass",
     "without_inertia": "tribolab.friction.moving_mass",
     "static_friction": "tribolab.friction.coefficient.static",
+    "running_in": "tribolab.friction.running_in.history",
     "stick_slip": "tribolab.friction.oscillation.stick_slip",
     "error_from_blocks": "tribolab.friction.blocks",
     "stick_slip_curve": "tribolab.friction.oscillation.slip_curve",
@@ -120,6 +121,7 @@ __all__ = [
     "moving_mass",
     "without_inertia",
     "static_friction",
+    "running_in",
     "half_loops",
     "uncertainty_budget",
     "stick_slip",
@@ -228,6 +230,7 @@ if TYPE_CHECKING:
     from tribolab.friction.moving_mass import moving_mass, without_inertia
     from tribolab.friction.oscillation.slip_curve import stick_slip_curve
     from tribolab.friction.oscillation.stick_slip import stick_slip
+    from tribolab.friction.running_in.history import running_in
     from tribolab.friction.segments.find import find_segments
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.lubrication.factors import flow_factors

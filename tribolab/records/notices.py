@@ -29,7 +29,7 @@ from tribolab.records.run_facts import (
 )
 from tribolab.records.run_record import DecisionRow
 from tribolab.records.run_steps import steps_that_differ
-from tribolab.records.run_trend import trends_along
+from tribolab.records.running_in_record import RunningIn
 from tribolab.words import duration, many, percent
 
 if TYPE_CHECKING:
@@ -50,6 +50,7 @@ def notices_of(
     friction: xr.Dataset,
     decisions: Sequence[DecisionRow] = (),
     slip: xr.Dataset | None = None,
+    running_in: Sequence[RunningIn] = (),
 ) -> list[Notice]:
     """Return what a reader should know of a run, from decisions, its checks and its results."""
     notices = decision_notices(name, decisions)
@@ -84,9 +85,10 @@ def notices_of(
         if largest:
             text += f", at most {percent(largest)} of the typical friction"
         say("note", "friction", text)
+    for each in running_in:
+        if each.text:
+            say("suspect" if each.is_unsteady else "note", "friction", f"{each.text}.")
     if quantity == "friction_coefficient" and quantity in friction:
-        for trend in trends_along(friction, values):
-            say("note", "friction", trend.text)
         if differ := steps_that_differ(friction, values):
             say("suspect", "friction", differ)
     for text in _remarks(friction):

@@ -11,6 +11,7 @@ from tribolab.friction.decisions.decision import ACTIONS
 from tribolab.qc.register import STATUSES
 from tribolab.records.annotations import Columns, Natural, means, one_of
 from tribolab.records.parts import FlaggedSpan, Notice, Row, RunOutcome, RunZero, Source
+from tribolab.records.running_in_record import RunningIn
 from tribolab.records.wording import UNITS
 
 _QUANTITY = "what value_min, value_max and the highlights are"
@@ -168,6 +169,7 @@ class RunFacts:
     history: str = ""
     highlights: tuple[Highlight, ...] = ()
     omitted: tuple[LeftOut, ...] = ()
+    running_in: tuple[RunningIn, ...] = ()
     segments: tuple[Annotated[Row, _SEGMENT], ...] = ()
     flagged: tuple[FlaggedSpan, ...] = ()
 
@@ -192,6 +194,8 @@ class RunRecord:
         Its stick-slip, a row per segment.
     starts
         Its static friction, a row per start of sliding.
+    course
+        Friction along it, as `tribolab.records.running_in_record.running_in_of` returns it.
     """
 
     outcome: RunOutcome
@@ -201,3 +205,4 @@ class RunRecord:
     notices: tuple[Notice, ...] = ()
     slip: tuple[Row, ...] = ()
     starts: tuple[Row, ...] = ()
+    course: tuple[Row, ...] = ()

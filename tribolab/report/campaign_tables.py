@@ -48,6 +48,7 @@ TABLES = {
     "stribeck_as_found": "measured friction over sliding speed, without a person's decisions",
     "uncertainty_budget": "parts of the uncertainty of every measured friction coefficient",
     "stick_slip": "stick-slip of every segment",
+    "running_in": "running-in, steady and mean friction of every run at one speed",
     "static_friction": "static friction at every start of sliding",
     "roughness": "roughness of the surfaces",
     "contact": "contact area and separation over load",
@@ -181,6 +182,8 @@ def _long_tables(outcome: Outcome, curves: Sequence[CurveRecord]) -> Iterator[_L
         yield _Long("friction.csv", of_runs(segments), ("run", *_SEGMENT))
         yield _Long("stick_slip.csv", of_runs(slip), ("run", "segment"))
         yield _Long("static_friction.csv", of_runs(lambda run: run.starts), ("run", "segment"))
+        settled = of_runs(lambda run: (each.row() for each in run.facts.running_in))
+        yield _Long("running_in.csv", settled)
         yield _Long("stribeck.csv", of_curves(points), ("curve", *_POINT))
         parts = of_curves(lambda curve: curve.budget)
         yield _Long("uncertainty_budget.csv", parts, ("curve", *_PART))

@@ -38,6 +38,8 @@ class Analysed(NamedTuple):
         Gravest finding of its checks, or what a person decided.
     friction_as_found, quality_as_found
         The same without a person's decisions; None and "" where there are none.
+    whole
+        Friction with the part of the run that `discard` and `steady` leave out; None without them.
     """
 
     signals: xr.Dataset
@@ -47,6 +49,7 @@ class Analysed(NamedTuple):
     quality: str
     friction_as_found: xr.Dataset | None = None
     quality_as_found: str = ""
+    whole: xr.Dataset | None = None
 
     @property
     def groups(self) -> dict[str | None, xr.Dataset]:
@@ -81,22 +84,48 @@ def analyse_run(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
     read = _read(run) if read is None else read
     signals = _with_set_points(run, read)
     let_go()
-    segments = find_segments(signals, **run.segments)
+    options = dict(run.segments)
+    discard, steady = options.pop("discard", None), options.pop("steady", None)
+    found = find_segments(signals, **options)
+    segments, _ = _steady_part(run, signals, found, discard, steady)
     before: tuple[xr.Dataset | None, str] = (None, "")
     if any(decision.moves_numbers for decision in run.decisions):
         friction, _, said = _examined(run, signals, segments)
         before = friction, said.status
-    segments = decide(segments, run.decisions, signals)
+    segments = decide(found, run.decisions, signals)
+    segments, whole = _steady_part(run, signals, segments, discard, steady)
     friction, slip, said = _examined(run, signals, segments)
     if run.decisions and before[0] is None:  # the numbers are the same
         before = without_decisions(friction), said.status_as_found
     signals = said.marked
     signals.attrs.update({QUALITY: said.status, _FINDINGS: said.rows})
-    analysed = Analysed(signals, segments, friction, slip, said.status, *before)
+    analysed = Analysed(signals, segments, friction, slip, said.status, *before, whole)
     for data in analysed.groups.values():
         data.attrs.update(run_labels(run), config_sha256=run.config_sha256)
     note_reading(run, read, signals)
     return analysed
+
+
+def _steady_part(
+    run: PlannedRun,
+    signals: xr.Dataset,
+    segments: xr.Dataset,
+    discard: str | None,
+    steady: str | None,
+) -> tuple[xr.Dataset, xr.Dataset | None]:
+    """Return the segments that count, and the friction of all of them if some are left out."""
+    if discard is None and steady is None:
+        return segments, None
+    # late: starting stays quick
+    from tribolab.friction.coefficient.coefficient import friction_coefficient
+    from tribolab.friction.running_in.steady_part import steady_segments, without_start
+
+    whole = friction_coefficient(signals, segments, **run.friction)
+    if discard is not None:
+        segments = without_start(segments, discard)
+    if steady is not None:
+        segments = steady_segments(signals, segments, whole)
+    return segments, whole
 
 
 def run_labels(run: PlannedRun) -> dict[str, str]:

@@ -204,6 +204,7 @@ def process_run(task: RunTask) -> RunAnswer:
     from tribolab.records.frames import plain_rows, stick_slip_columns
     from tribolab.records.notices import notices_of
     from tribolab.records.run_facts import facts_of
+    from tribolab.records.running_in_record import running_in_of
 
     began = time.monotonic()
     run = task.run
@@ -219,7 +220,12 @@ def process_run(task: RunTask) -> RunAnswer:
         write_data(root | analysed.groups, task.folder / task.data_file)
         facts = facts_of(signals, segments, friction, slip, analysed.friction_as_found)
         facts = _with_dead_weight(facts, run, signals)
-        notices = notices_of(run.name, signals, segments, friction, facts.decisions, slip)
+        running_in, course = running_in_of(
+            signals, friction if analysed.whole is None else analysed.whole
+        )
+        facts = replace(facts, running_in=running_in)
+        told = facts.decisions, slip, running_in
+        notices = notices_of(run.name, signals, segments, friction, *told)
         trace, why = _trace(task, signals, segments, friction)
         rows = plain_rows(stick_slip_columns(slip))
         starts = _starts(signals, segments, friction)
@@ -252,7 +258,7 @@ def process_run(task: RunTask) -> RunAnswer:
     )
     zero = zero_of(friction.attrs, signals.attrs, run.instrument)
     sources = sources_of_run(run, signals.attrs)
-    record = RunRecord(outcome, sources, zero, facts, (*notices, *why), rows, starts)
+    record = RunRecord(outcome, sources, zero, facts, (*notices, *why), rows, starts, course)
     return RunAnswer(record, trace)
 
 

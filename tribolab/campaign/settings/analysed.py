@@ -7,7 +7,14 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tribolab.campaign.settings.fields import MiddleShare, PositiveSi, ShareOfEnds, Si, SomeText
+from tribolab.campaign.settings.fields import (
+    Discard,
+    MiddleShare,
+    PositiveSi,
+    ShareOfEnds,
+    Si,
+    SomeText,
+)
 from tribolab.campaign.settings.table import Table
 from tribolab.errors import ConfigError, TribolabError, nearest, shown
 from tribolab.untyped import Arguments
@@ -26,6 +33,10 @@ class Segments(Table):
     """Of a slider that moves to and fro without a constant speed: the share of each stroke's length
     about its middle that is used, e.g. "40 %"; by default half where the instrument states stroke
     and frequency, or the position tells that each stroke is like the last."""
+    discard: Discard | None = None
+    """What is left out at the beginning of each run: a sliding distance, a time, or cycles."""
+    steady: Literal["auto"] | None = None
+    """"auto": of each run the part after running-in counts, as `running_in.csv` has it."""
     resolution: Annotated[float, Field(gt=0, lt=1)] | None = None
     """Relative difference of speed that separates two neighbouring plateaus."""
     drift: Annotated[float, Field(gt=0)] | None = None

@@ -18,6 +18,7 @@ from pydantic_core import core_schema
 
 from tribolab.campaign.settings.name_pattern import NamePattern
 from tribolab.errors import UnitError, shown
+from tribolab.friction.running_in.amount import discard_amount
 from tribolab.reading.dialect.zero_reading import parse_zero
 from tribolab.units import to_si
 from tribolab.untyped import Json
@@ -164,6 +165,18 @@ def _place(value: Any) -> str:
 
 
 ZeroPlace = Annotated[str, BeforeValidator(_place), Field(examples=["first 2 s"])]
+
+
+def _discard(value: Any) -> str:
+    """Check how much of the beginning of a run is left out."""
+    try:
+        discard_amount(str(value))
+    except UnitError as error:
+        raise ValueError(str(error)) from error
+    return str(value)
+
+
+Discard = Annotated[str, BeforeValidator(_discard), Field(examples=["50 m", "60 s", "100 cycles"])]
 
 
 def _spread(value: Any) -> str:

@@ -1,0 +1,32 @@
+"""How much of the beginning of a run is left out."""
+
+from __future__ import annotations
+
+from tribolab.errors import UnitError, shown
+from tribolab.units import to_si
+
+_CYCLES = ("cycle", "cycles")
+
+
+def discard_amount(text: str) -> tuple[float, str]:
+    """Return how much of a run's beginning is left out, and "m", "s" or "cycles".
+
+    Raises
+    ------
+    UnitError
+        If it is no distance, time or number of cycles.
+
+    Examples
+    --------
+    >>> discard_amount("50 m"), discard_amount("2 min"), discard_amount("100 cycles")
+    ((50.0, 'm'), (120.0, 's'), (100.0, 'cycles'))
+    """
+    number, _, unit = text.strip().partition(" ")
+    if unit.strip() in _CYCLES:
+        return to_si(number, "1", name="discard"), "cycles"
+    for wanted in ("m", "s"):
+        try:
+            return to_si(text, wanted, name="discard"), wanted
+        except UnitError:
+            continue
+    raise UnitError(f"discard: {shown(repr(text))} is no distance, time or number of cycles")

@@ -1,0 +1,27 @@
+"""Numbers that decide running-in; calibrated by ``tests/benchmarks/running_in_coverage.py``."""
+
+from tribolab.core.limit import Limit
+
+_TABLE = "tests/benchmarks/running_in_coverage.py, seed 8"
+
+BY_CHANCE = Limit(5e-4, "1", "chance of a running-in in a sequence that has none", _TABLE)
+STEADY_WITHIN = Limit(
+    0.01, "1", "distance of friction from its asymptote, over the asymptote, that counts as steady",
+    "judgement",
+)  # fmt: skip
+NOT_FINISHED = Limit(
+    0.1, "1", "share of the running-in that may be left at the end of the run", _TABLE
+)
+LATEST_START = Limit(0.8, "1", "share of the run after which a steady value has too few values")
+STEP_OVER_NOISE = Limit(6.5, "1", "standard errors of a step", _TABLE)
+STEP_OVER_EXPONENTIAL = Limit(1.06, "1", "squares that a step must save over a running-in", _TABLE)
+LINE_OVER_EXPONENTIAL = Limit(0.98, "1", "squares of a line that count like an exponential", _TABLE)
+SHORT_TIME = Limit(
+    0.15, "1", "time constant over the run below which the noise at its own frequencies counts",
+    _TABLE,
+)  # fmt: skip
+LONGEST_CHANGE_AT_END = Limit(
+    1 / 3, "1", "share of a run that a change at its end may take: else the end is the steady part"
+)
+MIN_VALUES = Limit(20, "1", "strokes, or stretches, of a run in which running-in is looked for")
+"""As for the trend along a run's strokes; below, Burg's models have too few values."""
