@@ -44,7 +44,9 @@ class RunningIn:
     first_friction_coefficient: float | None
     last_friction_coefficient: float | None
     steady_friction_coefficient: float | None
-    steady_friction_coefficient_sem: float | None
+    steady_friction_coefficient_sem: Annotated[
+        float | None, means("standard error of the mean over the steady part, within the run")
+    ]
     steady_friction_coefficient_U95: float | None
     mean_friction_coefficient: Annotated[float | None, means("mean over the whole run")]
     mean_friction_coefficient_U95: float | None
