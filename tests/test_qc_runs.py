@@ -318,7 +318,7 @@ def test_distance_tells_that_drops_and_spectrum_are_at_odds():
         for name, found in (("as it is", slip), ("at odds", said), ("by chance", chance))
     }
     assert len(doubts["at odds"]) == 1
-    assert "no period of stick-slip is told in 1 segment" in doubts["at odds"][0]
+    assert "the period of stick-slip is not determined in 1 segment" in doubts["at odds"][0]
     assert doubts["as it is"] == doubts["by chance"] == []
 
 

@@ -114,7 +114,7 @@ def test_a_frequency_that_friction_does_not_have_is_no_speed(tmp_path, stated):
     run = tl.read(tmp_path / "a.csv")
     assert "sliding_velocity" not in run
     said = check_run(run, tl.find_segments(run)).table.query("status == 'fail'")
-    assert f"it does not turn over with the {stated:g} Hz that are stated" in " ".join(said.message)
+    assert f"it does not reverse at the stated {stated:g} Hz" in " ".join(said.message)
 
 
 def test_a_part_of_another_frequency_does_not_pass_for_rest(tmp_path):
@@ -125,7 +125,7 @@ def test_a_part_of_another_frequency_does_not_pass_for_rest(tmp_path):
     run = tl.read(tmp_path / "a.csv")
     assert run.attrs["strokes_unlike_s"] == pytest.approx(19, abs=1.5)
     said = check_run(run, tl.find_segments(run)).table.query("check == 'segment_speed'")
-    assert said.status.item() == "fail" and "for a part of the run only" in said.message.item()
+    assert said.status.item() == "fail" and "during a part of the run only" in said.message.item()
     # the same with rests in it is fine
     resting = np.where((time > 10) & (time < 20), 0.0, force)
     still = np.where(time >= 20, 0.0, resting)

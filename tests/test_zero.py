@@ -320,8 +320,8 @@ def test_loops_of_one_speed_say_what_unequal_speeds_may_change():
     ("turned", "offset", "one_way", "cure"),
     [
         (True, 0.0, False, "Set `sign = -1`"),
-        (True, 40.0, False, "does not lie about zero"),
-        (False, -12.0, True, "do not tell a turned sign"),
+        (True, 40.0, False, "is not centred on zero"),
+        (False, -12.0, True, "cannot distinguish a wrong sign"),
     ],
 )
 def test_another_sign_is_proposed_only_where_the_loop_is_centred(turned, offset, one_way, cure):
@@ -343,7 +343,7 @@ def test_strokes_of_hardly_any_friction_do_not_speak_against_a_turned_sign():
     run = run.assign(sliding_velocity=-run["sliding_velocity"])
     rows = check_run(run, find_segments(run), analysed(run)).rows
     (row,) = [row for row in rows if row["check"] == "friction_sign"]
-    assert "in 2 more it is too small to tell" in row["message"]
+    assert "in 2 more it is too small to decide" in row["message"]
     assert row["cure"].startswith("Set `sign = -1`")
 
 

@@ -320,12 +320,12 @@ def undetermined_remark(estimate: Estimate) -> str:
     >>> undetermined_remark(found._replace(determined=True))
     ''
     >>> undetermined_remark(found._replace(u95=0.04))
-    'the mean is not determined: it wanders too slowly for so short a record (U95 0.04)'
+    'the mean is not determined: the record is too short for its slow drift (U95 0.04)'
     """
     if estimate.determined or not estimate.u95 > 0:
         return ""
     return (
-        "the mean is not determined: it wanders too slowly for so short a record "
+        "the mean is not determined: the record is too short for its slow drift "
         f"(U95 {estimate.u95:.2g})"
     )
 

@@ -167,6 +167,13 @@ class RunSubject:
         names = ("friction_force", "friction_coefficient")
         return next((name for name in names if name in self.signals), None)
 
+    @property
+    def required_friction_signal(self) -> str:
+        """Name of the signal that carries friction; without one the check is skipped."""
+        if self.friction_signal is None:
+            raise Skip("no friction was recorded")
+        return self.friction_signal
+
     @cached_property
     def target_normal_force(self) -> np.ndarray:
         """Set-point of the normal force [N] for each segment, NaN where unknown."""
@@ -195,9 +202,7 @@ class RunSubject:
         Half the difference of the mean strokes where they go both ways, so that an offset does
         not count as friction; else the mean magnitude.
         """
-        if self.friction_signal is None:
-            raise Skip("no friction was recorded")
-        means = self.segment_means(self.friction_signal)
+        means = self.segment_means(self.required_friction_signal)
         directions = self.segments["direction"].values
         forward, backward = _mean(means[directions > 0]), _mean(means[directions < 0])
         loop = abs(forward - backward) / 2
@@ -274,17 +279,13 @@ class RunSubject:
 
     def oscillates_strongly(self, least: float) -> np.ndarray:
         """Tell where friction varies in a segment by more than a part of the typical friction."""
-        name = self.friction_signal
-        if name is None:
-            raise Skip("no friction was recorded")
+        name = self.required_friction_signal
         return self.segment_stds(name) > least * self.typical_friction
 
     @cached_property
     def lines(self) -> list[Line]:
         """Lines in the spectrum of the friction signal, over all segments."""
-        if self.friction_signal is None:
-            raise Skip("no friction was recorded")
-        values = self.signals[self.friction_signal]
+        values = self.signals[self.required_friction_signal]
         significant = [
             segment_lines(self.time[part], values[part], number, self.speed_of(number))
             for number, part in enumerate(one_by_one(self.slices))
@@ -296,9 +297,7 @@ class RunSubject:
     @cached_property
     def reversals(self) -> np.ndarray:
         """How often friction changes its sign in each segment whose direction is not known."""
-        if self.friction_signal is None:
-            raise Skip("no friction was recorded")
-        values = self.signals[self.friction_signal]
+        values = self.signals[self.required_friction_signal]
         unknown = np.isnan(self.segments["sliding_speed"].values)
         if self.segments.attrs.get("velocity_source") in ("set speed", "step"):
             unknown[:] = True  # what is set has no direction

@@ -5,28 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from tribolab.friction.zero.parts import Doubt
-from tribolab.qc.register import Check, Result, Skip
+from tribolab.qc.register import Check, Result
 from tribolab.qc.run.subject import RunSubject
 
 
 def _zero_reference(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     friction = subject.friction
-    signal = _signal(subject)
+    signal = subject.required_friction_signal
     told = _doubts(subject, "zero_reference", signal)
     method = str(friction.attrs.get("offset", ""))
     return told or [Result("pass", signal, f"the zero rests on: {method}")]
 
 
 def _rectified(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    signal = _signal(subject)
+    signal = subject.required_friction_signal
     told = _doubts(subject, "rectified", signal)
     return told or [Result("pass", signal, "nothing says that the signal lost its sign")]
-
-
-def _signal(subject: RunSubject) -> str:
-    if subject.friction_signal is None:
-        raise Skip("no friction was recorded")
-    return subject.friction_signal
 
 
 def _doubts(subject: RunSubject, check: str, signal: str) -> list[Result]:
