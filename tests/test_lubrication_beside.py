@@ -8,6 +8,7 @@ from contact_cases import CONTACT, reference_psd
 
 from tribolab.contact.geometry import LineContact
 from tribolab.lubrication.factors import flow_factors
+from tribolab.lubrication.parameters import parameters_of
 from tribolab.lubrication.solved_curve import solve_curve
 
 SPEEDS = np.geomspace(1e-9, 1e-1, 17)
@@ -22,7 +23,8 @@ NUMBERS = (
 def solved(near=None, *, name="Sb-S", speed=SPEEDS, contact=CONTACT, load=910.0, **changed):
     given = {"viscosity": 1.4, "shear_stress": 1e6, "cells": 100} | changed
     psd = None if name is None else reference_psd(name)
-    return solve_curve(contact, psd, load=load, speed=speed, near=near, **given)
+    parameters = parameters_of(given.pop("viscosity"), given.pop("shear_stress"), **given)
+    return solve_curve(contact, psd, load, speed, parameters, near)
 
 
 def assert_same(curve, other):

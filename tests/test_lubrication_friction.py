@@ -73,7 +73,7 @@ def averaged(body: str) -> tuple[float, float]:
     n = film.size
     mesh = Mesh(x, width, width, between, None, None, None)
     problem = Problem(mesh, factors, None, 1.0, 1.0, 1.0, 1.0, inlet_length=0.0)
-    fields = Fields(np.zeros(n), pressure, np.full(n + 1, flux), n)
+    fields = Fields(np.zeros(n), pressure, np.full(n + 1, flux), n, n)
     solution = Solution(RATE, State(film, 0.0, pressure), fields, flow, 0.0, 0.0, 0.0, 0)
     return pressure.sum() * cell, sum(fluid_friction(problem, solution)[0])
 

@@ -300,7 +300,8 @@ def test_scales_do_not_enter():
 
 def test_the_film_ruptures_where_its_flux_lies_between_two_faces():
     film = np.array([3.0, 2.0, 1.5, 1.0, 1.4, 2.0, 3.0])  # what each face entrains
-    front, flux = _rupture(film, np.ones(7))
+    front, rear, flux = _rupture(film, np.ones(7), 0.0)
+    assert rear == film.size - 1
     pressure = np.cumsum(film[:front] - flux)
     assert np.all(pressure > 0)
     assert film[front] <= flux <= film[front + 1]

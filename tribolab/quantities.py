@@ -42,6 +42,7 @@ _ROWS = [
     ("set_speed", "v_set", "m/s", "set-point of the sliding speed"),
     ("set_normal_force", "F_set", "N", "set-point of the normal force"),
     ("rolling_speed", "u", "m/s", "rolling (entrainment) speed"),
+    ("entrainment_speed", "U", "m/s", "entrainment speed, the mean of both bodies"),
     ("rotation_speed", "\\omega", "rad/s", "rotation speed", "cycles"),
     ("slide_roll_ratio", "SRR", "1", "slide-to-roll ratio"),
     ("film_thickness", "h", "m", "film thickness"),
@@ -179,6 +180,7 @@ _ROWS = [
     ("Rdq", "Rdq", "1", "root-mean-square slope of the profile"),
     # contact, adhesion
     ("pressure", "p", "Pa", "nominal contact pressure"),
+    ("radius", "r", "m", "distance from the middle of a round contact"),
     ("contact_area_ratio", "A/A_0", "1", "relative contact area"),
     ("separation", "\\bar u", "m", "mean interfacial separation"),
     ("work_of_adhesion", "\\gamma", "J/m2", "work of adhesion"),

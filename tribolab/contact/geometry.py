@@ -1,16 +1,68 @@
-"""The line contact: a rigid cylinder on an elastic flat."""
+"""The contacts: a cylinder or a ball on an elastic flat."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import ClassVar
 
+import numpy as np
+
+from tribolab.contact.layer import Layer
 from tribolab.errors import AnalysisError
 from tribolab.units import positive, to_si
 
 
+class Elasticity:
+    """What a line contact and a point contact share: radius, layer and elastic bodies."""
+
+    radius: float
+    youngs_modulus: float
+    poisson_ratio: float
+    thickness: float
+    counter_modulus: float
+    counter_poisson_ratio: float
+    load_unit: ClassVar[str]
+    is_round: ClassVar[bool]
+
+    def __post_init__(self) -> None:
+        """Turn text into SI floats and refuse what is no contact."""
+        for field in fields(self):  # type: ignore[arg-type]
+            value = getattr(self, field.name)
+            if field.name.endswith("poisson_ratio"):
+                number = plane_strain_ratio(value)
+            else:
+                unit = "Pa" if field.name.endswith("modulus") else "m"
+                endless = field.name in ("thickness", "counter_modulus") and value == np.inf
+                number = np.inf if endless else positive(value, unit, field.name)
+            object.__setattr__(self, field.name, number)
+
+    @property
+    def effective_modulus(self) -> float:
+        """Plane-strain modulus E* [Pa] of both bodies, 1/E* = sum (1 - nu^2)/E."""
+        if self.counter_modulus == np.inf:
+            return self.youngs_modulus / (1 - self.poisson_ratio**2)
+        counter = (1 - self.counter_poisson_ratio**2) / self.counter_modulus
+        return 1 / ((1 - self.poisson_ratio**2) / self.youngs_modulus + counter)
+
+    @property
+    def compliance_share(self) -> float:
+        """Share [1] of the compliance that is the flat's; 1 if the counter body is rigid."""
+        return self.effective_modulus * (1 - self.poisson_ratio**2) / self.youngs_modulus
+
+    def layer(self, length: float) -> Layer | None:
+        """Return the elastic layer in units of a length [m]; None on a half-space."""
+        if self.thickness == np.inf:
+            return None
+        return Layer(self.thickness / length, self.poisson_ratio, self.compliance_share)
+
+    def force(self, load: float) -> float:
+        """Return the normal force [N] of a load as the theory has it."""
+        raise NotImplementedError
+
+
 @dataclass(frozen=True)
-class LineContact:
-    """A rigid cylinder pressed on an elastic half-space.
+class LineContact(Elasticity):
+    """A cylinder pressed on an elastic flat.
 
     Parameters
     ----------
@@ -19,9 +71,13 @@ class LineContact:
     length
         Axial length L of the contact [m].
     youngs_modulus
-        Young's modulus E of the half-space [Pa].
+        Young's modulus E of the flat [Pa].
     poisson_ratio
-        Poisson's ratio of the half-space [1], above -1 and at most 0.5.
+        Poisson's ratio of the flat [1], above -1 and at most 0.5.
+    thickness
+        Of the flat [m], bonded to a rigid base; infinite is a half-space.
+    counter_modulus, counter_poisson_ratio
+        Those of the cylinder; infinite is rigid.
 
     Examples
     --------
@@ -36,21 +92,58 @@ class LineContact:
     length: float
     youngs_modulus: float
     poisson_ratio: float
-
-    def __post_init__(self) -> None:
-        """Turn text into SI floats and refuse what is no contact."""
-        for name, unit in (("radius", "m"), ("length", "m"), ("youngs_modulus", "Pa")):
-            object.__setattr__(self, name, positive(getattr(self, name), unit, name))
-        object.__setattr__(self, "poisson_ratio", plane_strain_ratio(self.poisson_ratio))
-
-    @property
-    def effective_modulus(self) -> float:
-        """Plane-strain modulus E* = E/(1 - nu^2) [Pa] of the half-space; the cylinder is rigid."""
-        return self.youngs_modulus / (1 - self.poisson_ratio**2)
+    thickness: float = np.inf
+    counter_modulus: float = np.inf
+    counter_poisson_ratio: float = 0.5
+    load_unit: ClassVar[str] = "N/m"
+    is_round: ClassVar[bool] = False
 
     def load(self, normal_force: str | float) -> float:
         """Load F_N/L [N/m] of a normal force [N]."""
         return to_si(normal_force, "N", name="normal_force") / self.length
+
+    def force(self, load: float) -> float:
+        """Return the normal force [N] of a load F_N/L [N/m]."""
+        return load * self.length
+
+
+@dataclass(frozen=True)
+class PointContact(Elasticity):
+    """A ball pressed on an elastic flat.
+
+    Parameters
+    ----------
+    radius
+        Radius R of the ball [m], or text such as ``"9.5 mm"``.
+    youngs_modulus, poisson_ratio, thickness, counter_modulus, counter_poisson_ratio
+        As for `LineContact`, the counter body being the ball.
+
+    Examples
+    --------
+    >>> contact = PointContact("9.5 mm", "1 MPa", 0.5)
+    >>> f"{contact.effective_modulus / 1e6:.3f} MPa", contact.load("3 N")
+    ('1.333 MPa', 3.0)
+    """
+
+    radius: float
+    youngs_modulus: float
+    poisson_ratio: float
+    thickness: float = np.inf
+    counter_modulus: float = np.inf
+    counter_poisson_ratio: float = 0.5
+    load_unit: ClassVar[str] = "N"
+    is_round: ClassVar[bool] = True
+
+    def load(self, normal_force: str | float) -> float:
+        """Load of the theory, the normal force F_N [N] itself."""
+        return to_si(normal_force, "N", name="normal_force")
+
+    def force(self, load: float) -> float:
+        """Return the normal force [N], the load itself."""
+        return load
+
+
+Contact = LineContact | PointContact
 
 
 def plane_strain_ratio(value: str | float) -> float:

@@ -1,4 +1,4 @@
-"""Smooth line contacts: Hertz without adhesion, JKR with it."""
+"""Smooth contacts of a line or a ball: Hertz without adhesion, JKR with it."""
 
 from __future__ import annotations
 
@@ -7,19 +7,20 @@ from typing import overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.geometry import Contact
+from tribolab.contact.layer import layer_contact
 from tribolab.errors import AnalysisError
 from tribolab.units import to_si
 from tribolab.validity import examine
 
 
-def hertz_half_width(load: str | ArrayLike, contact: LineContact) -> np.ndarray | float:
-    """Half-width a of a Hertz line contact.
+def hertz_half_width(load: str | ArrayLike, contact: Contact) -> np.ndarray | float:
+    """Half-width a of a Hertz line contact, or radius a of a point contact.
 
     Parameters
     ----------
     load
-        F_N/L [N/m] (any dims), not negative; text with a unit if scalar.
+        F_N/L [N/m], of a ball F_N [N] (any dims), not negative; text with a unit if scalar.
     contact
         Geometry and elasticity.
 
@@ -35,8 +36,9 @@ def hertz_half_width(load: str | ArrayLike, contact: LineContact) -> np.ndarray 
 
     Notes
     -----
-    ``a = sqrt(4 R F / (pi E* L))``, Eq. (16) of [1]_. Section 5 of [1]_ prints 37 mm for what
-    Eq. (16) makes 3.7 mm; its own Appendix B has the width 2a = 7.43 mm.
+    ``a = sqrt(4 R F / (pi E* L))``, Eq. (16) of [1]_; of a ball ``(3 F R/(4 E*))^(1/3)``. On a
+    layer (`tribolab.contact.layer`) it is that of the smooth contact there. Section 5 of [1]_
+    prints 37 mm for what Eq. (16) makes 3.7 mm; its own Appendix B has the width 2a = 7.43 mm.
 
     References
     ----------
@@ -49,23 +51,20 @@ def hertz_half_width(load: str | ArrayLike, contact: LineContact) -> np.ndarray 
     >>> f"{2e3 * hertz_half_width('310 N/m', contact):.2f} mm"
     '7.43 mm'
     """
-    force = _loads(load)
-    if np.any(force < 0):
-        raise AnalysisError(
-            f"load: without adhesion a contact cannot be pulled; got {np.min(force):g} N/m"
-        )
-    half_width = np.sqrt(4 * contact.radius * force / (np.pi * contact.effective_modulus))[()]
+    half_width = _smooth(load, contact)[0]
     examine("hertz_half_width", half_width=half_width / contact.radius)
     return half_width
 
 
-def hertz_max_pressure(load: str | ArrayLike, contact: LineContact) -> np.ndarray | float:
-    """Maximum pressure [Pa] of a Hertz line contact, ``2 F / (pi a L)``; zero without load."""
-    return 4 / np.pi * hertz_mean_pressure(load, contact)
+def hertz_max_pressure(load: str | ArrayLike, contact: Contact) -> np.ndarray | float:
+    """Maximum pressure [Pa], ``2 F/(pi a L)`` or of a ball ``3 F/(2 pi a^2)``; 0 without load."""
+    if contact.thickness < np.inf:
+        return _smooth(load, contact)[1]
+    return (1.5 if contact.is_round else 4 / np.pi) * hertz_mean_pressure(load, contact)
 
 
-def hertz_mean_pressure(load: str | ArrayLike, contact: LineContact) -> np.ndarray | float:
-    """Mean pressure [Pa] of a Hertz line contact, ``F / (2 a L)``: the nominal pressure.
+def hertz_mean_pressure(load: str | ArrayLike, contact: Contact) -> np.ndarray | float:
+    """Mean pressure [Pa], ``F / (2 a L)`` or of a ball ``F/(pi a^2)``: the nominal pressure.
 
     Examples
     --------
@@ -75,26 +74,65 @@ def hertz_mean_pressure(load: str | ArrayLike, contact: LineContact) -> np.ndarr
     """
     # F/(2a) with F put in terms of a, so that no load gives 0 and not 0/0
     a = hertz_half_width(load, contact)
+    if contact.thickness < np.inf:
+        force = _loads(load, contact)
+        area = np.maximum(np.pi * a**2 if contact.is_round else 2 * a, np.finfo(float).tiny)
+        return (force / area)[()]
+    if contact.is_round:
+        return 4 * contact.effective_modulus * a / (3 * np.pi * contact.radius)
     return np.pi * contact.effective_modulus * a / (8 * contact.radius)
 
 
-@overload
-def hertz_pressure(x: np.ndarray, load: str | float, contact: LineContact) -> np.ndarray: ...
+def _smooth(
+    load: str | ArrayLike, contact: Contact
+) -> tuple[np.ndarray | float, np.ndarray | float]:
+    """Half-width [m] and highest pressure [Pa]; the latter of a contact on a layer alone."""
+    force = _loads(load, contact)
+    if np.any(force < 0):
+        raise AnalysisError(
+            "load: without adhesion a contact cannot be pulled; got "
+            f"{np.min(force):g} {contact.load_unit}"
+        )
+    if contact.is_round:
+        half_width = np.cbrt(3 * contact.radius * force / (4 * contact.effective_modulus))[()]
+    else:
+        half_width = np.sqrt(4 * contact.radius * force / (np.pi * contact.effective_modulus))[()]
+    layer = contact.layer(contact.radius)
+    if layer is None:
+        return half_width, np.nan
+    scale = contact.effective_modulus * contact.radius ** (2 if contact.is_round else 1)
+    found = [
+        layer_contact(w / scale, layer, contact.is_round, a / contact.radius) if w else (0.0, 0.0)
+        for w, a in zip(force.ravel(), np.ravel(half_width), strict=True)
+    ]
+    width, pressure = (np.reshape(part, force.shape)[()] for part in zip(*found, strict=True))
+    return contact.radius * width, contact.effective_modulus * pressure
 
 
 @overload
-def hertz_pressure(x: ArrayLike, load: str | float, contact: LineContact) -> np.ndarray | float: ...
+def hertz_pressure(x: np.ndarray, load: str | float, contact: Contact) -> np.ndarray: ...
 
 
-def hertz_pressure(x: ArrayLike, load: str | float, contact: LineContact) -> np.ndarray | float:
-    """Pressure [Pa] of a Hertz line contact at x [m] (any dims) from its middle; 0 outside."""
+@overload
+def hertz_pressure(x: ArrayLike, load: str | float, contact: Contact) -> np.ndarray | float: ...
+
+
+def hertz_pressure(x: ArrayLike, load: str | float, contact: Contact) -> np.ndarray | float:
+    """Pressure [Pa] of a Hertz contact at x [m] (any dims) from its middle; 0 outside.
+
+    On a layer it is the same half ellipse over the contact's width there, with the load's integral.
+    """
     a = hertz_half_width(load, contact)
     inside = np.maximum(a**2 - np.asarray(x, dtype=float) ** 2, 0)
-    return (contact.effective_modulus / (2 * contact.radius) * np.sqrt(inside))[()]
+    if contact.thickness < np.inf:
+        peak = (1.5 if contact.is_round else 4 / np.pi) * hertz_mean_pressure(load, contact)
+        return (peak / a * np.sqrt(inside))[()]
+    steep = 2 / (np.pi * contact.radius) if contact.is_round else 1 / (2 * contact.radius)
+    return (contact.effective_modulus * steep * np.sqrt(inside))[()]
 
 
-def jkr_smallest_load(contact: LineContact, work_of_adhesion: str | float) -> float:
-    """Smallest load [N/m] at which an adhesive line contact holds; negative: a pull.
+def jkr_smallest_load(contact: Contact, work_of_adhesion: str | float) -> float:
+    """Smallest load [N/m], of a ball [N], at which an adhesive contact holds; negative: a pull.
 
     Parameters
     ----------
@@ -105,7 +143,8 @@ def jkr_smallest_load(contact: LineContact, work_of_adhesion: str | float) -> fl
 
     Notes
     -----
-    The minimum of Eq. (15), ``-(3/4) sqrt(2 pi E* w a)`` at ``a = (2 R^2 w / (pi E*))^(1/3)``.
+    The minimum of Eq. (15), ``-(3/4) sqrt(2 pi E* w a)`` at ``a = (2 R^2 w / (pi E*))^(1/3)``;
+    of a ball ``-1.5 pi w R``.
 
     Examples
     --------
@@ -113,21 +152,23 @@ def jkr_smallest_load(contact: LineContact, work_of_adhesion: str | float) -> fl
     >>> f"{jkr_smallest_load(contact, '64 mJ/m^2'):.2f} N/m"
     '-14.49 N/m'
     """
-    w = _work(work_of_adhesion)
+    w = _adhesive(contact, work_of_adhesion)
+    if contact.is_round:
+        return -1.5 * np.pi * w * contact.radius
     return float(
         -0.75 * np.sqrt(2 * np.pi * contact.effective_modulus * w * _detaching(contact, w))
     )
 
 
 def jkr_half_width(
-    load: str | ArrayLike, contact: LineContact, work_of_adhesion: str | float
+    load: str | ArrayLike, contact: Contact, work_of_adhesion: str | float
 ) -> np.ndarray | float:
-    """Half-width a of an adhesive (JKR) line contact, on the branch that goes over into Hertz.
+    """Half-width or radius a of an adhesive (JKR) contact, on the branch that ends in Hertz.
 
     Parameters
     ----------
     load
-        F_N/L [N/m] (any dims), negative when pulled; text with a unit if scalar.
+        F_N/L [N/m], of a ball F_N [N] (any dims), negative when pulled; text with a unit if scalar.
     contact
         Geometry and elasticity.
     work_of_adhesion
@@ -147,7 +188,8 @@ def jkr_half_width(
     -----
     Eq. (15) of [1]_, ``F/L = pi E* a^2/(4R) - sqrt(2 pi E* a w)``. With a = a_m b^2, a_m the
     half-width at the smallest load, it reads ``b^4 - 4 b = -3 F/F_min``, convex for b > 1, so that
-    Newton's method from above cannot miss.
+    Newton's method from above cannot miss. Of a ball
+    ``a^3 = (3R/4E*) [F + 3 pi w R + sqrt(6 pi w R F + (3 pi w R)^2)]``.
 
     References
     ----------
@@ -160,16 +202,22 @@ def jkr_half_width(
     >>> f"{1e3 * jkr_half_width('310 N/m', contact, '64 mJ/m^2'):.2f} mm"
     '4.04 mm'
     """
-    w = _work(work_of_adhesion)
+    w = _adhesive(contact, work_of_adhesion)
     if w == 0:
         return hertz_half_width(load, contact)
-    force = _loads(load)
+    force = _loads(load, contact)
     smallest = jkr_smallest_load(contact, w)
     if np.any(force < smallest * (1 + 1e-12)):
         raise AnalysisError(
-            f"load: an adhesive contact with w = {w:g} J/m2 detaches below {smallest:.6g} N/m; "
-            f"got {np.min(force):.6g} N/m"
+            f"load: an adhesive contact with w = {w:g} J/m2 detaches below {smallest:.6g} "
+            f"{contact.load_unit}; got {np.min(force):.6g} {contact.load_unit}"
         )
+    if contact.is_round:
+        pull = -2 * smallest  # 3 pi w R
+        both = force + pull + np.sqrt(np.maximum(2 * pull * force + pull**2, 0.0))
+        radius = np.cbrt(3 * contact.radius * both / (4 * contact.effective_modulus))[()]
+        examine("jkr_half_width", half_width=radius / contact.radius)
+        return radius
     phi = np.maximum(3 * force / -smallest, -3.0)
     b = np.maximum(phi, 0.0) ** 0.25 + 4 ** (1 / 3)
     for _ in range(80):  # quadratic, but linear with rate 1/2 at the smallest load itself
@@ -182,9 +230,17 @@ def jkr_half_width(
     return half_width
 
 
-def _detaching(contact: LineContact, w: float) -> float:
+def _detaching(contact: Contact, w: float) -> float:
     """Half-width at the smallest load, where Eq. (15) has its minimum."""
     return (2 * contact.radius**2 * w / (np.pi * contact.effective_modulus)) ** (1 / 3)
+
+
+def _adhesive(contact: Contact, work_of_adhesion: str | float) -> float:
+    """Return the work of adhesion; on a layer JKR's formulas do not hold."""
+    work = _work(work_of_adhesion)
+    if work and contact.thickness < np.inf:
+        raise AnalysisError("work_of_adhesion: JKR's theory is of a half-space, not of a layer")
+    return work
 
 
 def _work(work_of_adhesion: str | float) -> float:
@@ -194,9 +250,9 @@ def _work(work_of_adhesion: str | float) -> float:
     return w
 
 
-def _loads(load: str | ArrayLike) -> np.ndarray:
-    number = to_si(load, "N/m", name="load") if isinstance(load, str) else load
+def _loads(load: str | ArrayLike, contact: Contact) -> np.ndarray:
+    number = to_si(load, contact.load_unit, name="load") if isinstance(load, str) else load
     force = np.asarray(number, dtype=float)
     if not np.all(np.isfinite(force)):
-        raise AnalysisError("load: every load must be a finite number in N/m")
+        raise AnalysisError(f"load: every load must be a finite number in {contact.load_unit}")
     return force

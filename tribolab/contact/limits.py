@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.geometry import Contact
 from tribolab.contact.hertz import hertz_half_width, hertz_max_pressure
 from tribolab.contact.separation import Separation
 from tribolab.surface.moments import rms_slope
@@ -17,21 +17,21 @@ _OF_OILS = 2e-8  # 1/Pa: viscosity over pressure, in its logarithm; of glycerol 
 
 def line_limits(
     who: str,
-    contact: LineContact,
+    contact: Contact,
     load: ArrayLike,
     psd: xr.Dataset | None = None,
     separation: Separation | None = None,
     speed: ArrayLike = (),
     film: ArrayLike = (),
 ) -> dict[str, str]:
-    """Return the attributes ``validity`` and ``validity_reasons`` of a line contact.
+    """Return the attributes ``validity`` and ``validity_reasons`` of a contact.
 
     Parameters
     ----------
     who
         The function that asks, for its error.
     contact, load, psd
-        The contact, its loads F_N/L [N/m], and the spectrum if it is rough.
+        The contact, its loads F_N/L [N/m] or F_N [N], and the spectrum if it is rough.
     separation
         Table of p(u), which the pressure should not leave.
     speed, film
@@ -44,6 +44,7 @@ def line_limits(
 
     Examples
     --------
+    >>> from tribolab.contact.geometry import LineContact
     >>> soft = LineContact("7 mm", "10 cm", "0.1 MPa", 0.5)
     >>> line_limits("curve", soft, 310.0)["validity"]
     'suspect'
@@ -56,7 +57,7 @@ def line_limits(
     compared = [
         examine(
             who,
-            f"at {largest:.3g} N/m",
+            f"at {largest:.3g} {contact.load_unit}",
             half_width=hertz_half_width(largest, contact) / contact.radius,
             pressure=np.nan
             if separation is None
@@ -71,7 +72,9 @@ def line_limits(
         peak = float(hertz_max_pressure(largest, contact))
         compared.append(
             examine(
-                who, f"({1e-6 * peak:.3g} MPa at {largest:.3g} N/m)", thickening=_OF_OILS * peak
+                who,
+                f"({1e-6 * peak:.3g} MPa at {largest:.3g} {contact.load_unit})",
+                thickening=_OF_OILS * peak,
             )
         )
         beyond = speeds[thick > LIMITS["film"].suspect]

@@ -11,6 +11,7 @@ from scipy.linalg import lu_factor, lu_solve
 from tribolab.contact.area import AreaTheory
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import hertz_half_width, hertz_pressure
+from tribolab.contact.layer import line_layer_kernel
 from tribolab.contact.limits import line_limits
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.contact.separation import Separation, separation_table
@@ -137,8 +138,14 @@ class LineProfile(NamedTuple):
 def solve_line(force: float, contact: LineContact, table: Separation, points: int) -> LineProfile:
     """Solve `rough_line_contact` at a load [N/m] on a table of the surface's separation."""
     x = _cells(force, contact, table.decay_length, points)
-    kernel = line_kernel(x, np.full(points, x[1] - x[0]), contact.effective_modulus)
-    return LineProfile(x, *_newton(x, force, contact, table, kernel))
+    width = np.full(points, x[1] - x[0])
+    kernel = line_kernel(x, width, contact.effective_modulus)
+    layer = contact.layer(1.0)
+    if layer is not None:
+        kernel += line_layer_kernel(x, width, layer) / contact.effective_modulus
+    hertz = hertz_pressure(x, force, contact)
+    gap = x**2 / (2 * contact.radius)
+    return LineProfile(x, *solve_dry(gap, width, hertz, force, table, kernel))
 
 
 def line_kernel(x: np.ndarray, width: np.ndarray, effective_modulus: float) -> np.ndarray:
@@ -200,30 +207,40 @@ def _cells(force: float, contact: LineContact, decay_length: float, points: int)
     return cell * (np.arange(points) - points // 2)
 
 
-def _newton(
-    x: np.ndarray, force: float, contact: LineContact, table: Separation, kernel: np.ndarray
+def solve_dry(
+    gap: np.ndarray,
+    weight: np.ndarray,
+    hertz: np.ndarray,
+    force: float,
+    table: Separation,
+    kernel: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, int, float]:
-    """Solve p = p_cont(c + x^2/2R + K p) with the load given; returns p, u, steps, residual."""
-    cell = x[1] - x[0]
-    gap = x**2 / (2 * contact.radius)
-    p = hertz_pressure(x, force, contact)
+    """Solve p = p_cont(c + gap + K p) with the load given; returns p, u, steps, residual.
+
+    Parameters
+    ----------
+    gap, weight, hertz
+        Of the undeformed bodies [m], areas (of a line lengths), and pressure [Pa] to start from,
+        all over the cells.
+    """
+    p = hertz
     if table.separation(float(p.max())) < _FLAT * table.rms_roughness:
         raise AnalysisError(
-            f"load: at {force:g} N/m the roughness is pressed flat, u is below {_FLAT:g} h_rms at "
+            f"load: at {force:g} the roughness is pressed flat, u is below {_FLAT:g} h_rms at "
             f"the Hertz pressure of {p.max():.4g} Pa",
             cure=Cure(notebook="use hertz_pressure"),
         )
-    p *= force / (p.sum() * cell)
+    p = p * (force / (p @ weight))
     shape = gap + kernel @ p
     c = table.separation(float(p.max()) / 2) - shape.min()
     for step in range(1, _STEPS + 1):
         target, slope = table.pressure_and_slope(c + shape)
-        factor = lu_factor(np.eye(x.size) - slope[:, None] * kernel)
+        factor = lu_factor(np.eye(p.size) - slope[:, None] * kernel)
         both = lu_solve(factor, np.stack([target - p, slope], axis=1))
         # the load stays what it is: the sum of a + b dc over the cells is what it lacks now
-        dc = ((force / cell - p.sum()) - both[:, 0].sum()) / both[:, 1].sum()
+        dc = ((force - weight @ p) - weight @ both[:, 0]) / (weight @ both[:, 1])
         dp = both[:, 0] + both[:, 1] * dc
-        t = _line_search(p, c + shape, dp, dc + kernel @ dp, table)
+        t = _line_search(p, c + shape, dp, dc + kernel @ dp, weight, table)
         p, c = p + t * dp, c + t * dc
         shape = gap + kernel @ p
         if np.max(np.abs(dp)) < _CONVERGED * p.max():
@@ -231,14 +248,19 @@ def _newton(
             carried = table.pressure(u)
             return carried, u, step, float(np.max(np.abs(p - carried)) / carried.max())
     raise AnalysisError(
-        f"no convergence in {_STEPS} steps at {force:g} N/m; "
+        f"no convergence in {_STEPS} steps at a load of {force:g}; "
         f"the last changed the pressure by {np.max(np.abs(dp)) / p.max():.1e} of its maximum",
         function="rough_line_contact",
     )
 
 
 def _line_search(
-    p: np.ndarray, u: np.ndarray, dp: np.ndarray, du: np.ndarray, table: Separation
+    p: np.ndarray,
+    u: np.ndarray,
+    dp: np.ndarray,
+    du: np.ndarray,
+    weight: np.ndarray,
+    table: Separation,
 ) -> float:
     """Find how far to go along a Newton step: to where the energy stops falling, at most 1.
 
@@ -249,7 +271,7 @@ def _line_search(
     limit = 0.99 * np.min(-u[falling] / du[falling]) if falling.any() else np.inf
 
     def derivative(t: float) -> float:
-        return float(((p + t * dp - table.pressure_and_slope(u + t * du)[0]) * du).sum())
+        return float((p + t * dp - table.pressure_and_slope(u + t * du)[0]) * du @ weight)
 
     start, t = derivative(0.0), min(1.0, limit)
     low, low_value = 0.0, start

@@ -10,8 +10,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.geometry import Contact
 from tribolab.errors import AnalysisError, nearest, shown
+from tribolab.lubrication.parameters import Liquid, parameters_of
 from tribolab.lubrication.solved_curve import SolvedCurve, solve_curve
 from tribolab.stamping import labelled, stamp
 from tribolab.units import positive
@@ -25,9 +26,9 @@ _MOVED = ("fluid_part", "solid_part", "solid_part_other")
 
 
 def model_inputs(
-    contact: LineContact,
+    contact: Contact,
     psd: xr.Dataset | None,
-    viscosity: str | float,
+    viscosity: Liquid | str | float,
     load: str | float,
     speed: str | ArrayLike,
     errors: Mapping[str, float],
@@ -68,6 +69,7 @@ def model_inputs(
 
     Examples
     --------
+    >>> from tribolab.contact.geometry import LineContact
     >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     >>> moved = model_inputs(contact, None, 1.4, 310.0, [1e-2], {"load": 0.01}, cells=100)
     >>> moved.fluid_part.sel(model_input="load").values.round(5)  # of smooth surfaces
@@ -81,9 +83,14 @@ def model_inputs(
                 f"errors: {name}: a relative standard uncertainty from 0 to 0.5 is wanted; "
                 f"got {error:g}"
             )
-    force = positive(load, "N/m", "load")
+    force = positive(load, contact.load_unit, "load")
     speeds = np.atleast_1d(labelled(speed, "sliding_speed"))
-    model = {**model, "cells": min(model.get("cells", _CELLS), _CELLS)}
+    parameters = parameters_of(viscosity, 0.0, **model)
+    cells = min(parameters.solver.cells, _CELLS)
+    solver = replace(parameters.solver, cells=cells)
+    if contact.is_round:  # a change needs no more than the reduced theory
+        solver = replace(parameters.solver, method="auto")
+    parameters = parameters._replace(solver=solver)
     rows = []
     near: SolvedCurve | None = None  # the curve before: it differs by a few percent
     for name, error in errors.items():
@@ -94,7 +101,7 @@ def model_inputs(
                 at = factor * force
             else:
                 body = replace(contact, **{name: factor * getattr(contact, name)})
-            near = solve_curve(body, psd, viscosity, at, 0.0, speeds, **model, near=near)
+            near = solve_curve(body, psd, at, speeds, parameters, near)
             ends.append(near.curve)
         rows.append([error * (above - below) / (2 * _STEP) for above, below in _columns(*ends)])
     moved = np.reshape(rows, (len(errors), 3, speeds.size))

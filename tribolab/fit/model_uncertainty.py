@@ -9,14 +9,14 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from tribolab.contact.area import AreaTheory
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.geometry import Contact
 from tribolab.contact.persson import rough_band
 from tribolab.errors import AnalysisError
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
 from tribolab.fit.variations import held_fixed, variations
 from tribolab.lubrication.factors import RoughBody
+from tribolab.lubrication.parameters import parameters_of
 from tribolab.lubrication.solved_curve import SolvedCurve, solve_curve
-from tribolab.lubrication.system import CELLS
 from tribolab.stamping import labelled, stamp
 from tribolab.threads import one_thread
 from tribolab.units import positive, to_si
@@ -25,12 +25,13 @@ from tribolab.validity import reasons_of, together
 
 _SPEEDS = tuple(np.geomspace(1e-9, 1e-1, 17).tolist())  # m/s
 _CELLS = 100  # a change needs no finer mesh than this: its error is in both curves
+_PLACED = ("contact", "psd", "load", "speed", "viscosity", "shear_stress")
 _NORMAL = 1.959963984540054
 _PARTS = ("friction_coefficient_couette", "friction_coefficient_pressure")
 
 
 def model_uncertainty(
-    contact: LineContact,
+    contact: Contact,
     psd: xr.Dataset | None,
     *,
     viscosity: str | float,
@@ -46,7 +47,7 @@ def model_uncertainty(
     viscosity_range: tuple[str | float, str | float] | None = None,
     youngs_modulus_range: tuple[str | float, str | float] | None = None,
     inlet_length: str | float = np.inf,
-    cells: int = CELLS,
+    cells: int = 160,
     area: AreaTheory = "persson",
     work_of_adhesion: str | float | None = None,
     work_of_adhesion_range: tuple[str | float, str | float] | None = None,
@@ -122,6 +123,7 @@ def model_uncertainty(
 
     Examples
     --------
+    >>> from tribolab.contact.geometry import LineContact
     >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     >>> given = {"viscosity": 1.4, "load": 310.0, "shear_stress": 0.0}
     >>> spread = model_uncertainty(contact, None, speed=[1e-3, 1e-1], **given)
@@ -133,8 +135,9 @@ def model_uncertainty(
     if psd is not None:  # where nothing is rough there is nothing to vary
         rough = rough_band(psd)[0]
         psd = psd.sel(wavenumber=slice(rough[0], rough[-1]))
-    eta, force = positive(viscosity, "Pa s", "viscosity"), positive(load, "N/m", "load")
+    eta, force = positive(viscosity, "Pa s", "viscosity"), positive(load, contact.load_unit, "load")
     begins = to_si(inlet_length, "m", name="inlet_length")
+    extent = None if contact.is_round and np.isinf(begins) else begins
     work = None
     if work_of_adhesion is not None:
         work = to_si(work_of_adhesion, "J/m^2", name="work_of_adhesion")
@@ -157,7 +160,7 @@ def model_uncertainty(
         work_of_adhesion_range=None
         if work is None
         else _range(work_of_adhesion_range, work, "J/m2", "work_of_adhesion", least=-np.inf),
-        load_range=_range(load_range, force, "N/m", "load"),
+        load_range=_range(load_range, force, contact.load_unit, "load"),
         radius_range=_range(radius_range, contact.radius, "m", "radius"),
     )
     stress = to_si(shear_stress, "Pa", name="shear_stress")
@@ -172,14 +175,17 @@ def model_uncertainty(
         "rough_body": rough_body,
         "friction_factors": friction_factors,
         "gamma": gamma,
-        "inlet_length": begins,
+        "inlet_length": extent,
         "area": area,
         "work_of_adhesion": work,
+        "method": "auto",
     }
     coarse = {**given, "cells": min(cells, _CELLS)}
     with one_thread():
-        whole = solve_curve(contact, psd, **given, cells=cells)
-        start = solve_curve(contact, psd, **coarse) if cells > _CELLS else whole
+        whole = _solved({"contact": contact, "psd": psd, **given, "cells": cells})
+        start = whole
+        if cells > _CELLS and not contact.is_round:
+            start = _solved({"contact": contact, "psd": psd, **coarse})
         curve, reference = whole.curve, start.curve
         unknowns = variations(base)
         varied = [unknown for unknown in unknowns if isinstance(unknown, Variation)]
@@ -217,7 +223,7 @@ def model_uncertainty(
     )
     return stamp(
         data.assign_attrs(curve.attrs),
-        load_N_m=force,
+        **{"load_N" if contact.is_round else "load_N_m": force},
         not_varied="; ".join(f"{name}: {reason}" for name, reason in left + held_fixed(base)),
         shear_stress_refitted="yes" if refit else "no",
         combined="deviations of ln mu in quadrature, upwards and downwards apart",
@@ -226,7 +232,7 @@ def model_uncertainty(
 
 
 def _all_ends(
-    contact: LineContact,
+    contact: Contact,
     psd: xr.Dataset | None,
     coarse: Arguments,
     varied: list[Variation],
@@ -250,7 +256,7 @@ def _all_ends(
                 changed = _of_the_same_films(reference, end)
                 if changed is None:
                     asked = {"contact": contact, "psd": psd, **coarse, **end}
-                    changed = solve_curve(**asked, near=start).curve
+                    changed = _solved(asked, start).curve
             except AnalysisError as error:
                 where = f"varied {variation.name} ({variation.texts[j]})"
                 raise AnalysisError(error, where=where) from error
@@ -266,6 +272,14 @@ def _all_ends(
             fitted[i, j] = best / stress - 1 if stress > 0 else np.nan
             mu[i, j] = fluid + (best if refit and solid > 0 else stress) * area
     return mu, fitted, limits
+
+
+def _solved(asked: Arguments, near: SolvedCurve | None = None) -> SolvedCurve:
+    """Solve a model that is given by single arguments."""
+    contact, psd, load, speed, viscosity, stress = (asked[name] for name in _PLACED)
+    left = {name: value for name, value in asked.items() if name not in _PLACED}
+    parameters = parameters_of(viscosity, stress, **left)
+    return solve_curve(contact, psd, load, speed, parameters, near)
 
 
 def _of_the_same_films(reference: xr.Dataset, end: Changed) -> xr.Dataset | None:

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.conditions import ConditionLabels, Conditions, labels_along, labels_text
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.geometry import Contact
 from tribolab.errors import AnalysisError, Cure, shown
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.fit.shear_stress_fit import ShearStressFit
@@ -83,7 +83,7 @@ class ShearStressFits(Conditions[ShearStressFit]):
 
 def fit_shear_stresses(
     measured: xr.Dataset,
-    contact: LineContact,
+    contact: Contact,
     psd: xr.Dataset,
     viscosity: str | float | xr.DataArray,
     load: str | float | xr.DataArray,

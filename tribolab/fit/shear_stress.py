@@ -11,14 +11,16 @@ import xarray as xr
 from scipy import special
 from scipy.optimize import least_squares
 
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.geometry import Contact
 from tribolab.errors import AnalysisError, Cure, nearest, shown
 from tribolab.fit.model_inputs import moved_friction
 from tribolab.fit.point_covariance import PointErrors, shared_errors
 from tribolab.fit.residual_error import residual_error
 from tribolab.fit.shear_stress_fit import ShearStressFit
 from tribolab.friction.stribeck import measured_stribeck_curve
-from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
+from tribolab.lubrication.parameters import parameters_of
+from tribolab.lubrication.solved_curve import solve_curve
+from tribolab.lubrication.stribeck import with_shear_stress
 from tribolab.stamping import stamp
 from tribolab.units import positive, to_si
 
@@ -32,7 +34,7 @@ _Computed = Callable[[np.ndarray], xr.Dataset]  # the curve for logarithms of th
 
 def fit_shear_stress(
     measured: xr.Dataset,
-    contact: LineContact,
+    contact: Contact,
     psd: xr.Dataset,
     viscosity: str | float,
     load: str | float,
@@ -123,6 +125,8 @@ def fit_shear_stress(
     >>> import numpy as np, xarray as xr
     >>> q, c = np.array([423.0, 9e4, 3e9]), [1.63e-22, 1.63e-22, 4e-42]
     >>> psd = xr.Dataset({"psd_2d": ("wavenumber", c)}, coords={"wavenumber": q})
+    >>> from tribolab.contact.geometry import LineContact
+    >>> from tribolab.lubrication.stribeck import stribeck_curve
     >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     >>> speed = np.geomspace(1e-6, 1e-2, 5)
     >>> curve = stribeck_curve(contact, psd, 1.4, 310.0, "0.84 MPa", speed)
@@ -138,7 +142,7 @@ def fit_shear_stress(
             f"free: '{shown(unknown[0])}' cannot be fitted{nearest(unknown[0], _FREE)}"
         )
     eta = positive(viscosity, "Pa s", "viscosity")
-    force = positive(load, "N/m", "load")
+    force = positive(load, contact.load_unit, "load")
     enhancement = positive(area_enhancement, "1", "area_enhancement")
     if not 0 <= area_enhancement_error < np.inf:
         raise AnalysisError(
@@ -155,12 +159,13 @@ def fit_shear_stress(
             return curve.sel(sliding_speed=speed)
         given = dict(zip(free, np.exp(extra), strict=True))
         body = replace(contact, youngs_modulus=given.get("youngs_modulus", contact.youngs_modulus))
-        stress = "0 Pa"
-        return stribeck_curve(body, psd, given.get("viscosity", eta), force, stress, speed, **model)
+        method = {"method": "auto"} if contact.is_round else {}
+        parameters = parameters_of(given.get("viscosity", eta), 0.0, **{**method, **model})
+        return solve_curve(body, psd, force, speed, parameters).curve
 
     start = np.log([{"viscosity": eta, "youngs_modulus": contact.youngs_modulus}[n] for n in free])
     model_curve, best = computed(start), start
-    least = _ATOM / (force * contact.length)
+    least = _ATOM / contact.force(force)
     if not np.any(_parts(model_curve)[1][used] > least):
         raise AnalysisError(
             "at none of these speeds do the bodies touch; take lower speeds",

@@ -7,8 +7,9 @@ from typing import NamedTuple, TypedDict
 import xarray as xr
 
 from tribolab.contact.area import AreaTheory
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.geometry import Contact
 from tribolab.lubrication.factors import FlowFactors, RoughBody
+from tribolab.lubrication.parameters import Outlet
 
 
 class Base(NamedTuple):
@@ -19,7 +20,7 @@ class Base(NamedTuple):
     friction_factors: bool
     gamma: float
     measured_to: float | None  # wavenumber [1/m] above which the spectrum is a guess
-    contact: LineContact
+    contact: Contact
     load: float  # [N/m]
     viscosity: float  # [Pa s]
     viscosity_range: tuple[float, float] | None  # None if it is not known
@@ -30,6 +31,7 @@ class Base(NamedTuple):
     work_of_adhesion_range: tuple[float, float] | None = None
     load_range: tuple[float, float] | None = None
     radius_range: tuple[float, float] | None = None
+    outlet: str = "unknown"  # or what is stated of it
 
     @property
     def spectrum(self) -> xr.Dataset:
@@ -47,11 +49,12 @@ class Changed(TypedDict, total=False):
     rough_body: RoughBody
     friction_factors: bool
     viscosity: float
-    contact: LineContact
+    contact: Contact
     load: float
     inlet_length: float
     area: AreaTheory
     work_of_adhesion: float
+    outlet: Outlet
 
 
 class Variation(NamedTuple):

@@ -21,6 +21,7 @@ from tribolab.lubrication.domain import SHORTEST, half_width
 from tribolab.lubrication.factors import CUTOFF, PERCOLATION, RoughBody, flow_factors
 
 _OPEN, _SHUT = 0.40, 0.50
+_FAR_LIQUID = 3.0  # radii of a ball: some 30 mm
 _CUTOFFS = 0.3e-9, 3e-9
 _GAMMA = 0.5
 # What no variation reaches, between any surfaces and between rough ones.
@@ -115,6 +116,15 @@ def inlet_length(base: Base) -> Variation | Skipped:
     name = "inlet length"
     if np.isfinite(base.inlet_length):
         return Skipped(name, "it is stated")
+    if base.contact.is_round:
+        far = _FAR_LIQUID * base.contact.radius
+        return Variation(
+            "extent of the liquid",
+            "the drag of a ball's liquid grows as the logarithm of where it ends: at the ball's "
+            "radius, or at three times that",
+            ("", f"{1e3 * far:.3g} mm"),
+            (None, {"inlet_length": far}),
+        )
     stiffness, psd = base.contact.effective_modulus, base.psd
     table = None if psd is None else separation_table(psd, stiffness, base.gamma)
     radius = base.contact.radius
@@ -125,6 +135,18 @@ def inlet_length(base: Base) -> Variation | Skipped:
         "where the liquid begins before the contact: at the cylinder's radius, or anywhere beyond",
         (f"{1e3 * radius:.3g} mm", ""),
         ({"inlet_length": radius}, None),
+    )
+
+
+def outlet(base: Base) -> Variation | Skipped:
+    """Let no gas into the diverging gap: the liquid behind the contact then holds tension."""
+    if base.outlet != "unknown":
+        return Skipped("outlet", "it is stated")
+    return Variation(
+        "outlet",
+        "whether gas gets in behind the contact; films and friction differ as by another viscosity",
+        ("", "flooded"),
+        (None, {"outlet": "flooded"}),
     )
 
 
@@ -147,6 +169,7 @@ _OF_ANY: tuple[Callable[[Base], Variation | Skipped], ...] = (
     LOAD_RANGE,
     RADIUS_RANGE,
     inlet_length,
+    outlet,
 )
 
 

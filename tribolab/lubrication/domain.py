@@ -7,13 +7,14 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import hyp2f1
 
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.geometry import Contact, LineContact
 from tribolab.contact.hertz import hertz_half_width
 from tribolab.contact.separation import Separation
 from tribolab.errors import AnalysisError
 from tribolab.lubrication.factors import FlowFactors
 from tribolab.lubrication.mesh import graded_mesh
 from tribolab.lubrication.mixed import Problem, Solution
+from tribolab.lubrication.parameters import Liquid
 
 _INLET, _OUTLET = 60.0, 5.0  # ends of the domain, in reaches of the film
 _CLASS = 100.0  # films within this factor share a mesh
@@ -30,7 +31,9 @@ class MeshLayout(NamedTuple):
     size: float
 
 
-def layout(film: float, decay: float, domain: float, inlet_length: float) -> MeshLayout:
+def layout(
+    film: float, decay: float, domain: float, inlet_length: float, flooded: bool = False
+) -> MeshLayout:
     """Choose the mesh for the film of one speed alone, whatever other speeds are asked for.
 
     Parameters
@@ -43,12 +46,15 @@ def layout(film: float, decay: float, domain: float, inlet_length: float) -> Mes
         Length of the domain over the default.
     inlet_length
         Where the liquid begins, in units of b; infinite if it is everywhere.
+    flooded
+        Whether there is liquid behind the contact, too.
 
     Notes
     -----
     A film h reaches as far as it widens the contact, b sqrt(1 + h/g). The domain goes 60 of these
-    before the middle and 5 behind, for the thickest film of a class: films of one class, a factor
-    of 100, share a mesh, so that a curve takes few of them. Beyond, `outside_drag` goes on.
+    before the middle and 5 behind (60 if flooded), for the thickest film of a class: films of one
+    class, a factor of 100, share a mesh, so that a curve takes few of them. Beyond, `outside_drag`
+    goes on.
     """
     lowest = _CLASS ** np.floor(np.log(max(film, 1e-30)) / np.log(_CLASS))
     reach = np.sqrt(1 + max(lowest * _CLASS, 1.0)) * domain
@@ -59,7 +65,7 @@ def layout(film: float, decay: float, domain: float, inlet_length: float) -> Mes
     return MeshLayout(
         _rounded(np.clip(edge, 3e-4, 0.5)),
         _rounded(_INLET * reach) if open_end else float(inlet_length),
-        _rounded(_OUTLET * reach),
+        _rounded((_INLET if flooded else _OUTLET) * reach),
         size,
     )
 
@@ -77,7 +83,18 @@ def film_estimate(contact: LineContact, viscosity: float, load: float, speed: fl
     return max(3.1 * radius * soft, 4.9 * entrained * radius / load)
 
 
-def half_width(contact: LineContact, separation: Separation | None, load: float) -> float:
+def thinned_film(contact: LineContact, liquid: Liquid, load: float, speed: float) -> float:
+    """Film thickness [m] by `film_estimate` with the viscosity at the shear rate in that film."""
+    film = film_estimate(contact, liquid.viscosity, load, speed)
+    if liquid.thinning is None or not speed:
+        return film
+    for _ in range(30):  # h ~ eta^0.6 and eta ~ h^(1 - n): a contraction
+        thin = float(liquid.thinning.pressure_flow(np.array(speed / film)))
+        film = film_estimate(contact, liquid.viscosity * thin, load, speed)
+    return film
+
+
+def half_width(contact: Contact, separation: Separation | None, load: float) -> float:
     """Half-width b [m] of the contact: Hertz's, as far as roughness widens it."""
     decay = separation.decay_length if separation else 0.0
     return float(np.sqrt(hertz_half_width(load, contact) ** 2 + 4 * contact.radius * decay))
@@ -91,7 +108,7 @@ def lubrication_problem(
     film: float,
     cells: int,
     domain: float,
-    inlet_length: float = np.inf,
+    liquid: Liquid | None = None,
 ) -> Problem:
     """Choose scales and mesh.
 
@@ -107,8 +124,8 @@ def lubrication_problem(
         Cells of the mesh; more where the roughness is thin beside the gap.
     domain
         Length of the domain over the default, see `layout`.
-    inlet_length
-        Where the liquid begins [m], before the contact's middle.
+    liquid
+        Its extent, outlet and thinning; without it is everywhere, Newtonian and vented.
 
     Raises
     ------
@@ -118,6 +135,8 @@ def lubrication_problem(
     b = half_width(contact, separation, load)
     decay = separation.decay_length if separation else 0.0
     gap = b**2 / (2 * contact.radius)
+    extent = liquid.extent if liquid else None
+    inlet_length = np.inf if extent is None else extent
     if not inlet_length > SHORTEST * b:
         raise AnalysisError(
             f"inlet_length: the liquid must begin more than {SHORTEST:g} half-widths before the "
@@ -125,9 +144,17 @@ def lubrication_problem(
         )
     begins = inlet_length / b
     cells = _resolving(cells, decay / gap)
-    mesh = graded_mesh(cells, *layout(film / gap, decay / gap, domain, begins))
+    lowest = liquid.lowest_pressure if liquid else 0.0
+    if liquid and liquid.thinning:  # far out it is thick: 60 half-widths, and no drag beyond
+        domain /= np.sqrt(2)
+    spans = layout(film / gap, decay / gap, domain, begins, lowest < 0)
+    mesh = graded_mesh(cells, *spans, contact.layer(b))
     pressure = contact.effective_modulus * gap / b
-    return Problem(mesh, factors, separation, load / (pressure * b), b, gap, pressure, begins)
+    return Problem(
+        mesh, factors, separation, load / (pressure * b), b, gap, pressure, begins,
+        lowest / pressure, liquid.thinning if liquid else None,
+        liquid.viscosity if liquid else 1.0,
+    )  # fmt: skip
 
 
 def outside_drag(problem: Problem, solution: Solution) -> tuple[float, float]:
@@ -135,22 +162,28 @@ def outside_drag(problem: Problem, solution: Solution) -> tuple[float, float]:
 
     Notes
     -----
-    There u = k + x^2, k being constant to the logarithm of the bodies' bending, and the pressure
-    falls to 0 far away. With I_n = int_X^inf dx/u^n the inlet adds eta v I_1 by shear and
-    eta v (3 I_1 - 3 u* I_2) by the gradient dp/dx = 6 eta v (u - u*)/u^3, u* = 2 J/v. In the cavity
-    behind, where roughness is thin beside the gap, liquid covers u*/u of the flat: eta v u* I_2.
+    There, and behind if it is flooded, u = k + x^2, k being constant to the logarithm of the
+    bodies' bending, and the pressure falls to 0 far away. With I_n = int_X^inf dx/u^n the inlet
+    adds eta v I_1 by shear and eta v (3 I_1 - 3 u* I_2) by the gradient
+    dp/dx = 6 eta v (u - u*)/u^3, u* = 2 J/v. In the cavity behind, where roughness is thin
+    beside the gap, liquid covers u*/u of the flat: eta v u* I_2.
     The load that the inlet's tail carries, 4 eta v R^2/X^2, is left out: in the default domain it
-    is under 2e-4 of the whole.
+    is under 2e-4 of the whole. A liquid that thins has no such end: it gets the thicker the farther
+    out, and counts inside the domain alone.
     """
     mesh, film, fields = problem.mesh, solution.state.film, solution.fields
+    if problem.thinning:
+        return 0.0, 0.0
     start, end = mesh.x[0] - mesh.width[0] / 2, mesh.x[-1] + mesh.width[-1] / 2
     full = fields.flux[0] / solution.couette  # u* = 2 J/v
     couette = pressure = 0.0
-    if np.isinf(problem.inlet_length):
-        before = film[0] - mesh.x[0] ** 2
-        first, second = (_tail(n, -start, before) for n in (1, 2))
-        couette, pressure = first, 3 * (first - full * second)
-    if fields.front < film.size:
+    ends = [(-start, film[0] - mesh.x[0] ** 2)] if np.isinf(problem.inlet_length) else []
+    if problem.cavity < 0:
+        ends.append((end, film[-1] - mesh.x[-1] ** 2))
+    for place, constant in ends:
+        first, second = (_tail(n, place, constant) for n in (1, 2))
+        couette, pressure = couette + first, pressure + 3 * (first - full * second)
+    if problem.cavity == 0 and fields.front < film.size:
         couette += full * _tail(2, end, film[-1] - mesh.x[-1] ** 2)
     unit = solution.couette / 6  # eta v b/g^2 in units of p
     return unit * couette, unit * pressure

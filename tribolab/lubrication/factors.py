@@ -69,6 +69,11 @@ class FlowFactors:
         where reciprocity does not give it, phi_fp. None if smooth.
     limits
         Attributes of `tribolab.validity`: whether the slopes are small enough for thin-film flow.
+    roughness_balance
+        (h2^2 - h1^2)/(h1^2 + h2^2) [1] of two rough bodies, 2 being the faster; None follows
+        `rough_body`.
+    slide
+        Half of the slide-roll ratio [1], 1 where one body is at rest: what phi_s carries with it.
     """
 
     rms_roughness: float
@@ -78,6 +83,8 @@ class FlowFactors:
     flow: FactorTable | None = field(default=None, repr=False)
     friction: FactorTable | None = field(default=None, repr=False)
     limits: Mapping[str, str] = field(default_factory=lambda: together([]), repr=False)
+    roughness_balance: float | None = None
+    slide: float = 1.0
 
     def at(self, separation: np.ndarray) -> Factors:
         """Return the five factors [1] at mean separations u [m] (any shape), above zero."""
@@ -87,10 +94,10 @@ class FlowFactors:
             return Factors(ones, zero, ones, zero, ones)
         phi_p, open_flow = self.flow(u)[0]
         phi_f, phi_fs, *phi_fp = self.friction(u)[0]
-        phi_s = self._sign * u / self.rms_roughness * (1 - open_flow)
+        phi_s = self._sign * self.slide * u / self.rms_roughness * (1 - open_flow)
         drag = phi_fp[0] if phi_fp else open_flow
         # a rough body that moves has the rest of u dp/dx on it, as it carries its valleys along
-        return Factors(phi_p, phi_s, phi_f, phi_fs, drag if self._sign < 0 else 2 - drag)
+        return Factors(phi_p, phi_s, phi_f, phi_fs, (1 + self._sign) - self._sign * drag)
 
     def transport(self, u: np.ndarray) -> tuple[np.ndarray, ...]:
         """phi_p and the entrained separation u + h_rms phi_s [m], each with its slope over u."""
@@ -98,7 +105,8 @@ class FlowFactors:
             return np.ones_like(u), np.zeros_like(u), u, np.ones_like(u)
         (phi_p, part), (phi_p_slope, part_slope) = self.flow(u)
         # (u + h phi_s)/u is phi_fp, or 2 - phi_fp if the rough body carries its valleys along
-        share, rate = (part, part_slope) if self._sign < 0 else (2 - part, -part_slope)
+        carried = self._sign * self.slide
+        share, rate = (1 + carried) - carried * part, -carried * part_slope
         return phi_p, phi_p_slope, u * share, share + u * rate
 
     def dataset(self, separation: str | ArrayLike | xr.DataArray) -> xr.Dataset:
@@ -122,8 +130,14 @@ class FlowFactors:
             **self.limits,
         )
 
+    def relative_viscosity(self, separation: np.ndarray) -> np.ndarray:
+        """Viscosity of shear over that at rest [1] at separations [m]: 1, as it is Newtonian."""
+        return np.ones_like(separation)
+
     @property
-    def _sign(self) -> int:
+    def _sign(self) -> float:
+        if self.roughness_balance is not None:
+            return self.roughness_balance
         return -1 if self.rough_body == "stationary" else 1
 
 

@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from tribolab.contact.area import AreaTheory
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.geometry import Contact
 from tribolab.contact.limits import line_limits
-from tribolab.lubrication.factors import FlowFactors, RoughBody
+from tribolab.lubrication.parameters import (
+    Interface,
+    Liquid,
+    Solver,
+    parameters_of,
+    renamed,
+    warn_of_old,
+)
+from tribolab.lubrication.point.sweep import SolvedPoint, solve_points
 from tribolab.lubrication.speeds import SolvedSpeed, System, solve_speeds
 from tribolab.lubrication.system import (
-    CELLS,
     PROOF,
     checked_speeds,
     real_area,
@@ -27,93 +35,123 @@ from tribolab.units import positive
 from tribolab.validity import together
 
 
+@renamed(viscosity="liquid")
 @over_dims(psd=("wavenumber",))
 def film_profile(
-    contact: LineContact,
+    contact: Contact,
     psd: xr.Dataset | None,
-    viscosity: str | float,
+    liquid: Liquid | str | float,
     load: str | float,
     speed: str | ArrayLike,
-    rough_body: RoughBody | None = None,
-    factors: FlowFactors | None = None,
-    gamma: float = 0.45,
-    cells: int = CELLS,
-    domain: float = 1.0,
-    inlet_length: str | float = np.inf,
-    area: AreaTheory = "persson",
-    work_of_adhesion: str | float | None = None,
+    interface: Interface | str | None = None,
+    solver: Solver | None = None,
+    **options: Any,
 ) -> xr.Dataset:
     """Separation and pressures across the contact at one speed, or at each of several.
 
     Parameters
     ----------
-    contact, psd, viscosity, load, speed, rough_body, factors, gamma, cells, domain, inlet_length
+    contact, psd, liquid, load, speed, interface, solver, **options
         As for `stribeck_curve`, with one load.
-    area, work_of_adhesion
-        Theory of the contact area, and what adhesion adds to it, as there.
 
     Returns
     -------
     xarray.Dataset
-        Over ``x`` [m], the flat sliding to +x (at a negative speed to -x); of several speeds over
-        (sliding_speed, point), with ``x`` as a variable: ``separation`` [m],
+        Over ``x`` [m], of a ball along its middle, the flat sliding to +x (at a negative speed to
+        -x); of several speeds over (sliding_speed, point), with ``x`` as a variable:
+        ``separation`` [m],
         ``contact_pressure``, ``fluid_pressure`` (exactly 0 in the cavity) and their sum
         ``pressure`` [Pa], ``contact_area_ratio`` [1]; scalars ``sliding_speed`` and ``load``, the
-        ``flux`` [m2/s] and ``cavity_start`` [m], and the proof of the point: ``residual``,
-        ``load_balance``, ``flux_variation``, ``iterations``. Grid and system are attributes.
+        ``flux`` [m2/s] of a line and ``cavity_start`` [m], and the proof of the point:
+        ``residual``, ``load_balance``, ``flux_variation``, ``iterations``. Grid and system are
+        attributes.
 
     Examples
     --------
+    >>> from tribolab.contact.geometry import LineContact
     >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     >>> film = film_profile(contact, None, "1.4 Pa s", "310 N/m", "1 mm/s")
     >>> f"{1e6 * film.separation.min():.2f} um, {1e-3 * film.pressure.max():.1f} kPa"
     '5.89 um, 52.3 kPa'
     """
-    force = positive(load, "N/m", "load")
+    if isinstance(interface, str):  # in the last release here stood which body is rough
+        options, interface = {"rough_body": interface, **options}, None
+    warn_of_old("film_profile", options)
+    parameters = parameters_of(liquid, interface or 0.0, solver, **options)
+    force = positive(load, contact.load_unit, "load")
     speeds = checked_speeds(speed, psd).values
     magnitudes, back = np.unique(np.abs(speeds), return_inverse=True)
     with one_thread():
-        system = system_of(
-            contact, psd, viscosity, rough_body, factors, gamma, cells, domain, inlet_length, area
-        )
-        system = with_adhesion(system, force, work_of_adhesion)
-        points = solve_speeds(system, force, magnitudes)
+        system = system_of(contact, psd, parameters)
+        system = with_adhesion(system, force, parameters.interface.work_of_adhesion)
+        solve = solve_points if contact.is_round else solve_speeds
+        points = solve(system, force, (2 if system.rolls else 1) * magnitudes)
     films = [
         _profile(system, force, float(v), points[i]) for v, i in zip(speeds, back, strict=True)
     ]
     return _put_together(films) if np.ndim(speed) else films[0]
 
 
-def _profile(system: System, force: float, v: float, point: SolvedSpeed) -> xr.Dataset:
+def _profile(
+    system: System, force: float, v: float, point: SolvedSpeed | SolvedPoint
+) -> xr.Dataset:
     """Say what was solved at one speed."""
-    _, problem, solution = point
-    fields = solution.fields
     side = -1 if v < 0 else 1
-    solid = fields.contact * problem.pressure
-    whole = solid + fields.fluid * problem.pressure
+    x, film, solid, fluid, cavity = _along(point)
+    whole = solid + fluid
     values = {
-        "separation": solution.state.film * problem.gap,
+        "separation": film,
         "contact_pressure": solid,
-        "fluid_pressure": fields.fluid * problem.pressure,
+        "fluid_pressure": fluid,
         "pressure": whole,
-        "contact_area_ratio": real_area(system, solid, whole, system.area),
+        "contact_area_ratio": real_area(system, solid, whole, system.solver.area),
     }
-    x = side * problem.mesh.x * problem.half_width
-    unit = problem.gap**3 * problem.pressure / (12 * system.viscosity * problem.half_width)
+    x = side * x
     # variables, since several speeds that are put together lose attributes that differ
     scalars = {
-        "flux": float(side * fields.flux[0] * unit),
-        "cavity_start": float(x[min(fields.front, x.size - 1)]),
-        **{name: getattr(solution, name) for name in PROOF},
+        "cavity_start": float(x[min(cavity, x.size - 1)]),
+        **{name: getattr(point.solution, name) for name in PROOF},
     }
+    if isinstance(point, SolvedSpeed):
+        scalars["flux"] = side * _flux(system, point)
     data = xr.Dataset(
         {name: ("x", value[::side]) for name, value in values.items()} | scalars,
         coords={"x": x[::side], "sliding_speed": v, "load": force},
     )
-    thinnest = [values["separation"].min()]
+    thinnest = [film.min()]
     around = system.contact, force, system.psd, system.separation
     limits = line_limits("film_profile", *around, [v], thinnest)
     return stamp(data, **system_attributes(system), **limits)
+
+
+def _along(
+    point: SolvedSpeed | SolvedPoint,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, int]:
+    """X [m], film [m], both pressures [Pa] and the first place in the cavity, along the middle."""
+    parts: tuple[np.ndarray, ...]
+    if isinstance(point, SolvedSpeed):
+        line, fields = point.problem, point.solution.fields
+        length, gap, pressure = line.half_width, line.gap, line.pressure
+        parts = line.mesh.x, point.solution.state.film, fields.contact, fields.fluid
+        cavity = fields.front
+    else:
+        ball, found, mesh = point.problem, point.solution, point.problem.mesh
+        length, gap, pressure = ball.radius, ball.gap, ball.pressure
+        ring = np.arange(mesh.radius.size) * mesh.sectors
+        at = np.concatenate([ring[::-1] + mesh.sectors - 1, ring])
+        across = np.concatenate([-mesh.radius[::-1], mesh.radius])
+        parts = across, found.film[at], found.contact[at], found.fluid[at]
+        dry = np.flatnonzero(found.dry[at] & (across > 0))
+        cavity = int(dry[0]) if dry.size else across.size
+    x, film, solid, fluid = parts
+    return x * length, film * gap, solid * pressure, fluid * pressure, cavity
+
+
+def _flux(system: System, point: SolvedSpeed) -> float:
+    """Flux [m2/s] of a line contact."""
+    problem = point.problem
+    unit = problem.gap**3 * problem.pressure / (12 * system.viscosity * problem.half_width)
+    return float(point.solution.fields.flux[0] * unit)
 
 
 def _put_together(films: list[xr.Dataset]) -> xr.Dataset:

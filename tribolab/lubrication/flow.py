@@ -8,6 +8,7 @@ import numpy as np
 
 from tribolab.lubrication.factors import FlowFactors
 from tribolab.lubrication.parabolas import Between
+from tribolab.lubrication.thinning import ThinnedFactors
 
 # Share of the smooth conductance u^3 that is left beyond percolation, so that fluid locked between
 # closed channels has a pressure; the flow it lets through is nothing beside any other.
@@ -36,7 +37,11 @@ class Flow(NamedTuple):
 
 
 def flow_between(
-    between: Between, factors: FlowFactors, gap: float, couette: float, film: np.ndarray
+    between: Between,
+    factors: FlowFactors | ThinnedFactors,
+    gap: float,
+    couette: float,
+    film: np.ndarray,
 ) -> Flow:
     """Sum what resists and what is entrained between the middles of cells with these films (n).
 

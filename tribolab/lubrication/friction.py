@@ -8,6 +8,7 @@ import numpy as np
 
 from tribolab.lubrication.domain import outside_drag
 from tribolab.lubrication.mixed import Problem, Solution
+from tribolab.lubrication.speeds import System
 
 
 class FluidFriction(NamedTuple):
@@ -15,6 +16,23 @@ class FluidFriction(NamedTuple):
 
     couette: float
     pressure: float
+
+
+def friction_parts(system: System, rough: FluidFriction, plain: FluidFriction) -> dict[str, float]:
+    """Return the fluid's friction as a curve has it, with or without friction factors.
+
+    Notes
+    -----
+    Where both bodies move, half the difference of both signs of the slide-roll ratio is the shear;
+    the pressure's drag is rolling friction.
+    """
+    couette, pressure = rough if system.solver.friction_factors else plain
+    slide, rolls = abs(system.factors.slide), system.rolls
+    return {
+        "friction_coefficient_couette": slide * couette,
+        "friction_coefficient_pressure": pressure,
+        "friction_without_factors": slide * plain.couette + (0.0 if rolls else plain.pressure),
+    }
 
 
 def fluid_friction(problem: Problem, solution: Solution) -> tuple[FluidFriction, FluidFriction]:
@@ -32,15 +50,21 @@ def fluid_friction(problem: Problem, solution: Solution) -> tuple[FluidFriction,
     if solution.couette == 0:
         return FluidFriction(0.0, 0.0), FluidFriction(0.0, 0.0)
     flow = solution.flow
-    factors = problem.factors.at(np.concatenate([u, *flow.film]) * problem.gap)
+    moving = problem.moving(solution.couette)
+    factors = moving.at(np.concatenate([u, *flow.film]) * problem.gap)
     shear = mesh.weight / u
     # a cavity holds no more than what flows out of the full film
-    cavity, flux = slice(fields.front, u.size), fields.flux[fields.front] / solution.couette
+    cavity, flux = slice(fields.front, fields.rear), fields.flux[fields.front] / solution.couette
     carried = u[cavity] + problem.factors.rms_roughness / problem.gap * factors.phi_s[cavity]
     shear[cavity] *= np.where(carried > flux, flux / np.maximum(carried, flux), 1.0)
     # the pressure's drag from the end of the domain, where it is 0, to where the film ruptures
     rise = mesh.between.weight * flow.resistance * (flow.entrained - fields.flux[0])
-    rise[:, fields.front + 1 :] = 0.0
+    if fields.front < fields.rear < u.size:  # the liquid forms again somewhere before a middle
+        whole = rise[:, fields.rear].sum()
+        rise[:, fields.rear] *= (fields.fluid[fields.rear] - problem.cavity) / whole
+        rise[:, fields.front + 1 : fields.rear] = 0.0
+    else:
+        rise[:, fields.front + 1 : fields.rear + 1] = 0.0
     drag = (flow.film / 2 * rise).ravel()
     beyond = outside_drag(problem, solution)
     # stress g p/b; eta v/u = (couette/6) (g p/b) (g/u)
@@ -54,4 +78,5 @@ def fluid_friction(problem: Problem, solution: Solution) -> tuple[FluidFriction,
 
     n = u.size
     rough = parts((factors.phi_f + factors.phi_fs)[:n] @ shear, factors.phi_fp[n:] @ drag)
-    return rough, parts(shear.sum(), drag.sum())
+    plain = moving.relative_viscosity(u * problem.gap) @ shear
+    return rough, parts(plain, drag.sum())

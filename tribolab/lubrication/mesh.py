@@ -9,6 +9,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.linalg import inv
 
+from tribolab.contact.layer import Layer, line_layer_kernel
 from tribolab.lubrication.parabolas import Between, between_middles, curved_kernel, curved_weights
 
 # Cells about each end of the contact: the film is made at the inlet, and is thinnest in the narrow
@@ -29,7 +30,14 @@ class Mesh(NamedTuple):
 
 
 @functools.lru_cache(maxsize=16)
-def graded_mesh(cells: int, edge: float, inlet: float, outlet: float, size: float = 1.0) -> Mesh:
+def graded_mesh(
+    cells: int,
+    edge: float,
+    inlet: float,
+    outlet: float,
+    size: float = 1.0,
+    layer: Layer | None = None,
+) -> Mesh:
     """Cells of equal weight under a density that peaks at x = -size and x = size.
 
     Parameters
@@ -43,6 +51,8 @@ def graded_mesh(cells: int, edge: float, inlet: float, outlet: float, size: floa
         Ends of the domain: -inlet, outlet, in units of b.
     size
         Half-width of what is to be resolved, in units of b: more than 1 where the film is thick.
+    layer
+        An elastic layer on a rigid base, its thickness in units of b.
 
     Notes
     -----
@@ -64,6 +74,8 @@ def graded_mesh(cells: int, edge: float, inlet: float, outlet: float, size: floa
     faces *= size
     x, width = (faces[1:] + faces[:-1]) / 2, np.diff(faces)
     weight, kernel = curved_weights(x, width), curved_kernel(x, width)
+    if layer is not None:
+        kernel += line_layer_kernel(x, width, layer)
     stiffness = inv(kernel)
     elastic = np.column_stack([stiffness, -stiffness.sum(axis=1)])
     between = between_middles(x, width)

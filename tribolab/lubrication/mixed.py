@@ -10,6 +10,7 @@ from scipy.linalg import lapack
 from tribolab.lubrication.factors import FlowFactors
 from tribolab.lubrication.flow import Flow, flow_between, flux_slopes
 from tribolab.lubrication.mesh import Mesh
+from tribolab.lubrication.thinning import ShearThinning, ThinnedFactors
 
 _STEPS = 30
 _CAP = 0.6  # largest relative change of the film in one step
@@ -36,6 +37,16 @@ class Problem(NamedTuple):
     gap: float  # g = b^2/(2R) [m]
     pressure: float  # p = E* g/b [Pa]
     inlet_length: float = np.inf  # where the liquid begins, before the middle
+    cavity: float = 0.0  # lowest pressure of the liquid; below 0 the outlet is flooded
+    thinning: ShearThinning | None = None
+    viscosity: float = 1.0  # at rest [Pa s], of a liquid that thins
+
+    def moving(self, couette: float) -> FlowFactors | ThinnedFactors:
+        """Return the factors at a speed, those of a thinning liquid included."""
+        if self.thinning is None:
+            return self.factors
+        speed = couette * self.gap**2 * self.pressure / (6 * self.viscosity * self.half_width)
+        return ThinnedFactors(self.factors, self.thinning, speed * abs(self.factors.slide))
 
 
 class State(NamedTuple):
@@ -62,6 +73,7 @@ class Fields(NamedTuple):
     fluid: np.ndarray  # (n)
     flux: np.ndarray  # through the faces (n + 1)
     front: int  # first cell of the cavity
+    rear: int  # first cell behind it
 
 
 class Solution(NamedTuple):
@@ -153,22 +165,33 @@ def _film(problem: Problem, couette: float, state: State) -> _Film:
     total = state.pressure
     fluid = total - contact
     # flux J = drive - T (rise of p) from middle to middle; outside the domain p = 0
-    flow = flow_between(mesh.between, problem.factors, problem.gap, couette, u)
+    flow = flow_between(mesh.between, problem.moving(couette), problem.gap, couette, u)
     conductance, entrained = flow.conductance, flow.drive
     rise = np.empty_like(conductance)
     rise[0], rise[-1] = fluid[0], -fluid[-1]
     np.subtract(fluid[1:], fluid[:-1], out=rise[1:-1])
     flux = entrained - conductance * rise
     scale = 1 / (conductance[1:] + conductance[:-1])
-    front, through = _rupture(entrained, conductance) if couette > 0 else (0, 0.0)
-    balance = scale * (flux[1:] - flux[:-1])
-    residual = np.append(balance[:front], fluid[front:])
+    front, rear, through = 0, u.size, 0.0
+    if couette > 0:
+        find = _rupture if problem.cavity == 0 else _cavity
+        front, rear, through = find(entrained, conductance, problem.cavity)
+    lowest = problem.cavity if couette > 0 else 0.0
+    residual = scale * (flux[1:] - flux[:-1])
+    residual[front:rear] = fluid[front:rear] - lowest
     # the fluid's pressure once more, by the flux alone: exact to rounding also where it is small
-    exact = np.zeros_like(u)
+    exact = np.full_like(u, lowest)
     exact[:front] = np.cumsum((entrained[:front] - through) / conductance[:front])
-    passing = np.append(np.full(front + 1, through), entrained[front + 1 :])
+    passing = np.full_like(entrained, through)
+    passing[front + 1 : rear + 1] = entrained[front + 1 : rear + 1]
+    if rear < u.size:  # liquid again: what flowed out before the cavity
+        behind = (entrained[rear + 1 :] - through) / conductance[rear + 1 :]
+        exact[rear:] = -np.cumsum(behind[::-1])[::-1]
+        if front < rear:
+            residual[rear] = scale[rear] * (flux[rear + 1] - flux[front])
+            passing[rear] = through
     return _Film(
-        fields=Fields(contact, exact, passing, front),
+        fields=Fields(contact, exact, passing, front, rear),
         flow=flow,
         total=total,
         yielding=yielding,
@@ -196,16 +219,20 @@ def _lacking(problem: Problem, film: _Film) -> np.ndarray:
 
 def _jacobian(problem: Problem, film: _Film) -> np.ndarray:
     """Slopes of the residual and of the load over the film and the constant."""
-    mesh, n, front = problem.mesh, film.residual.size, film.fields.front
+    mesh, n = problem.mesh, film.residual.size
+    front, rear = film.fields.front, film.fields.rear
     full = film.scale.copy()
-    full[front:] = 0.0
+    full[front:rear] = 0.0
     before, after = -full * film.flow.conductance[:-1], -full * film.flow.conductance[1:]
     elastic = mesh.elastic
     matrix = np.empty((n + 1, n + 1))
     matrix[:n] = elastic
-    wet = slice(1, front), slice(0, min(front, n - 1))  # cells of the full film but for the ends
-    matrix[wet[0]] += before[wet[0], None] * elastic[: max(front - 1, 0)]
-    matrix[wet[1]] += after[wet[1], None] * elastic[1 : wet[1].stop + 1]
+    for start, stop in ((0, front), (rear, n)):  # cells of the full film but for the ends
+        first, last = max(start, 1), min(stop, n - 1)
+        if first < stop:
+            matrix[first:stop] += before[first:stop, None] * elastic[first - 1 : stop - 1]
+        if start < last:
+            matrix[start:last] += after[start:last, None] * elastic[start + 1 : last + 1]
     left, right = full * film.flux_slope[:, :-1], full * film.flux_slope[:, 1:]
     bands = {-2: -left[0], 2: right[3]}
     bands |= {k: right[k + 1] - left[k + 2] for k in (-1, 0, 1)}
@@ -216,12 +243,30 @@ def _jacobian(problem: Problem, film: _Film) -> np.ndarray:
     for k, band in bands.items():  # row i, column i + k
         first, last = max(-k, 0), n - max(k, 0)
         flat[first * (n + 1) + first + k :: n + 2][: last - first] += band[first:last]
+    if front < rear < n:
+        matrix[rear] = film.scale[rear] * (
+            _flux_row(problem, film, rear + 1) - _flux_row(problem, film, front)
+        )
     matrix[n] = film.total.max() / problem.load * mesh.push
     return matrix
 
 
-def _rupture(entrained: np.ndarray, conductance: np.ndarray) -> tuple[int, float]:
-    """First cell of the cavity and the flux up to it, in a given film.
+def _flux_row(problem: Problem, film: _Film, face: int) -> np.ndarray:
+    """Slope of the flux through a face over the films and the constant (n + 1)."""
+    mesh, n = problem.mesh, film.residual.size
+    row = np.zeros(n + 1)
+    for cell, sign in ((face, -1), (face - 1, 1)):
+        if 0 <= cell < n:
+            row += sign * film.flow.conductance[face] * mesh.elastic[cell]
+            row[cell] -= sign * film.flow.conductance[face] * film.yielding[cell]
+    np.add.at(row, mesh.between.cell[:, face], film.flux_slope[:, face])
+    return row
+
+
+def _rupture(
+    entrained: np.ndarray, conductance: np.ndarray, lowest: float
+) -> tuple[int, int, float]:
+    """First cell of the cavity, first behind it and the flux up to it, in a given film.
 
     Full cells 0 ... k - 1 and p = 0 at both ends make the flux J_k the mean of what is entrained,
     weighted with the resistance of the faces 0 ... k. The film ruptures at the first k from which
@@ -231,7 +276,32 @@ def _rupture(entrained: np.ndarray, conductance: np.ndarray) -> tuple[int, float
     flux = np.cumsum(entrained * resistance) / np.cumsum(resistance)
     behind = np.flatnonzero(flux[:-1] > entrained[1:])
     front = int(behind[-1]) + 1 if behind.size else 0
-    return front, float(flux[front])
+    return front, entrained.size - 1, float(flux[front])
+
+
+def _cavity(
+    entrained: np.ndarray, conductance: np.ndarray, lowest: float
+) -> tuple[int, int, float]:
+    """Return the same where the liquid holds tension down to a pressure, and is behind, too.
+
+    Without a cavity the flux is the mean over all faces. Where the pressure would fall below the
+    lowest, the film ruptures as in `_rupture`, but at that pressure; it forms again in the first
+    cell from which on the same flux makes no lower pressure.
+    """
+    n, resistance = entrained.size - 1, 1 / conductance
+    driven, resisted = np.cumsum(entrained * resistance), np.cumsum(resistance)
+    through = driven[-1] / resisted[-1]
+    if np.min(driven[:-1] - through * resisted[:-1]) >= lowest:
+        return n, n, float(through)
+    flux = (driven - lowest) / resisted
+    behind = np.flatnonzero(flux[:-1] > entrained[1:])
+    front = int(behind[-1]) + 1 if behind.size else 0
+    if front >= n:
+        return n, n, float(through)
+    through = flux[front]
+    after = -((driven[-1] - driven[:-1]) - through * (resisted[-1] - resisted[:-1]))
+    again = np.flatnonzero(after[front:] >= lowest)
+    return front, front + int(again[0]) if again.size else n, float(through)
 
 
 def _contact(problem: Problem, film: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -247,10 +317,11 @@ def _proof(problem: Problem, couette: float, state: State, film: _Film, step: in
     fields = film.fields
     carried = fields.contact + fields.fluid
     highest = carried.max()
-    if np.any(fields.fluid < -_ROUNDING * highest):
+    if np.any(fields.fluid < problem.cavity - _ROUNDING * highest):
         raise NotConvergedError("the film ruptures in more than one place")
     drive = fields.flux[1:] - fields.flux[:-1]
-    if couette > 0 and np.any(drive[fields.front :] < -_ROUNDING * fields.flux.max()):
+    last = fields.rear - (fields.rear < drive.size)  # where liquid forms again the flux falls
+    if couette > 0 and np.any(drive[fields.front : last] < -_ROUNDING * fields.flux.max()):
         raise NotConvergedError("the film forms again behind the cavity")
     return Solution(
         couette=couette,

@@ -9,17 +9,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from tribolab.contact.area import AreaTheory, other_area
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.area import other_area
+from tribolab.contact.geometry import Contact
 from tribolab.contact.hertz import hertz_half_width
 from tribolab.contact.limits import line_limits
-from tribolab.errors import AnalysisError
-from tribolab.lubrication.factors import FlowFactors, RoughBody
-from tribolab.lubrication.friction import fluid_friction
+from tribolab.lubrication.friction import fluid_friction, friction_parts
 from tribolab.lubrication.parabolas import lowest, value_at
+from tribolab.lubrication.parameters import Parameters
+from tribolab.lubrication.point.rows import ball_rows, method_used
 from tribolab.lubrication.speeds import SolvedSpeed, System, solve_speeds
 from tribolab.lubrication.system import (
-    CELLS,
     PROOF,
     checked_loads,
     checked_speeds,
@@ -28,10 +27,8 @@ from tribolab.lubrication.system import (
     system_of,
     with_adhesion,
 )
-from tribolab.several import as_stated
 from tribolab.stamping import stamp
 from tribolab.threads import one_thread
-from tribolab.units import to_si
 
 
 class SolvedCurve(NamedTuple):
@@ -42,33 +39,23 @@ class SolvedCurve(NamedTuple):
 
 
 def solve_curve(
-    contact: LineContact,
+    contact: Contact,
     psd: xr.Dataset | None,
-    viscosity: str | float | xr.DataArray,
     load: str | ArrayLike,
-    shear_stress: str | float | xr.DataArray,
     speed: str | ArrayLike,
-    friction_factors: bool = True,
-    rough_body: RoughBody | None = None,
-    factors: FlowFactors | None = None,
-    gamma: float = 0.45,
-    cells: int = CELLS,
-    domain: float = 1.0,
-    inlet_length: str | float = np.inf,
-    area: AreaTheory = "persson",
-    work_of_adhesion: str | float | None = None,
+    parameters: Parameters,
     near: SolvedCurve | None = None,
 ) -> SolvedCurve:
     """Compute a Stribeck curve of one surface, if need be beside another one.
 
     Parameters
     ----------
-    contact, psd, viscosity, load, shear_stress, speed, friction_factors, rough_body, factors
-        As for `stribeck_curve`, with one spectrum, viscosity [Pa s] and shear stress [Pa].
-    gamma, cells, domain, inlet_length, area, work_of_adhesion
-        As there.
+    contact, psd, load, speed
+        As for `stribeck_curve`, with one spectrum.
+    parameters
+        Liquid, interface and solver.
     near
-        A curve of a contact that differs little, at as many loads, to start from.
+        A curve of a line contact that differs little, at as many loads, to start from.
 
     Returns
     -------
@@ -81,40 +68,34 @@ def solve_curve(
         As there.
     """
     with one_thread():
-        system = system_of(
-            contact,
-            psd,
-            as_stated(viscosity),
-            rough_body,
-            factors,
-            gamma,
-            cells,
-            domain,
-            inlet_length,
-            area,
-        )
-    stress = to_si(as_stated(shear_stress), "Pa", name="shear_stress")
-    if not 0 <= stress < np.inf:
-        raise AnalysisError(f"shear_stress: it must be finite and not negative; got {stress:g} Pa")
+        system = system_of(contact, psd, parameters)
+    stress, work = parameters.interface.shear_stress, parameters.interface.work_of_adhesion
     loads, speeds = checked_loads(load), checked_speeds(speed, psd)
-    system = with_adhesion(system, float(np.max(loads.values)), work_of_adhesion)
+    system = with_adhesion(system, float(np.max(loads.values)), work)
     forces = [float(force) for force in np.atleast_1d(loads.values)]
     beside: Sequence[Sequence[SolvedSpeed]] = [()] * len(forces) if near is None else near.points
-    magnitudes, back = np.unique(np.abs(speeds.values), return_inverse=True)
+    # where both bodies move the liquid is moved as by one of twice the entrainment speed
+    times = 2.0 if system.rolls else 1.0
+    magnitudes, back = np.unique(times * np.abs(speeds.values), return_inverse=True)
+    used: list[np.ndarray] = []
+    points: list[list[SolvedSpeed]] = []
+    curves = []
     with one_thread():
-        points = [
-            solve_speeds(system, force, magnitudes, known)
-            for force, known in zip(forces, beside, strict=True)
-        ]
-        curves = [
-            _curve(system, force, some, friction_factors)
-            for force, some in zip(forces, points, strict=True)
-        ]
+        for force, known in zip(forces, beside, strict=True):
+            if contact.is_round:
+                columns, strips = ball_rows(system, force, magnitudes)
+                used.append(strips)
+            else:
+                points.append(solve_speeds(system, force, magnitudes, known))
+                columns = _curve(system, force, points[-1])
+            curves.append(columns)
     curves = [{name: part[back] for name, part in curve.items()} for curve in curves]
     stacked = {name: np.stack([curve[name] for curve in curves], axis=1) for name in curves[0]}
-    stacked["friction_coefficient"] = (
-        stacked["friction_coefficient_couette"] + stacked["friction_coefficient_pressure"]
-    )
+    stacked["friction_coefficient"] = stacked["friction_coefficient_couette"]
+    if not system.rolls:
+        stacked["friction_coefficient"] = (
+            stacked["friction_coefficient"] + stacked["friction_coefficient_pressure"]
+        )
     solid = stress * stacked["friction_per_shear_stress"]
     for name in ("friction_coefficient", "friction_without_factors"):
         stacked[name] = stacked[name] + solid
@@ -123,6 +104,9 @@ def solve_curve(
     data = xr.Dataset(parts, {"sliding_speed": speeds.values, "load": np.atleast_1d(loads.values)})
     if loads.ndim == 0:
         data = data.isel(load=0)
+    thinnest = data.minimum_separation.values
+    if system.rolls:
+        data = data.rename(sliding_speed="entrainment_speed")
     curve = stamp(
         data,
         **system_attributes(system),
@@ -134,16 +118,16 @@ def solve_curve(
             psd,
             system.separation,
             speeds.values,
-            data.minimum_separation.values,
+            thinnest,
         ),
-        friction_factors="yes" if friction_factors else "no",
+        friction_factors="yes" if parameters.solver.friction_factors else "no",
     )
+    if contact.is_round:
+        curve.attrs["method"] = method_used(used)
     return SolvedCurve(curve, points)
 
 
-def _curve(
-    system: System, force: float, points: list[SolvedSpeed], friction_factors: bool
-) -> dict[str, np.ndarray]:
+def _curve(system: System, force: float, points: list[SolvedSpeed]) -> dict[str, np.ndarray]:
     # all in one: the pressures of all meshes have one unit
     solid = np.stack([p.solution.fields.contact * p.problem.pressure for p in points])
     whole = solid + np.stack([p.solution.fields.fluid * p.problem.pressure for p in points])
@@ -151,19 +135,19 @@ def _curve(
     areas = np.stack(
         [
             real_area(system, solid, whole, theory)
-            for theory in (system.area, other_area(system.area))
+            for theory in (system.solver.area, other_area(system.solver.area))
         ],
         axis=1,
     )
     rows = [
-        _row(point, force, float(hertz), area, friction_factors)
+        _row(system, point, force, float(hertz), area)
         for point, area in zip(points, areas, strict=True)
     ]
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
 def _row(
-    point: SolvedSpeed, force: float, hertz: float, area: np.ndarray, friction_factors: bool
+    system: System, point: SolvedSpeed, force: float, hertz: float, area: np.ndarray
 ) -> dict[str, float]:
     """All that a curve has of one speed, the relative contact area in its cells being known.
 
@@ -172,12 +156,8 @@ def _row(
     _, problem, solution = point
     mesh, film, solid = problem.mesh, solution.state.film, solution.fields.contact
     real_length, otherwise = area @ mesh.weight * problem.half_width
-    rough, plain = fluid_friction(problem, solution)
-    couette, pressure = rough if friction_factors else plain
     return {
-        "friction_coefficient_couette": couette,
-        "friction_coefficient_pressure": pressure,
-        "friction_without_factors": sum(plain),
+        **friction_parts(system, *fluid_friction(problem, solution)),
         "friction_per_shear_stress": real_length / force,
         "friction_per_shear_stress_other": otherwise / force,
         "contact_area_ratio": real_length / (2 * hertz),

@@ -11,13 +11,13 @@ import numpy as np
 import xarray as xr
 
 from tribolab.contact.adhesive_growth import AdhesiveGrowth
-from tribolab.contact.area import AreaTheory
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.geometry import Contact, LineContact
 from tribolab.contact.separation import Separation
 from tribolab.errors import AnalysisError
-from tribolab.lubrication.domain import film_estimate, lubrication_problem
+from tribolab.lubrication.domain import lubrication_problem, thinned_film
 from tribolab.lubrication.factors import FlowFactors
 from tribolab.lubrication.mixed import NotConvergedError, Problem, Solution, State, solve_speed
+from tribolab.lubrication.parameters import Liquid, Solver
 from tribolab.lubrication.sweep import (
     carried_state,
     dry_state,
@@ -34,29 +34,43 @@ _FAR = 10.0  # times the speed before: so far a state is not carried if there is
 class System(NamedTuple):
     """Everything but load and speed, in SI."""
 
-    contact: LineContact
+    contact: Contact
     psd: xr.Dataset | None
     separation: Separation | None
     factors: FlowFactors
-    viscosity: float
-    cells: int
-    domain: float
-    inlet_length: float  # infinite if the liquid is everywhere
-    area: AreaTheory
+    liquid: Liquid
+    solver: Solver
     growth: AdhesiveGrowth | None = None  # of the area by adhesion
+    rolls: bool = False  # both bodies move
+
+    @property
+    def line(self) -> LineContact:
+        """The contact, if it is a line."""
+        assert isinstance(self.contact, LineContact)
+        return self.contact
+
+    @property
+    def viscosity(self) -> float:
+        """Viscosity at rest [Pa s]."""
+        return self.liquid.viscosity
+
+    def film(self, force: float, speed: float) -> float:
+        """Film thickness [m] expected at a load [N/m] and speed [m/s]."""
+        if not speed:
+            return 0.0
+        return thinned_film(self.line, self.liquid, force, speed * abs(self.factors.slide))
 
     def problem(self, force: float, speed: float) -> Problem:
         """Scales and mesh at one load [N/m] and speed [m/s], that of rest included."""
-        film = film_estimate(self.contact, self.viscosity, force, speed) if speed else 0.0
         return lubrication_problem(
-            self.contact,
+            self.line,
             self.separation,
             self.factors,
             force,
-            film,
-            self.cells,
-            self.domain,
-            self.inlet_length,
+            self.film(force, speed),
+            self.solver.cells,
+            self.solver.domain,
+            self.liquid,
         )
 
 
@@ -112,7 +126,7 @@ def _carried_on(
     system: System, force: float, problem: Problem, speeds: list[float], last: SolvedSpeed
 ) -> list[Solution] | None:
     """Go on from the last speed on another mesh; None if that leads nowhere."""
-    around = problem, system.contact, system.viscosity, force
+    around = problem, system.line, system.liquid, force
     soon = system.psd is None or is_thick(*around, speeds[0])  # is there by itself
     if not last.speed or (soon and speeds[0] > _FAR * last.speed):
         return None
@@ -130,7 +144,7 @@ def _afresh(system: System, force: float, problem: Problem, speeds: np.ndarray) 
     where that has closed its channels, or the first speed parts the surfaces, it is a long one.
     """
     moving = speeds[speeds > 0]
-    around = problem, system.contact, system.viscosity, force
+    around = problem, system.line, system.liquid, force
     at_rest = moving.size < speeds.size
 
     def from_start(start: State | None) -> list[Solution]:
@@ -150,7 +164,7 @@ def _afresh(system: System, force: float, problem: Problem, speeds: np.ndarray) 
         if system.separation is None:
             start = wet_state(*around, float(moving[0]))
         else:
-            start = dry_state(problem, system.contact, system.separation, force)
+            start = dry_state(problem, system.line, system.separation, force)
         if at_rest:
             rest = [solve_speed(problem, 0.0, start)]
     except (AnalysisError, NotConvergedError) as error:

@@ -2,76 +2,63 @@
 
 from __future__ import annotations
 
-import numpy as np
+from typing import Any
+
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from tribolab.contact.area import AreaTheory
-from tribolab.contact.geometry import LineContact
-from tribolab.lubrication.factors import FlowFactors, RoughBody
+from tribolab.contact.geometry import Contact
+from tribolab.lubrication.parameters import (
+    Interface,
+    Liquid,
+    Solver,
+    as_given,
+    parameters_of,
+    renamed,
+    warn_of_old,
+)
 from tribolab.lubrication.solved_curve import solve_curve
-from tribolab.lubrication.system import CELLS
 from tribolab.several import over_dims
 from tribolab.stamping import stamp
 
 
-@over_dims(psd=("wavenumber",), viscosity=(), shear_stress=())
+@renamed(viscosity="liquid", shear_stress="interface")
+@over_dims(psd=("wavenumber",), liquid=(), interface=())
 def stribeck_curve(
-    contact: LineContact,
+    contact: Contact,
     psd: xr.Dataset | None,
-    viscosity: str | float | xr.DataArray,
+    liquid: Liquid | str | float | xr.DataArray,
     load: str | ArrayLike,
-    shear_stress: str | float | xr.DataArray,
+    interface: Interface | str | float | xr.DataArray,
     speed: str | ArrayLike,
-    friction_factors: bool = True,
-    rough_body: RoughBody | None = None,
-    factors: FlowFactors | None = None,
-    gamma: float = 0.45,
-    cells: int = CELLS,
-    domain: float = 1.0,
-    inlet_length: str | float = np.inf,
-    area: AreaTheory = "persson",
-    work_of_adhesion: str | float | None = None,
+    solver: Solver | None = None,
+    **options: Any,
 ) -> xr.Dataset:
-    """Friction coefficient of a lubricated rough line contact over sliding speed (and load).
+    """Friction coefficient of a lubricated rough contact over sliding speed (and load).
 
     Parameters
     ----------
     contact
-        Geometry and elasticity.
+        `LineContact` or `PointContact`.
     psd
         Power spectrum with ``psd_2d`` [m4] (wavenumber), or of several surfaces with further dims,
         which the result has, too; None for smooth surfaces.
-    viscosity
-        eta [Pa s], above zero; a DataArray over (medium), or any dims that the result will have.
+    liquid
+        `Liquid`, or its viscosity eta [Pa s] alone; a DataArray of viscosities over (medium), or
+        any dims that the result will have.
     load
-        F_N/L [N/m], above zero; several make a dim.
-    shear_stress
-        sigma_f [Pa] in the real contact area, not negative; a DataArray as for `viscosity`.
+        F_N/L [N/m], of a ball F_N [N], above zero; several make a dim.
+    interface
+        `Interface`, or the shear stress sigma_f [Pa] in the real contact area alone; a DataArray
+        of shear stresses as for `liquid`.
     speed
-        Sliding speeds v [m/s] (sliding_speed). 0 is the dry contact; a negative speed is the
-        mirror image of the positive one.
-    friction_factors
-        False takes phi_f = phi_fp = 1 and phi_fs = 0 in Eq. (4); flow keeps its factors.
-    rough_body
-        ``"stationary"`` or ``"moving"``: sets the sign of phi_s, see `flow_factors`, also that of
-        given `factors`. None is that of `factors`, or ``"stationary"`` without any.
-    factors
-        Factors to use instead of the effective-medium ones.
-    gamma
-        Elastic-energy reduction factor [1] of the mean separation.
-    cells
-        Cells across the contact; more of them where the roughness is thin beside a soft body's
-        gap.
-    domain
-        Length of the domain over the default: a check of the numerics, as the drag of the liquid
-        beyond its ends is added in closed form.
-    inlet_length
-        Where the liquid begins [m], before the contact's middle; by default it is everywhere.
-    area
-        Theory of the contact area, see `contact_area_ratio`. Films do not hang on it.
-    work_of_adhesion
-        Of the bodies under the liquid [J/m2]: adhesion then adds to the contact area, see Notes.
+        Sliding speeds v [m/s] (sliding_speed) of one body, the other being at rest; with a
+        slide-roll ratio entrainment speeds U = (u1 + u2)/2 (entrainment_speed). 0 is the dry
+        contact; a negative speed is the mirror image of the positive one.
+    solver
+        `Solver`; None is the default.
+    **options
+        Single fields of these three, as they were arguments in the last release.
 
     Returns
     -------
@@ -84,7 +71,10 @@ def stribeck_curve(
         ``central_separation`` [m];
         ``contact_area_ratio`` [1], real area over that of the Hertz contact, 2 a L;
         ``solid_load_share`` [1]; and the proof of every point: ``residual``, ``load_balance``,
-        ``flux_variation``, ``iterations``.
+        ``flux_variation``, ``iterations``. With a slide-roll ratio, the coefficient is half of the
+        difference between both signs of it, as mini traction machines measure: Couette and solid
+        part; ``_pressure`` is then rolling friction, and not in it. Of a ball the attribute
+        ``method`` says which theory was used.
 
     Raises
     ------
@@ -115,29 +105,15 @@ def stribeck_curve(
 
     Examples
     --------
+    >>> from tribolab.contact.geometry import LineContact
     >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     >>> curve = stribeck_curve(contact, None, "1.4 Pa s", "310 N/m", 0.0, speed=[1e-4, 1e-3])
     >>> curve.minimum_separation.values.round(8)
     array([1.44e-06, 5.89e-06])
     """
-    solved = solve_curve(
-        contact,
-        psd,
-        viscosity,
-        load,
-        shear_stress,
-        speed,
-        friction_factors,
-        rough_body,
-        factors,
-        gamma,
-        cells,
-        domain,
-        inlet_length,
-        area,
-        work_of_adhesion,
-    )
-    return solved.curve
+    warn_of_old("stribeck_curve", options)
+    parameters = parameters_of(as_given(liquid), as_given(interface), solver, **options)
+    return solve_curve(contact, psd, load, speed, parameters).curve
 
 
 def with_shear_stress(curve: xr.Dataset, shear_stress: float | xr.DataArray) -> xr.Dataset:
@@ -157,11 +133,12 @@ def with_shear_stress(curve: xr.Dataset, shear_stress: float | xr.DataArray) -> 
 
     Examples
     --------
+    >>> from tribolab.contact.geometry import LineContact
     >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     >>> q = np.array([423.0, 9.05e4, 3.14e9])
     >>> psd = xr.Dataset({"psd_2d": ("wavenumber", 1e-22 * q**0)}, {"wavenumber": q})
     >>> psd["psd_2d"][2] = 1e-41
-    >>> bare = stribeck_curve(contact, psd, "1.4 Pa s", "310 N/m", "0 Pa", "1 um/s", cells=60)
+    >>> bare = stribeck_curve(contact, psd, "1.4 Pa s", "310 N/m", "0 Pa", "1 um/s")
     >>> curve = with_shear_stress(bare, 1e6)
     >>> bool(curve.friction_coefficient > 100 * bare.friction_coefficient)
     True

@@ -12,7 +12,7 @@ from tribolab.contact.hertz import hertz_pressure
 from tribolab.contact.line import solve_line
 from tribolab.contact.separation import Separation
 from tribolab.errors import AnalysisError
-from tribolab.lubrication.domain import film_estimate
+from tribolab.lubrication.domain import thinned_film
 from tribolab.lubrication.mesh import Mesh
 from tribolab.lubrication.mixed import (
     NotConvergedError,
@@ -22,6 +22,7 @@ from tribolab.lubrication.mixed import (
     couette_number,
     solve_speed,
 )
+from tribolab.lubrication.parameters import Liquid
 
 _SUBSTEPS = 100  # failures on the way that are forgiven
 _FINEST = 1e-2  # smallest step in ln v
@@ -65,15 +66,15 @@ def carried_state(problem: Problem, before: Problem, state: State) -> State:
 
 
 def is_thick(
-    problem: Problem, contact: LineContact, viscosity: float, load: float, speed: float
+    problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> bool:
     """Whether a speed parts the surfaces by much more than their roughness."""
-    film = film_estimate(contact, viscosity, load, speed)
+    film = thinned_film(contact, liquid, load, speed)
     return film >= _THICK * problem.factors.rms_roughness
 
 
 def lifted_state(
-    problem: Problem, contact: LineContact, viscosity: float, load: float, speed: float
+    problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> State:
     """Find a state at one speed from above, where the film is thick beside the roughness.
 
@@ -83,18 +84,18 @@ def lifted_state(
         If there is none.
     """
     above = speed
-    while not is_thick(problem, contact, viscosity, load, above):
+    while not is_thick(problem, contact, liquid, load, above):
         above *= 2
-    start = wet_state(problem, contact, viscosity, load, above)
+    start = wet_state(problem, contact, liquid, load, above)
     down = np.geomspace(above, speed, 1 + int(np.ceil(4 * np.log10(above / speed))))
-    solved, lost = _march(problem, viscosity, list(down), start)
+    solved, lost = _march(problem, liquid.viscosity, list(down), start)
     if lost is not None:
         raise lost
     return solved[-1].state
 
 
 def wet_state(
-    problem: Problem, contact: LineContact, viscosity: float, load: float, speed: float
+    problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> State:
     """Find a state between smooth surfaces at one speed, from the Hertz contact on a cushion.
 
@@ -108,27 +109,27 @@ def wet_state(
         If there is none.
     """
     try:
-        return _cushioned(problem, contact, viscosity, load, speed)
+        return _cushioned(problem, contact, liquid, load, speed)
     except NotConvergedError:
-        start = _cushioned(problem, contact, viscosity, load, 10 * speed)
-        solved, lost = _march(problem, viscosity, [3 * speed, speed], start)
+        start = _cushioned(problem, contact, liquid, load, 10 * speed)
+        solved, lost = _march(problem, liquid.viscosity, [3 * speed, speed], start)
         if lost is not None:
             raise
         return solved[-1].state
 
 
 def _cushioned(
-    problem: Problem, contact: LineContact, viscosity: float, load: float, speed: float
+    problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> State:
     """Solve at rest on the cushion, then at the speed."""
-    film = film_estimate(contact, viscosity, load, speed)
+    film = thinned_film(contact, liquid, load, speed)
     x = problem.mesh.x * problem.half_width
     pressure = hertz_pressure(x, load, contact) / problem.pressure
     shape = _gap_under(problem, pressure * problem.load / (problem.mesh.weight @ pressure))
     constant = film / 3 / problem.gap - float(shape.min())
     cushion = problem._replace(separation=_Cushion(float(pressure.max()) * problem.pressure, film))
     rest = solve_speed(cushion, 0.0, _bent(problem, shape + constant, constant)).state
-    solved, lost = _march(cushion, viscosity, [speed], rest)
+    solved, lost = _march(cushion, liquid.viscosity, [speed], rest)
     if lost is not None:
         raise lost
     return solved[-1].state

@@ -9,24 +9,17 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from tribolab.contact.adhesive_growth import adhesive_growth
-from tribolab.contact.area import AreaTheory, check_area
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.area import AreaTheory
+from tribolab.contact.geometry import Contact
 from tribolab.contact.hertz import hertz_max_pressure
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.contact.separation import separation_table
 from tribolab.errors import AnalysisError
-from tribolab.lubrication.factors import (
-    FlowFactors,
-    RoughBody,
-    check_rough_body,
-    flow_factors,
-    smooth_factors,
-)
+from tribolab.lubrication.factors import check_rough_body, flow_factors, smooth_factors
+from tribolab.lubrication.parameters import Parameters
 from tribolab.lubrication.speeds import System
 from tribolab.stamping import labelled
-from tribolab.units import positive, to_si
 
-CELLS = 160
 PROOF = ("residual", "load_balance", "flux_variation", "iterations")  # of every point
 _REFERENCE = (
     "R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, Adhesion-controlled sliding and the "
@@ -34,47 +27,34 @@ _REFERENCE = (
 )
 
 
-def system_of(
-    contact: LineContact,
-    psd: xr.Dataset | None,
-    viscosity: str | float,
-    rough_body: RoughBody | None,
-    factors: FlowFactors | None,
-    gamma: float,
-    cells: int,
-    domain: float,
-    inlet_length: str | float,
-    area: AreaTheory,
-) -> System:
-    """Collect what all speeds and loads share; the arguments are those of `stribeck_curve`.
-
-    Raises
-    ------
-    AnalysisError
-        If a number of cells, a domain, a theory or a body is not one of those allowed.
-    """
-    eta = positive(viscosity, "Pa s", "viscosity")
-    check_area(area)
-    if cells < 50:
-        raise AnalysisError(f"cells: at least 50 are wanted; got {cells}")
-    if not 0.2 <= domain <= 5:
-        raise AnalysisError(f"domain: a length between 0.2 and 5 is wanted; got {domain:g}")
+def system_of(contact: Contact, psd: xr.Dataset | None, parameters: Parameters) -> System:
+    """Collect what all speeds and loads share."""
+    liquid, interface, solver = parameters
+    factors, body = interface.factors, interface.rough_body
     if factors is None:
-        body = rough_body or "stationary"
+        body = body or "stationary"
+        gamma = solver.gamma
         factors = smooth_factors(body) if psd is None else flow_factors(psd, body, gamma=gamma)
-    elif rough_body is not None:
-        check_rough_body(rough_body)
-        factors = replace(factors, rough_body=rough_body)
-    separation = None if psd is None else separation_table(psd, contact.effective_modulus, gamma)
-    begins = to_si(inlet_length, "m", name="inlet_length")  # `solve_speeds` has its lower limit
-    return System(contact, psd, separation, factors, eta, cells, domain, begins, area)
+    elif body is not None:
+        check_rough_body(body)
+        factors = replace(factors, rough_body=body)
+    slide = 1.0 if interface.slide_roll is None else interface.slide_roll / 2
+    balance = interface.roughness_balance
+    if slide != 1 or balance is not None:
+        factors = replace(factors, slide=slide, roughness_balance=balance)
+    table = None if psd is None else separation_table(psd, contact.effective_modulus, solver.gamma)
+    return System(
+        contact, psd, table, factors, liquid, solver, rolls=interface.slide_roll is not None
+    )
 
 
 def checked_loads(load: str | ArrayLike) -> xr.DataArray:
     """Return loads per length [N/m] (load); AnalysisError if one is not above zero."""
     loads = labelled(load, "load")
     if loads.ndim > 1 or not np.all((loads.values > 0) & np.isfinite(loads.values)):
-        raise AnalysisError(f"load: positive, finite values in N/m are wanted; got {loads.values}")
+        raise AnalysisError(
+            f"load: positive, finite values in N/m (of a ball N) are wanted; got {loads.values}"
+        )
     return loads
 
 
@@ -99,13 +79,30 @@ def system_attributes(system: System) -> dict[str, str | float | int]:
         "radius_m": system.contact.radius,
         "rough_body": system.factors.rough_body,
         "factors": system.factors.model,
-        "cells": system.cells,
-        "domain": float(system.domain),
-        "inlet_length_m": system.inlet_length,
-        "area": system.area,
+        "cells": system.solver.cells,
+        "domain": float(system.solver.domain),
+        "inlet_length_m": np.inf if system.liquid.extent is None else system.liquid.extent,
+        "area": system.solver.area,
         "work_of_adhesion_J_m2": system.growth.work_of_adhesion if system.growth else 0.0,
         "references": _REFERENCE,
+        **_beyond_default(system),
     }
+
+
+def _beyond_default(system: System) -> dict[str, str | float | int]:
+    """Attributes of what differs from a half-space, a rigid counter body and a vented outlet."""
+    contact, liquid, factors = system.contact, system.liquid, system.factors
+    balance = factors.roughness_balance
+    told = {
+        "thickness_m": (contact.thickness, np.inf),
+        "counter_modulus_Pa": (contact.counter_modulus, np.inf),
+        "outlet": (liquid.outlet, "vented"),
+        "cavity_pressure_Pa": (liquid.lowest_pressure, 0.0),
+        "shear_thinning": (liquid.thinning.model if liquid.thinning else "", ""),
+        "slide_roll_ratio": (2 * factors.slide, 2.0),
+        "roughness_balance": (np.nan if balance is None else balance, np.nan),
+    }
+    return {name: value for name, (value, usual) in told.items() if str(value) != str(usual)}
 
 
 def with_adhesion(
@@ -114,7 +111,7 @@ def with_adhesion(
     """Return the system with what adhesion adds to its contact area up to a load [N/m]."""
     if work_of_adhesion is None or system.psd is None:
         return system
-    modulus = system.contact.effective_modulus
+    modulus = _stiffness(system)
     # a film's pressure peaks a little above that of Hertz
     highest = 1.5 * float(hertz_max_pressure(highest_load, system.contact))
     return system._replace(growth=adhesive_growth(system.psd, modulus, work_of_adhesion, highest))
@@ -126,5 +123,10 @@ def real_area(
     """Relative contact area at the solid's pressure and the whole one [Pa]."""
     if system.psd is None:
         return np.zeros_like(solid)
-    area = contact_area_ratio(solid, system.psd, system.contact.effective_modulus, theory)
+    area = contact_area_ratio(solid, system.psd, _stiffness(system), theory)
     return area if system.growth is None else system.growth(solid, whole, area)
+
+
+def _stiffness(system: System) -> float:
+    """E* of the roughness [Pa]; a strip of a ball bends with another."""
+    return system.separation.effective_modulus if system.separation else np.nan

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.geometry import Contact
 from tribolab.errors import AnalysisError, shown
 from tribolab.fit.joint.fit import fit_shear_stress_jointly
 from tribolab.fit.joint.priors import JointPriors
@@ -94,7 +94,7 @@ class ModelComparison:
 
 def compare_shear_stress_models(
     measured: xr.Dataset,
-    contact: LineContact,
+    contact: Contact,
     psd: xr.Dataset,
     viscosity: str | float,
     load: str | float | xr.DataArray,

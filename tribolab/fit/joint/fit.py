@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.geometry import Contact
 from tribolab.fit.joint.inputs import (
     DryFriction,
     computed_curves,
@@ -25,7 +25,7 @@ from tribolab.untyped import Arguments
 
 def fit_shear_stress_jointly(
     measured: xr.Dataset,
-    contact: LineContact,
+    contact: Contact,
     psd: xr.Dataset,
     viscosity: str | float,
     load: str | float | xr.DataArray,

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.geometry import Contact
 from tribolab.errors import AnalysisError, Cure, shown
 from tribolab.fit.joint.load_curve import LoadCurve
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.response import Response, constant_response, response_of
-from tribolab.lubrication.stribeck import stribeck_curve
+from tribolab.lubrication.parameters import parameters_of
+from tribolab.lubrication.solved_curve import solve_curve
 from tribolab.stamping import labelled
 from tribolab.untyped import Arguments
 from tribolab.words import number
@@ -130,7 +131,7 @@ def computed_curves(
     psd: xr.Dataset,
     loads: xr.DataArray,
     measured: xr.Dataset,
-    contact: LineContact,
+    contact: Contact,
     viscosity: float,
     priors: JointPriors,
     model: Arguments,
@@ -146,9 +147,10 @@ def computed_curves(
     grid = np.concatenate([[0.0], np.exp(np.linspace(low, high, count))])
     force = loads.values if loads.ndim else float(loads)
     options = {name: value for name, value in model.items() if name != "friction_factors"}
-    curve = stribeck_curve(
-        contact, psd, viscosity, force, 0.0, grid if psd is not None else grid[1:], **options
-    )
+    if contact.is_round:
+        options = {"method": "auto", **options}
+    moving = grid if psd is not None else grid[1:]
+    curve = solve_curve(contact, psd, force, moving, parameters_of(viscosity, 0.0, **options)).curve
     curve.attrs["friction_factors"] = "no" if model.get("friction_factors") is False else "yes"
     return curve.rename(load=loads.dims[0]).assign_coords(loads.coords) if loads.ndim else curve
 

@@ -1,0 +1,118 @@
+"""Dry contact of a rough ball with a flat at rest: pressure and separation over the radius."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from tribolab.contact.area import AreaTheory
+from tribolab.contact.geometry import PointContact
+from tribolab.contact.hertz import hertz_half_width, hertz_pressure
+from tribolab.contact.limits import line_limits
+from tribolab.contact.line import solve_dry
+from tribolab.contact.persson import contact_area_ratio
+from tribolab.contact.polar import PolarMesh, polar_mesh
+from tribolab.contact.separation import Separation, separation_table
+from tribolab.several import over_dims
+from tribolab.stamping import stamp
+from tribolab.units import positive
+
+_SECTORS = 12  # of a mesh whose pressure depends on the radius alone
+
+
+class RoundProfile(NamedTuple):
+    """Pressure and separation over the rings of a dry point contact, and how they were reached."""
+
+    radius: np.ndarray  # [m] (n)
+    area: np.ndarray  # of the rings [m2] (n)
+    pressure: np.ndarray  # [Pa] (n)
+    separation: np.ndarray  # [m] (n)
+    steps: int
+    residual: float  # of p - p(u), in units of the maximum pressure
+
+
+@over_dims(psd=("wavenumber",))
+def rough_point_contact(
+    load: str | float,
+    contact: PointContact,
+    psd: xr.Dataset,
+    gamma: float = 0.45,
+    rings: int = 120,
+    area: AreaTheory = "persson",
+) -> xr.Dataset:
+    """Pressure and mean separation over the radius of a dry, rough point contact at rest.
+
+    Parameters
+    ----------
+    load
+        F_N [N], above zero.
+    contact, psd, gamma, area
+        As for `rough_line_contact`.
+    rings
+        Cells from the middle out.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``radius`` [m]: ``pressure`` [Pa], ``separation`` [m], ``contact_area_ratio`` [1]; and
+        the scalars ``max_pressure`` [Pa], ``central_separation`` [m] and
+        ``friction_per_shear_stress`` [1/Pa], real area over the load. The attributes hold
+        ``residual``, ``load_balance`` and ``steps``, as those of `rough_line_contact`.
+
+    Notes
+    -----
+    ``u = c + r^2/(2R) + (1/pi E*) int p dA/|r - r'|`` with p = p_cont(u), by the same convex
+    Newton's method as the line's.
+
+    Examples
+    --------
+    >>> from tribolab.studies import xu2026
+    >>> ball = PointContact("9.5 mm", "1 MPa", 0.5)
+    >>> rough = rough_point_contact("3 N", ball, xu2026.psd("Sb-S", points=301))
+    >>> f"{rough.max_pressure / 1e3:.0f} kPa"
+    '217 kPa'
+    """
+    force = positive(load, "N", "load")
+    table = separation_table(psd, contact.effective_modulus, gamma)
+    a = float(hertz_half_width(force, contact))
+    edge = (table.decay_length * contact.radius / (1.9 * a**2 / 2)) ** (2 / 3)
+    # the pressure falls as exp(-u/u0): beyond, as for the line
+    end = np.sqrt(1 + 2 * contact.radius * table.decay_length * np.log(1e12) / a**2)
+    layer = contact.layer(a)
+    mesh = polar_mesh(rings, _SECTORS, min(float(edge), 0.5), 1.1 * float(end), 1.0, layer)
+    profile = solve_rings(force, contact, table, mesh, a)
+    stiff = contact.effective_modulus
+    ratio = contact_area_ratio(profile.pressure, psd, stiff, area)
+    data = xr.Dataset(
+        {
+            "pressure": ("radius", profile.pressure),
+            "separation": ("radius", profile.separation),
+            "contact_area_ratio": ("radius", ratio),
+            "max_pressure": profile.pressure.max(),
+            "central_separation": profile.separation[0],
+            "friction_per_shear_stress": ratio @ profile.area / force,
+        },
+        coords={"radius": profile.radius, "load": force},
+    )
+    return stamp(
+        data,
+        **line_limits("rough_point_contact", contact, force, psd, table),
+        residual=profile.residual,
+        load_balance=float(profile.pressure @ profile.area / force - 1),
+        steps=profile.steps,
+        area=area,
+    )
+
+
+def solve_rings(
+    force: float, contact: PointContact, table: Separation, mesh: PolarMesh, length: float
+) -> RoundProfile:
+    """Solve `rough_point_contact` on a mesh in units of a length [m]."""
+    radius = mesh.radius * length
+    area = np.pi * np.diff(mesh.faces**2) * length**2
+    kernel = mesh.rings * (length / contact.effective_modulus)
+    hertz = hertz_pressure(radius, force, contact)
+    gap = radius**2 / (2 * contact.radius)
+    return RoundProfile(radius, area, *solve_dry(gap, area, hertz, force, table, kernel))

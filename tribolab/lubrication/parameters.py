@@ -1,0 +1,253 @@
+"""What a lubricated contact is made of, as frozen objects: liquid, interface and solver."""
+
+from __future__ import annotations
+
+import functools
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any, Literal, NamedTuple, ParamSpec, TypeVar, get_args
+
+import numpy as np
+
+from tribolab.contact.area import AreaTheory, check_area
+from tribolab.errors import AnalysisError, nearest, shown
+from tribolab.lubrication.factors import FlowFactors, RoughBody
+from tribolab.lubrication.thinning import ShearThinning
+from tribolab.several import as_stated
+from tribolab.units import positive, to_si
+
+P = ParamSpec("P")
+R = TypeVar("R")
+Outlet = Literal["vented", "flooded"]
+Method = Literal["auto", "full", "strips"]
+VAPOUR = -1e5  # Pa, a liquid without gas boils at some 1 bar below the pressure outside
+
+
+def _one_of(name: str, value: str, kind: Any) -> None:
+    known = list(get_args(kind))
+    if value not in known:
+        raise AnalysisError(f"{name}: '{shown(value)}' is not known{nearest(value, known)}")
+
+
+@dataclass(frozen=True)
+class Liquid:
+    """The liquid between the bodies.
+
+    Parameters
+    ----------
+    viscosity
+        eta [Pa s]; that at rest (eta_0) if the liquid is shear-thinning.
+    extent
+        Where the liquid begins [m], before the contact's middle, and around a ball where it ends.
+        None is everywhere for a line contact and the ball's radius for a ball.
+    outlet
+        ``"vented"`` if gas gets into the diverging gap, so that the pressure there is that outside;
+        ``"flooded"`` if none does, and the liquid holds tension down to `cavity_pressure`.
+    cavity_pressure
+        Pressure [Pa] at which a flooded liquid ruptures, below that outside.
+    thinning
+        How the viscosity falls with the shear rate; None for a Newtonian liquid.
+
+    Examples
+    --------
+    >>> Liquid("1.4 Pa s", outlet="flooded").lowest_pressure
+    -100000.0
+    """
+
+    viscosity: float
+    extent: float | None = None
+    outlet: Outlet = "vented"
+    cavity_pressure: float = VAPOUR
+    thinning: ShearThinning | None = None
+
+    def __post_init__(self) -> None:
+        """Turn text into SI floats and refuse what is not possible."""
+        set_ = object.__setattr__
+        set_(self, "viscosity", positive(self.viscosity, "Pa s", "viscosity"))
+        if self.extent is not None:
+            set_(self, "extent", to_si(self.extent, "m", name="inlet_length"))
+        set_(self, "cavity_pressure", to_si(self.cavity_pressure, "Pa", name="cavity_pressure"))
+        _one_of("outlet", self.outlet, Outlet)
+        if not -np.inf < self.cavity_pressure < 0:
+            raise AnalysisError(
+                "cavity_pressure: a pressure below that outside is wanted, e.g. '-1 bar'; got "
+                f"{self.cavity_pressure:g} Pa"
+            )
+
+    @property
+    def lowest_pressure(self) -> float:
+        """Pressure [Pa] of the cavity, relative to that outside."""
+        return 0.0 if self.outlet == "vented" else self.cavity_pressure
+
+
+@dataclass(frozen=True)
+class Interface:
+    """Where the bodies meet: friction of the real contact, roughness and motion.
+
+    Parameters
+    ----------
+    shear_stress
+        sigma_f [Pa] in the real contact area.
+    rough_body
+        ``"stationary"`` or ``"moving"``, see `flow_factors`; None is that of `factors`.
+    roughness_balance
+        (h2^2 - h1^2)/(h1^2 + h2^2) [1] of two rough bodies, 2 being the faster one: -1 if the
+        slower body alone is rough, 1 if the faster one is. None follows `rough_body`.
+    factors
+        Factors to use instead of the effective-medium ones.
+    work_of_adhesion
+        Of the bodies under the liquid [J/m2]: adhesion then adds to the contact area.
+    slide_roll
+        Slide-roll ratio SRR = (u2 - u1)/U [1] of two moving bodies, U = (u1 + u2)/2; None if one
+        body is at rest, which is SRR = 2.
+    """
+
+    shear_stress: float = 0.0
+    rough_body: RoughBody | None = None
+    roughness_balance: float | None = None
+    factors: FlowFactors | None = None
+    work_of_adhesion: float | None = None
+    slide_roll: float | None = None
+
+    def __post_init__(self) -> None:
+        """Turn text into SI floats and refuse what is not possible."""
+        stress = to_si(self.shear_stress, "Pa", name="shear_stress")
+        object.__setattr__(self, "shear_stress", stress)
+        if not 0 <= stress < np.inf:
+            raise AnalysisError(
+                f"shear_stress: it must be finite and not negative; got {stress:g} Pa"
+            )
+        for name, end in (("roughness_balance", 1.0), ("slide_roll", 2.0)):
+            value = getattr(self, name)
+            if value is None:
+                continue
+            value = to_si(value, "1", name=name)
+            object.__setattr__(self, name, value)
+            if not -end <= value <= end:
+                raise AnalysisError(f"{name}: {-end:g} to {end:g} is possible; got {value:g}")
+
+
+@dataclass(frozen=True)
+class Solver:
+    """How a contact is computed.
+
+    Parameters
+    ----------
+    cells
+        Cells across a line contact; rings of a round one are three eighths of them.
+    domain
+        Length of a line contact's domain over the default.
+    gamma
+        Elastic-energy reduction factor [1] of the mean separation.
+    area
+        Theory of the contact area, see `contact_area_ratio`.
+    friction_factors
+        False takes phi_f = phi_fp = 1 and phi_fs = 0 in the friction; flow keeps its factors.
+    method
+        Of a ball: ``"full"`` theory on rings and sectors, ``"strips"`` (reduced, within some 6 %
+        where the film is thinner than 0.025 a^2/R), or ``"auto"``: strips within that limit and
+        the full theory beyond, as fits and bands use.
+    """
+
+    cells: int = 160
+    domain: float = 1.0
+    gamma: float = 0.45
+    area: AreaTheory = "persson"
+    friction_factors: bool = True
+    method: Method = "full"
+
+    def __post_init__(self) -> None:
+        """Refuse what is not possible."""
+        check_area(self.area)
+        _one_of("method", self.method, Method)
+        if self.cells < 50:
+            raise AnalysisError(f"cells: at least 50 are wanted; got {self.cells}")
+        if not 0.2 <= self.domain <= 5:
+            raise AnalysisError(
+                f"domain: a length between 0.2 and 5 is wanted; got {self.domain:g}"
+            )
+
+
+class Parameters(NamedTuple):
+    """All of a model but contact, roughness, load and speed."""
+
+    liquid: Liquid
+    interface: Interface = Interface()
+    solver: Solver = Solver()
+
+
+_RENAMED = {"inlet_length": "extent"}
+_PARTS = {"liquid": Liquid, "interface": Interface, "solver": Solver}
+_HOME = {field.name: part for part, kind in _PARTS.items() for field in fields(kind)}
+
+
+def parameters_of(
+    liquid: Liquid | str | float,
+    interface: Interface | str | float = 0.0,
+    solver: Solver | None = None,
+    **options: Any,
+) -> Parameters:
+    """Put together what a model is made of.
+
+    Parameters
+    ----------
+    liquid, interface
+        The objects, or viscosity [Pa s] and shear stress [Pa] alone.
+    solver
+        None is the default.
+    **options
+        Single parameters by the names of their fields, or ``inlet_length``.
+
+    Examples
+    --------
+    >>> parameters_of("1.4 Pa s", "1 MPa", cells=60, inlet_length="20 mm").solver.cells
+    60
+    """
+    parts: dict[str, Any] = {
+        "liquid": liquid if isinstance(liquid, Liquid) else Liquid(liquid),  # type: ignore[arg-type]
+        "interface": interface if isinstance(interface, Interface) else Interface(interface),  # type: ignore[arg-type]
+        "solver": solver or Solver(),
+    }
+    for name, value in options.items():
+        field = _RENAMED.get(name, name)
+        if field not in _HOME:
+            known = [*_HOME, *_RENAMED]
+            raise AnalysisError(f"'{shown(name)}' is no parameter{nearest(name, known)}")
+        if name == "inlet_length" and value is not None:
+            value = to_si(value, "m", name="inlet_length")
+        home = _HOME[field]
+        parts[home] = replace(parts[home], **{field: value})
+    return Parameters(**parts)
+
+
+def as_given(value: Any) -> Any:
+    """Return an object or what was stated, or of an array without dims its number."""
+    return value if isinstance(value, Liquid | Interface) else as_stated(value)
+
+
+def renamed(**names: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Let a function take arguments by the names that they had in the last release."""
+
+    def decorate(function: Callable[P, R]) -> Callable[P, R]:
+        @functools.wraps(function)
+        def with_old(*args: Any, **kwargs: Any) -> R:
+            return function(*args, **{names.get(name, name): kwargs[name] for name in kwargs})
+
+        return with_old
+
+    return decorate
+
+
+def warn_of_old(function: str, options: Mapping[str, Any]) -> None:
+    """Say which object takes the options of a call that are no arguments any more."""
+    if not options:
+        return
+    homes = sorted({_HOME[_RENAMED.get(n, n)] for n in options if _RENAMED.get(n, n) in _HOME})
+    objects = " and ".join(_PARTS[home].__name__ for home in homes)
+    warnings.warn(
+        f"{function}: {', '.join(options)} will no longer be arguments after the next release; "
+        f"give them to {objects or 'Solver'}, see tribolab.lubrication.parameters",
+        FutureWarning,
+        stacklevel=4,
+    )

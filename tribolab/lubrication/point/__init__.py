@@ -1,0 +1,1 @@
+"""Mixed lubrication of a ball on a flat."""

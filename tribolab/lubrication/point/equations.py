@@ -1,0 +1,275 @@
+"""Mixed lubrication of a round contact at one speed, on rings and sectors."""
+
+from __future__ import annotations
+
+import functools
+from typing import NamedTuple
+
+import numpy as np
+from scipy import sparse
+from scipy.linalg import lapack
+
+from tribolab.contact.polar import PolarMesh
+from tribolab.lubrication.factors import FlowFactors
+from tribolab.lubrication.mixed import NotConvergedError, Repulsion
+from tribolab.lubrication.thinning import ShearThinning, ThinnedFactors
+
+_STEPS = 25
+_CAP = 0.6  # largest relative change of the film in one step
+_CONVERGED = 1e-8  # of the highest pressure, and of the load
+_LEAK = 1e-10  # share of the smooth conductance that is left beyond percolation
+_UNTOUCHED = 1e-13  # slope of the contact pressure below which a cell of the cavity is known
+FULL_LOAD = 8 / 3  # of a ball in units of P a^2, whatever the load
+
+
+class Faces(NamedTuple):
+    """Faces between the cells of a mesh: first the radial ones, then those between sectors."""
+
+    gradient: sparse.csr_matrix  # rise across each face (faces, cells)
+    sides: sparse.csr_matrix  # 1 at each of the two cells (faces, cells)
+    mean: sparse.csr_matrix  # mean of the two cells (faces, cells)
+    across: np.ndarray  # length of the face over the distance between its cells (faces)
+    along: np.ndarray  # int e_x.n over the face (faces)
+
+
+@functools.lru_cache(maxsize=6)
+def _faces(faces: bytes, sectors: int) -> Faces:
+    rho = np.frombuffer(faces)
+    rings = rho.size - 1
+    angle, number = np.pi / sectors, np.arange(rings * sectors).reshape(rings, sectors)
+    radius, sine = (rho[1:] + rho[:-1]) / 2, np.sin(angle * np.arange(sectors + 1))
+    apart = np.append(np.diff(radius), rho[-1] - radius[-1])
+    first = np.concatenate([number.ravel(), number[:, :-1].ravel()])
+    second = np.concatenate([number[1:].ravel(), np.full(sectors, -1), number[:, 1:].ravel()])
+    across = np.concatenate([
+        np.repeat(rho[1:] * angle / apart, sectors),
+        np.repeat(np.diff(rho) / (radius * angle), sectors - 1),
+    ])  # fmt: skip
+    along = np.concatenate([
+        np.outer(rho[1:], np.diff(sine)).ravel(),
+        -np.outer(np.diff(rho), sine[1:-1]).ravel(),
+    ])  # fmt: skip
+    row, inner = np.arange(first.size), second >= 0
+    shape = first.size, number.size
+
+    def matrix(own: np.ndarray, other: float) -> sparse.csr_matrix:
+        value = np.concatenate([own, np.full(inner.sum(), other)])
+        at = np.concatenate([row, row[inner]]), np.concatenate([first, second[inner]])
+        return sparse.csr_matrix((value, at), shape=shape)
+
+    return Faces(
+        matrix(np.full(first.size, -1.0), 1.0),
+        matrix(np.ones(first.size), 1.0),
+        matrix(np.where(inner, 0.5, 1.0), 0.5),
+        across,
+        along,
+    )
+
+
+class PointProblem(NamedTuple):
+    """All that does not change with speed; lengths in a, gaps in g = a^2/2R, pressures in P."""
+
+    mesh: PolarMesh
+    factors: FlowFactors
+    separation: Repulsion | None  # none between smooth surfaces
+    radius: float  # a [m]
+    gap: float  # g [m]
+    pressure: float  # P = E* g/a [Pa]
+    load: float = FULL_LOAD  # in units of P a^2
+    cavity: float = 0.0  # pressure of the cavity
+    thinning: ShearThinning | None = None
+    viscosity: float = 1.0  # at rest [Pa s], of a liquid that thins
+
+    def moving(self, couette: float) -> FlowFactors | ThinnedFactors:
+        """Return the factors at a speed, those of a thinning liquid included."""
+        if self.thinning is None:
+            return self.factors
+        speed = couette * self.gap**2 * self.pressure / (6 * self.viscosity * self.radius)
+        return ThinnedFactors(self.factors, self.thinning, speed * abs(self.factors.slide))
+
+    @property
+    def faces(self) -> Faces:
+        """Faces of the mesh."""
+        return _faces(self.mesh.faces.tobytes(), self.mesh.sectors)
+
+    def contact(self, film: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Contact pressure and its slope over the film."""
+        if self.separation is None:
+            return np.zeros_like(film), np.zeros_like(film)
+        pressure, slope = self.separation.pressure_and_slope(film * self.gap)
+        return pressure / self.pressure, slope * self.gap / self.pressure
+
+
+class PointState(NamedTuple):
+    """Pressure in the cells, and the constant of the film u = c + r^2 + K p."""
+
+    pressure: np.ndarray
+    constant: float
+
+    def film(self, mesh: PolarMesh) -> np.ndarray:
+        """Film thickness over g."""
+        return np.asarray(self.constant + mesh.squared + mesh.kernel @ self.pressure)
+
+
+class PointSolution(NamedTuple):
+    """A converged state with its proof."""
+
+    couette: float
+    state: PointState
+    film: np.ndarray
+    contact: np.ndarray  # pressure carried by the solid
+    fluid: np.ndarray
+    dry: np.ndarray  # which cells are the cavity
+    flux: np.ndarray  # through the faces
+    residual: float  # of the cells' balances as pressure, in units of the highest
+    load_balance: float
+    flux_variation: float  # of the sum over the full film, over what is entrained
+    iterations: int
+
+
+class _Balance(NamedTuple):
+    film: np.ndarray
+    contact: np.ndarray
+    yielding: np.ndarray
+    fluid: np.ndarray
+    flux: np.ndarray
+    conductance: np.ndarray
+    flux_slope: np.ndarray
+    stiff: np.ndarray  # diagonal of the pressure's part
+    dry: np.ndarray
+    residual: np.ndarray
+
+
+def couette_number(problem: PointProblem, viscosity: float, speed: float) -> float:
+    """Return 6 eta v a/(g^2 P), 48 eta v R^3/(E* a^4); v is twice the entrainment speed."""
+    return 6 * viscosity * speed * problem.radius / (problem.gap**2 * problem.pressure)
+
+
+def solve_point(
+    problem: PointProblem, couette: float, start: PointState, first: bool = False
+) -> PointSolution:
+    """Solve a round contact at one speed by Newton's method on pressure and constant.
+
+    Parameters
+    ----------
+    problem
+        Mesh, factors, contact law and load.
+    couette
+        `couette_number` of the speed.
+    start
+        State to start from.
+    first
+        Whether the start knows no cavity: in the very first step only cells behind the middle may
+        then be one, or the inlet closes.
+
+    Raises
+    ------
+    NotConvergedError
+        If `_STEPS` steps are not enough.
+
+    Notes
+    -----
+    J = couette (u + h phi_s) e_x - u^3 phi_p grad p_f, in finite volumes; p_f >= p_cav,
+    div J >= 0, one of them equal, by a primal-dual active set.
+    """
+    mesh, state, errors = problem.mesh, start, [np.inf]
+    film = state.film(mesh)
+    for step in range(_STEPS + 1):
+        now = _balance(problem, couette, state, film, first and step == 0)
+        highest = float(np.max(now.contact + now.fluid))
+        lack = float(mesh.area @ state.pressure - problem.load / 2)
+        error = max(float(np.max(np.abs(now.residual))) / highest, abs(2 * lack / problem.load))
+        if error < _CONVERGED:
+            return _proof(problem, couette, state, now, error, step)
+        errors.append(error)
+        if step == _STEPS or not np.isfinite(error):
+            break
+        change, constant = _newton_step(problem, now, lack)
+        moved = mesh.kernel @ change + constant
+        part = min(1.0, _CAP / float(np.max(np.abs(moved) / film)))
+        state = PointState(state.pressure + part * change, state.constant + part * constant)
+        film = film + part * moved if step % 8 else state.film(mesh)
+    raise NotConvergedError(f"the residual is {errors[-1]:.1e} after {step} steps")
+
+
+def _balance(
+    problem: PointProblem, couette: float, state: PointState, film: np.ndarray, first: bool
+) -> _Balance:
+    mesh, faces = problem.mesh, problem.faces
+    contact, yielding = problem.contact(film)
+    fluid = state.pressure - contact
+    between = faces.mean @ film
+    phi, phi_slope, entrained, entrained_slope = problem.moving(couette).transport(
+        between * problem.gap
+    )
+    phi = phi + _LEAK
+    conductance = between**3 * phi * faces.across
+    drive = couette * faces.along
+    rise = faces.gradient @ fluid
+    flux = drive * entrained / problem.gap - conductance * rise
+    steep = conductance * (3 / between + phi_slope * problem.gap / phi)
+    stiff = faces.sides.T @ conductance
+    out = -(faces.gradient.T @ flux)
+    above = fluid - (problem.cavity if couette else 0.0)
+    dry = above - out / stiff <= 0
+    if first:
+        dry &= mesh.x > 0
+    if couette == 0:
+        dry[:] = True
+    return _Balance(
+        film, contact, yielding, fluid, flux, conductance,
+        drive * entrained_slope - steep * rise, stiff, dry, np.where(dry, above, out / stiff),
+    )  # fmt: skip
+
+
+def _newton_step(problem: PointProblem, now: _Balance, lack: float) -> tuple[np.ndarray, float]:
+    """Change of pressure and constant; cells of the cavity that nothing touches are known."""
+    mesh, faces = problem.mesh, problem.faces
+    n = now.film.size
+    full = (~now.dry / now.stiff)[:, None]
+    diagonal = sparse.diags_array
+    out = faces.gradient.T.tocsr()
+    by_fluid = (out @ diagonal(now.conductance) @ faces.gradient).multiply(full).tocsr()
+    by_film = (-(out @ diagonal(now.flux_slope) @ faces.mean)).multiply(full).tocsr()
+    by_fluid = by_fluid + diagonal(now.dry.astype(float))
+    by_film = (by_film - by_fluid @ diagonal(now.yielding)).tocsr()
+    known = now.dry & (np.abs(now.yielding) < _UNTOUCHED)
+    change = np.where(known, -now.residual, 0.0)
+    free = np.flatnonzero(~known)
+    some = by_film[free]
+    matrix = some @ (mesh.kernel if free.size == n else mesh.kernel[:, free])
+    own = by_fluid[free][:, free].tocoo()
+    matrix[own.row, own.col] += own.data
+    given = by_fluid[free] @ change + some @ (mesh.kernel @ change)
+    lacking = -now.residual[free] - given
+    level = np.asarray(some.sum(axis=1)).ravel()
+    right = np.asfortranarray(np.stack([lacking, level], axis=1))
+    factor, pivots, singular = lapack.dgetrf(matrix.T, overwrite_a=True)
+    if singular:
+        raise NotConvergedError("the linearised equations are singular")
+    both, _ = lapack.dgetrs(factor, pivots, right, trans=1, overwrite_b=True)
+    weight = mesh.area[free]
+    constant = (lack + mesh.area @ change + weight @ both[:, 0]) / (weight @ both[:, 1])
+    change[free] = both[:, 0] - constant * both[:, 1]
+    if not np.all(np.isfinite(change)):
+        raise NotConvergedError("the linearised equations are singular")
+    return change, float(constant)
+
+
+def _proof(
+    problem: PointProblem,
+    couette: float,
+    state: PointState,
+    now: _Balance,
+    error: float,
+    step: int,
+) -> PointSolution:
+    lowest = problem.cavity if couette else 0.0
+    out = -(problem.faces.gradient.T @ now.flux)
+    size = max(float(np.abs(now.flux).max()), np.finfo(float).tiny)
+    wet = out[~now.dry]
+    return PointSolution(
+        couette, state, now.film, now.contact, np.where(now.dry, lowest, now.fluid),
+        now.dry, now.flux, error, float(2 * problem.mesh.area @ state.pressure / problem.load - 1),
+        float(np.abs(wet).max() / size) if wet.size else 0.0, step,
+    )  # fmt: skip
