@@ -16,6 +16,7 @@ from tribolab.contact.polar import polar_mesh
 from tribolab.errors import AnalysisError
 from tribolab.lubrication.film import film_profile
 from tribolab.lubrication.parameters import Interface, Liquid, Solver
+from tribolab.lubrication.point import sweep
 from tribolab.lubrication.stribeck import stribeck_curve
 
 
@@ -79,7 +80,8 @@ def test_strips_are_within_their_limit_and_say_so(rough):
     assert float(ratio[-1]) == pytest.approx(0.92, abs=0.01)
     auto = stribeck_curve(BALL, ball_psd(), 1.0, 3.0, STRESS, [1e-4, 1.0], Solver(method="auto"))
     assert auto.method.startswith("strips up to the limit")
-    assert float(auto.friction_coefficient[0]) == float(strips.friction_coefficient[3])
+    same = float(strips.friction_coefficient[3])
+    assert float(auto.friction_coefficient[0]) == pytest.approx(same, rel=1e-6)
 
 
 @pytest.mark.parametrize(("speed", "load"), [(2e-9, 1.2e-3), (2e-7, 1.2e-3), (2e-6, 1.2e-2)])
@@ -91,10 +93,14 @@ def test_a_smooth_soft_ball_has_the_film_of_other_meshes(speed, load):
     assert float(curve.central_separation[0]) == pytest.approx(expected, rel=0.01)
 
 
-def test_a_rigid_ball_has_brewes_film():
+def test_a_rigid_ball_has_brewes_film(monkeypatch):
     """h0/R = 142.0 (eta u R/F)^2 of a wide liquid."""
     ball = PointContact(1.0, "6 MPa", 0.5)
-    curve = stribeck_curve(ball, None, 1.0, 1.0, 0.0, [2 * 2.65e-3])
+    monkeypatch.setattr(sweep, "_SECTORS", 12)
+    # what a liquid carries beyond X falls as 1/X: 15 % of the film is missing if it ends at R
+    curve = stribeck_curve(
+        ball, None, Liquid(1.0, extent=40.0), 1.0, 0.0, [5.3e-3], Solver(cells=240)
+    )
     film = 142.0 * 2.65e-3**2
     assert float(curve.minimum_separation[0]) == pytest.approx(film, rel=0.02)
 
@@ -107,7 +113,7 @@ def test_far_liquid_and_a_flooded_outlet_drag_more(rough):
     flooded = stribeck_curve(BALL, psd, Liquid(1.0, outlet="flooded"), 3.0, STRESS, speeds)
     assert fluid(flooded) / vented == pytest.approx([1.11, 1.23], abs=0.015)
     profile = film_profile(BALL, psd, Liquid(1.0, outlet="flooded"), 3.0, 0.01)
-    assert -3e4 < float(profile.fluid_pressure.min()) < -1e4
+    assert -5e4 < float(profile.fluid_pressure.min()) < -1e4
 
 
 def test_both_bodies_move():

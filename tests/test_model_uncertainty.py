@@ -70,6 +70,7 @@ def test_everything_on_the_list_is_varied(spread):
         "load",
         "radius",
         "inlet length",
+        "outlet",
         "shear stress",
     ]
     assert spread.friction_coefficient_high.attrs["units"] == "1"
@@ -174,7 +175,12 @@ def test_all_that_is_held_fixed_is_named(spread):
 
 def test_smooth_surfaces_have_the_inlet_alone():
     given = {**GIVEN, "speed": [1e-2, 1e-1]}
-    spread = model_uncertainty(CONTACT, None, **given)
+    both = model_uncertainty(CONTACT, None, **given)
+    assert both.variation.values.tolist() == ["inlet length", "outlet"]
+    assert float(both.largest_relative_change.sel(variation="outlet")) == pytest.approx(
+        0.11448 / 0.07045 - 1, rel=5e-3
+    )
+    spread = model_uncertainty(CONTACT, None, **given, outlet="vented")
     assert spread.variation.values.tolist() == ["inlet length"]
     cut, full = (
         stribeck_curve(CONTACT, None, **given, **more, cells=100).friction_coefficient
@@ -184,7 +190,7 @@ def test_smooth_surfaces_have_the_inlet_alone():
         spread.friction_coefficient_low / spread.friction_coefficient, cut / full, rtol=1e-9
     )
     np.testing.assert_array_equal(spread.friction_coefficient_high, spread.friction_coefficient)
-    stated = model_uncertainty(CONTACT, None, **given, inlet_length="20 mm")
+    stated = model_uncertainty(CONTACT, None, **given, inlet_length="20 mm", outlet="vented")
     assert stated.variation.size == 0
     assert "inlet length: it is stated" in stated.attrs["not_varied"]
 

@@ -58,6 +58,11 @@ _PUBLIC = {
     "roughness_parameters": "tribolab.surface.roughness",
     "spectral_roughness": "tribolab.surface.roughness",
     "LineContact": "tribolab.contact.geometry",
+    "PointContact": "tribolab.contact.geometry",
+    "rough_point_contact": "tribolab.contact.point",
+    "Liquid": "tribolab.lubrication.parameters",
+    "Interface": "tribolab.lubrication.parameters",
+    "Solver": "tribolab.lubrication.parameters",
     "contact_area_ratio": "tribolab.contact.persson",
     "mean_separation": "tribolab.contact.persson",
     "separation_table": "tribolab.contact.separation",
@@ -146,6 +151,11 @@ __all__ = [
     "roughness_parameters",
     "spectral_roughness",
     "LineContact",
+    "PointContact",
+    "rough_point_contact",
+    "Liquid",
+    "Interface",
+    "Solver",
     "contact_area_ratio",
     "mean_separation",
     "separation_table",
@@ -205,9 +215,10 @@ if TYPE_CHECKING:
     from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
     from tribolab.contact.adhesion_uncertainty import adhesion_uncertainty
     from tribolab.contact.gap import gap_distribution
-    from tribolab.contact.geometry import LineContact
+    from tribolab.contact.geometry import LineContact, PointContact
     from tribolab.contact.line import rough_line_contact
     from tribolab.contact.persson import contact_area_ratio, mean_separation
+    from tribolab.contact.point import rough_point_contact
     from tribolab.contact.separation import separation_table
     from tribolab.contact.work_of_adhesion import SurfaceEnergies, work_of_adhesion_spread
     from tribolab.deposit.pack import pack
@@ -235,6 +246,7 @@ if TYPE_CHECKING:
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.lubrication.factors import flow_factors
     from tribolab.lubrication.film import film_profile
+    from tribolab.lubrication.parameters import Interface, Liquid, Solver
     from tribolab.lubrication.relative_factors import relative_flow_factors
     from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
     from tribolab.lubrication.viscosity import liquid_viscosity

@@ -15,7 +15,7 @@ from tribolab.errors import AnalysisError
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
 from tribolab.fit.variations import held_fixed, variations
 from tribolab.lubrication.factors import RoughBody
-from tribolab.lubrication.parameters import parameters_of
+from tribolab.lubrication.parameters import Outlet, parameters_of
 from tribolab.lubrication.solved_curve import SolvedCurve, solve_curve
 from tribolab.stamping import labelled, stamp
 from tribolab.threads import one_thread
@@ -53,6 +53,7 @@ def model_uncertainty(
     work_of_adhesion_range: tuple[str | float, str | float] | None = None,
     load_range: tuple[str | float, str | float] | None = None,
     radius_range: tuple[str | float, str | float] | None = None,
+    outlet: Outlet | None = None,
 ) -> xr.Dataset:
     """Band on a computed Stribeck curve from what is not known, and what moves it most.
 
@@ -77,6 +78,8 @@ def model_uncertainty(
         Likewise of `load` [N/m] and the contact's radius [m].
     inlet_length, cells, area, work_of_adhesion
         As for `stribeck_curve`.
+    outlet
+        ``"vented"`` or ``"flooded"``; None is vented, with flooded as an unknown.
     work_of_adhesion_range
         Ends of what the work of adhesion [J/m2] may be, some 95 %, where it is given.
 
@@ -128,7 +131,7 @@ def model_uncertainty(
     >>> given = {"viscosity": 1.4, "load": 310.0, "shear_stress": 0.0}
     >>> spread = model_uncertainty(contact, None, speed=[1e-3, 1e-1], **given)
     >>> spread.largest_change.to_series().round(2).to_dict()  # of smooth surfaces
-    {'inlet length': 0.05}
+    {'inlet length': 0.05, 'outlet': 0.62}
     """
     known_to = None if measured_to is None else positive(measured_to, "1/m", "measured_to")
     error = None if shear_stress_error is None else _error_of_stress(shear_stress_error)
@@ -162,6 +165,7 @@ def model_uncertainty(
         else _range(work_of_adhesion_range, work, "J/m2", "work_of_adhesion", least=-np.inf),
         load_range=_range(load_range, force, contact.load_unit, "load"),
         radius_range=_range(radius_range, contact.radius, "m", "radius"),
+        outlet=outlet or "unknown",
     )
     stress = to_si(shear_stress, "Pa", name="shear_stress")
     speeds = np.atleast_1d(labelled(_SPEEDS if speed is None else speed, "sliding_speed"))
@@ -179,6 +183,7 @@ def model_uncertainty(
         "area": area,
         "work_of_adhesion": work,
         "method": "auto",
+        "outlet": outlet or "vented",
     }
     coarse = {**given, "cells": min(cells, _CELLS)}
     with one_thread():

@@ -27,7 +27,7 @@ _GAMMA = 0.5
 # What no variation reaches, between any surfaces and between rough ones.
 _FIXED = (
     ("liquid", "Newtonian and isothermal, its viscosity the same at every pressure and shear rate"),
-    ("cavitation", "the liquid ruptures at the pressure outside"),
+    ("cavitation", "the liquid ruptures at one pressure, that outside or of its vapour"),
     ("elasticity", "linear and without loss, of a half-space"),
 )
 _FIXED_IF_ROUGH = (

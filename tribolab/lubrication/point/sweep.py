@@ -25,6 +25,7 @@ from tribolab.lubrication.speeds import System
 
 _SHARE = 0.375  # rings over the cells of a line contact: 60 of 160
 _SECTORS = 24
+_USUAL, _MORE = 4.0, 0.25  # extent above which there are more rings, and how many to a decade
 _CLASS = 10.0  # films within this factor share a mesh
 _THICK = 5.0  # roughnesses: from there on it is started from thick films
 _LIFTED = 0.5  # gaps a^2/2R: film of the lifted start
@@ -90,7 +91,8 @@ def point_problem(system: System, force: float, speed: float) -> PointProblem:
     decay = system.separation.decay_length / gap if system.separation else 0.0
     edge = float(f"{np.clip((max(decay, lowest) / 1.9) ** (2 / 3), 1e-3, 0.5):.2g}")
     size = float(np.sqrt(max(lowest, 1.0)))
-    rings = round(_SHARE * system.solver.cells)
+    wide = max(np.log10(extent / (a * size) / _USUAL), 0.0)
+    rings = round(_SHARE * system.solver.cells * (1 + _MORE * wide))
     mesh = polar_mesh(rings, _SECTORS, edge, extent / a, size, contact.layer(a))
     pressure = contact.effective_modulus * gap / a
     return PointProblem(
