@@ -103,6 +103,13 @@ def _nothing_left(folder: Path) -> str:
     return f"left behind: {left}" if left else ""
 
 
+def _all_done(folder: Path) -> str:
+    tables = whole().parent / "results/tables"
+    new = folder / "c/results/tables"
+    wrong = [p.name for p in tables.glob("*.csv") if (new / p.name).read_bytes() != p.read_bytes()]
+    return f"not as without a cluster: {wrong}" if wrong else ""
+
+
 @case(
     "cluster 9: no scheduler",
     codes=(USAGE,),
@@ -116,16 +123,16 @@ def _(folder: Path) -> Command:
     return [*TRIBOLAB, "run", file, "-q", "--scheduler", "tcp://127.0.0.1:1"]
 
 
-# A scheduler and two workers as they are started by hand; what is named in the second argument is
-# killed as soon as the run has given them work.
+# A scheduler and two workers as they are started by hand. As soon as the run has given them work, a
+# signal is sent to some of them. What the run says has to come within a minute.
 _LOST = """
-import json, os, subprocess, sys, time
+import json, os, signal, subprocess, sys, time
 from pathlib import Path
 from distributed import Client
 
-campaign, victims = sys.argv[1:]
+campaign, victims, number, memory, *more = sys.argv[1:]
 file = Path("scheduler.json")
-quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "start_new_session": True}
 
 def start(kind, *options):
     command = [sys.executable, "-m", "distributed.cli.dask_" + kind, "--scheduler-file", str(file)]
@@ -133,43 +140,84 @@ def start(kind, *options):
 
 started = [start("scheduler", "--host", "127.0.0.1", "--port", "0", "--dashboard-address", ":0")]
 try:
-    started += [start("worker", "--no-nanny", "--nthreads", "1") for _ in range(2)]
+    nanny = "--nanny" if memory.endswith("nanny") else "--no-nanny"
+    options = [nanny, "--nthreads", "1", "--memory-limit", memory.removesuffix(" nanny")]
+    started += [start("worker", *options) for _ in range(2)]
     while not file.is_file():
         time.sleep(0.1)
     address = json.loads(file.read_text())["address"]
     with Client(address, set_as_default=False) as client:
-        client.wait_for_workers(2)
+        client.wait_for_workers(1 if nanny == "--nanny" else 2)
         run = subprocess.Popen(
-            [sys.executable, "-m", "tribolab", "run", campaign, "-q", "--scheduler", address]
+            [sys.executable, "-m", "tribolab", "run", campaign, "-q", "--scheduler", address, *more],
+            stderr=subprocess.PIPE, text=True,
         )
         while not client.run_on_scheduler(lambda dask_scheduler: len(dask_scheduler.tasks)):
             time.sleep(0.02)
         client.close()
-    for process in started[:1] if victims == "scheduler" else started[1:]:
-        process.kill()
+    began = time.monotonic()
+    for place in map(int, victims):
+        started[place].send_signal(int(number))
+    for line in run.stderr:
+        if "Dask" in line and time.monotonic() - began > 60:
+            print("said too late", flush=True)
+        print(line, end="", file=sys.stderr, flush=True)
     sys.exit(run.wait(90))
 finally:
     for process in started:
-        process.kill()
+        os.killpg(process.pid, signal.SIGKILL)
         process.wait()
 """
 
 
-for _victims in ("both workers", "the scheduler"):
+_HERE = "--local-if-lost"
+for _what, _victims, _number, _memory, _says in (
+    ("both workers killed", "12", 9, "0", "Dask cluster is lost: all of its workers are gone"),
+    ("the scheduler killed", "0", 9, "0", "Dask cluster is lost"),
+    ("both workers stopped", "12", 19, "0", "Dask cluster is lost: no worker has answered for"),
+    ("the scheduler stopped", "0", 19, "0", "Dask cluster is lost: its scheduler does not answer"),
+    ("one worker stopped", "1", 19, "0", "Dask worker tcp:.* has not answered for"),
+    ("one worker killed", "1", 9, "0", ""),
+    ("no memory left", "", 0, "150MB", "Dask cluster is lost: its workers have no memory left"),
+    ("workers die of memory", "", 0, "150MB nanny", "Dask cluster is lost: its workers die"),
+):
+    for _more in ((), (_HERE,)):
+        _whole = _what.startswith("one") or bool(_more)
+
+        @case(
+            f"cluster 9: {_what}{', finished here' if _more else ''}",
+            *(_victims, _number, _memory, _more),
+            codes=(0, 1) if _whole else (UNREADABLE,),
+            says=_says,
+            never="distributed|said too late",
+            after=_all_done if _whole else _nothing_left,
+            seconds=90.0,
+            large=True,
+        )
+        def _(folder: Path, victims: str, number: int, memory: str, more: tuple) -> Command:
+            (folder / "lost.py").write_text(_LOST)
+            command = [sys.executable, str(folder / "lost.py"), str(campaign(folder))]
+            return [*command, victims, str(number), memory, *more]
+
+
+for _address in (
+    *("nonsense", "tcp://", "tcp://127.0.0.1:99999", "tcp://127.0.0.1:x", "gopher://127.0.0.1:1"),
+    *("tcp://no.such.host.invalid:8786", "http://127.0.0.1:1", "tcp://240.0.0.1:8786", "", " "),
+    *("tls://127.0.0.1:1", "ws://127.0.0.1:1", "ucx://127.0.0.1:1", "tcp://[::1:1", "inproc://1"),
+    *("tcp://127.0.0.1:1\x1b[31m", "tcp://\x00", "/etc/passwd", "-", "tcp://127.0.0.1:-1"),
+):
 
     @case(
-        f"cluster 9: {_victims} gone",
-        _victims.split()[1],
-        codes=(UNREADABLE,),
-        says="Dask cluster is lost",
-        never="distributed",
+        f"cluster 9: the address {_address!r}",
+        _address,
+        codes=(USAGE,),
+        says="Dask|scheduler",
         after=_nothing_left,
-        seconds=90.0,
+        seconds=30.0,
         large=True,
     )
-    def _(folder: Path, victims: str) -> Command:
-        (folder / "lost.py").write_text(_LOST)
-        return [sys.executable, str(folder / "lost.py"), str(campaign(folder)), victims]
+    def _(folder: Path, address: str) -> Command:
+        return [*TRIBOLAB, "run", str(campaign(folder)), "-q", "--scheduler", address]
 
 
 # ---- moments

@@ -5,19 +5,18 @@ from __future__ import annotations
 import contextlib
 import logging
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from typing import Any
 
 from tribolab.errors import ConfigError, OutputError
 
 DASK_TIMEOUT = "20s"
-
-
-LOOK = 1.0  # s between two looks at a cluster that does not answer
-
-
+LOOK = 1.0  # s between two looks at a cluster
+ANSWER = 5.0  # s within which a scheduler answers: it does so within some ms
 PATIENCE = 20.0  # s without any worker, or without the scheduler, after which it counts as gone
+SILENCE = 30.0  # s without a sign of life of a worker; up to 200 workers give one every 2 s
+_LOG = logging.getLogger("tribolab")
 
 
 class ClusterGone(OutputError):
@@ -95,6 +94,8 @@ class Cluster(Executor):
         self._client = client
         self._inner = client.get_executor(pure=False)
         self._missed: float | None = None
+        self._looked = 0.0
+        self._heard: dict[str, tuple[float, float]] = {}  # by worker: its clock, and ours
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a call on the cluster and return its future."""
@@ -102,13 +103,65 @@ class Cluster(Executor):
 
     def lost(self) -> str:
         """Return why no answer will come any more; "" as long as one may."""
-        why = ""
-        if self._client.status != "running":
-            why = "its scheduler does not answer any more"
-        elif not self._client.scheduler_info()["workers"]:
-            why = "all of its workers are gone"
+        now = time.monotonic()
+        if now < self._looked + LOOK:
+            return ""
+        why, final = self._missing(now)
+        self._looked = time.monotonic()
         if not why:
             self._missed = None
             return ""
-        self._missed = self._missed or time.monotonic()
-        return why if time.monotonic() - self._missed > PATIENCE else ""
+        self._missed = self._missed or now
+        return why if final or time.monotonic() - self._missed > PATIENCE else ""
+
+    def _missing(self, now: float) -> tuple[str, bool]:
+        """Return what no work can be done without, and whether waiting is over already."""
+        try:
+            if self._client.status != "running":
+                raise OSError
+            scheduler = self._client.scheduler
+            workers = self._client.sync(scheduler.identity, callback_timeout=ANSWER)["workers"]
+        except (OSError, TimeoutError, AttributeError):
+            return "its scheduler does not answer any more", False
+        silent = self._silent(workers, now)
+        alive = [worker for address, worker in workers.items() if address not in silent]
+        if not workers:
+            return "all of its workers are gone", False
+        if not alive:
+            return f"no worker has answered for {SILENCE:.0f} s", True
+        if silent:
+            self._remove(silent)
+        if all(map(_is_out_of_memory, alive)):
+            return "its workers have no memory left and take no work", False
+        return "", False
+
+    def _silent(self, workers: Mapping[str, Any], now: float) -> list[str]:
+        """Return the addresses of workers that have given no sign of life for long."""
+        if now > self._looked + PATIENCE:  # what happened while nobody looked counts for nothing
+            self._heard = {}
+        seen = {address: worker["last_seen"] for address, worker in workers.items()}
+        before = self._heard
+        self._heard = {
+            address: before[address] if before.get(address, (None,))[0] == last else (last, now)
+            for address, last in seen.items()
+        }
+        return [name for name, (_, since) in self._heard.items() if now - since > SILENCE]
+
+    def _remove(self, silent: Sequence[str]) -> None:
+        """Have the work of silent workers done by the others."""
+
+        async def remove(dask_scheduler: Any) -> None:  # travels as text: no module is needed there
+            for address in silent:
+                await dask_scheduler.remove_worker(address, stimulus_id="tribolab")
+
+        self._client.run_on_scheduler(remove)
+        names = ", ".join(silent)
+        _LOG.warning(
+            "Dask worker %s has not answered for %.0f s: the others do its work", names, SILENCE
+        )
+
+
+def _is_out_of_memory(worker: Mapping[str, Any]) -> bool:
+    """Whether a worker takes no work because of its memory, and does none that could end."""
+    doing = worker["metrics"].get("task_counts", {}).get("executing", 0)
+    return worker["status"] == "paused" and not doing

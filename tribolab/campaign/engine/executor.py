@@ -68,15 +68,16 @@ def _as_they_end(
     try:
         while futures:
             try:
-                future = ended.get(timeout=None if lost is None else LOOK)
+                future: Future[Any] | None = ended.get(timeout=None if lost is None else LOOK)
             except Empty:
-                if lost is not None and (text := lost()):
-                    raise ClusterGone(gone(text, count - len(futures), count)) from None
-                continue
-            if lost is not None and future.cancelled():
-                text = lost() or "its scheduler dropped the work"
+                future = None
+            text = "" if lost is None else lost()
+            if lost is not None and future is not None and future.cancelled():
+                text = text or "its scheduler dropped the work"
+            if text:
                 raise ClusterGone(gone(text, count - len(futures), count))
-            yield futures.pop(future), future  # what was answered is held no longer
+            if future is not None:
+                yield futures.pop(future), future  # what was answered is held no longer
             del future
     finally:
         for future in futures:
