@@ -11,7 +11,7 @@ import pytest
 from chromium import BROWSER, chromium
 from hypothesis import settings
 
-from tribolab.reading.raw.opening import stop_reading
+from tribolab.reading.raw.server import stop_reading
 
 os.environ.setdefault("MPLBACKEND", "Agg")
 # of jsonschema, for a format that no schema of ours has: its grammar takes a second to build

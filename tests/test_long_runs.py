@@ -236,7 +236,7 @@ def test_the_files_of_one_run_come_to_the_same(tmp_path, cut_up):
 
 
 def test_a_long_data_file_is_read_into_scratch_files(tmp_path, cut_up, monkeypatch):
-    monkeypatch.setattr("tribolab.reading.raw.opening._MAPPED", 5000)
+    monkeypatch.setattr("tribolab.reading.raw.child_results._MAPPED", 5000)
     run = written(tmp_path, strokes())
     come_to(run, tmp_path)
     file = tmp_path / "data/long.nc"

@@ -1,6 +1,7 @@
 """Containers are read in a child process: what it does to itself costs one error."""
 
 import os
+import pickle
 import signal
 import socket
 import subprocess
@@ -17,8 +18,9 @@ import tribolab
 from tribolab.cli import app
 from tribolab.errors import ReadError, TribolabError
 from tribolab.reading.netcdf.table_schema import load_schema
-from tribolab.reading.raw import limits, opening
+from tribolab.reading.raw import limits, server
 from tribolab.reading.raw.opening import CrashedError, MissingLibraryError
+from tribolab.reading.raw.scratch import scratch_place
 from tribolab.reading.raw.source import check_regular
 
 POSIX = pytest.mark.skipif(not hasattr(os, "fork"), reason="children are copies on POSIX only")
@@ -90,7 +92,7 @@ def test_a_missing_library_is_named(file):
 
 def test_a_result_cannot_run_code_here(file):
     Path("/tmp/tribolab-was-here").unlink(missing_ok=True)
-    with pytest.raises(opening.pickle.UnpicklingError, match="no result of reading"):
+    with pytest.raises(pickle.UnpicklingError, match="no result of reading"):
         cases.answer_with_a_command(file)
     assert not Path("/tmp/tribolab-was-here").exists()
 
@@ -160,7 +162,7 @@ def test_threads_and_a_killed_server_lose_nothing(file):
     ]
     for thread in threads:
         thread.start()
-    process = opening._ONLY._process
+    process = server.ONLY._process
     if process is not None:
         os.kill(process.pid, signal.SIGKILL)
     for thread in threads:
@@ -178,12 +180,12 @@ def test_what_a_killed_process_left_is_removed_at_the_next_start(tmp_path, monke
         (folder / "part").write_text("content")
     (tmp_path / "tribolab-notes-x").write_text("not ours")
     monkeypatch.setenv("TMPDIR", str(tmp_path))
-    opening._scratch()
+    scratch_place()
     assert not left.exists() and ours.exists() and (tmp_path / "tribolab-notes-x").exists()
 
 
 def test_importing_the_package_starts_no_process():
-    code = "import tribolab, tribolab.reading.raw.opening as o; print(o._ONLY._process)"
+    code = "from tribolab.reading.raw import opening, server; print(server.ONLY._process)"
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, check=True,
         env={**os.environ, "PYTHONPATH": str(Path(tribolab.__file__).parents[1])},

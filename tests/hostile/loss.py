@@ -148,9 +148,9 @@ try:
     address = json.loads(file.read_text())["address"]
     with Client(address, set_as_default=False) as client:
         client.wait_for_workers(1 if nanny == "--nanny" else 2)
+        command = [sys.executable, "-m", "tribolab", "run", campaign, *more, "-q"]
         run = subprocess.Popen(
-            [sys.executable, "-m", "tribolab", "run", campaign, "-q", "--scheduler", address, *more],
-            stderr=subprocess.PIPE, text=True,
+            [*command, "--scheduler", address], stderr=subprocess.PIPE, text=True
         )
         while not client.run_on_scheduler(lambda dask_scheduler: len(dask_scheduler.tasks)):
             time.sleep(0.02)

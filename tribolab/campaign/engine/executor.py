@@ -67,18 +67,16 @@ def _as_they_end(
         future.add_done_callback(ended.put)
     try:
         while futures:
-            try:
-                future: Future[Any] | None = ended.get(timeout=None if lost is None else LOOK)
-            except Empty:
-                future = None
+            come: list[Future[Any]] = []
+            with contextlib.suppress(Empty):
+                come.append(ended.get(timeout=None if lost is None else LOOK))
             text = "" if lost is None else lost()
-            if lost is not None and future is not None and future.cancelled():
+            if lost is not None and any(future.cancelled() for future in come):
                 text = text or "its scheduler dropped the work"
             if text:
                 raise ClusterGone(gone(text, count - len(futures), count))
-            if future is not None:
-                yield futures.pop(future), future  # what was answered is held no longer
-            del future
+            while come:  # what was answered is held no longer
+                yield futures.pop(come[0]), come.pop()
     finally:
         for future in futures:
             future.cancel()

@@ -18,7 +18,6 @@ from tribolab.reading.netcdf.attributes import decoded
 from tribolab.reading.netcdf.seal import check_seal, seal, unseal
 from tribolab.reading.netcdf.storage import write_into
 from tribolab.reading.netcdf.stored import read_plain
-from tribolab.reading.raw.hdf5_safety import check_self_contained
 from tribolab.reading.raw.opening import damage_told, isolated
 from tribolab.room import is_long, room
 
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
 # The library is not safe under threads, which some executors use.
 _LIBRARY = threading.RLock()
 _CACHE = 1 << 20  # bytes of a long variable that the library keeps
-_HDF5 = b"\x89HDF\r\n\x1a\n"
 _GROUPS = "groups"  # attribute of the root of a file of groups
 # What netCDF4 and xarray raise on data that netCDF cannot hold, and on a disk that takes no more.
 _REFUSED = (OSError, ValueError, TypeError, AttributeError, KeyError, RuntimeError)
@@ -268,12 +266,8 @@ def _whole(path: Path) -> Iterator[netCDF4.Dataset]:
     # late: netCDF4 takes long to load
     import netCDF4
 
-    with path.open("rb") as file:
-        is_hdf5 = file.read(len(_HDF5)) == _HDF5
     with damage_told(path, "netCDF file"):
         check_seal(path)
-        if is_hdf5:
-            check_self_contained(path)
         with _plain_name(path) as plain, netCDF4.Dataset(plain) as opened:
             yield opened
 

@@ -11,13 +11,18 @@ import select
 import signal
 import sys
 import time
-from typing import BinaryIO
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, BinaryIO
 
 from tribolab.errors import TribolabError
 from tribolab.reading.raw import limits, opening
-from tribolab.reading.raw.opening import Ended, Job
+from tribolab.reading.raw.child_results import LENGTH, packed_error, write_result
+from tribolab.reading.raw.hdf5_safety import refuse_outside
+from tribolab.reading.raw.opening import MissingLibraryError, RefusedError, damage_told
+from tribolab.reading.raw.scratch import remove_scratch
+from tribolab.reading.raw.server import Ended, Job
 
-_LENGTH = 8
 _DONE, _ERROR, _NO_MEMORY, _TOO_LARGE, _NO_ROOM = 0, 3, 4, 5, 6
 _TEXT_PER_NUMBER = 4  # a cell as text is longer than a number
 _PIPE = 1 << 15  # bytes of names of modules
@@ -32,14 +37,14 @@ def serve() -> None:
     for stream in (0, 1, 2):  # what a library prints goes nowhere
         os.dup2(null, stream)
     opening.inside = True
-    while len(size := source.read(_LENGTH)) == _LENGTH:
+    while len(size := source.read(LENGTH)) == LENGTH:
         job: Job = pickle.loads(source.read(int.from_bytes(size, "little")))
         _send(answers, _done(job))
 
 
 def _send(answers: BinaryIO, answer: Ended | str) -> None:
     message = pickle.dumps(answer)
-    answers.write(len(message).to_bytes(_LENGTH, "little") + message)
+    answers.write(len(message).to_bytes(LENGTH, "little") + message)
     answers.flush()
 
 
@@ -63,7 +68,7 @@ def _done(job: Job) -> Ended | str:
             needed = " ".join(sorted(set(sys.modules) - before))
             os.write(there, needed.encode()[:_PIPE])
         finally:
-            opening.remove_scratch()
+            remove_scratch()
             os._exit(code)
     os.close(there)
     ended = _waited(pid, job.seconds + limits.PATIENCE.value)
@@ -109,7 +114,7 @@ def _work(job: Job) -> int:
     if job.folder:
         os.chdir(job.folder)
     try:
-        result = function(*job.arguments, **job.keywords)
+        result = _called(function, job)
     except MemoryError:
         return _NO_MEMORY
     except TribolabError as error:
@@ -123,16 +128,32 @@ def _work(job: Job) -> int:
             words = " ".join(f"{type(error).__name__}: {error}".split())[:300]
             code, result = _ERROR, ValueError(words)
     if code == _ERROR:
-        result = opening.packed_error(result)
+        result = packed_error(result)
     try:
         with open(job.target, "wb") as file:  # noqa: PTH123
-            if not opening.write_result(result, file, job.output):
+            if not write_result(result, file, job.output):
                 return _TOO_LARGE
     except MemoryError:
         return _NO_MEMORY
     except OSError as error:
         return _TOO_LARGE if error.errno == errno.EFBIG else _NO_ROOM
     return code
+
+
+def _called(function: Callable[..., Any], job: Job) -> Any:
+    """Call a function that reads; what it returns of a file that cannot be checked is not used."""
+    path, unchecked = Path(job.arguments[0]), None
+    try:
+        refuse_outside(path)
+    except (RefusedError, MissingLibraryError, MemoryError):
+        raise
+    except Exception as error:  # damaged: its reader says more
+        unchecked = error
+    result = function(*job.arguments, **job.keywords)
+    if unchecked is not None:
+        with damage_told(path, "HDF5 file"):
+            raise unchecked
+    return result
 
 
 def _waited(pid: int, seconds: float) -> int | None:

@@ -6,48 +6,70 @@ untrusted file could so bring a secret into results that are published.
 
 from __future__ import annotations
 
-import functools
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
-from tribolab.errors import ReadError, shown
+from tribolab.errors import shown
 from tribolab.reading.raw import limits
-from tribolab.reading.raw.opening import isolated
+from tribolab.reading.raw.opening import RefusedError, isolated, missing
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
+_CLASSIC = b"CDF"
+_BYTES = {3: 2, 4: 4, 5: 4, 6: 8, 8: 2, 9: 4, 10: 8, 11: 8}  # of a number, by its type; else 1
 # registered numbers of the filters in the library (deflate, shuffle, fletcher32, szip, nbit,
 # scaleoffset) and of LZF, which h5py brings: https://github.com/HDFGroup/hdf5_plugins
 _OWN_FILTERS = frozenset((1, 2, 3, 4, 5, 6, 32000))
 
 
-class OutsideError(ReadError):
-    """A file takes data from outside of it, or holds too much to tell."""
-
-
-@isolated("h5py")
+@isolated()
 def check_self_contained(path: Path) -> None:
-    """Refuse an HDF5 file that takes data from elsewhere, before any of its data are read.
+    """Refuse a file that takes data from elsewhere: every child does so before it reads.
 
     Parameters
     ----------
     path
-        An HDF5 file: netCDF-4 and MAT 7.3 are, too.
+        The file.
 
     Raises
     ------
     ReadError
+        As `refuse_outside`, or if it is damaged.
+    """
+
+
+def refuse_outside(path: Path) -> None:
+    """Refuse HDF5 that takes data from elsewhere, or a file of more objects than can be read.
+
+    Parameters
+    ----------
+    path
+        Any file; netCDF-4 and MAT 7.3 are HDF5, too.
+
+    Raises
+    ------
+    RefusedError
         If it has a link to another file, a dataset in external storage, a virtual dataset, or a
         filter that is not part of the HDF5 library. The message names it.
     """
-    # late: h5py takes long to load
-    import h5py
-
-    with h5py.File(path, "r") as file:
-        look = _Look(h5py, file)
-        look.count_attributes(file.id)
-        file.id.links.visit(look)
+    with path.open("rb") as file:
+        head = file.read(len(_HDF5))
+        if head[:3] == _CLASSIC and _variables_of_classic(file, head[3]) > limits.COLUMNS.value:
+            raise RefusedError(
+                f"{path}: more than {limits.COLUMNS.value:.0f} variables are no measurement"
+            )
+    if head != _HDF5 and not _has_user_block(path):
+        return
+    try:
+        # late: h5py takes long to load
+        import h5py
+    except ImportError as error:
+        raise missing(path, "h5py") from error
+    with h5py.File(path, "r") as opened:
+        look = _Look(h5py, opened)
+        look.count_attributes(opened.id)
+        opened.id.links.visit(look)
     if look.too_many:
-        raise OutsideError(
+        raise RefusedError(
             f"{path}: more than {limits.HDF5_OBJECTS.value:.0f} groups and datasets, "
             f"{limits.HDF5_ATTRIBUTES.value:.0f} attributes or {limits.HDF5_DEPTH.value:.0f} "
             "groups in one another are no measurement; save the run's own datasets in a file of "
@@ -55,40 +77,46 @@ def check_self_contained(path: Path) -> None:
         )
     if look.found:
         name, what = look.found
-        raise OutsideError(
+        raise RefusedError(
             f"{path}: '{shown(name, 80)}' is {what}; tribolab reads no data from outside a file. "
             "Save a copy that holds its own data (h5repack, or read it and write it again)"
         )
 
 
-def refuse_outside(path: Path) -> None:
-    """Refuse a file that takes data from elsewhere, before anything of it is read.
+def _variables_of_classic(file: BinaryIO, version: int) -> int:
+    """Count the variables in the header of a classic netCDF file; 0 if it is damaged.
 
-    Parameters
+    References
     ----------
-    path
-        A file that looks like HDF5 or netCDF. A damaged one passes: its reader says more of it.
-
-    Raises
-    ------
-    ReadError
-        As `check_self_contained`.
+    NetCDF Users Guide, appendix "File Format Specifications": a header is dimensions, attributes
+    and variables; counts have 8 bytes in version 5.
     """
-    state = path.stat()
-    _refuse(path.resolve(), state.st_size, state.st_mtime_ns, state.st_ino)
+    wide = 8 if version == 5 else 4
 
+    def number(size: int = wide) -> int:
+        part = file.read(size)
+        if len(part) < size:
+            raise EOFError
+        return int.from_bytes(part, "big")
 
-@functools.lru_cache(maxsize=256)
-def _refuse(path: Path, size: int, written: int, inode: int) -> None:
-    with path.open("rb") as file:
-        if file.read(len(_HDF5)) != _HDF5 and not _has_user_block(path):
-            return
+    def skip(size: int) -> None:
+        file.seek(size + -size % 4, 1)
+
     try:
-        check_self_contained(path)
-    except OutsideError:
-        raise
-    except (ReadError, OSError, ValueError, RuntimeError, KeyError):
-        return
+        file.seek(4)
+        number()  # records
+        for is_attribute in (False, True):
+            number(4)
+            if (count := number()) > limits.HDF5_ATTRIBUTES.value:
+                return count
+            for _ in range(count):
+                skip(number())
+                size = _BYTES.get(number(4), 1) if is_attribute else 0
+                skip(size * number())
+        number(4)
+        return number()
+    except (EOFError, OSError, OverflowError):
+        return 0
 
 
 def _has_user_block(path: Path) -> bool:

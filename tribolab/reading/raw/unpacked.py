@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Protocol
 
 from tribolab.errors import Cure, ReadError, TribolabError, shown
-from tribolab.reading.raw.opening import largest_unpacked, scratch_folder
+from tribolab.reading.raw.opening import largest_unpacked
+from tribolab.reading.raw.scratch import scratch_folder
 
 _GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
 _OFFICE = ("[Content_Types].xml", "main.xml")  # Office files and x3p are archives, too

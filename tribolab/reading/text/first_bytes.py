@@ -13,7 +13,8 @@ from tribolab.reading import cures
 from tribolab.reading.file_patterns import why_missing
 from tribolab.reading.raw.containers.declared_records import declares_records
 from tribolab.reading.raw.containers.xml_workbook import is_xml_workbook
-from tribolab.reading.raw.hdf5_safety import refuse_outside
+from tribolab.reading.raw.hdf5_safety import check_self_contained
+from tribolab.reading.raw.opening import MissingLibraryError, RefusedError
 from tribolab.reading.raw.readers import answers, installed_readers
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.raw.unpacked import ZIP, holds_arrays, is_workbook, unpacked
@@ -101,7 +102,12 @@ def peek(path: str | Path, *, binary: bool = False) -> File:
         raise ReadError(f"{path}: the file is empty")
     found = File(path, _format(path, head, binary=binary), size, head)
     if found.format in ("hdf5", "netcdf"):
-        refuse_outside(path)
+        try:
+            check_self_contained(path)
+        except (RefusedError, MissingLibraryError):
+            raise
+        except ReadError:  # damaged: its reader says more
+            pass
     return found
 
 

@@ -15,7 +15,6 @@ import numpy as np
 from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.containers.groups import Groups
 from tribolab.reading.raw.containers.settings import plain, settings_of
-from tribolab.reading.raw.hdf5_safety import check_self_contained
 from tribolab.reading.raw.model import RawColumn, RawFile
 from tribolab.reading.raw.opening import damage_told, isolated
 
@@ -51,7 +50,6 @@ def read_hdf5(path: Path) -> RawFile:
 
     found = _Found(h5py)
     with damage_told(path, "HDF5 file"):
-        check_self_contained(path)
         with h5py.File(path, "r") as file:
             found.tell("", file)
             file.visititems(found.visit)

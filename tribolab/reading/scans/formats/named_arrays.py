@@ -10,7 +10,6 @@ import numpy as np
 
 from tribolab.errors import ReadError, brief
 from tribolab.reading.raw.containers.mat import read_variables
-from tribolab.reading.raw.hdf5_safety import check_self_contained
 from tribolab.reading.raw.opening import isolated
 from tribolab.reading.scans.formats.profilometer_safety import DAMAGE, refuse_bomb
 from tribolab.untyped import Json
@@ -149,7 +148,6 @@ def _of_hdf5(path: Path) -> HeldArrays:
                 values = values.ravel() if values.ndim == 2 and 1 in values.shape else values
             _take(held, name, values, attrs)
 
-    check_self_contained(path)
     with h5py.File(path, "r") as file:
         visit("", file)
         file.visititems(visit)

@@ -13,7 +13,6 @@ from typing import IO
 import numpy as np
 
 from tribolab.errors import ReadError
-from tribolab.reading.raw.hdf5_safety import check_self_contained
 from tribolab.reading.raw.opening import largest_unpacked
 from tribolab.reading.raw.xml_safety import refuse_deep
 
@@ -53,9 +52,7 @@ def formats_to_try(path: Path, sure: list[str], possible: list[str]) -> list[str
         refuse_bomb(path)
     elif head.startswith(b"MATLAB 5.0"):
         _arrays_only(path)
-    elif head.startswith(b"\x89HDF\r\n\x1a\n"):
-        check_self_contained(path)
-    elif head.startswith((b"CDF\x01", b"CDF\x02", b"CDF\x05")):
+    elif head.startswith((b"\x89HDF\r\n\x1a\n", b"CDF\x01", b"CDF\x02", b"CDF\x05")):
         pass
     elif b"\0" not in head or head.startswith((b"\xff\xfe", b"\xfe\xff")):
         return list(dict.fromkeys([*sure, *_text_formats(path)]))

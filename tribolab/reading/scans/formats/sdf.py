@@ -8,7 +8,7 @@ from __future__ import annotations
 import functools
 from pathlib import Path
 
-from tribolab.reading.raw.opening import scratch_folder
+from tribolab.reading.raw.scratch import scratch_folder
 
 _DRAFTS = {b"aBCR-1.0": b"aISO-1.0", b"bBCR-1.0": b"bISO-1.0"}
 _MARK = 8  # bytes

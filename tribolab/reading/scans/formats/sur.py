@@ -11,7 +11,7 @@ import zlib
 from pathlib import Path
 
 from tribolab.errors import ReadError, brief
-from tribolab.reading.raw.opening import scratch_folder
+from tribolab.reading.raw.scratch import scratch_folder
 
 _PLAIN, _PACKED = b"DIGITAL SURF", b"DSCOMPRESSED"
 _HEADER = 512

@@ -1,0 +1,67 @@
+"""Scratch files and folders: where they lie, and how those of killed processes are removed."""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import functools
+import os
+import shutil
+import tempfile
+from pathlib import Path
+
+
+def scratch_place() -> str:
+    """Return the folder for results; what a killed process left there before is removed once."""
+    folder = os.environ.get("TMPDIR") or ("/var/tmp" if Path("/var/tmp").is_dir() else "")
+    _sweep(folder or tempfile.gettempdir())
+    return folder or tempfile.gettempdir()
+
+
+def scratch_folder() -> Path:
+    """Return a new folder that is removed when this process ends, or by a later one if it cannot.
+
+    Returns
+    -------
+    Path
+        Where ``TMPDIR`` says, else in ``/var/tmp``, which is on a disk everywhere.
+    """
+    folder = Path(tempfile.mkdtemp(prefix=f"tribolab-{os.getpid()}-", dir=scratch_place()))
+    _FOLDERS.append(folder)
+    return folder
+
+
+def remove_scratch() -> None:
+    """Remove the scratch folders of this process."""
+    while _FOLDERS:
+        shutil.rmtree(_FOLDERS.pop(), ignore_errors=True)
+
+
+_FOLDERS: list[Path] = []
+atexit.register(remove_scratch)
+
+
+@functools.lru_cache(maxsize=4)
+def _sweep(folder: str) -> None:
+    """Remove scratch files and folders of processes that are gone."""
+    for path in Path(folder).glob("tribolab-[0-9]*-*"):
+        number = path.name.split("-")[1]
+        if not number.isdigit() or _is_alive(int(number)):
+            continue
+        with contextlib.suppress(OSError):
+            if path.stat(follow_symlinks=False).st_uid != getattr(os, "getuid", int)():
+                continue
+            if path.is_dir() and not path.is_symlink():
+                shutil.rmtree(path, ignore_errors=True)
+            else:
+                path.unlink()
+
+
+def _is_alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        return True
+    return True
