@@ -179,7 +179,7 @@ for _what, _victims, _number, _memory, _says in (
     ("one worker stopped", "1", 19, "0", "Dask worker tcp:.* has not answered for"),
     ("one worker killed", "1", 9, "0", ""),
     ("no memory left", "", 0, "150MB", "Dask cluster is lost: its workers have no memory left"),
-    ("workers die of memory", "", 0, "150MB nanny", "Dask cluster is lost: its workers die"),
+    ("workers die of memory", "", 0, "150MB nanny", "its Dask workers died"),
 ):
     for _more in ((), (_HERE,)):
         _whole = _what.startswith("one") or bool(_more)

@@ -11,7 +11,7 @@ from typing import Any
 from tribolab.app.needed import ANALYSIS
 from tribolab.campaign.engine.cluster import ClusterAbsent, ClusterGone
 from tribolab.campaign.engine.executor import workers
-from tribolab.campaign.engine.pool import LastingPool
+from tribolab.campaign.engine.pool import LastingPool, WorkerDied
 from tribolab.campaign.engine.stage import Progress
 from tribolab.campaign.settings.config import Campaign
 from tribolab.campaign.settings.files import inputs_of, own_python
@@ -169,7 +169,9 @@ def run_here_if_lost(
     """
     try:
         return run_campaign(path_or_campaign, scheduler=scheduler, **options)
-    except (ClusterGone, ClusterAbsent) as lost:
+    except (ClusterGone, ClusterAbsent, WorkerDied) as lost:
+        if scheduler is None:
+            raise
         why = str(lost).split(";")[0]
         say(f"{why}; --local-if-lost: the campaign is analysed here instead")
     return run_campaign(path_or_campaign, **options)

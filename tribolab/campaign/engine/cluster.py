@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from typing import Any
 
 from tribolab.errors import ConfigError, OutputError
+from tribolab.threads import one_thread
 
 DASK_TIMEOUT = "20s"
 LOOK = 1.0  # s between two looks at a cluster
@@ -51,13 +53,27 @@ def dask_executor(scheduler: str) -> Iterator[Executor]:
     try:
         # late: distributed takes long to load
         from distributed import Client
+        from distributed.comm.addressing import get_address_host_port
     except ImportError as error:
         raise ConfigError(
             "a scheduler wants Dask, which is not installed: pip install 'tribolab[cluster]'"
         ) from error
+
+    # one that was never open waits long in its __del__, and for ever if a web server answers it
+    client_class: Any = type("OpenClient", (Client,), {"__del__": lambda self: None})
+    opened: Future[Any] = Future()
+
+    def open_client() -> None:
+        try:
+            opened.set_result(client_class(scheduler, timeout=DASK_TIMEOUT, set_as_default=False))
+        except Exception as error:
+            opened.set_exception(error)
+
     try:
-        client = Client(scheduler, timeout=DASK_TIMEOUT, set_as_default=False)
-    except (OSError, TimeoutError, ValueError) as error:
+        get_address_host_port(scheduler)
+        threading.Thread(target=open_client, daemon=True).start()
+        client = opened.result(float(DASK_TIMEOUT.removesuffix("s")) + ANSWER)
+    except Exception as error:  # what answers may be any server, e.g. that of the dashboard
         raise ClusterAbsent(
             f"no Dask scheduler answers at {scheduler}; start one with 'dask scheduler' and give "
             "its address, e.g. tcp://localhost:8786"
@@ -99,7 +115,7 @@ class Cluster(Executor):
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a call on the cluster and return its future."""
-        return self._inner.submit(function, *args, **kwargs)
+        return self._inner.submit(_with_one_thread, function, *args, **kwargs)
 
     def lost(self) -> str:
         """Return why no answer will come any more; "" as long as one may."""
@@ -159,6 +175,12 @@ class Cluster(Executor):
         _LOG.warning(
             "Dask worker %s has not answered for %.0f s: the others do its work", names, SILENCE
         )
+
+
+def _with_one_thread(function: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
+    """Call a function as processes here do: more threads may change the last digits of sums."""
+    with one_thread():
+        return function(*args, **kwargs)
 
 
 def _is_out_of_memory(worker: Mapping[str, Any]) -> bool:

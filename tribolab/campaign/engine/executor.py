@@ -13,7 +13,7 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from tribolab.campaign.engine.cluster import LOOK, Cluster, ClusterGone, dask_executor, gone
-from tribolab.campaign.engine.pool import LastingPool
+from tribolab.campaign.engine.pool import LastingPool, WorkerDied
 from tribolab.errors import ConfigError, brief
 from tribolab.threads import one_thread
 
@@ -76,10 +76,19 @@ def _as_they_end(
             if text:
                 raise ClusterGone(gone(text, count - len(futures), count))
             while come:  # what was answered is held no longer
-                yield futures.pop(come[0]), come.pop()
+                yield futures.pop(come[0]), _explained(come.pop())
     finally:
         for future in futures:
             future.cancel()
+
+
+def _explained(future: Future[Any]) -> Future[Any]:
+    """Return the future of a task; of one whose Dask workers died, one that says so."""
+    if type(future.exception()).__name__ != "KilledWorker":
+        return future
+    died: Future[Any] = Future()
+    died.set_exception(WorkerDied("its Dask workers died one after the other (out of memory?)"))
+    return died
 
 
 @contextlib.contextmanager

@@ -22,6 +22,7 @@ from tribolab.reading.raw.hdf5_safety import refuse_outside
 from tribolab.reading.raw.opening import MissingLibraryError, RefusedError, damage_told
 from tribolab.reading.raw.scratch import remove_scratch
 from tribolab.reading.raw.server import Ended, Job
+from tribolab.reading.raw.zip_safety import refuse_bomb
 
 _DONE, _ERROR, _NO_MEMORY, _TOO_LARGE, _NO_ROOM = 0, 3, 4, 5, 6
 _TEXT_PER_NUMBER = 4  # a cell as text is longer than a number
@@ -144,14 +145,16 @@ def _called(function: Callable[..., Any], job: Job) -> Any:
     """Call a function that reads; what it returns of a file that cannot be checked is not used."""
     path, unchecked = Path(job.arguments[0]), None
     try:
-        refuse_outside(path)
+        with path.open("rb") as file:
+            is_zip = file.read(4) == b"PK\x03\x04"
+        refuse_bomb(path) if is_zip else refuse_outside(path)
     except (RefusedError, MissingLibraryError, MemoryError):
         raise
     except Exception as error:  # damaged: its reader says more
         unchecked = error
     result = function(*job.arguments, **job.keywords)
     if unchecked is not None:
-        with damage_told(path, "HDF5 file"):
+        with damage_told(path, "file"):
             raise unchecked
     return result
 

@@ -13,6 +13,7 @@ import contextlib
 import functools
 import os
 import tempfile
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
@@ -38,7 +39,9 @@ _HANDLED = (
 )
 
 inside = False  # whether this is the child
-_REFUSED: dict[tuple[Path, int, int, int], str] = {}  # messages by path, size, time and inode
+# What was refused, and what a function did not survive, and when [s], by path, size, time, inode
+# and function: a dozen readers may look at a file, each for some seconds.
+_REFUSED: dict[tuple[Path, int, int, int, str], tuple[ReadError, float]] = {}
 
 
 class MissingLibraryError(ReadError, ImportError):
@@ -122,8 +125,10 @@ def _in_child(
     except OSError as error:
         raise ReadError(f"{path}: the file cannot be read: {error}") from error
     size, asked = state.st_size, (path, state.st_size, state.st_mtime_ns, state.st_ino)
-    if asked in _REFUSED:
-        raise RefusedError(_REFUSED[asked])
+    for name in ("", function.__qualname__):
+        before, when = _REFUSED.get((*asked, name), (None, 0.0))
+        if before is not None and time.monotonic() < when + limits.PATIENCE.value:
+            raise type(before)(str(before))
     handle, target = tempfile.mkstemp(prefix=f"tribolab-{os.getpid()}-", dir=scratch_place())
     try:
         job = Job(
@@ -145,8 +150,8 @@ def _in_child(
             return read_result(handle)
         if ended.code == 3:
             raised = unpacked_error(read_result(handle))
-            if isinstance(raised, RefusedError):  # a dozen readers may ask for it
-                _REFUSED[asked] = str(raised)
+            if isinstance(raised, RefusedError):
+                _REFUSED[*asked, ""] = raised, time.monotonic()
             if isinstance(raised, _HANDLED):
                 raise raised
             with damage_told(path, "file"):
@@ -155,8 +160,13 @@ def _in_child(
         os.close(handle)
         with contextlib.suppress(OSError):
             os.unlink(target)  # noqa: PTH108 - its content stays as long as it is mapped
-    raise CrashedError(f"{path}: the file is damaged or hostile: {_ending(ended)}; copy it again "
-                       "from where it was written")  # fmt: skip
+    crashed = CrashedError(
+        f"{path}: the file is damaged or hostile: {_ending(ended)}; copy it again from where it "
+        "was written"
+    )
+    if ended.code is None or ended.code > 0:  # a signal may have come from elsewhere
+        _REFUSED[*asked, function.__qualname__] = crashed, time.monotonic()
+    raise crashed
 
 
 def missing(path: Path, library: str) -> MissingLibraryError:

@@ -13,6 +13,7 @@ import numpy as np
 
 from tribolab.errors import ReadError, brief, shown
 from tribolab.reading.raw.limits import LETTERS_OF_DEFAULTS, LETTERS_OF_ENTITY, XML_DEPTH
+from tribolab.reading.raw.opening import RefusedError
 
 _BLOCK = 1 << 16
 
@@ -90,7 +91,7 @@ def refuse_deep(path: Path, name: str, blocks: Iterable[bytes]) -> None:
     for block in blocks:
         steps = _steps(block)
         if depth + steps.cumsum().max(initial=0) > XML_DEPTH.value:
-            raise ReadError(
+            raise RefusedError(
                 f"{path}: in '{shown(name)}' more than {XML_DEPTH.value:g} elements lie in one "
                 "another, as no office program writes it; export the profile as text (csv)"
             )

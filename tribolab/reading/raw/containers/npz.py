@@ -16,7 +16,7 @@ from tribolab.errors import ReadError, shown
 from tribolab.reading.raw.containers.groups import Groups
 from tribolab.reading.raw.containers.settings import plain, settings_of
 from tribolab.reading.raw.model import RawColumn, RawFile, Setting
-from tribolab.reading.raw.opening import isolated, largest_unpacked
+from tribolab.reading.raw.opening import isolated
 
 _NAMES = re.compile(r"(?:columns?|names?|labels?|channels?|fields?|headers?|keys)$", re.IGNORECASE)
 _STEP = re.compile(  # step2_force, force_s03, run1/load
@@ -42,10 +42,6 @@ def read_npz(path: Path) -> RawFile:
         If it is damaged, unpacks to far more than its size, or holds objects of Python.
     """
     try:
-        with zipfile.ZipFile(path) as archive:
-            size = sum(info.file_size for info in archive.infolist())
-        if size > largest_unpacked(path.stat().st_size):
-            raise ReadError(f"this archive unpacks to {size / 1e9:.0f} GB", where=path)
         with np.load(path, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
     except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile) as error:

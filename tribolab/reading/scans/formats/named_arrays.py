@@ -11,7 +11,7 @@ import numpy as np
 from tribolab.errors import ReadError, brief
 from tribolab.reading.raw.containers.mat import read_variables
 from tribolab.reading.raw.opening import isolated
-from tribolab.reading.scans.formats.profilometer_safety import DAMAGE, refuse_bomb
+from tribolab.reading.scans.formats.profilometer_safety import DAMAGE
 from tribolab.untyped import Json
 
 NPY = b"\x93NUMPY"
@@ -82,8 +82,6 @@ def read_arrays(path: Path) -> HeldArrays:
 def _of_numpy(path: Path) -> HeldArrays:
     with path.open("rb") as file:
         alone = file.read(len(NPY)) == NPY
-    if not alone:
-        refuse_bomb(path)
     held = HeldArrays([], {})
     loaded = np.load(path, allow_pickle=False)
     if alone:

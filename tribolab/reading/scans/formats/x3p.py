@@ -21,7 +21,7 @@ from tribolab.errors import ReadError, brief, shown
 from tribolab.reading.raw.missing_marks import measurable
 from tribolab.reading.raw.opening import isolated
 from tribolab.reading.raw.xml_safety import parsed
-from tribolab.reading.scans.formats.profilometer_safety import DAMAGE, refuse_bomb
+from tribolab.reading.scans.formats.profilometer_safety import DAMAGE
 from tribolab.reading.scans.grid import even, gridded
 
 _MAIN = "main.xml"
@@ -96,7 +96,6 @@ def read_x3p(path: Path, main: str) -> xr.Dataset:
     ----------
     .. [1] ISO 25178-72:2017, XML file format x3p.
     """
-    refuse_bomb(path)
     folder = posixpath.dirname(main)
     try:
         with zipfile.ZipFile(path) as archive:

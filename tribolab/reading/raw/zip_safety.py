@@ -1,0 +1,41 @@
+"""Zip archives, workbooks and x3p among them, that unpack to more than a measurement can be."""
+
+from __future__ import annotations
+
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO
+
+from tribolab.reading.raw.opening import RefusedError, largest_unpacked
+from tribolab.reading.raw.xml_safety import refuse_deep
+
+_BLOCK = 1 << 20
+
+
+def refuse_bomb(path: Path) -> None:
+    """Refuse an archive that unpacks to far more than it is, or whose XML is too deep.
+
+    Raises
+    ------
+    RefusedError
+        If it is one.
+    """
+    size = path.stat().st_size
+    with zipfile.ZipFile(path) as archive:
+        members = archive.infolist()
+        unpacked = sum(member.file_size for member in members)
+        if unpacked > largest_unpacked(size):
+            raise RefusedError(
+                f"{path}: the file unpacks to {unpacked / 1e6:.0f} MB, {unpacked / size:.0f} times "
+                "its size; that is no measurement. Export the data as text (csv)"
+            )
+        for member in members:
+            if member.filename.lower().endswith((".xml", ".rels")):
+                with archive.open(member) as file:
+                    refuse_deep(path, member.filename, _blocks(file))
+
+
+def _blocks(file: IO[bytes]) -> Iterator[bytes]:
+    while block := file.read(_BLOCK):
+        yield block
