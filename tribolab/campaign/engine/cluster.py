@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import pickle
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -17,7 +18,7 @@ DASK_TIMEOUT = "20s"
 LOOK = 1.0  # s between two looks at a cluster
 ANSWER = 5.0  # s within which a scheduler answers: it does so within some ms
 PATIENCE = 20.0  # s without any worker, or without the scheduler, after which it counts as gone
-SILENCE = 30.0  # s without a sign of life of a worker; up to 200 workers give one every 2 s
+SILENCE = 40.0  # s without a sign of life of a worker; up to 200 workers give one every 2 s
 _LOG = logging.getLogger("tribolab")
 
 
@@ -115,7 +116,7 @@ class Cluster(Executor):
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a call on the cluster and return its future."""
-        return self._inner.submit(_with_one_thread, function, *args, **kwargs)
+        return self._inner.submit(_called, pickle.dumps((function, args, kwargs)))
 
     def lost(self) -> str:
         """Return why no answer will come any more; "" as long as one may."""
@@ -177,8 +178,13 @@ class Cluster(Executor):
         )
 
 
-def _with_one_thread(function: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
-    """Call a function as processes here do: more threads may change the last digits of sums."""
+def _called(packed: bytes) -> Any:
+    """Call a packed function in a worker's thread.
+
+    Dask unpacks what it is given, with the imports of that, in the thread that gives signs of life.
+    More threads for linear algebra than processes here use may change the last digits of sums.
+    """
+    function, args, kwargs = pickle.loads(packed)
     with one_thread():
         return function(*args, **kwargs)
 
