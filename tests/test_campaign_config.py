@@ -307,7 +307,7 @@ def test_the_published_schema_is_the_models():
 def test_the_published_page_has_every_key_quantity_and_default():
     page = (schema_folder() / CAMPAIGN_PAGE).read_text(encoding="utf-8")
     assert page == campaign_page()
-    assert '| `radius` | Radius of the cylinder. | m | `"7 cm"` |  |' in page
+    assert '| `radius` | Radius of the cylinder or ball. | m | `"7 cm"` |  |' in page
     assert '| `fastest` | Highest sliding speed. | m/s | `"10 cm/s"` | `0.1` |' in page
     assert "| `min_samples` | Fewest samples in a segment. | integer, ≥ 2 |  | `10` |" in page
     dialects = [load_dialect(path) for path in known_dialects().values()]

@@ -35,7 +35,7 @@ SHAPES = {
 @pytest.mark.parametrize("kind", SHAPES)
 @pytest.mark.parametrize("q_low", [None, 1e3, 1e6])
 def test_a_spectrum_has_a_finite_band_or_a_reason(monkeypatch, kind, q_low):
-    monkeypatch.setattr(of_scans, "line_contact", lambda surface: None)
+    monkeypatch.setattr(of_scans, "contact_of", lambda surface: None)
     rng = np.random.default_rng(3)
     scan = xr.Dataset(
         {"height": (("scan", "x"), 1e-6 * SHAPES[kind](rng))}, {"x": 3e-6 * np.arange(POINTS)}

@@ -15,7 +15,7 @@ from tribolab.surface.synthesis import synthesise_profiles
 
 
 def judged(monkeypatch, scan, **options):
-    monkeypatch.setattr(of_scans, "line_contact", lambda surface: None)
+    monkeypatch.setattr(of_scans, "contact_of", lambda surface: None)
     q_low = options.pop("contact", None)
     surface = SimpleNamespace(roughness=options)
     return of_scans.spectra_of_scans(surface, fill_dropouts(scan), q_low)

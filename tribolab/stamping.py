@@ -39,7 +39,9 @@ def stamp(data: xr.Dataset, **attrs: str | float | int) -> xr.Dataset:
                 variable.attrs["long_name"] = QUANTITIES[str(name)].long_name
             continue
         known = quantity(str(name))
-        variable.attrs.update(units=known.unit, long_name=known.long_name)
+        is_force = name == "load" and variable.attrs.get("units") == "N"  # of a ball
+        unit = "N" if is_force else known.unit
+        variable.attrs.update(units=unit, long_name=known.long_name)
     result.attrs.update(attrs)
     return result
 

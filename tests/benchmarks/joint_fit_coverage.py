@@ -35,7 +35,7 @@ from scipy import stats
 
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.geometry import make_contact
 from tribolab.fit.joint.load_curve import LoadCurve
 from tribolab.fit.joint.loads import fit_loads
 from tribolab.fit.joint.priors import JointPriors
@@ -256,7 +256,7 @@ def fits_of_campaign(file: Path, folder: Path, at: list[Response]) -> tuple[Join
     """Process a campaign; fit all its loads together with the true spectrum, and with its scans."""
     folder.mkdir()
     outcome = process(load_campaign(file), folder)
-    contact = LineContact(**load_campaign(file).contact.line())
+    contact = make_contact(**load_campaign(file).contact.bodies())
     exact, scanned, band = [], [], None
     for model, true in zip(outcome.models, at, strict=True):
         path = folder / model.data_file

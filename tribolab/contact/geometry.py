@@ -146,6 +146,11 @@ class PointContact(Elasticity):
 Contact = LineContact | PointContact
 
 
+def make_contact(geometry: str = "cylinder", **known: float) -> Contact:
+    """Return a `PointContact` of a ``"ball"`` or a `LineContact` of a ``"cylinder"``."""
+    return PointContact(**known) if geometry == "ball" else LineContact(**known)
+
+
 def plane_strain_ratio(value: str | float) -> float:
     """Return a Poisson's ratio as a float; 0.5 (rubber) is allowed, as E/(1 - nu^2) stays finite.
 

@@ -11,7 +11,7 @@ from tribolab.contact.area import AreaTheory
 from tribolab.contact.geometry import PointContact
 from tribolab.contact.hertz import hertz_half_width, hertz_pressure
 from tribolab.contact.limits import line_limits
-from tribolab.contact.line import solve_dry
+from tribolab.contact.line import contact_width, solve_dry
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.contact.polar import PolarMesh, polar_mesh
 from tribolab.contact.separation import Separation, separation_table
@@ -20,6 +20,20 @@ from tribolab.stamping import stamp
 from tribolab.units import positive
 
 _SECTORS = 12  # of a mesh whose pressure depends on the radius alone
+
+
+def across_the_middle(profile: xr.Dataset) -> xr.Dataset:
+    """Return a profile over the radius as one over x [m] through the middle, as a line's is.
+
+    It has ``contact_width`` [m], the diameter where pressure is 1e-3 of its maximum.
+    """
+    radius = profile["radius"].values
+    x = np.concatenate([-radius[::-1], radius])
+    both = [profile.isel(radius=slice(None, None, -1)), profile]
+    joined = xr.concat(both, "radius", data_vars="minimal", coords="minimal", compat="override")
+    joined = joined.rename(radius="x").assign_coords(x=x).drop_vars("friction_per_shear_stress")
+    joined["contact_width"] = contact_width(x, joined["pressure"].values)
+    return stamp(joined.assign_attrs(profile.attrs))
 
 
 class RoundProfile(NamedTuple):
@@ -96,6 +110,7 @@ def rough_point_contact(
         },
         coords={"radius": profile.radius, "load": force},
     )
+    data["load"].attrs["units"] = contact.load_unit
     return stamp(
         data,
         **line_limits("rough_point_contact", contact, force, psd, table),

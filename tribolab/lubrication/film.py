@@ -118,6 +118,7 @@ def _profile(
         {name: ("x", value[::side]) for name, value in values.items()} | scalars,
         coords={"x": x[::side], "sliding_speed": v, "load": force},
     )
+    data["load"].attrs["units"] = system.contact.load_unit
     thinnest = [film.min()]
     around = system.contact, force, system.psd, system.separation
     limits = line_limits("film_profile", *around, [v], thinnest)

@@ -70,10 +70,12 @@ def solve_curve(
     with one_thread():
         system = system_of(contact, psd, parameters)
     stress, work = parameters.interface.shear_stress, parameters.interface.work_of_adhesion
-    loads, speeds = checked_loads(load), checked_speeds(speed, psd)
+    loads, speeds = checked_loads(load, contact), checked_speeds(speed, psd)
     system = with_adhesion(system, float(np.max(loads.values)), work)
     forces = [float(force) for force in np.atleast_1d(loads.values)]
-    beside: Sequence[Sequence[SolvedSpeed]] = [()] * len(forces) if near is None else near.points
+    beside: Sequence[Sequence[SolvedSpeed]] = [()] * len(forces)
+    if near is not None and not contact.is_round:
+        beside = near.points
     # where both bodies move the liquid is moved as by one of twice the entrainment speed
     times = 2.0 if system.rolls else 1.0
     magnitudes, back = np.unique(times * np.abs(speeds.values), return_inverse=True)
@@ -105,6 +107,7 @@ def solve_curve(
     if loads.ndim == 0:
         data = data.isel(load=0)
     thinnest = data.minimum_separation.values
+    data["load"].attrs["units"] = contact.load_unit
     if system.rolls:
         data = data.rename(sliding_speed="entrainment_speed")
     curve = stamp(

@@ -48,9 +48,14 @@ def system_of(contact: Contact, psd: xr.Dataset | None, parameters: Parameters) 
     )
 
 
-def checked_loads(load: str | ArrayLike) -> xr.DataArray:
-    """Return loads per length [N/m] (load); AnalysisError if one is not above zero."""
-    loads = labelled(load, "load")
+def checked_loads(load: str | ArrayLike, contact: Contact) -> xr.DataArray:
+    """Return loads [N/m], of a ball [N] (load); AnalysisError if one is not above zero."""
+    if contact.is_round:
+        loads = labelled(load, "normal_force").rename("load")
+        if "normal_force" in loads.dims:
+            loads = loads.rename(normal_force="load")
+    else:
+        loads = labelled(load, "load")
     if loads.ndim > 1 or not np.all((loads.values > 0) & np.isfinite(loads.values)):
         raise AnalysisError(
             f"load: positive, finite values in N/m (of a ball N) are wanted; got {loads.values}"

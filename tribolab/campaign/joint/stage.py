@@ -105,7 +105,7 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
             measured=tuple(self._files[outcome.curve] for outcome in outcomes),
             enhancement=tuple(_enhancement(model) for model in ordered),
             dry=self._dry(surfaces, medium),
-            contact=self._campaign.contact.line(),
+            contact=self._campaign.contact.bodies(),
             area=self._campaign.contact.area,
             adhesion=self._campaign.model.adhesion,
             viscosity=liquid.value,

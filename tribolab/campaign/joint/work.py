@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from tribolab.contact.area import AreaTheory
-    from tribolab.contact.geometry import LineContact
+    from tribolab.contact.geometry import Contact
     from tribolab.fit.joint.load_curve import LoadCurve
     from tribolab.fit.joint.priors import JointPriors
     from tribolab.records.parts import ModelOutcome
@@ -118,8 +118,9 @@ class DryContact(NamedTuple):
 def _dry_contacts(task: JointTask, dry: JointDry) -> list[DryContact]:
     """Return the dry contacts of a surface at the loads that were measured in the liquid, too."""
     # late: starting stays quick
-    from tribolab.contact.geometry import LineContact
+    from tribolab.contact.geometry import make_contact
     from tribolab.contact.hertz import hertz_mean_pressure
+    from tribolab.lubrication.parameters import Solver
     from tribolab.lubrication.stribeck import stribeck_curve
 
     wet = [m.normal_force for m in task.models if m.surface == dry.surface and m.normal_force]
@@ -130,14 +131,14 @@ def _dry_contacts(task: JointTask, dry: JointDry) -> list[DryContact]:
     ]
     if not kept:
         return []
-    contact = LineContact(**task.contact)
+    contact = make_contact(**task.contact)
     psd = read_data(task.folder / dry.surface_file, "psd")
     load = np.array([contact.load(force) for force, _ in kept])
     pressure = np.asarray(hertz_mean_pressure(load, contact))
     without, within = (
         _growth(pressure, psd, contact, task.area, work) for work in (dry.dry, dry.wet)
     )
-    rest = stribeck_curve(contact, psd, task.viscosity, load, 0.0, [0.0], area=task.area)
+    rest = stribeck_curve(contact, psd, task.viscosity, load, 0.0, [0.0], Solver(area=task.area))
     at_rest, other = (rest[f"friction_per_shear_stress{end}"].values[0] for end in ("", "_other"))
     ratio = without.value if task.adhesion else without.value / within.value
     return [
@@ -162,7 +163,7 @@ class _Growth(NamedTuple):
 
 
 def _growth(
-    pressure: np.ndarray, psd: xr.Dataset, contact: LineContact, area: AreaTheory, work: Work
+    pressure: np.ndarray, psd: xr.Dataset, contact: Contact, area: AreaTheory, work: Work
 ) -> _Growth:
     # late: starting stays quick
     from tribolab.contact.adhesion import adhesion_by_works
@@ -217,9 +218,9 @@ class _Beside(NamedTuple):
 def _wet(task: JointTask) -> list[_Beside]:
     """Read the curves measured in the liquid, and what is computed beside them."""
     # late: starting stays quick
-    from tribolab.contact.geometry import LineContact
+    from tribolab.contact.geometry import make_contact
 
-    contact = LineContact(**task.contact)
+    contact = make_contact(**task.contact)
     curves = []
     for model, file in zip(task.models, task.measured, strict=True):
         assert model.normal_force is not None  # else it were not in the plan

@@ -11,21 +11,22 @@ import xarray as xr
 from tribolab.campaign.models.plan import PlannedModel
 from tribolab.campaign.store.data_files import optional_data, read_data
 from tribolab.contact.area import other_area
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.geometry import Contact, make_contact
 from tribolab.errors import AnalysisError
 from tribolab.fit.model_inputs import model_inputs, moved_friction
 from tribolab.fit.model_uncertainty import model_uncertainty
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.lubrication.factors import flow_factors
 from tribolab.lubrication.film import film_profile
-from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
+from tribolab.lubrication.parameters import Interface, Liquid, Solver, parameters_of
+from tribolab.lubrication.solved_curve import solve_curve
+from tribolab.lubrication.stribeck import with_shear_stress
 from tribolab.records.parts import Finding, beyond_limits
 from tribolab.stamping import stamp
 from tribolab.untyped import Arguments
 from tribolab.words import explain
 
 if TYPE_CHECKING:
-    from tribolab.contact.geometry import LineContact
     from tribolab.fit.shear_stress_fit import ShearStressFit
 
 _PROFILES = 5
@@ -48,17 +49,22 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
     """
     measured = read_data(folder / model.curve.data_file)
     psd = read_data(folder / model.surface_file, "psd")
-    contact = LineContact(**model.contact)
+    contact = make_contact(**model.contact)
     load = contact.load(model.normal_force)
     settings = model.settings
     body = {name: settings[name] for name in ("rough_body", "friction_factors")}
-    body["inlet_length"] = settings["inlet_length"] or np.inf
+    body["inlet_length"] = _extent(model, contact)
+    if settings["outlet"]:
+        body["outlet"] = settings["outlet"]
     body["area"] = model.area
     body["work_of_adhesion"] = model.work_of_adhesion
     grid = np.geomspace(settings["slowest"], settings["fastest"], settings["points"])
     points = measured["sliding_speed"].values
     speeds = np.union1d(grid, points[points > 0])
-    computed = stribeck_curve(contact, psd, model.viscosity, load, 0.0, speeds, **body)
+    if contact.is_round:
+        body["method"] = "auto"
+    parameters = parameters_of(model.viscosity, 0.0, **body)
+    computed = solve_curve(contact, psd, load, speeds, parameters).curve
     groups, findings = {"curve": computed.sel(sliding_speed=grid)}, []
 
     def attempt(what: str, name: str, compute: Any) -> None:
@@ -99,6 +105,7 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
             *("viscosity", "viscosity_range", "youngs_modulus_range"),
             "work_of_adhesion_range",
         )
+        body.pop("method", None)
         given = {name: getattr(model, name) for name in ranges} | {"load": load, **body}
         for name, value in (("load", load), ("radius", contact.radius)):
             given[f"{name}_range"] = _range_of(value, model.input_errors.get(name, 0.0))
@@ -111,7 +118,7 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
 def _fit(
     model: PlannedModel,
     measured: xr.Dataset,
-    contact: LineContact,
+    contact: Contact,
     psd: xr.Dataset,
     load: float,
     computed: xr.Dataset,
@@ -141,7 +148,7 @@ def _fit(
 def _inputs(
     model: PlannedModel,
     speed: np.ndarray,
-    contact: LineContact,
+    contact: Contact,
     psd: xr.Dataset,
     load: float,
     body: Arguments,
@@ -238,26 +245,29 @@ def beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
 
 
 def _profiles(
-    model: PlannedModel, points: np.ndarray, contact: LineContact, psd: xr.Dataset, load: float
+    model: PlannedModel, points: np.ndarray, contact: Contact, psd: xr.Dataset, load: float
 ) -> xr.Dataset:
     """Profiles at a few speeds from the slowest to the fastest that was measured."""
     moving = points[points > 0]
     body = model.settings["rough_body"]
-    begins = model.settings["inlet_length"] or np.inf
+    liquid = Liquid(model.viscosity, _extent(model, contact), model.settings["outlet"] or "vented")
     speeds = [
         float(f"{v:.2g}") for v in np.geomspace(moving.min(), moving.max(), _PROFILES).tolist()
     ]
     return film_profile(
         contact,
         psd,
-        model.viscosity,
+        liquid,
         load,
         speeds,
-        body,
-        inlet_length=begins,
-        area=model.area,
-        work_of_adhesion=model.work_of_adhesion,
+        Interface(rough_body=body, work_of_adhesion=model.work_of_adhesion),
+        Solver(area=model.area),
     )
+
+
+def _extent(model: PlannedModel, contact: Contact) -> float | None:
+    """Where the liquid begins [m]; of a ball by default where its radius ends."""
+    return model.settings["inlet_length"] or (None if contact.is_round else np.inf)
 
 
 def _factors(psd: xr.Dataset, rough_body: Any) -> xr.Dataset:
@@ -266,7 +276,7 @@ def _factors(psd: xr.Dataset, rough_body: Any) -> xr.Dataset:
 
 
 def _uncertain(
-    contact: LineContact, psd: xr.Dataset, fit: ShearStressFit, given: Arguments
+    contact: Contact, psd: xr.Dataset, fit: ShearStressFit, given: Arguments
 ) -> xr.Dataset:
     return model_uncertainty(
         contact,

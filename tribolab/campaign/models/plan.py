@@ -123,7 +123,7 @@ def plan_models(
         return ()
     spread, freedom = _repeatability(done)
     known = {surface.outcome.name: surface for surface in surfaces}
-    contact = campaign.contact.line()
+    contact = campaign.contact.bodies()
     settings = campaign.model.model_dump(exclude={"compute", "uncertainty", "adhesion"})
     planned, led = [], set()
     for record, viscosity in sorted(wet, key=lambda pair: pair[0].outcome.normal_force or np.inf):

@@ -19,18 +19,21 @@ from tribolab.campaign.settings.fields import (
     ZeroPlace,
 )
 from tribolab.campaign.settings.table import Table
+from tribolab.untyped import Arguments
 
 if TYPE_CHECKING:
-    from tribolab.contact.geometry import LineContact
+    from tribolab.contact.geometry import LineContact, PointContact
 
 
 class Contact(Table):
-    """The cylinder and the elastomer, as far as they are known."""
+    """The cylinder or ball and the elastomer, as far as they are known."""
 
+    geometry: Literal["cylinder", "ball"] = "cylinder"
+    """Which body is pressed on the flat."""
     radius: Annotated[float, PositiveSi("m", "7 cm")] | None = None
-    """Radius of the cylinder."""
+    """Radius of the cylinder or ball."""
     length: Annotated[float, PositiveSi("m", "10 cm")] | None = None
-    """Length of the line contact."""
+    """Length of the line contact; a ball has none."""
     youngs_modulus: Annotated[float, PositiveSi("Pa", "1.5 MPa")] | None = None
     """Young's modulus of the elastomer at low frequency."""
     youngs_modulus_range: (
@@ -43,6 +46,12 @@ class Contact(Table):
     """Between which values it is uncertain; model curves get a band from it."""
     poisson_ratio: Annotated[float, Field(gt=-1, le=0.5)] | None = None
     """Poisson's ratio of the elastomer."""
+    thickness: Annotated[float, PositiveSi("m", "5 mm")] | None = None
+    """Thickness of the elastomer, bonded to a rigid base; by default it is a half-space."""
+    counter_modulus: Annotated[float, PositiveSi("Pa", "2 MPa")] | None = None
+    """Young's modulus of the cylinder or ball; by default it is rigid."""
+    counter_poisson_ratio: Annotated[float, Field(gt=-1, le=0.5)] | None = None
+    """Poisson's ratio of the cylinder or ball."""
     area: Literal["persson", "corrected", "numerics"] = "persson"
     """Theory of the contact area: Persson's as in the paper; corrected for the elastic energy that
     partial contact saves; or as fitted to boundary elements."""
@@ -55,17 +64,22 @@ class Contact(Table):
     modulus_unit: SomeText | None = None
     """Unit of the moduli in `modulus_file`, if the file does not state it."""
 
-    def line(self) -> dict[str, float | None]:
-        """Return the arguments of `LineContact`, as far as they are known."""
-        return self.model_dump(include={"radius", "length", "youngs_modulus", "poisson_ratio"})
+    def bodies(self) -> Arguments:
+        """Return the arguments of `make_contact`; None for what is wanted and not known."""
+        ball = self.geometry == "ball"
+        wanted = {"radius", "youngs_modulus", "poisson_ratio"} | (set() if ball else {"length"})
+        bodies = self.model_dump(include=wanted)
+        optional = {"thickness", "counter_modulus", "counter_poisson_ratio"}
+        bodies |= self.model_dump(include=optional, exclude_none=True)
+        return bodies | ({"geometry": "ball"} if ball else {})
 
-    def whole(self) -> LineContact | None:
-        """Return the line contact; None as long as something of it is not known."""
+    def whole(self) -> LineContact | PointContact | None:
+        """Return the contact; None as long as something of it is not known."""
         # late: starting stays quick
-        from tribolab.contact.geometry import LineContact
+        from tribolab.contact.geometry import make_contact
 
-        known = {name: value for name, value in self.line().items() if value is not None}
-        return LineContact(**known) if len(known) == len(self.line()) else None
+        bodies = self.bodies()
+        return None if None in bodies.values() else make_contact(**bodies)
 
 
 class Medium(Table):

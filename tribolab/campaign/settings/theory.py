@@ -26,7 +26,11 @@ class Model(Table):
     friction_factors: bool = True
     """Whether the fluid's friction takes the friction factors of the roughness."""
     inlet_length: Annotated[float, PositiveSi("m", "20 mm")] | None = None
-    """Where the liquid begins, before the contact's middle; by default it is everywhere."""
+    """Where the liquid begins, before the contact's middle, and around a ball ends; by default a
+    line's is everywhere, and a ball's ends at its radius."""
+    outlet: Literal["vented", "flooded"] | None = None
+    """Whether gas gets into the gap behind the contact ("vented"), or the liquid holds tension
+    there ("flooded"); left out, it is vented, and the band includes both."""
     fit_speeds: (
         tuple[
             Annotated[float, PositiveSi("m/s", "1 um/s")],

@@ -12,7 +12,7 @@ from scipy.interpolate import PchipInterpolator
 from tribolab.campaign.surfaces.rubber import no_rubber, rubber_groups
 from tribolab.contact.adhesion import adhesion_by_works
 from tribolab.contact.gap import gap_distribution
-from tribolab.contact.geometry import LineContact
+from tribolab.contact.geometry import Contact, PointContact, make_contact
 from tribolab.contact.hertz import (
     hertz_half_width,
     hertz_max_pressure,
@@ -22,6 +22,7 @@ from tribolab.contact.hertz import (
 from tribolab.contact.limits import line_limits
 from tribolab.contact.line import rough_line_contact
 from tribolab.contact.persson import contact_area_ratio, mean_separation
+from tribolab.contact.point import across_the_middle, rough_point_contact
 from tribolab.errors import ReadError, TribolabError
 from tribolab.records.parts import Finding, beyond_limits
 from tribolab.stamping import labelled, stamp
@@ -31,22 +32,21 @@ from tribolab.words import explain
 if TYPE_CHECKING:
     from tribolab.campaign.surfaces.plan import PlannedSurface
     from tribolab.contact.area import AreaTheory
-    from tribolab.contact.geometry import LineContact
 
 Groups = dict[str, xr.Dataset]
 _PER_DECADE = 10
 _ENDINGS = ("", "_low", "_high")
 
 
-def line_contact(surface: PlannedSurface) -> LineContact | None:
-    """Return the line contact, if the campaign file knows all of it."""
+def contact_of(surface: PlannedSurface) -> Contact | None:
+    """Return the contact, if the campaign file knows all of it."""
     known = all(value is not None for value in surface.contact.values())
-    return LineContact(**surface.contact) if known else None
+    return make_contact(**surface.contact) if known else None
 
 
 def lowest_wavenumber(surface: PlannedSurface) -> float | None:
     """Return q0 = pi / (width of the Hertz contact at the lowest load) [1/m], if it is known."""
-    contact = line_contact(surface)
+    contact = contact_of(surface)
     if contact is None or surface.lowest_force is None:
         return None
     return float(np.pi / (2 * hertz_half_width(contact.load(surface.lowest_force), contact)))
@@ -79,8 +79,9 @@ def contact_groups(surface: PlannedSurface, psd: xr.Dataset) -> tuple[Groups, li
         )
         return groups, [Finding("note", text)]
     modulus = known["youngs_modulus"] / (1 - known["poisson_ratio"] ** 2)
+    if contact := contact_of(surface):
+        modulus = contact.effective_modulus
     grid = modulus * np.geomspace(5e-4, 0.5, 3 * _PER_DECADE + 1)
-    contact = line_contact(surface)
     forces = np.array(surface.forces)
 
     def attempt(
@@ -148,11 +149,9 @@ def _contact(grid: np.ndarray, psd: xr.Dataset, modulus: float, theory: AreaTheo
     return stamp(xr.Dataset(data), effective_modulus_Pa=modulus, area=theory, **together([valid]))
 
 
-def _loads(
-    forces: np.ndarray, contact: LineContact, psd: xr.Dataset, theory: AreaTheory
-) -> xr.Dataset:
+def _loads(forces: np.ndarray, contact: Contact, psd: xr.Dataset, theory: AreaTheory) -> xr.Dataset:
     """Hertz contact at each load, and the rough contact at its mean pressure."""
-    load = forces / contact.length
+    load = np.array([contact.load(float(force)) for force in forces])
     coords = {"load": load}
 
     def over_load(values: np.ndarray | float) -> xr.DataArray:
@@ -172,13 +171,15 @@ def _loads(
     return stamp(xr.Dataset(data), effective_modulus_Pa=modulus, **valid)
 
 
-def _lines(
-    forces: np.ndarray, contact: LineContact, psd: xr.Dataset, theory: AreaTheory
-) -> xr.Dataset:
+def _lines(forces: np.ndarray, contact: Contact, psd: xr.Dataset, theory: AreaTheory) -> xr.Dataset:
     """Dry rough line contact at each load; every load has its own x."""
     parts = []
     for force in forces:
-        line = rough_line_contact(contact.load(float(force)), contact, psd, area=theory)
+        load = contact.load(float(force))
+        if isinstance(contact, PointContact):
+            line = across_the_middle(rough_point_contact(load, contact, psd, area=theory))
+        else:
+            line = rough_line_contact(load, contact, psd, area=theory)
         parts.append(line.reset_index("x").reset_coords("x").rename_dims(x="point"))
     lines = xr.concat(parts, "load", combine_attrs="drop_conflicts")
     valid = together([line.attrs for line in parts])
@@ -194,7 +195,7 @@ def _adhesion(
     surface: PlannedSurface,
     grid: np.ndarray,
     loads: xr.Dataset | None,
-    contact: LineContact | None,
+    contact: Contact | None,
     psd: xr.Dataset,
     modulus: float,
 ) -> tuple[xr.Dataset, xr.Dataset]:

@@ -125,7 +125,7 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
             "data_file": f"data/{file}.nc",
             "instrument": instrument,
             "roughness": campaign.roughness.model_dump(exclude_none=True),
-            "contact": campaign.contact.line(),
+            "contact": campaign.contact.bodies(),
             "area": campaign.contact.area,
             "forces": tuple(
                 sorted({*stated, *(force for name, force in known if name == surface.name)})

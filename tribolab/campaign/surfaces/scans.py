@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from tribolab.campaign.surfaces.contact import line_contact
+from tribolab.campaign.surfaces.contact import contact_of
 from tribolab.errors import AnalysisError, TribolabError
 from tribolab.qc.register import STATUSES
 from tribolab.qc.scan.sets import check_scan_set
@@ -219,7 +219,7 @@ def spectra_of_scans(
     removed |= {k: v for k, v in flat.attrs.items() if k == "form_radius_m"}
     tip = options.get("tip_radius")
     # by the theory of a contact
-    asked = q_low is not None or "q_low" in options or line_contact(surface) is not None
+    asked = q_low is not None or "q_low" in options or contact_of(surface) is not None
     try:
         if is_map:
             measured = psd_2d(flat)
