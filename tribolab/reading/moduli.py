@@ -78,6 +78,8 @@ def read_modulus_table(
     if table.shear:
         data[1:3] *= SHEAR_TO_TENSILE
         remarks.append("the shear modulus is multiplied by 3, as for an incompressible solid")
+    elif table.shear is None:
+        remarks.append("the names say neither shear nor tension: taken for moduli of tension")
     data = data[:, np.argsort(data[0], kind="stable")]
     return ModulusTable(data[0], data[1], data[2], float(np.median(data[3])), tuple(remarks))
 

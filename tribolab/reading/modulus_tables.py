@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.errors import ReadError, shown
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import known_words, names, normalise_label
 from tribolab.reading.raw.opening import damage_told, isolated
 from tribolab.reading.raw.source import check_regular
@@ -41,11 +42,14 @@ class Column(NamedTuple):
 
 
 class Table(NamedTuple):
-    """The columns by their meaning, the rows of numbers as text, and how these are written."""
+    """The columns by their meaning, the rows of numbers as text, and how these are written.
+
+    `shear` says whether the moduli are of shear, None if the names say neither shear nor tension.
+    """
 
     columns: dict[str, Column]
     rows: list[Row]
-    shear: bool
+    shear: bool | None
     decimal: str
 
 
@@ -88,7 +92,10 @@ def _columns(row: Row) -> dict[str, Column]:
     found: dict[str, Column] = {}
     for place, cell in enumerate(row):
         label, unit = _bare(cell)
-        if (concept := _concept(label)) and concept not in found:
+        concept = _concept(label)
+        if concept == "temperature" and unit and not converts(unit, "K"):
+            continue  # "t in s" next to "T in °C" (HAAKE RheoWin)
+        if concept and concept not in found:
             found[concept] = Column(place, cell.strip(), concept, unit)
     return found
 
@@ -165,7 +172,8 @@ def _table_below(rows: Sequence[Row], place: int, columns: dict[str, Column], de
     labels = " ".join(rows[place])
     gs = normalise_label(told.get("storage_modulus", told.get("complex_modulus", _NONE)).label)
     tensile = gs.startswith("e") or "tensile" in labels.lower()
-    shear = not tensile and (gs.startswith("g") or _SHEAR.search(labels) is not None)
+    shear = True if gs.startswith("g") or _SHEAR.search(labels) is not None else None
+    shear = False if tensile else shear
     return Table(told, [rows[n] for n in numeric], shear, dec)
 
 
@@ -197,6 +205,7 @@ def _text(path: Path, longest: int | None) -> Iterator[tuple[list[Row], str]]:
     if len(raw) > _LARGEST:
         raise ReadError(f"{path.name}: {path.stat().st_size >> 20} MB are no table of a modulus")
     lines = [_COMMENT.sub("", line) for line in _decoded(raw).splitlines()[:longest]]
+    lines = _with_names(lines, path.suffix.lower())
     for delimiter in ("\t", ";", ",", "  ", " "):
         if delimiter.isspace() and delimiter != "\t":  # columns are aligned
             rows = [re.split(rf"\s{{{len(delimiter)},}}", line.strip()) for line in lines]
@@ -207,6 +216,30 @@ def _text(path: Path, longest: int | None) -> Iterator[tuple[list[Row], str]]:
                 continue
         comma = delimiter != "," and any(map(_COMMA.search, lines))
         yield rows, "," if comma and not any(map(_POINT.search, lines)) else "."
+
+
+def _with_names(lines: list[str], suffix: str) -> list[str]:
+    """Put the names that two formats keep elsewhere above the numbers.
+
+    TA Universal Analysis (Q800) lists them as "Sig1<tab>Time (min)" and writes "StartOfData";
+    RepTate's .tts and .osc hold omega [rad/s], G' and G'' [Pa] by its manual.
+    """
+    if "StartOfData" in (bare := [line.strip() for line in lines]):
+        signals = [_SIGNAL.fullmatch(line) for line in bare]
+        names = "\t".join(found[1] for found in signals if found)
+        return [names, *lines[bare.index("StartOfData") + 1 :]]
+    if suffix in _REPTATE and len(lines) > 1 and _PARAMETERS.match(lines[0]):
+        cells = lines[1].split()
+        if len(cells) >= len(_OMEGA_MODULI) and all(map(_NUMBER.fullmatch, cells)):
+            rows = ["\t".join(line.split()) for line in lines[1:]]
+            return ["\t".join(_OMEGA_MODULI), *rows]
+    return lines
+
+
+_SIGNAL = re.compile(r"Sig\d+\s+(.+)")
+_PARAMETERS = re.compile(r"\s*\w+\s*=[^;=]*;")
+_REPTATE = (".tts", ".osc")
+_OMEGA_MODULI = ("omega [rad/s]", "G' [Pa]", "G'' [Pa]")
 
 
 def _apart(row: Row) -> Row:

@@ -68,10 +68,53 @@ def find_results_table(text: str) -> ResultsTable | None:
     return None
 
 
+def find_other_test(text: str) -> str:
+    r"""Name the test of a rheometer or DMA that a text holds and that has no friction; "" if none.
+
+    Parameters
+    ----------
+    text
+        The whole text, or its beginning.
+
+    Examples
+    --------
+    >>> find_other_test("Time [s];Compliance [1/Pa]\n0.1;2e-6\n")
+    'a creep test'
+    >>> find_other_test("Time [s];Shear rate [1/s];Friction force [N]\n0.1;1;2\n")
+    ''
+    """
+    lines = [line for line in text.splitlines() if line.strip()][:_HEAD_LINES]
+    for line in lines:
+        for between in (_CELLS, _COMMAS) if len(line) <= _LONGEST_LINE else ():
+            labels = [label.strip(' "') for label in between.split(_BLANKS.sub("  ", line))]
+            if any(map(_NUMBER.fullmatch, labels)):
+                continue
+            held = {name for name in _QUANTITIES if any(_is(label, name) for label in labels)}
+            if held & _OF_FRICTION:
+                return ""
+            for test, needed in _TESTS.items():
+                if needed <= held:
+                    return test
+    return ""
+
+
+# files: krlennon/mastercurves (creep, relaxation), bsaintmichel/read-rheol and
+# desdelgado/rheology-data-toolkit (flow)
+_TESTS = {
+    "a table of shift factors of a master curve": {"temperature", "shift_factor"},
+    "a creep test": {"time", "compliance"},
+    "a test of stress relaxation": {"time", "relaxation_modulus"},
+    "a flow curve": {"shear_rate", "shear_stress"},
+    "a flow curve of viscosity": {"shear_rate", "viscosity"},
+}
+_OF_FRICTION = {"friction_force", "friction_coefficient", "normal_stress"}
+_QUANTITIES = {*_OF_FRICTION, *(name for needed in _TESTS.values() for name in needed)}
+
+
 def _results(labels: list[str]) -> list[str]:
     """Return the names of results among the names of columns; none of a row of numbers."""
     parameters = [label for label in labels if _PARAMETER.fullmatch(label)]
-    if len(parameters) >= _FEWEST:
+    if len(set(parameters)) >= _FEWEST:  # "Pa" twice is a row of units
         return parameters
     peaks = [
         label for label in labels if role_of(label) == "extreme" and _is(label, "shear_stress")
@@ -82,9 +125,11 @@ def _results(labels: list[str]) -> list[str]:
 
 
 def _is(label: str, quantity: str) -> bool:
-    [word] = [word for word in known_words("run") if word.quantity == quantity]
+    words = [*known_words("run"), *known_words("rheology")]
+    [word] = [word for word in words if word.quantity == quantity]
     name = normalise_label(label)
-    return any(stem in name for stem in word.stems)
+    bare = normalise_label(re.split(r"\s*[\[(]", label)[0])
+    return bare in word.symbols or any(stem in name for stem in word.stems)
 
 
 def _rows(lines: list[str], between: re.Pattern[str], width: int) -> int:

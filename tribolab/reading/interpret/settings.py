@@ -72,7 +72,9 @@ _WANTED = {
     "rad/s": ("frequency", "rotation_speed"),
     "1/s": ("sampling_rate", "frequency", "rotation_speed"),
     "Hz": ("sampling_rate", "frequency", "rotation_speed"),
-    "N": ("load",),
+    "N": ("load", "zero"),
+    "N m": ("zero",),
+    "V": ("zero",),
 }
 
 

@@ -18,7 +18,7 @@ from tribolab.reading.raw.opening import MissingLibraryError, RefusedError
 from tribolab.reading.raw.readers import answers, installed_readers
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.raw.unpacked import ZIP, holds_arrays, is_workbook, unpacked
-from tribolab.reading.results_table import find_results_table
+from tribolab.reading.results_table import find_other_test, find_results_table
 from tribolab.reading.text.arrangements import holds_names
 
 HEAD = 1 << 20  # bytes looked at for preamble and header
@@ -236,7 +236,11 @@ def results_error(head: bytes, where: Path) -> ReadError | None:
     if is_surftest_results(head) or len(named_values(head)) >= _FEWEST:
         what = "the file holds the results of a roughness tester, but no profile"
         return ReadError(what, where=where, cure=cures.TESTER_RESULTS)
-    table = find_results_table(_text_of(head)) if b"\0" not in head[:4096] else None
+    text = _text_of(head) if b"\0" not in head[:4096] else ""
+    if test := find_other_test(text):
+        cure = "a run needs a friction force and a load, a scan heights"
+        return ReadError(f"the file holds {test}: no friction is in it", where=where, cure=cure)
+    table = find_results_table(text)
     if table is None:
         return None
     cure = "export the profiles, or the records over time"

@@ -100,7 +100,8 @@ def _unapplied(line: str) -> str:
             return ""  # what the lever makes of a weight is said behind it
         if named and ratio.one != ratio.other:
             return as_they_stand
-    if any(_multiplies(line, number) and number.value != 1 for number in numbers):
+    multiplies = any(_multiplies(line, number) and number.value != 1 for number in numbers)
+    if multiplies or (says("signal", line) and says("scaled_in_words", line)):
         return f"signals are read as they stand, and not as the file says: '{shown(line, 60)}'"
     single = single_number(line)
     if single is None or single[2] or single[1] == 1:
@@ -127,6 +128,8 @@ def _counts_contacts(line: str, number: Number) -> bool:
 def _multiplies(line: str, number: Number) -> bool:
     """Whether a line says to multiply or to divide by a number."""
     before = line[: number.start].rstrip().rpartition(" ")
+    if before[2] in ("x", "X", "×", "*"):  # "Friction force x 1.25", not "512 x 512"
+        return says("signal", before[0]) and not any(map(str.isdigit, before[0]))
     if before[2].lower() not in plain_words("times_by"):
         return False
     words = before[0].rpartition(".")[2] if not any(map(str.isdigit, before[0])) else ""
