@@ -14,7 +14,11 @@ from tribolab.reading.unknown.columns import evidence, text_evidence
 from tribolab.reading.unknown.columns.decide import decide
 from tribolab.reading.unknown.columns.evidence import RULES, Facts, Rule
 from tribolab.reading.unknown.columns.labels import bare_name, labelled
-from tribolab.reading.unknown.columns.text_evidence import by_legend, by_mean, by_stated_load
+from tribolab.reading.unknown.columns.text_evidence import (
+    legend_evidence,
+    mean_coefficient_evidence,
+    stated_load_evidence,
+)
 from tribolab.reading.unknown.layout.text_layout import Layout, find_layout
 from tribolab.reading.unknown.model import DraftColumn
 
@@ -22,7 +26,7 @@ N = 60
 T = np.arange(N) / 10
 TURNS = np.sign(np.sin(T))
 BACK_AND_FORTH = 5 * np.sin(T)
-TEXT_RULES = ("by_legend", "by_stated_load", "by_mean")
+TEXT_RULES = ("legend_evidence", "stated_load_evidence", "mean_coefficient_evidence")
 
 
 def decided(
@@ -41,30 +45,47 @@ def decided(
 
 def _rules(layout: Layout, without: str) -> Sequence[Rule]:
     by_text = {
-        "by_legend": by_legend(layout),
-        "by_stated_load": by_stated_load(layout),
-        "by_mean": by_mean(layout),
+        "legend_evidence": legend_evidence(layout),
+        "stated_load_evidence": stated_load_evidence(layout),
+        "mean_coefficient_evidence": mean_coefficient_evidence(layout),
     }
     general = [rule for rule in RULES if rule.__name__ != without]
     return [*general, *(rule for name, rule in by_text.items() if name != without)]
 
 
 CASES = {
-    "by_name": ("", {"Time [s]": T, "Friction force [N]": TURNS}),
-    "by_role": ("", {"Load setpoint [N]": T, "Load [N]": 5 + 0.1 * T, "Actual load [N]": 5 + T}),
-    "by_position": ("", {"Fx [N]": TURNS, "Load [N]": 5.0, "Fx [N] ": TURNS}),
-    "by_numbers": ("", {"t": BACK_AND_FORTH, "Fx [N]": TURNS}),
-    "by_size": ("", {"Fx [N]": 0.1 * TURNS, "Ft [N]": 0.0 * T, "Fr [N]": 3 * TURNS}),
-    "by_row_count": ("", {"n": np.arange(N), "Fx [N]": TURNS}),
-    "by_path": ("", {"Position [mm]": BACK_AND_FORTH, "Sliding distance [mm]": T}),
-    "by_motion": ("", {"LVDT [mm]": 0.1 * T, "Speed [mm/s]": 5.0, "Fx [N]": TURNS}),
-    "by_torque": ("", {"Torque [N m]": TURNS, "Load cell [N]": 5.0}),
-    "by_strokes": ("", {"Stroke [mm]": 5.0, "Frequency [Hz]": 2.0, "Fx [N]": TURNS}),
-    "by_axes": ("", {"Stage.X [mm]": 0 * T + 3, "Rotation speed [rpm]": 60.0, "Fx [N]": TURNS}),
-    "by_rotation": ("", {"Position [mm]": T**2, "Rotation speed [rpm]": 60.0, "Fx [N]": TURNS}),
-    "by_legend": ("Fx = vertical; Fz = tangential", {"Fx [N]": 5.0, "Fz [N]": TURNS}),
-    "by_stated_load": ("Load: 20 N", {"Force [N]": 6 * TURNS, "Speed [mm/s]": 5.0}),
-    "by_mean": ("Load: 20 N", {"Friction force [N]": TURNS, "Mean COF [-]": 0.05}),
+    "name_evidence": ("", {"Time [s]": T, "Friction force [N]": TURNS}),
+    "role_evidence": (
+        "",
+        {"Load setpoint [N]": T, "Load [N]": 5 + 0.1 * T, "Actual load [N]": 5 + T},
+    ),
+    "repeated_name_evidence": ("", {"Fx [N]": TURNS, "Load [N]": 5.0, "Fx [N] ": TURNS}),
+    "number_evidence": ("", {"t": BACK_AND_FORTH, "Fx [N]": TURNS}),
+    "size_evidence": ("", {"Fx [N]": 0.1 * TURNS, "Ft [N]": 0.0 * T, "Fr [N]": 3 * TURNS}),
+    "rectified_evidence": ("", {"Ff [N]": abs(TURNS), "Fx [N]": TURNS}),
+    "direction_evidence": (
+        "",
+        {"Y [mm]": 5 * np.cos(3 * T), "Fx [N]": np.sign(np.sin(3 * T))},
+    ),
+    "row_count_evidence": ("", {"n": np.arange(N), "Fx [N]": TURNS}),
+    "distance_evidence": ("", {"Position [mm]": BACK_AND_FORTH, "Sliding distance [mm]": T}),
+    "motion_evidence": ("", {"LVDT [mm]": 0.1 * T, "Speed [mm/s]": 5.0, "Fx [N]": TURNS}),
+    "torque_evidence": ("", {"Torque [N m]": TURNS, "Load cell [N]": 5.0}),
+    "stroke_setting_evidence": ("", {"Stroke [mm]": 5.0, "Frequency [Hz]": 2.0, "Fx [N]": TURNS}),
+    "stage_axis_evidence": (
+        "",
+        {"Stage.X [mm]": 0 * T + 3, "Rotation [rpm]": 60.0, "Fx [N]": TURNS},
+    ),
+    "rotation_evidence": (
+        "",
+        {"Position [mm]": T**2, "Rotation speed [rpm]": 60.0, "Fx [N]": TURNS},
+    ),
+    "legend_evidence": ("Fx = vertical; Fz = tangential", {"Fx [N]": 5.0, "Fz [N]": TURNS}),
+    "stated_load_evidence": ("Load: 20 N", {"Force [N]": 6 * TURNS, "Speed [mm/s]": 5.0}),
+    "mean_coefficient_evidence": (
+        "Load: 20 N",
+        {"Friction [N]": TURNS, "Mean COF [-]": 0.05},
+    ),
 }
 
 

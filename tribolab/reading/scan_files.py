@@ -28,7 +28,12 @@ from tribolab.reading.unknown.proposal.questions import (
     questions,
     understood_columns,
 )
-from tribolab.reading.unknown_run import DRAFTED, draft_of, lacks_distance
+from tribolab.reading.unknown_run import (
+    DRAFTED,
+    draft_of,
+    lacks_distance,
+    measures_other_things,
+)
 from tribolab.stamping import stamp
 
 _TRACE = ", trace "
@@ -190,6 +195,8 @@ def _drafted(file: Path, error: ReadError) -> Dialect | None:
         raise ReadError(
             draft.answer, where=file, cure=cures.unknown_instrument(file, cures.SURFACE)
         ) from error
+    if draft.kind == "table" and measures_other_things(draft):
+        raise ReadError(draft.answer, where=file) from error
     if draft.kind != "scan":
         return None
     understood = draft.understood

@@ -15,9 +15,11 @@ from tribolab.aliases import PathLike
 from tribolab.errors import LacksError, ReadError
 from tribolab.reading import cures
 from tribolab.reading.dialect.find import Dialect, Instrument, UnknownFileError
+from tribolab.reading.interpret.unit_texts import converts, measures_something
 from tribolab.reading.raw.source import read_unchanged
 from tribolab.reading.runs import read_run as runs
 from tribolab.reading.signals import Signals
+from tribolab.reading.text.cells import split_name
 from tribolab.reading.text.first_bytes import peek
 
 if TYPE_CHECKING:
@@ -138,6 +140,8 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     draft = draft_of(path)
     if draft is not None and draft.answer.startswith((HEIGHTS, COUNTED)):
         raise ReadError(draft.answer, where=path, cure=error.cure) from error
+    if draft is not None and draft.kind == "table" and measures_other_things(draft):
+        raise ReadError(draft.answer, where=path) from error
     if draft is None or draft.kind == "table":
         raise error
     draft, _ = leave_out_doubtful(draft)
@@ -154,6 +158,14 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
         raise ReadError(what, where=path, cure=cures.PROFILE) from error
     assert draft.dialect is not None  # only tables have none
     return draft.dialect
+
+
+def measures_other_things(draft: Draft) -> bool:
+    """Whether no column of a table is in a unit of length, and most are in others: kg, deg, N."""
+    columns = draft.understood.columns if draft.understood is not None else ()
+    units = [column.file_unit or split_name(column.label)[1] or "" for column in columns]
+    stated = [unit for unit in units if measures_something(unit)]
+    return len(stated) > len(units) / 2 and not any(converts(unit, "m") for unit in stated)
 
 
 def lacks_distance(draft: Draft) -> list[str]:

@@ -191,7 +191,8 @@ def _describe(
         check_target(target, force=force)
         draft = as_profile(draft)
     if draft.dialect is None:
-        fail(f"{files[0]}: no dialect is written: {draft.answer}", UNREADABLE, debug=False)
+        why = draft.answer or "the units of its columns are not stated; answer in a terminal"
+        fail(f"{files[0]}: no dialect is written: {why}", UNREADABLE, debug=False)
     written = save_draft(draft, target, force=force)
     for line in try_on(files, written, draft.kind):
         say(line)

@@ -45,9 +45,10 @@ _SAYS, _IN_CELLS = (  # the latter: "Dead weight,500,g"
     )
     for mark, number in (("", NUMBER), (",", NUMBER.replace(",", "")))
 )
-# TE 77: "Load (N),100,Frequency (Hz),10,Stroke (mm),15"
+# TE 77: "Load (N),100,Frequency (Hz),10,Stroke (mm),15"; "x-velocity [mm/s]:<tab>100<tab>..."
+# (liampond/EgbertsTribometer)
 _PAIR = re.compile(
-    r"(?:(?<=[;,\t])|^)\s*([^\W\d][^;,\t]{0,60}[\])]\s*[;,\t]\s*[-+\d.]+)(?=[;,\t\s]|$)"
+    r"(?:(?<=[;,\t])|^)\s*([^\W\d][^;,\t]{0,60}[\])]:?\s*[;,\t]\s*[-+\d.]+)(?=[;,\t\s]|$)"
 )
 _TEXT = re.compile(
     r"\W*(?P<key>[^\W\d][^:：=\t;]*?)(?:\"?\s*[:：=\t;]\s*|\s{2,80})[\"\[(]?(?P<text>[^\W\d].*)$"

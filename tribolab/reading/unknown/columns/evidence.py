@@ -21,6 +21,7 @@ from tribolab.reading.interpret.names import (
     is_stroke_frequency,
     is_stroke_length,
 )
+from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import Role, normalise_label, role_of
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
 from tribolab.reading.unknown.columns.unit_and_sign import FORCES, Bare
@@ -49,6 +50,9 @@ _MOTION = {"rotation_speed", "sliding_velocity", "position"}
 _DECIDING = FORCES | {"sliding_velocity", "rotation_speed"}
 _MIN_ROWS_FOR_ROTATION = 20
 _EXPLAINED_BY_ROTATION = 0.98  # share of a displacement's variance
+_MOVING = 0.2  # of the fastest: slower, friction is turning
+_MIN_TURNS = 2  # one might be chance
+_AGREES = 0.9  # mean product of the signs: 95 % of the rows agree
 _DIFFERENT = 0.01  # relative difference of two columns that hold different numbers
 
 
@@ -117,7 +121,7 @@ class Facts(NamedTuple):
 Rule = Callable[[Facts], Iterator[Evidence]]
 
 
-def by_name(facts: Facts) -> Iterator[Evidence]:
+def name_evidence(facts: Facts) -> Iterator[Evidence]:
     """Propose what a name stands for; a symbol or a whole term weighs more than a part of one."""
     for place, options in enumerate(facts.options):
         for rank, option in enumerate(facts.candidates(place) if options else ()):
@@ -125,21 +129,24 @@ def by_name(facts: Facts) -> Iterator[Evidence]:
             yield Evidence(place, option.quantity, weight, proposes=True)
 
 
-def by_role(facts: Facts) -> Iterator[Evidence]:
-    """Favour what was measured over what was set or worked out."""
+def role_evidence(facts: Facts) -> Iterator[Evidence]:
+    """Favour what was measured over what was set or worked out.
+
+    File: a Bruker UMT log with "Set Force" next to "Fz" (okilitive/CETR-tribometer).
+    """
     if facts.kind == "run":
         for place, (name, _, _) in enumerate(facts.bare):
             yield Evidence(place, "", _ROLE[role_of(name)])
 
 
-def by_position(facts: Facts) -> Iterator[Evidence]:
+def repeated_name_evidence(facts: Facts) -> Iterator[Evidence]:
     """Favour the later of two columns of one name: exporters repeat first what was plotted."""
     filled = (np.isfinite(facts.numbers) & (facts.numbers != 0)).any(axis=0)
     for place in range(len(facts.columns)):
         yield Evidence(place, "", 1e-4 * filled[place] + 1e-6 * place / len(facts.columns))
 
 
-def by_numbers(facts: Facts) -> Iterator[Evidence]:
+def number_evidence(facts: Facts) -> Iterator[Evidence]:
     """Weigh sizes and steps where a name may stand for two quantities."""
     has_units = any(unit is not None for _, unit, _ in facts.bare)
     for place, options in enumerate(facts.options):
@@ -157,8 +164,11 @@ def by_numbers(facts: Facts) -> Iterator[Evidence]:
             yield Evidence(place, "time", -_PREFERRED - NEAR, "it does not rise")
 
 
-def by_size(facts: Facts) -> Iterator[Evidence]:
-    """Favour the larger of two forces: a sensor across the motion shows only cross-talk."""
+def size_evidence(facts: Facts) -> Iterator[Evidence]:
+    """Favour the larger of two forces: a sensor across the motion shows only cross-talk.
+
+    File: six axes of a load cell, Fx 2.3 N along and Fy 0.3 N across (liampond/EgbertsTribometer).
+    """
     places = [p for p in facts.places("friction_force") if facts.is_named(p)]
     sizes = {place: typical_size(facts, place) for place in places}
     for place in places:
@@ -168,7 +178,39 @@ def by_size(facts: Facts) -> Iterator[Evidence]:
             yield Evidence(place, "friction_force", 0.3, "it is the larger force")
 
 
-def by_row_count(facts: Facts) -> Iterator[Evidence]:
+def rectified_evidence(facts: Facts) -> Iterator[Evidence]:
+    """Favour the force with a direction over its magnitude: Bruker UMT writes Fx and Ff."""
+    places = [p for p in facts.places("friction_force") if facts.is_named(p)]
+    for place in places:
+        signed = facts.numbers[:, place]
+        for other in places if (signed < 0).any() else ():
+            size = facts.numbers[:, other]
+            near = _DIFFERENT * np.nanmax(np.abs(signed))
+            if other != place and np.nanmax(np.abs(np.abs(signed) - size)) <= near:
+                yield Evidence(place, "friction_force", 0.3, "the other is its magnitude")
+
+
+def direction_evidence(facts: Facts) -> Iterator[Evidence]:
+    """Take a length for the position if friction turns whenever its rate does.
+
+    Friction opposes sliding. File: Bruker UMT, "Y" next to "Fx" (okilitive/CETR-tribometer).
+    """
+    if facts.kind != "run" or any(map(facts.places, _MOTION)):
+        return
+    for force in facts.places("friction_force"):
+        for place, (_, unit, _) in enumerate(facts.bare):
+            if facts.options[place] or unit is None or not converts(unit, "m"):
+                continue
+            rate = np.gradient(facts.numbers[:, place])
+            moving = np.abs(rate) > _MOVING * np.nanmax(np.abs(rate))
+            way, drag = np.sign(rate[moving]), np.sign(facts.numbers[moving, force])
+            turns = np.count_nonzero(np.diff(way))
+            if turns >= _MIN_TURNS and abs(np.mean(way * drag)) > _AGREES:
+                why = "the friction turns with it"
+                yield Evidence(place, "position", 0.0, why, proposes=True, sure=True)
+
+
+def row_count_evidence(facts: Facts) -> Iterator[Evidence]:
     """Rule out a column "n" that increases by one: it is the number of the row."""
     for place, (name, unit, _) in enumerate(facts.bare):
         steps = np.diff(facts.numbers[:, place])
@@ -176,7 +218,7 @@ def by_row_count(facts: Facts) -> Iterator[Evidence]:
             yield Evidence(place, "", RULED_OUT, "it counts the rows")
 
 
-def by_path(facts: Facts) -> Iterator[Evidence]:
+def distance_evidence(facts: Facts) -> Iterator[Evidence]:
     """Rule out a length that only grows next to a position that reverses: it is the distance."""
     steps = {
         place: np.diff(facts.numbers[np.isfinite(facts.numbers[:, place]), place])
@@ -188,7 +230,7 @@ def by_path(facts: Facts) -> Iterator[Evidence]:
                 yield Evidence(place, "", RULED_OUT, "it is the distance travelled")
 
 
-def by_motion(facts: Facts) -> Iterator[Evidence]:
+def motion_evidence(facts: Facts) -> Iterator[Evidence]:
     """Take a displacement sensor for one across the motion if another column gives the motion."""
     if not any(facts.any_named(name) for name in _MOTION):
         return
@@ -200,7 +242,7 @@ def by_motion(facts: Facts) -> Iterator[Evidence]:
             yield Evidence(place, "height_displacement", 0.0, why, sure=True)
 
 
-def by_torque(facts: Facts) -> Iterator[Evidence]:
+def torque_evidence(facts: Facts) -> Iterator[Evidence]:
     """Take a torque for the friction, and no force across the motion nor an extreme next to it."""
     torque = torque_of(facts.columns) is not None
     ratio = facts.any_named("friction_coefficient")
@@ -220,23 +262,29 @@ def by_torque(facts: Facts) -> Iterator[Evidence]:
             yield Evidence(place, "", RULED_OUT)
 
 
-def by_strokes(facts: Facts) -> Iterator[Evidence]:
-    """Rule out stroke lengths as positions, and stroke frequencies as rotation speeds."""
+def stroke_setting_evidence(facts: Facts) -> Iterator[Evidence]:
+    """Rule out stroke lengths as positions, and stroke frequencies as rotation speeds.
+
+    File: an Optimol SRV export, which repeats both in each row.
+    """
     lengths = {place for place, (name, _, _) in enumerate(facts.bare) if is_stroke_length(name)}
     often = {p for p, (name, unit, _) in enumerate(facts.bare) if is_stroke_frequency(name, unit)}
     for place in lengths | often if lengths and often else ():
         yield Evidence(place, "", RULED_OUT)
 
 
-def by_axes(facts: Facts) -> Iterator[Evidence]:
-    """Rule out the axes of a machine's stage as sliding positions if something rotates."""
+def stage_axis_evidence(facts: Facts) -> Iterator[Evidence]:
+    """Rule out the axes of a machine's stage as sliding positions if something rotates.
+
+    File: Rtec MFT, "XYZ.X Position" (Dichimanaym/Tribometer-Data-Processing).
+    """
     if facts.places("rotation_speed") or angle_of(facts.columns) is not None:
         for place in facts.places("position"):
             if is_axis(facts.bare[place][0]):
                 yield Evidence(place, "position", RULED_OUT)
 
 
-def by_rotation(facts: Facts) -> Iterator[Evidence]:
+def rotation_evidence(facts: Facts) -> Iterator[Evidence]:
     """Rule out a length next to a rotation speed that does not grow as the rotation says."""
     turning, ways = facts.places("rotation_speed"), facts.places("position")
     turning = [place for place in turning if facts.bare[place][1] is not None]
@@ -293,16 +341,18 @@ def is_contested(facts: Facts, place: int, best: int, name: str) -> bool:
 
 
 RULES: tuple[Rule, ...] = (
-    by_name,
-    by_role,
-    by_position,
-    by_numbers,
-    by_size,
-    by_row_count,
-    by_path,
-    by_motion,
-    by_torque,
-    by_strokes,
-    by_axes,
-    by_rotation,
+    name_evidence,
+    role_evidence,
+    repeated_name_evidence,
+    number_evidence,
+    size_evidence,
+    rectified_evidence,
+    direction_evidence,
+    row_count_evidence,
+    distance_evidence,
+    motion_evidence,
+    torque_evidence,
+    stroke_setting_evidence,
+    stage_axis_evidence,
+    rotation_evidence,
 )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from tribolab.reading.interpret.names import Match, is_date, matches
@@ -12,12 +14,19 @@ from tribolab.reading.unknown.columns.epochs import counted_from
 from tribolab.reading.unknown.columns.evidence import RULES, Facts
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.columns.proven import restrict_to_proofs
-from tribolab.reading.unknown.columns.text_evidence import by_legend, by_mean, by_stated_load
+from tribolab.reading.unknown.columns.text_evidence import (
+    legend_evidence,
+    mean_coefficient_evidence,
+    stated_load_evidence,
+)
 from tribolab.reading.unknown.columns.unit_and_sign import Bare
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Kind
 
+# "Distance (m), COF, Wear depth (um)" is a run, although wear is a height
+_OF_RUN = {"time", "friction_force", "friction_coefficient", "normal_force", "sliding_velocity"}
 _RISES = 0.9  # share of the steps from row to row; a clock may start again
+_FIRST_WORD = re.compile(r"[\W_]+")
 _BY_UNIT = 0.6  # score of a name that says nothing, if its unit does
 
 
@@ -27,7 +36,7 @@ def says_something(columns: list[DraftColumn]) -> bool:
     return any(unit is not None or matches(name, unit) for name, unit in bare)
 
 
-def by_name(
+def decide_by_name(
     layout: Layout,
     columns: list[DraftColumn],
     numbers: np.ndarray,
@@ -54,17 +63,23 @@ def by_name(
     run = restrict_to_proofs(_timed(bare, run, numbers), proofs, numbers)
     best = {options[0].quantity for options in run if options}
     profile = {options[0].quantity for options in scan if options}
-    if not best & {"time", "friction_force", "normal_force", "sliding_velocity"} and (
-        {"x", "height"} <= profile or (placed and "height" in profile)
-    ):
+    if not best & _OF_RUN and ({"x", "height"} <= profile or (placed and "height" in profile)):
         return "scan", decide(Facts(columns, bare, scan, numbers, "scan"), RULES)
     kind: Kind = "run" if best & ({"time"} | SIGNALS) else "table"
-    rules = (*RULES, by_legend(layout), by_stated_load(layout), by_mean(layout))
+    rules = (
+        *RULES,
+        legend_evidence(layout),
+        stated_load_evidence(layout),
+        mean_coefficient_evidence(layout),
+    )
     return kind, decide(Facts(columns, bare, run, numbers, kind), rules)
 
 
 def _timed(bare: list[Bare], run: list[list[Match]], numbers: np.ndarray) -> list[list[Match]]:
-    """Take the only rising column in a unit of time for time if no name says which column it is."""
+    """Take rising columns in a unit of time for time if no name says which column it is.
+
+    The names of several clocks in one table begin with t: "t_force (s)", "t_motor (s)".
+    """
     if any(options and options[0].quantity == "time" for options in run):
         return run
     for place, (name, unit, _) in enumerate(bare):
@@ -78,7 +93,8 @@ def _timed(bare: list[Bare], run: list[list[Match]], numbers: np.ndarray) -> lis
         if unit is not None and not run[place] and converts(unit, "s")
         if (np.diff(numbers[:, place]) >= 0).mean() > _RISES
     ]
-    if len(rising) != 1:
+    clocks = {p for p in rising if _FIRST_WORD.split(bare[p][0].lower())[0] == "t"}
+    if not clocks and len(rising) != 1:
         return run
-    guess = [Match("time", _BY_UNIT, None)]
-    return [guess if place == rising[0] else options for place, options in enumerate(run)]
+    taken = [Match("time", 1.0 if clocks else _BY_UNIT, None)]
+    return [taken if p in (clocks or rising) else options for p, options in enumerate(run)]

@@ -45,7 +45,7 @@ _MOST_OF_SLED = 5.0  # times its weight: no dry contact has a higher coefficient
 _READS_LOAD = (0.75, 1.33)  # times the stated load: a reading of the load itself
 
 
-def by_legend(layout: Layout) -> Rule:
+def legend_evidence(layout: Layout) -> Rule:
     """Return the rule that a text names the axes of a sensor: "Fx = vertical"."""
 
     def rule(facts: Facts) -> Iterator[Evidence]:
@@ -109,7 +109,7 @@ def _explained_force(about: str) -> str:
     return options[0].quantity if options and options[0].quantity in kinds else ""
 
 
-def by_stated_load(layout: Layout) -> Rule:
+def stated_load_evidence(layout: Layout) -> Rule:
     """Return the rule that a cell reading the stated load presses, and any other cell drags."""
 
     def rule(facts: Facts) -> Iterator[Evidence]:
@@ -188,7 +188,7 @@ def _share_of_load(facts: Facts, place: int, load: Amount) -> float:
     return float(np.median(read[read > _LOADED * most])) / stated if most > 0 else 0.0
 
 
-def by_mean(layout: Layout) -> Rule:
+def mean_coefficient_evidence(layout: Layout) -> Rule:
     """Return the rule that the instrument's mean coefficient adds nothing to forces in the file."""
 
     def rule(facts: Facts) -> Iterator[Evidence]:

@@ -23,7 +23,7 @@ from tribolab.reading.unknown.columns.heights import (
     side_by_side,
 )
 from tribolab.reading.unknown.columns.labels import bare_name, labelled
-from tribolab.reading.unknown.columns.names import by_name, says_something
+from tribolab.reading.unknown.columns.names import decide_by_name, says_something
 from tribolab.reading.unknown.columns.proven import add_proven_units, proven
 from tribolab.reading.unknown.columns.results_table import are_points
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
@@ -126,7 +126,9 @@ def _interpret(layout: Layout, cells: Cells, spacing: _Spacing) -> _Interpretati
     if profile is not None:
         return profile
     if says_something(columns):
-        kind, columns = by_name(layout, columns, numbers, proofs, placed=spacing.is_stated)
+        kind, columns = decide_by_name(layout, columns, numbers, proofs, placed=spacing.is_stated)
+        if kind == "table" and find_calibrations(layout, columns):  # volts, and what one is worth
+            kind = "run"
         return _Interpretation(kind, columns, pitch=spacing.density, pitched=spacing.is_stated)
     # late: starting stays quick
     from tribolab.reading.unknown.columns.behaviour import by_behaviour
@@ -273,7 +275,8 @@ def _missing_words(cells: Cells, columns: Sequence[DraftColumn]) -> tuple[str, .
 
 def _kind_by_columns(kind: Kind, layout: Layout, columns: list[DraftColumn]) -> Kind:
     """Return what a file is, given its columns: time alone is a run if a force can be derived."""
-    if kind == "table" or any(c.used and c.quantity != "time" for c in columns):
+    known = (c.quantity for c in columns if c.used or c.fill_in)  # its unit may be asked for
+    if kind == "table" or any(name not in (None, "time") for name in known):
         return kind
     timed = any(c.quantity == "time" and c.used for c in columns)
     made = torque_of(columns) is not None or angle_of(columns) is not None

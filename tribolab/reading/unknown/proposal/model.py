@@ -62,14 +62,17 @@ class Drafted:
 
     @cached_property
     def dialect(self) -> Dialect | None:
-        """The dialect; None for a table.
+        """The dialect; None for a table, and if no column can be used before its unit is given.
 
         Raises
         ------
         ReadError
             If no dialect can describe the file.
         """
-        return None if self._described is None else dialect_of(self.name, self._described)
+        found = self._described
+        if found is None or not (found.columns or found.follows.symbols):
+            return None
+        return dialect_of(self.name, found)
 
     @cached_property
     def toml(self) -> str:
