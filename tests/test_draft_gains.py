@@ -235,7 +235,11 @@ def test_a_gain_that_is_stated_before_the_name_is_used(shared_data):
 
 
 @pytest.mark.parametrize(
-    "said", ["Kraft mit 1,25 multiplizieren", "forces: divide by 2.5", "Load scaled with 3"]
+    "said",
+    [
+        *("Kraft mit 1,25 multiplizieren", "forces: divide by 2.5", "Load scaled with 3"),
+        *("Friction force x 1.25", "All forces to be doubled", "Kräfte in Zehntel N"),
+    ],
 )
 def test_a_sentence_that_multiplies_is_asked_about(said, tmp_path):
     rows = "\n".join(f"{0.1 * n:.1f},0.3,1,2" for n in range(50))
@@ -252,3 +256,38 @@ def test_declared_records_are_read_to_their_last_digit(name, start, shared_data)
     np.testing.assert_allclose(np.diff(run.time), 1e-3, atol=3e-7)
     found = tl.friction_coefficient(run, tl.find_segments(run))
     assert float(abs(found.friction_coefficient).mean()) == pytest.approx(0.25, abs=0.06)
+
+
+@pytest.mark.parametrize("said", ["Image 512 x 512", "Friction test, 100 double strokes"])
+def test_a_size_or_a_count_multiplies_nothing(said, tmp_path):
+    rows = "\n".join(f"{0.1 * n:.1f},0.3,1,2" for n in range(50))
+    head = f"{said}\nTime [s],Friction force [N],Normal force [N],Velocity [mm/s]\n"
+    (tmp_path / "run.csv").write_text(head + rows + "\n", "utf-8")
+    assert tl.read(tmp_path / "run.csv").friction_force[0] == 0.3
+
+
+def test_a_zero_without_a_colon_is_asked_about(tmp_path):
+    rows = "\n".join(f"{0.1 * n:.1f},0.3,1,2" for n in range(50))
+    head = "Offset Fx 0.5 N\nTime [s],Fx [N],Fz [N],Velocity [mm/s]\n"
+    (tmp_path / "run.csv").write_text(head + rows + "\n", "utf-8")
+    with pytest.raises(GuessedError, match="Offset Fx 0.5 N"):
+        tl.read(tmp_path / "run.csv")
+
+
+def test_volts_with_a_stated_factor_and_rate_are_a_run(tmp_path):
+    head = "Sampling rate: 100 Hz\nFriction calibration: 4 N/V\nLoad: 12 N\nSpeed: 20 mm/s\n"
+    (tmp_path / "daq.txt").write_text(f"{head}\nFriction (V)\n" + "1.0\n0.9\n1.1\n" * 30)
+    assert tl.read(tmp_path / "daq.txt").friction_force[0] == pytest.approx(4.0)
+
+
+def test_a_table_of_other_things_is_called_that(tmp_path):
+    (tmp_path / "plane.csv").write_text("mass,angle,pull\nkg,deg,N\n0.5,5,1.9\n0.5,10,2.3\n" * 1)
+    with pytest.raises(TribolabError, match="a table of mass, angle, pull"):
+        file_lines(tmp_path / "plane.csv")
+
+
+def test_forces_without_units_are_a_run_whose_units_are_asked_for(tmp_path):
+    rows = "".join(f"{n % 7 - 3}\t{-20 - n % 3}\t{n * 10}\n" for n in range(60))
+    (tmp_path / "axes.txt").write_text(f"Sampling rate: 100 Hz\nFx\tFz\tx-Position\n{rows}")
+    with pytest.raises(GuessedError, match="column 1 'Fx'.*in which unit"):
+        tl.read(tmp_path / "axes.txt")

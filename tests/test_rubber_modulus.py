@@ -303,3 +303,58 @@ def test_info_says_that_a_modulus_is_one(shared_data):
 def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(ReadError, match="nowhere.csv"):
         read_modulus(tmp_path / "nowhere.csv")
+
+
+LAYOUTS = {  # of HAAKE RheoWin, TA Q800 and RepTate, after files in public repositories
+    "rheowin.csv": (
+        ',t in s,f in Hz,G\' in Pa,"G"" in Pa",T in °C\n',
+        "1|{n},{n}00,{hz},17130,1299,37\n",
+        (2 * np.pi, 3 * 17130, 37),
+    ),
+    "q800.txt": (
+        "Module\tDMA Multi-Frequency - Strain\nNsig\t4\nSig1\tTime (min)\nSig2\tFrequency (Hz)\n"
+        "Sig3\tStorage Modulus (MPa)\nSig4\tLoss Modulus (MPa)\nStartOfData\n",
+        "{n}\t{hz}\t1500\t80\n",
+        (2 * np.pi, 1.5e9, np.nan),
+    ),
+    "pi.tts": ("Mw=94.9;T=-35;chem=PI\n", "{hz} 500 20\n", (1, 1500, np.nan)),
+    "units.osc": (
+        "T=0;Mw=94.9;\nFreq\tG'\tG\"\nrad/s\tPa\tPa\n",
+        "{hz}\t500\t20\n",
+        (1, 1500, np.nan),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", LAYOUTS)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_names_that_stand_elsewhere_or_twice_are_found(name, encoding, tmp_path):
+    above, row, (scale, storage, celsius) = LAYOUTS[name]
+    rows = "".join(row.format(n=n, hz=2**n) for n in range(1, 9))
+    (tmp_path / name).write_text(above + rows, encoding=encoding)
+    read = read_modulus_table(tmp_path / name)
+    np.testing.assert_allclose(read.angular_frequency, scale * 2.0 ** np.arange(1, 9))
+    np.testing.assert_allclose(read.storage, storage)
+    np.testing.assert_equal(read.temperature, celsius)
+
+
+@pytest.mark.parametrize(
+    ("columns", "test"),
+    [
+        ("Time [s],Compliance [1/Pa]", "a creep test"),
+        ("Time [s],Relaxation Modulus [Pa]", "a test of stress relaxation"),
+        ("Shear Rate [1/s],Shear Stress [Pa]", "a flow curve"),
+        ("T (°C),aT", "shift factors of a master curve"),
+        (
+            "Time (min),Temperature (°C),Storage Modulus (MPa),Loss Modulus (MPa),Frequency (Hz)",
+            "1 Hz",
+        ),
+    ],
+)
+def test_another_test_of_a_rheometer_is_named(columns, test, tmp_path):
+    file = tmp_path / "a.csv"
+    wide = columns.count(",") - 1
+    file.write_text(f"{columns}\n" + "".join(f"{n},{n + 1}{',1' * wide}\n" for n in range(1, 30)))
+    result = CliRunner().invoke(cli.app, ["info", str(file)])
+    assert result.exit_code == 3
+    assert test in result.output

@@ -28,6 +28,7 @@ from tribolab.reading.unknown.columns.proven import add_proven_units, proven
 from tribolab.reading.unknown.columns.results_table import are_points
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
 from tribolab.reading.unknown.columns.sign_against_motion import against_motion
+from tribolab.reading.unknown.columns.unit_and_sign import FORCES
 from tribolab.reading.unknown.columns.unloaded_start import with_zero
 from tribolab.reading.unknown.derivations.calibrations import find_calibrations
 from tribolab.reading.unknown.derivations.distance_sensor import of_sensor
@@ -275,8 +276,9 @@ def _missing_words(cells: Cells, columns: Sequence[DraftColumn]) -> tuple[str, .
 
 def _kind_by_columns(kind: Kind, layout: Layout, columns: list[DraftColumn]) -> Kind:
     """Return what a file is, given its columns: time alone is a run if a force can be derived."""
-    known = (c.quantity for c in columns if c.used or c.fill_in)  # its unit may be asked for
-    if kind == "table" or any(name not in (None, "time") for name in known):
+    if kind == "table" or any(c.used and c.quantity != "time" for c in columns):
+        return kind
+    if any(c.fill_in and c.quantity in FORCES for c in columns):  # whose unit is asked for
         return kind
     timed = any(c.quantity == "time" and c.used for c in columns)
     made = torque_of(columns) is not None or angle_of(columns) is not None
