@@ -18,7 +18,7 @@ from tribolab.lubrication.viscosity import liquid_viscosity
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.records.joint_record import JointRecord
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
-from tribolab.report.figures.models import draw_model, plan_model_figures
+from tribolab.report.live.joint import joint_specs
 from tribolab.report.results import write_report
 from tribolab.rig import Protocol, Rig, simulate_campaign
 
@@ -135,10 +135,9 @@ def test_tables_report_page_and_figure_say_the_same(outcome):
     page = (folder / "report.html").read_text("utf-8")
     assert "All loads in one fit" in page and record.parameters[0].words in page
     assert 'id="model-joint-sb-s_glycerol"' in page
-    (planned,) = (what for what in plan_model_figures(outcome, [], [record]))
-    drawn = draw_model(planned, folder)
-    assert drawn.kind == "joint" and "at 2 loads" in drawn.alt
-    assert set(tribolab.plot.figure_data(drawn.figure).series) == {"31 N", "211 N"}
+    (spec,) = joint_specs([record], ["Sb-S"], folder)
+    assert "2 curves" in spec.alt
+    assert {series.label for series in spec.series} == {"31 N", "211 N"}
 
 
 @pytest.mark.slow

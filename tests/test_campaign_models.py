@@ -29,7 +29,7 @@ from tribolab.records.model_words import is_described, judgement, stress_interva
 from tribolab.records.part_records import ModelRecord
 from tribolab.records.parts import ModelOutcome
 from tribolab.report.document.models import ModelRow
-from tribolab.report.figures.models import draw_model, plan_model_figures
+from tribolab.report.live.models import model_specs
 from tribolab.report.results import write_report
 from tribolab.rig import Protocol, Rig, simulate_campaign
 from tribolab.studies import xu2026
@@ -169,9 +169,9 @@ def test_the_report_has_the_model_in_tables_json_page_and_words(outcome):
     assert (proof.abs() < 1e-6).all(axis=None)
     assert (points.iterations > 0).all()
     assert (points.cells == 160).all()
-    kinds = [figure["kind"] for figure in report["model_figures"]]
-    first = ["curve", "joint", "shear_stress"]
-    assert kinds == [*first, "effect", "factors", "profiles", "sensitivity"]
+    files = {figure["file"] for figure in report["model_figures"]}
+    names = {"joint-sb-s_glycerol", "shear_stress", "factors", "sensitivity", "sb-s_glycerol"}
+    assert {f"figures/model_{name}.svg" for name in names} <= files
     page = html.unescape((folder / "report.html").read_text("utf-8"))
     assert "Model beside measurement" in page
     said = record["fit"]["judgement"].split(";")[0]
@@ -371,7 +371,9 @@ def test_friction_that_helps_the_motion_is_never_drawn_as_a_model(tmp_path):
     assert not fit.friction_coefficient_solid.any()
     figure = tribolab.plot.mixed_curve(fit, curve, surface="Sb-S")
     drawn = tribolab.plot.figure_data(figure)
-    assert drawn.series.unique().tolist() == ["viscous", "measured", "measured less viscous part"]
+    assert drawn.series.unique().tolist() == [
+        "viscous part", "measured", "measured minus viscous part"
+    ]  # fmt: skip
 
     write_netcdf(fit, tmp_path / "m.nc", group="fit")
     write_netcdf(curve, tmp_path / "m.nc", group="curve")
@@ -382,15 +384,10 @@ def test_friction_that_helps_the_motion_is_never_drawn_as_a_model(tmp_path):
         for load in (31.0, 91.0)
     ]
     rows = [ModelRow(model=one, fit={"shear_stress_Pa": -1.0}, curve=()) for one in models]
-    outcome = SimpleNamespace(curves=(), folder=tmp_path)
-    planned = {one.name: draw_model(one, tmp_path) for one in plan_model_figures(outcome, rows)}
-    assert set(planned) == {"m31", "m91", "model_surface_1"}  # and no figure of shear stresses
-    assert "31 N: no shear stress describes this curve" in planned["m31"].caption
-    assert "dotted: the model's viscous part" in planned["m31"].caption
-    assert "full:" not in planned["m31"].caption
-    assert "no model at 31 N and 91 N" in planned["model_surface_1"].caption
-    loads = tribolab.plot.figure_data(planned["model_surface_1"].figure)
-    assert not loads.series.str.startswith("model").any()
+    (spec,) = (one for one in model_specs(rows, ["Sb-S"], tmp_path) if one.series)
+    assert "No shear stress describes this curve" in spec.note and "full:" not in spec.note
+    assert "dotted: the model's viscous part" in spec.note and spec.loads == [31.0, 91.0]
+    assert not any(series.label == "model" for series in spec.series)
 
 
 def test_no_bar_of_a_shear_stress_goes_below_zero_and_the_numbers_are_kept():

@@ -16,10 +16,9 @@ from reporting import SPEEDS, made_curve, made_run
 import tribolab as tl
 from tribolab import plot
 from tribolab.errors import AnalysisError
-from tribolab.figures.look.style import DOUBLE_MM, SINGLE_MM, surface_styles
+from tribolab.figures.colours import surface_colours
+from tribolab.figures.look.style import DOUBLE_MM, SINGLE_MM
 from tribolab.figures.signals import main_signal
-from tribolab.reading.netcdf.netcdf import write_netcdf
-from tribolab.report.figures.sliding import Shown, SlipFigure, draw_sliding
 from tribolab.stamping import stamp
 
 
@@ -214,7 +213,7 @@ def test_strokes_have_a_panel_per_speed_slowest_first(made):
 def test_many_strokes_of_one_speed_are_thinned_and_the_panel_says_so():
     parts = made_run([1e-3] * 20, samples=60)
     words = texts(plot.strokes(*parts))
-    assert "1 mm/s (12 of 40)" in words
+    assert any(text.startswith("1 mm/s (12 of 40)") for text in words)
 
 
 def test_unknown_speeds_number_the_segments(made):
@@ -277,10 +276,9 @@ def test_stribeck_leaves_nan_out_and_refuses_nothing_at_all():
         plot.stribeck(curve)
 
 
-def test_surfaces_keep_colour_and_marker_and_dry_is_dashed():
-    named = surface_styles(["Smooth", "Sb-S", "Sb-R", "a", "b"])
-    assert len({look.colour for look in named.values()}) == 5
-    assert len({look.marker for look in named.values()}) == 5
+def test_surfaces_keep_their_colour_and_dry_is_dashed():
+    named = surface_colours(["Smooth", "Sb-S", "Sb-R", "a", "b"])
+    assert len(set(named.values())) == 5
     wet, dry = made_curve(surface="Sb-S"), made_curve(surface="Sb-S", medium="dry", mu=1)
     lines = {
         line.get_label(): line
@@ -342,7 +340,7 @@ def test_traces_are_shifted_by_round_numbers_that_leave_them_apart():
     figure = plot.slip_traces(stack)
     drawn = dict(list(plot.figure_data(figure).groupby("series")))
     assert drawn["higher"]["shift"].eq(0).all()
-    words = " ".join(text.get_text() for text in figure.axes[0].texts)
+    words = " ".join(text.get_text() for text in figure.axes[0].get_legend().get_texts())
     top = -np.inf
     for name, shape in (("higher", 3.21), ("lower", 0.0), ("again", 0.0)):
         curve, shift = drawn[name], drawn[name]["shift"].iloc[0]
@@ -384,22 +382,6 @@ def test_long_names_beside_stick_slip_stay_on_the_paper():
         for text in drawn:
             box = text.get_window_extent(canvas.get_renderer())
             assert box.x0 >= 0 and box.x1 <= figure.bbox.x1
-
-
-def test_the_caption_of_spectra_names_only_what_is_marked(tmp_path):
-    run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
-    slip = tl.stick_slip(run, tl.find_segments(run))
-    calm = slip.assign(dominant_frequency=slip.dominant_frequency * np.nan)
-
-    def caption(slip, name):
-        write_netcdf(slip, tmp_path / name, group="stick_slip")
-        shown = (Shown("dry", name, 0),)
-        return draw_sliding(
-            SlipFigure("spectra", "s", "Spectra", "Of", (), shown), tmp_path
-        ).caption
-
-    assert "Blue: the strongest oscillation." in caption(slip, "sawn.nc")
-    assert "Blue" not in caption(calm, "calm.nc") and "mains" not in caption(calm, "quiet.nc")
 
 
 @pytest.mark.slow

@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from matplotlib.ticker import LogLocator
 
-from tribolab.figures.look.decades import SmallTicks, power_of_ten
-from tribolab.figures.look.frame import logarithmic
-from tribolab.figures.look.guests import one_panel
+from tribolab.figures.look.decades import SmallTicks, few_ticks, power_of_ten
+from tribolab.figures.look.style import new_figure, paper_style
 from tribolab.plot import svg
 
 
@@ -19,9 +18,12 @@ def test_a_decade_is_plain_text(value, text):
 
 
 def panel(low, high, small=True):
-    with one_panel(None) as (figure, axes):
+    with paper_style():
+        figure = new_figure(86, 60)
+        axes = figure.add_subplot(xscale="log", yscale="log")
         axes.plot([low, high], [low, high])
-        logarithmic(axes, "x", "y", small=small)
+        for axis in (axes.xaxis, axes.yaxis):
+            few_ticks(axis, low, high, small=small)
         axes.set_xlim(low, high)
     return figure, axes
 

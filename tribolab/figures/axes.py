@@ -113,6 +113,9 @@ def _known(value: object) -> float:
 
 
 def _scale(axis: Axis, values: Iterator[float], *, level: bool) -> Scale:
+    if axis.view is not None:
+        low, high = (math.log10(end) if axis.log else end for end in axis.view)
+        return Scale(low, high, axis.log)
     ends = _ends([*values, *axis.include], axis)
     if not ends:
         return Scale(0.0, 1.0, axis.log)

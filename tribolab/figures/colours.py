@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
+from tribolab.figures.spec import Style
 from tribolab.words import is_dry
 
 # Okabe and Ito's palette, which people with any common colour deficiency tell apart
@@ -50,7 +51,7 @@ def shade_of(rank: int, count: int) -> float:
     return round(_DARKEST + (_LIGHTEST - _DARKEST) * rank / (count - 1), 3)
 
 
-def medium_styles(media: Iterable[str]) -> Mapping[str, str]:
+def medium_styles(media: Iterable[str]) -> dict[str, Style]:
     """Return a line style for each medium: dashed or dotted if it is dry.
 
     Examples
@@ -58,9 +59,12 @@ def medium_styles(media: Iterable[str]) -> Mapping[str, str]:
     >>> medium_styles(["water", "oil", "dry"])
     {'water': 'line', 'oil': 'dashdot', 'dry': 'dashed'}
     """
-    names = list(dict.fromkeys(media))
-    wet = [name for name in names if not is_dry(name)]
-    return {
-        name: "dashed" if is_dry(name) else ("line", "dashdot")[wet.index(name) % 2]
-        for name in names
+    chosen: dict[str, Style] = {}
+    styles: dict[bool, tuple[Style, ...]] = {
+        True: ("dashed",),
+        False: ("line", "dashdot", "longdash"),
     }
+    for name in dict.fromkeys(media):
+        own = styles[is_dry(name)]
+        chosen[name] = own[sum(is_dry(name) == is_dry(other) for other in chosen) % len(own)]
+    return chosen

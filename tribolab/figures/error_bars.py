@@ -6,7 +6,6 @@ from typing import Literal
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from scipy import special
 
 from tribolab.errors import AnalysisError, shown
@@ -53,28 +52,3 @@ def error_bar(data: xr.Dataset, name: str, kind: ErrorBars = "U95") -> np.ndarra
     if kind == "U95" and f"{name}_sem" in data:
         return COVERAGE * np.atleast_1d(np.asarray(data[f"{name}_sem"], float))
     return np.full(np.atleast_1d(data[name]).shape, np.nan)
-
-
-def draw_error_bars(
-    axes: Axes, x: np.ndarray, y: np.ndarray, size: np.ndarray, colour: str, kind: ErrorBars = "U95"
-) -> None:
-    """Draw error bars: narrow with caps for U95, wide and pale for the standard deviation.
-
-    Parameters
-    ----------
-    axes
-        Where to draw.
-    x, y, size
-        The points and the half lengths of their bars (point); a bar that is NaN is not drawn.
-    colour
-        Of the bars.
-    kind
-        As for `error_bar`.
-    """
-    known = np.isfinite(size)
-    width, alpha, cap = {"U95": (0.8, 1.0, 1.8), "std": (2.4, 0.28, 0.0)}[kind]
-    if known.any():
-        axes.errorbar(
-            x[known], y[known], size[known], fmt="none", ecolor=colour, elinewidth=width,
-            alpha=alpha, capsize=cap, capthick=0.8, zorder=2 + alpha,
-        )  # fmt: skip

@@ -104,7 +104,7 @@ def _known_characters() -> frozenset[int]:
     return frozenset(get_font(findfont("DejaVu Sans")).get_charmap())
 
 
-def plain(text: object) -> str:
+def plain(text: object, longest: int = 40) -> str:
     r"""Make a name from a user's file safe to draw: no mathtext, no unknown letters, one line.
 
     A letter that the figures' font does not have is drawn as a box; the page beside the figure
@@ -117,5 +117,5 @@ def plain(text: object) -> str:
     """
     line = "".join(c if c.isprintable() else " " for c in str(text))
     line = "".join(c if ord(c) in _known_characters() else "□" for c in line)
-    line = line if len(line) <= 40 else line[:38] + "…"
+    line = line if len(line) <= longest else line[: longest - 2] + "…"
     return line.replace("$", r"\$")

@@ -26,7 +26,7 @@ _PARAMETERS = """    title
         its numbers."""
 _ONE = """ax
         Axes to draw in, which keep their look; without them a figure is made. The legend includes
-        what they show already; call ``ax.legend()`` again after drawing more."""
+        what they show already; make it again after drawing more."""
 _SEVERAL = """axes
         Axes to draw in, one for each panel; they keep their look. Without them a figure is made."""
 

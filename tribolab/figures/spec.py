@@ -16,7 +16,7 @@ import numpy as np
 from tribolab.figures.labels import column, plain_symbol, plain_unit, symbol
 from tribolab.quantities import quantity
 
-Style = Literal["points", "line", "dashed", "dotted", "dashdot", "band", "bars", "heat"]
+Style = Literal["points", "line", "dashed", "dotted", "dashdot", "longdash", "band", "bars", "heat"]
 Width = Literal["card", "half", "whole"]
 Values = Sequence[Any] | np.ndarray
 _MAX_CARD_LABELS = 8  # in the legend of a card, as in `assets/picture.js`
@@ -40,6 +40,8 @@ class Axis:
         Smallest possible value: error bars end there.
     include
         Values that are seen at first whatever is drawn.
+    view
+        Its ends at first, whatever is drawn.
     paper, column
         Label for papers, with the symbol as mathtext, and name of the column in `figure_data`; by
         default both follow from `label`.
@@ -53,6 +55,7 @@ class Axis:
     decades: int = 0
     least: float | None = None
     include: tuple[float, ...] = ()
+    view: tuple[float, float] | None = None
     paper: str = ""
     linear_below: float | None = None
     column: str = ""
@@ -169,7 +172,10 @@ class SeriesLabels(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class Mark:
-    """A straight line across a panel at a value, or a shaded stretch from `value` to `until`."""
+    """A straight line across a panel at a value, or a shaded stretch from `value` to `until`.
+
+    `text` is its entry in the legend; `above` stands at the upper end, if there is room.
+    """
 
     side: Literal["x", "y"]
     value: float
@@ -179,6 +185,7 @@ class Mark:
     colour: int = 6
     opacity: float = 1.0
     panel: int = 0
+    above: str = ""
 
 
 @dataclass(frozen=True)
@@ -262,11 +269,15 @@ def written_labels(figure: FigureSpec, labels: Collection[str]) -> int:
 
 
 def legend(series: Iterable[Series]) -> dict[str, Series]:
-    """Return what stands in a legend: a band where it has a name that no line or point has."""
+    """Return the series that represents each label: a full line or points, a band only if alone."""
     named: dict[str, Series] = {}
-    for curve in sorted(series, key=lambda curve: curve.style == "band"):
-        if curve.label or curve.style != "band":
-            named.setdefault(curve.label, curve)
+    ranks = {"line": 0, "points": 0, "bars": 0, "heat": 0, "band": 2}
+    for curve in series:
+        known = named.get(curve.label)
+        if not curve.label and curve.style == "band":
+            continue
+        if known is None or ranks.get(curve.style, 1) < ranks.get(known.style, 1):
+            named[curve.label] = curve
     return named
 
 

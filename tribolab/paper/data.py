@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribolab.campaign.store.data_files import read_data
 from tribolab.paper.work import data_file
 from tribolab.plot import Trace
 from tribolab.reading.netcdf.netcdf import read_netcdf
-from tribolab.report.figures.curves import read_curve
 from tribolab.studies import xu2026
 from tribolab.words import speed_text
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-    from tribolab.plot.slip.stick_slip import Trace
+    from tribolab.figures.slip import Trace
     from tribolab.records.parts import CurveOutcome, RunOutcome
 
 # Several figures show the same data, and none of them changes it.
@@ -73,7 +73,8 @@ class PaperData:
         key = surface, medium, force
         for curve in self.curves:
             if (curve.surface, curve.medium, curve.normal_force) == key:
-                return read_curve(self.folder, curve)
+                labels = {"surface": surface, "medium": medium, "normal_force_N": force}
+                return read_data(self.folder / curve.data_file).assign_attrs(labels)
         raise LookupError(f"no simulated curve of {surface}, {medium}, {force:g} N")
 
     def trace(self, surface: str, medium: str, speed: float) -> Trace:

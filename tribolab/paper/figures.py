@@ -10,8 +10,8 @@ from typing import Any
 from tribolab.paper import drawing
 from tribolab.paper.data import PaperData
 from tribolab.paper.drawing import FigureAndText
-from tribolab.report.figures.files import DRAWING, save_figure
-from tribolab.report.figures.files import Drawn as Picture
+from tribolab.records.part_records import FigureRecord
+from tribolab.report.figures.stage import DRAWING, write_figure
 from tribolab.untyped import Json
 
 COMPUTED, SIMULATED = "computed here", "simulated"
@@ -277,8 +277,8 @@ def draw_paper_figure(task: DrawTask) -> Json:
         figure, said = known.draw(task.data)
         alt = f"{known.title} ({' and '.join(known.kinds)}). {said}"
         caption = f"{known.caption} {said}" if known.told else known.caption
-        drawn = Picture(figure, caption, alt, known.section)
-        record = asdict(save_figure(drawn, task.data.folder, known.file))
+        data = write_figure(figure, task.data.folder, known.file)
+        record = asdict(FigureRecord(known.file, data, caption, alt))
     del record["kind"]  # it stands in a section
     return record | {
         "name": known.name,

@@ -1,4 +1,7 @@
-"""Figures: one function per figure, a result in, a matplotlib Figure out."""
+"""Figures: one function per figure, a result in, a matplotlib Figure out.
+
+Each function also describes its figure without drawing it: `tribolab.plot.stribeck.spec(curve)`.
+"""
 
 from __future__ import annotations
 
@@ -6,31 +9,15 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tribolab.figures.curves import friction_spread, half_loop, stribeck
-    from tribolab.figures.envelope import envelope
-    from tribolab.figures.look.knobs import knobs
-    from tribolab.figures.look.style import figure_data, paper_style, save, svg
-    from tribolab.plot.metrology.budget import uncertainty_budget
-    from tribolab.plot.metrology.compared import differences, forest
-    from tribolab.plot.metrology.over_time import control
-    from tribolab.plot.metrology.planned import runs_needed
-    from tribolab.plot.metrology.repeats import precision
-    from tribolab.plot.model.film import film_profiles, lubrication_factors
-    from tribolab.plot.model.joint import joint_fit
-    from tribolab.plot.model.mixed import (
-        friction_factor_effect,
-        mixed_curve,
-        shear_stress,
-        shear_stress_over_speed,
+    from tribolab.figures.comparison import (
+        control,
+        differences,
+        forest,
+        precision,
+        runs_needed,
+        uncertainty_budget,
     )
-    from tribolab.plot.model.sensitivity import model_sensitivity
-    from tribolab.plot.runs.starts import cycles, static_friction
-    from tribolab.plot.runs.strokes import strokes
-    from tribolab.plot.runs.trace import trace
-    from tribolab.plot.slip.spectra import slip_spectra
-    from tribolab.plot.slip.spectrogram import slip_spectrogram
-    from tribolab.plot.slip.stick_slip import Trace, slip_events, slip_traces, waveform_map
-    from tribolab.plot.surface.contact import (
+    from tribolab.figures.contact import (
         adhesive_area,
         contact_area,
         contact_separation,
@@ -38,52 +25,71 @@ if TYPE_CHECKING:
         gaps,
         line_pressure,
     )
-    from tribolab.plot.surface.spectra import modulus, spectra, viscoelastic
+    from tribolab.figures.curves import friction_spread, half_loop, stribeck
+    from tribolab.figures.envelope import envelope
+    from tribolab.figures.film import film_profiles, lubrication_factors
+    from tribolab.figures.fits import joint_fit, model_sensitivity
+    from tribolab.figures.look.draw import draw
+    from tribolab.figures.look.knobs import knobs
+    from tribolab.figures.look.style import figure_data, paper_style, save, svg
+    from tribolab.figures.mixed import (
+        friction_factor_effect,
+        mixed_curve,
+        shear_stress,
+        shear_stress_over_speed,
+    )
+    from tribolab.figures.slip import Trace, slip_events, slip_traces, waveform_map
+    from tribolab.figures.slip_spectra import slip_spectra, slip_spectrogram
+    from tribolab.figures.starts import cycles, static_friction
+    from tribolab.figures.surfaces import modulus, profiles, spectra, viscoelastic
+    from tribolab.figures.trace import strokes, trace
 
 # Loaded when first used: whoever wants a label waits for no matplotlib.
 _HOMES = {
-    "Trace": "tribolab.plot.slip.stick_slip",
-    "adhesive_area": "tribolab.plot.surface.contact",
-    "contact_area": "tribolab.plot.surface.contact",
-    "contact_separation": "tribolab.plot.surface.contact",
-    "effective_work": "tribolab.plot.surface.contact",
-    "control": "tribolab.plot.metrology.over_time",
-    "cycles": "tribolab.plot.runs.starts",
-    "differences": "tribolab.plot.metrology.compared",
-    "envelope": "tribolab.figures.envelope",
-    "figure_data": "tribolab.figures.look.style",
-    "film_profiles": "tribolab.plot.model.film",
-    "forest": "tribolab.plot.metrology.compared",
-    "friction_factor_effect": "tribolab.plot.model.mixed",
+    "control": "tribolab.figures.comparison",
+    "differences": "tribolab.figures.comparison",
+    "forest": "tribolab.figures.comparison",
+    "precision": "tribolab.figures.comparison",
+    "runs_needed": "tribolab.figures.comparison",
+    "uncertainty_budget": "tribolab.figures.comparison",
+    "adhesive_area": "tribolab.figures.contact",
+    "contact_area": "tribolab.figures.contact",
+    "contact_separation": "tribolab.figures.contact",
+    "effective_work": "tribolab.figures.contact",
+    "gaps": "tribolab.figures.contact",
+    "line_pressure": "tribolab.figures.contact",
     "friction_spread": "tribolab.figures.curves",
-    "gaps": "tribolab.plot.surface.contact",
     "half_loop": "tribolab.figures.curves",
-    "joint_fit": "tribolab.plot.model.joint",
-    "knobs": "tribolab.figures.look.knobs",
-    "line_pressure": "tribolab.plot.surface.contact",
-    "lubrication_factors": "tribolab.plot.model.film",
-    "mixed_curve": "tribolab.plot.model.mixed",
-    "model_sensitivity": "tribolab.plot.model.sensitivity",
-    "modulus": "tribolab.plot.surface.spectra",
-    "paper_style": "tribolab.figures.look.style",
-    "precision": "tribolab.plot.metrology.repeats",
-    "runs_needed": "tribolab.plot.metrology.planned",
-    "save": "tribolab.figures.look.style",
-    "shear_stress": "tribolab.plot.model.mixed",
-    "shear_stress_over_speed": "tribolab.plot.model.mixed",
-    "slip_events": "tribolab.plot.slip.stick_slip",
-    "slip_spectra": "tribolab.plot.slip.spectra",
-    "slip_spectrogram": "tribolab.plot.slip.spectrogram",
-    "slip_traces": "tribolab.plot.slip.stick_slip",
-    "spectra": "tribolab.plot.surface.spectra",
-    "static_friction": "tribolab.plot.runs.starts",
     "stribeck": "tribolab.figures.curves",
-    "strokes": "tribolab.plot.runs.strokes",
+    "envelope": "tribolab.figures.envelope",
+    "film_profiles": "tribolab.figures.film",
+    "lubrication_factors": "tribolab.figures.film",
+    "joint_fit": "tribolab.figures.fits",
+    "model_sensitivity": "tribolab.figures.fits",
+    "draw": "tribolab.figures.look.draw",
+    "knobs": "tribolab.figures.look.knobs",
+    "figure_data": "tribolab.figures.look.style",
+    "paper_style": "tribolab.figures.look.style",
+    "save": "tribolab.figures.look.style",
     "svg": "tribolab.figures.look.style",
-    "trace": "tribolab.plot.runs.trace",
-    "uncertainty_budget": "tribolab.plot.metrology.budget",
-    "viscoelastic": "tribolab.plot.surface.spectra",
-    "waveform_map": "tribolab.plot.slip.stick_slip",
+    "friction_factor_effect": "tribolab.figures.mixed",
+    "mixed_curve": "tribolab.figures.mixed",
+    "shear_stress": "tribolab.figures.mixed",
+    "shear_stress_over_speed": "tribolab.figures.mixed",
+    "Trace": "tribolab.figures.slip",
+    "slip_events": "tribolab.figures.slip",
+    "slip_traces": "tribolab.figures.slip",
+    "waveform_map": "tribolab.figures.slip",
+    "slip_spectra": "tribolab.figures.slip_spectra",
+    "slip_spectrogram": "tribolab.figures.slip_spectra",
+    "cycles": "tribolab.figures.starts",
+    "static_friction": "tribolab.figures.starts",
+    "modulus": "tribolab.figures.surfaces",
+    "profiles": "tribolab.figures.surfaces",
+    "spectra": "tribolab.figures.surfaces",
+    "viscoelastic": "tribolab.figures.surfaces",
+    "strokes": "tribolab.figures.trace",
+    "trace": "tribolab.figures.trace",
 }
 
 __all__ = [
@@ -91,10 +97,11 @@ __all__ = [
     "adhesive_area",
     "contact_area",
     "contact_separation",
-    "effective_work",
     "control",
     "cycles",
     "differences",
+    "draw",
+    "effective_work",
     "envelope",
     "figure_data",
     "film_profiles",
@@ -112,18 +119,19 @@ __all__ = [
     "modulus",
     "paper_style",
     "precision",
+    "profiles",
     "runs_needed",
     "save",
+    "shear_stress",
+    "shear_stress_over_speed",
     "slip_events",
     "slip_spectra",
     "slip_spectrogram",
     "slip_traces",
-    "shear_stress",
-    "shear_stress_over_speed",
     "spectra",
-    "strokes",
     "static_friction",
     "stribeck",
+    "strokes",
     "svg",
     "trace",
     "uncertainty_budget",

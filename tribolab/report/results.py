@@ -12,15 +12,13 @@ from tribolab.campaign.joint.stage import JointFits
 from tribolab.campaign.modes import Modes
 from tribolab.campaign.recorded import done_and_failed
 from tribolab.figures.spec import FigureSpec
-from tribolab.records.joint_record import JointRecord
-from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord, FigureRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import Notice
 from tribolab.records.run_record import RunRecord
 from tribolab.report.campaign_tables import write_findings, write_tables
 from tribolab.report.document.decisions import curve_notices
 from tribolab.report.document.document import brief_run, report_document, report_head, write_json
-from tribolab.report.document.models import ModelRow, model_rows_of
+from tribolab.report.document.models import model_rows_of
 from tribolab.report.document.parts import (
     reported_curve,
     reported_mode,
@@ -29,24 +27,29 @@ from tribolab.report.document.parts import (
     run_document,
 )
 from tribolab.report.figures.choice import Wanted
-from tribolab.report.figures.curves import draw_curves, plan_figures
-from tribolab.report.figures.models import draw_model, plan_model_figures
-from tribolab.report.figures.sliding import draw_sliding, plan_sliding_figures
-from tribolab.report.figures.stage import Figures, FigureTask, planned
-from tribolab.report.figures.surfaces import draw_surfaces, plan_surface_figures
+from tribolab.report.figures.stage import (
+    SECTIONS,
+    Figures,
+    FigureTask,
+    described_tasks,
+    figure_task,
+    key_of,
+)
 from tribolab.report.live.along import MOST_RUNS, Strokes, along_figures, strokes_of
-from tribolab.report.live.gather import begun_live_figures
+from tribolab.report.live.compared import comparisons
+from tribolab.report.live.curves import FrictionOverSpeed, card_figures, load_figures
+from tribolab.report.live.gather import Subject, begun_live_figures, figure_subjects
 from tribolab.report.live.points import RunPoint, run_points
+from tribolab.report.live.shown import shown_figures
 from tribolab.report.page.page import prepare_page, write_page
 from tribolab.report.page.reviewing import review_data
 from tribolab.report.tables import SEVERITIES
 from tribolab.untyped import Json
 
 if TYPE_CHECKING:
+    from tribolab.campaign.store.catalogue import Store
     from tribolab.campaign.store.outcome import OpenOutcome, Outcome
-    from tribolab.records.parts import CurveOutcome, RunOutcome
-
-_SECTIONS = ("figures", "surface_figures", "model_figures", "sliding_figures")
+    from tribolab.records.parts import RunOutcome
 
 
 def write_report(
@@ -107,21 +110,27 @@ def write_report(
     fitted = [joint for joint in joints if joint.done]
 
     rows = model_rows_of(models)
-    making = begun_live_figures(outcome, shown, points, along, rows, modes, fitted, executor)
-    known = [curve.outcome for curve in shown]
-    tasks = _figures(outcome, known, surfaces, rows, fitted, modes, figures, pdf)
-    drawing = begun(Figures(store, tasks), executor, tell)
+    subjects = figure_subjects(outcome, shown, list(rows.values()), modes, fitted)
+    making = begun_live_figures(subjects, store, executor)
     # while workers draw
     write_tables(outcome, shown, surfaces, rows, fitted)
     prepare_page()
-    live, undrawn = making()
+    records, undrawn = making()
     findings += undrawn
-    drawn: dict[str, list[FigureRecord]] = {section: [] for section in _SECTIONS}
-    for task, record in zip(tasks, drawing(), strict=True):
+    bands = {name: band for record in records for name, band in record.bands.items()}
+    names = tuple(surface.name for surface in outcome.surfaces)
+    by_curve = {row.model.curve: row for row in rows.values()}
+    known = FrictionOverSpeed(shown, points, by_curve, bands, names)
+    curve_specs = [*card_figures(known), *comparisons(known), *along]
+    live = [*shown_figures(curve_specs), *(one for record in records for one in record.figures)]
+    tasks = _figures([*curve_specs, *load_figures(known)], subjects, store, figures, pdf)
+    drawn: dict[str, list[FigureRecord]] = {section: [] for section in SECTIONS}
+    for record in begun(Figures(store, tasks), executor, tell)():
         if isinstance(record, Notice):
             findings.append(record)
-        elif record is not None:
-            drawn[task.section].append(record)
+            continue
+        for figure in record.figures:
+            drawn[key_of(figure)].append(figure)
 
     ordered = sorted(findings, key=lambda finding: SEVERITIES.index(finding.severity))
     write_findings(ordered, folder)
@@ -146,29 +155,21 @@ def write_report(
 
 
 def _figures(
-    outcome: OpenOutcome,
-    curves: Sequence[CurveOutcome],
-    surfaces: Sequence[SurfaceRecord],
-    models: Mapping[str, ModelRow],
-    fitted: Sequence[JointRecord],
-    modes: Mapping[str, ModeRecord],
+    curves: Sequence[FigureSpec],
+    subjects: Sequence[Subject],
+    store: Store,
     wanted: Wanted,
     pdf: bool,
 ) -> list[FigureTask]:
-    """Return the figures that are to be drawn."""
-    store = outcome.store
+    """Return the figures that are to be drawn into files."""
     if wanted == "none":
         return []
-    tasks = planned("figures", plan_figures(curves), draw_curves, store, pdf=pdf)
+    tasks = described_tasks([spec for spec in curves if spec.series], store, pdf=pdf)
     if wanted == "curves":
         return tasks
-    done = [surface.outcome for surface in surfaces if surface.rows is not None]
-    surfaced = plan_surface_figures(done)
-    tasks += planned("surface_figures", surfaced, draw_surfaces, store, pdf=pdf)
-    modelled = plan_model_figures(outcome, list(models.values()), fitted)
-    tasks += planned("model_figures", modelled, draw_model, store, pdf=pdf)
-    sliding = plan_sliding_figures(curves, modes, outcome)
-    return tasks + planned("sliding_figures", sliding, draw_sliding, store, pdf=pdf)
+    return tasks + [
+        figure_task(one.name, one.make, one.shaping, one.files, store, pdf=pdf) for one in subjects
+    ]
 
 
 def _documents(outcome: Outcome) -> Iterator[Json]:

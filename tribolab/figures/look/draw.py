@@ -17,17 +17,19 @@ from tribolab.errors import AnalysisError
 from tribolab.figures.axes import Scale, scales
 from tribolab.figures.colours import MARKERS, PALETTE
 from tribolab.figures.labels import plain
-from tribolab.figures.look.decades import SmallTicks, few_ticks, symlog
+from tribolab.figures.look.decades import SmallTicks, few_ticks, power_of_ten, symlog
 from tribolab.figures.look.guests import Panels, guests, name_all, whole_figure
 from tribolab.figures.look.sheet import Sheet, finish, new_sheet
 from tribolab.figures.look.style import keep, paper_style
-from tribolab.figures.spec import FigureSpec, Key, Mark, Series
+from tribolab.figures.spec import FigureSpec, Key, Mark, Series, legend
 from tribolab.untyped import Arguments
 
 _LINES: dict[str, LineStyleType] = {
-    "line": "-", "dashed": "--", "dotted": (0, (1, 1.2)), "dashdot": "-.",
+    "line": "-", "dashed": "--", "dotted": (0, (1, 1.2)), "dashdot": "-.", "longdash": (0, (8, 2)),
 }  # fmt: skip
 _RAMP = "cividis"
+_MAX_WITH_SMALL_TICKS = 6  # panels: in smaller ones, ticks between those with a number are a bar
+_LONGEST = 64  # letters of an entry of the legend
 _LEVELS = 0.3, 3.0  # log10 of the ratios in a map, as on the page
 
 
@@ -94,24 +96,44 @@ def _fill(spec: FigureSpec, sheet: Sheet) -> None:
     for number, (axes, panel) in enumerate(zip(sheet.panels, spec.panels, strict=True)):
         mine = [series for series in spec.series if series.panel == number]
         x, y = seen[number]
-        if panel.x.log:
-            axes.set_xscale("log")
-        if panel.y.log:
-            axes.set_yscale("log")
+        named = list(legend(mine).values())
+        along = _shared(spec, number, seen)
+        small = len(spec.panels) <= _MAX_WITH_SMALL_TICKS
+        _scale_axis(axes, "x", panel.x, along, small)
+        _scale_axis(axes, "y", panel.y, y, small)
+        limits = axes.get_xlim(), axes.get_ylim()
+        axes.set_autoscale_on(False)
+        for series in sorted(mine, key=lambda series: series.style != "band"):
+            label = series.label if any(series is one for one in named) else ""
+            _series(axes, series, y, mine, plain(label, _LONGEST) or "_nolegend_")
+            _keep(sheet.figure, spec, series)
         for mark in spec.marks:
             if mark.panel == number:
                 _mark(axes, mark)
-        for series in sorted(mine, key=lambda series: series.style != "band"):
-            _series(axes, series, y, mine)
-            _keep(sheet.figure, spec, series)
-        _scale_axis(axes, "x", panel.x, _shared(spec, number, seen))
-        _scale_axis(axes, "y", panel.y, y)
-        last = not sheet.shared or number == len(spec.panels) - 1
-        axes.set_xlabel(_label(panel.x) if last else "")
-        if not y.names:
+        _words_above(
+            axes, [mark for mark in spec.marks if mark.panel == number], _shared(spec, number, seen)
+        )
+        if any(series.style == "heat" for series in mine):
+            _colour_bar(axes)
+        axes.set_xlim(limits[0])  # bars move them
+        axes.set_ylim(limits[1])
+        axes.set_xlabel(_label(panel.x) if _is_last(spec, number) else "")
+        if not y.names and _is_first(spec, number):
             axes.set_ylabel(_label(panel.y))
     for key in spec.keys:
         _key(sheet.panels[0], key)
+
+
+def _is_last(spec: FigureSpec, number: int) -> bool:
+    """Whether no panel below has the same abscissa."""
+    below = spec.panels[number + max(spec.across, 1) :: max(spec.across, 1)]
+    return not any(panel.x == spec.panels[number].x for panel in below)
+
+
+def _is_first(spec: FigureSpec, number: int) -> bool:
+    """Whether no panel to the left shows the same quantity."""
+    row = spec.panels[number - number % max(spec.across, 1) : number]
+    return not any(panel.y.label == spec.panels[number].y.label for panel in row)
 
 
 def _shared(spec: FigureSpec, number: int, seen: Sequence[tuple[Scale, Scale]]) -> Scale:
@@ -126,10 +148,12 @@ def _label(axis: Any) -> str:
     return f"{words} ({axis.unit})" if axis.unit and axis.unit != "date" else words
 
 
-def _scale_axis(axes: Axes, name: str, axis: Any, seen: Scale) -> None:
+def _scale_axis(axes: Axes, name: str, axis: Any, seen: Scale, small: bool) -> None:
     low, high = seen.low, seen.high
     own = getattr(axes, f"{name}axis")
     limits = getattr(axes, f"set_{name}lim")
+    if axis.log:
+        getattr(axes, f"set_{name}scale")("log")
     if seen.names:
         axes.set_yticks(range(len(seen.names)), [_wrapped(text) for text in seen.names])
         axes.tick_params(axis="y", which="both", length=0)
@@ -138,7 +162,7 @@ def _scale_axis(axes: Axes, name: str, axis: Any, seen: Scale) -> None:
         symlog(axes, axis.linear_below, low, high)
     elif seen.log:
         limits(10.0**low, 10.0**high)
-        few_ticks(own, 10.0**low, 10.0**high)
+        few_ticks(own, 10.0**low, 10.0**high, small=small)
         _name_parts(own, low, high)
     elif axis.unit == "date":
         _dates(axes)
@@ -147,7 +171,7 @@ def _scale_axis(axes: Axes, name: str, axis: Any, seen: Scale) -> None:
         limits(low, high)
         if axis.unit == "" and axis.label.startswith(("number", "cycle", "pair")):
             own.set_major_locator(MaxNLocator(8, integer=True))
-        if not any(isinstance(a, SmallTicks) and a.axis is own for a in axes.artists):
+        if small and not any(isinstance(a, SmallTicks) and a.axis is own for a in axes.artists):
             axes.add_artist(SmallTicks(own, AutoMinorLocator()))
 
 
@@ -155,7 +179,15 @@ def _name_parts(axis: Any, low: float, high: float) -> None:
     """Name 1, 2 and 5 of each decade where a logarithmic axis shows hardly more than one."""
     if high - low < 1.7:
         axis.set_major_locator(_parts_locator(high - low))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_major_formatter(FuncFormatter(_part_of_decade))
+
+
+def _part_of_decade(value: float, place: int | None = None) -> str:
+    """Return 0.02 or 5·10⁻⁶ as the label of a tick between decades."""
+    if 1e-3 <= value < 1e4 or power_of_ten(value).startswith("10"):
+        return f"{value:g}" if 1e-3 <= value < 1e4 else power_of_ten(value)
+    exponent = int(np.floor(np.log10(value) + 1e-9))
+    return f"{value / 10.0**exponent:.3g}·{power_of_ten(10.0**exponent)}"
 
 
 def _parts_locator(decades: float) -> Any:
@@ -197,8 +229,8 @@ def _floats(values: Any) -> np.ndarray:
     return np.array([np.nan if value is None else value for value in values], float)
 
 
-def _series(axes: Axes, series: Series, y_seen: Scale, every: Sequence[Series]) -> None:
-    colour, label = colour_of(series), plain(series.label) or "_nolegend_"
+def _series(axes: Axes, series: Series, y_seen: Scale, every: Sequence[Series], label: str) -> None:
+    colour = colour_of(series)
     x = _floats(series.x)
     y = _floats(map(y_seen.names.index, series.y)) if y_seen.names else _floats(series.y)
     if series.style == "points":
@@ -211,7 +243,7 @@ def _series(axes: Axes, series: Series, y_seen: Scale, every: Sequence[Series]) 
             label=label,
         )  # fmt: skip
     elif series.style == "bars":
-        bars = [one for one in every if one.style == "bars"]
+        bars = [one for one in every if one.style == "bars" and set(one.y) & set(series.y)]
         thick = 0.8 / len(bars)
         shift = ((len(bars) - 1) / 2 - next(k for k, b in enumerate(bars) if b is series)) * thick
         axes.barh(y + shift, x, 0.9 * thick, color=colour, label=label)
@@ -238,7 +270,7 @@ def _points(
         above = _floats(series.error)
         below = _floats(series.error_below) if len(series.error_below) else above
         known = np.isfinite(above) & np.isfinite(x) & np.isfinite(y)
-        bars = np.nan_to_num(np.stack([below, above]))[:, known]
+        bars = np.maximum(np.nan_to_num(np.stack([below, above])), 0.0)[:, known]
         look: Arguments = (
             {"elinewidth": 2.4, "alpha": 0.28}
             if series.pale
@@ -262,6 +294,34 @@ def _points(
         markeredgewidth=0.9, markerfacecolor=face, linestyle=line, linewidth=0.7, label=label,
         zorder=4,
     )  # fmt: skip
+
+
+def _colour_bar(axes: Axes) -> None:
+    """Explain the colours of a map inside its panel, where they hide least."""
+    maps = [drawn for drawn in axes.collections if drawn.get_array() is not None]
+    inset = axes.inset_axes((0.04, 0.93, 0.3, 0.035))
+    whole_figure(axes).colorbar(maps[-1], cax=inset, orientation="horizontal", ticks=[0.5, 1, 2, 3])
+    inset.tick_params(labelsize=6, pad=1, length=2)
+    inset.set_xlabel("log₁₀ of the ratio", fontsize=6, labelpad=1)
+
+
+def _words_above(axes: Axes, marks: Sequence[Mark], seen: Scale) -> None:
+    """Write the words of stretches above them in two rows, those that have room."""
+    width = 25.4 * axes.get_window_extent().width / whole_figure(axes).dpi  # mm
+    ends = [6.0, 0.0]  # mm up to which each of the two rows is taken; the letter stands in one
+    for mark in marks:
+        at = seen.place(mark.value + ((mark.until or mark.value) - mark.value) / 2)
+        if not mark.above or at is None:
+            continue
+        middle, need = at * width, len(mark.above) * 1.35 + 2.0  # mm at 7 pt
+        row = next((k for k in (0, 1) if middle - need / 2 >= ends[k]), None)
+        if row is None or middle + need / 2 > width:
+            continue
+        ends[row] = middle + need / 2
+        axes.annotate(
+            mark.above, (at, 1), xytext=(0, -3 - 8.5 * row), xycoords="axes fraction",
+            textcoords="offset points", ha="center", va="top", fontsize=7, zorder=6,
+        )  # fmt: skip
 
 
 def _mark(axes: Axes, mark: Mark) -> None:

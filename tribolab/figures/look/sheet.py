@@ -38,7 +38,7 @@ def new_sheet(spec: FigureSpec, title: str = "", width: float = 0.0) -> Sheet:
     """Return an empty figure with the panels of a figure, laid out in mm."""
     width = width or (DOUBLE_MM if spec.width == "whole" or spec.across > 1 else SINGLE_MM)
     count, across = len(spec.panels), min(spec.across, len(spec.panels))
-    shared = count > 1 and across == 1 and len({panel.x for panel in spec.panels}) == 1
+    shared = count > 1 and len({panel.x for panel in spec.panels}) == 1
     left = _left(spec)
     down = -(-count // across)
     heights = [_height(spec, row * across) for row in range(down)]
@@ -98,10 +98,10 @@ def finish(spec: FigureSpec, sheet: Sheet) -> None:
     """Set letters, titles and the legend above the panels."""
     for number, (axes, panel) in enumerate(zip(sheet.panels, spec.panels, strict=True)):
         if panel.title:
-            axes.set_title(plain(panel.title), fontsize=7, loc="left", pad=3)
+            axes.set_title(plain(panel.title, 48), fontsize=7, loc="left", pad=3)
         elif len(sheet.panels) > 1:
             tidy(axes, "abcdefghijkl"[number % 12])
-        if sheet.shared and number < len(sheet.panels) - 1:
+        if sheet.shared and number + max(spec.across, 1) < len(sheet.panels):
             axes.tick_params(labelbottom=False)
     if sheet.shared:
         sheet.figure.align_ylabels(sheet.panels)

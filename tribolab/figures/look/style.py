@@ -6,16 +6,15 @@ import contextlib
 import functools
 import io
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal
 
 import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib import text as mpl_text
 from matplotlib.axes import Axes
-from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import MathTextParser
@@ -26,14 +25,6 @@ if TYPE_CHECKING:
 
 SINGLE_MM = 86.0
 DOUBLE_MM = 178.0
-
-# Okabe and Ito's palette: told apart by people with any of the common colour deficiencies.
-BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
-BLUE, VERMILLION, PURPLE, GREY = "#0072B2", "#D55E00", "#CC79A7", "#6B6B6B"
-
-# A stroke's direction is no surface, so it has colours that no surface has.
-FORWARD, BACKWARD, NEUTRAL = "#3A3A3A", ORANGE, GREY
-MEAN = "#C00000"
 
 _RC: dict[RcKeyType, Any] = {
     "font.family": "DejaVu Sans",  # comes with matplotlib, so every machine draws the same
@@ -79,40 +70,6 @@ _RC: dict[RcKeyType, Any] = {
     "ps.fonttype": 42,
     "path.simplify": True,
 }
-
-
-class SurfaceStyle(NamedTuple):
-    """Colour and marker that stand for a surface in every figure."""
-
-    colour: str
-    marker: str
-
-
-# The colours of the reference study: Smooth green, Sb-S blue, Sb-R red.
-_FIXED = {
-    "smooth": SurfaceStyle(GREEN, "o"),
-    "sb-s": SurfaceStyle(BLUE, "s"),
-    "sb-r": SurfaceStyle(VERMILLION, "^"),
-}
-_OTHERS = [
-    SurfaceStyle(PURPLE, "D"),
-    SurfaceStyle(ORANGE, "v"),
-    SurfaceStyle(SKY, "P"),
-    SurfaceStyle(BLACK, "X"),
-    SurfaceStyle("#7A5C00", "<"),
-    SurfaceStyle(GREY, ">"),
-]
-
-
-_CONDITIONS = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, GREY)
-LOAD_MARKERS = "os^DvP<X"  # by the rank of the load
-
-
-def condition_style(number: int) -> SurfaceStyle:
-    """Return colour and marker of one of several conditions; they begin anew after some."""
-    return SurfaceStyle(
-        _CONDITIONS[number % len(_CONDITIONS)], LOAD_MARKERS[number % len(LOAD_MARKERS)]
-    )
 
 
 class PaperFigure(Figure):
@@ -199,48 +156,6 @@ _KEEP = {"backend", "backend_fallback", "interactive", "toolbar", "timezone", "d
 def new_figure(width_mm: float, height_mm: float) -> PaperFigure:
     """Return an empty figure of the given size [mm]; call inside `paper_style()`."""
     return PaperFigure(figsize=(width_mm / 25.4, height_mm / 25.4))
-
-
-def margins(
-    figure: Figure, left: float, right: float, bottom: float, top: float, **spaces: float
-) -> None:
-    """Place the axes by margins in mm, which is faster and steadier than an automatic layout."""
-    width, height = (25.4 * inch for inch in figure.get_size_inches())
-    figure.subplots_adjust(
-        left=left / width,
-        right=1 - right / width,
-        bottom=bottom / height,
-        top=1 - top / height,
-        **spaces,
-    )
-
-
-def surface_styles(surfaces: Iterable[str]) -> dict[str, SurfaceStyle]:
-    """Give every surface a colour and a marker: fixed for the reference ones, else by order.
-
-    Examples
-    --------
-    >>> surface_styles(["Sb-R", "steel"])["Sb-R"].colour
-    '#D55E00'
-    """
-    chosen: dict[str, SurfaceStyle] = {}
-    free = 0
-    for name in dict.fromkeys(surfaces):
-        # what is said of a surface in brackets does not change its colour
-        fixed = _FIXED.get(name.partition(" (")[0].strip().lower())
-        chosen[name] = fixed or _OTHERS[free % len(_OTHERS)]
-        free += fixed is None
-    return chosen
-
-
-def shade(colour: str, rank: int, count: int) -> str:
-    """Return the `rank`-th of `count` shades of a colour, from dark to light."""
-    if count < 2:
-        return colour
-    base = np.array(to_rgb(colour))
-    lightness = np.linspace(-0.35, 0.45, count)[rank]
-    target = np.ones(3) if lightness > 0 else np.zeros(3)
-    return to_hex(base + abs(lightness) * (target - base))
 
 
 def tidy(axes: Axes, letter: str = "") -> None:

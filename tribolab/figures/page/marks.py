@@ -11,7 +11,12 @@ from tribolab.figures.spec import Series, Style
 
 PlacedPoint = tuple[float, float]
 _HUES = 8  # of the palette, as in `assets/report.css`
-_DASHES: dict[Style, str] = {"dashed": "6 4", "dotted": "2 3", "dashdot": "6 3 2 3"}
+_DASHES: dict[Style, str] = {
+    "dashed": "6 4",
+    "dotted": "2 3",
+    "dashdot": "6 3 2 3",
+    "longdash": "10 3",
+}
 _MARKER = 3.6  # half the width of a marker [px]
 _SEEN = 0.3  # how far a line may pass from a point of it [px]
 _LEVELS = 5  # colours of a heat map

@@ -227,7 +227,8 @@ def _bars(curve: Series, box: _Box, axis: Axis) -> Iterator[tuple[float, float, 
 
 
 def _rows(curve: Series, box: _Box, every: Sequence[Series]) -> Iterator[str]:
-    """Give the bars of a series, which share a row with those of the others."""
+    """Give the bars of a series, which share a row with those of others that have its names."""
+    every = [one for one in every if set(one.y) & set(curve.y)]
     thick = 0.8 * box.height / len(box.y.names) / len(every)
     below = next(k for k, other in enumerate(every) if other is curve) - 0.5 * len(every)
     for x, y in zip(curve.x, curve.y, strict=True):

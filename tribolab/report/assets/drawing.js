@@ -5,7 +5,7 @@ report.drawing = (() => {
   const HUES = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#6b6b6b", "#000000"];
   const DARKER = ["#5db4ee", "#ff8a3d", "#35c79a", "#e79cc6", "#f2bd45", "#8fd0f5", "#a8b0b8", "#ffffff"];
   const SYMBOLS = ["circle", "square", "diamond", "triangle-up", "triangle-down", "pentagon", "hexagon2", "star"];
-  const DASHES = { line: "solid", dashed: "dash", dotted: "dot", dashdot: "dashdot" };
+  const DASHES = { line: "solid", dashed: "dash", dotted: "dot", dashdot: "dashdot", longdash: "longdash" };
   const FONT = '"Segoe UI", "Helvetica Neue", Roboto, Arial, "Liberation Sans", system-ui, sans-serif';
   const PAPER = 680, HALF = 316, THIRD = 206; // widths that fit between the margins of A4, of one to three beside each other
   const SHEET = 850; // height that fits, with a heading above it

@@ -115,6 +115,8 @@ report.Picture = (() => {
     range(side, panel) {
       const log = this.isLog(side, panel), names = side === "y" ? this.names(panel) : 0;
       if (names) return [-0.5, names - 0.5];
+      const { view } = this.data.panels[panel][side];
+      if (view) return log ? view.map(Math.log10) : view;
       let low = Infinity, high = -Infinity;
       const least = side === "y" ? this.data.panels[panel].y.least ?? -Infinity : -Infinity;
       const seen = side === "y" ? this.range("x", panel) : undefined, wide = this.isLog("x", panel);

@@ -1,136 +1,218 @@
-"""The figures of a report: drawn by workers, taken over where what they show is the same."""
+"""The files of the figures: drawn by workers, taken over where their data are the same."""
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Protocol, TypeVar
+from typing import TYPE_CHECKING
 
 from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.store.catalogue import Store
+from tribolab.figures.spec import FigureSpec, Series, legend, safe
+from tribolab.figures.surfaces import shaded_loads
 from tribolab.provenance import sha256_of
 from tribolab.records.part_records import FigureRecord
 from tribolab.records.parts import Notice
+from tribolab.report import tables
 from tribolab.report.code import code_of_figures
-from tribolab.report.figures.files import DRAWING, Drawn, save_figure
-from tribolab.words import explain
+from tribolab.words import explain, force_text
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# Matplotlib's fonts are not made for several threads.
+DRAWING = threading.Lock()
+SECTIONS = ("figures", "surface_figures", "model_figures", "sliding_figures")
+_MAX_LABELS = 12  # in the legend of one figure
+_KEYS = {"surfaces": 1, "contact": 1, "model": 2, "sliding": 3}  # section of the page to a key
+
+
+@dataclass(frozen=True)
+class DrawnFigures:
+    """The figures of one subject as they lie in the results folder."""
+
+    figures: tuple[FigureRecord, ...]
 
 
 @dataclass(frozen=True)
 class FigureTask:
-    """A figure to draw.
+    """Figures of one subject to draw: `make` takes the results folder, and may travel."""
 
-    Parameters
-    ----------
-    section
-        Key of report.json under which its record stands.
-    file
-        Path of the picture relative to the results folder.
-    title
-        What it shows.
-    draw
-        The results folder in; the figure, its caption, what it says in words, and its kind out,
-        or None where there is nothing to show. A function of a module, with what it wants to know,
-        that it may travel.
-    pdf
-        Whether to write it as PDF, too.
-    """
-
-    section: str
-    file: str
-    title: str
-    draw: Callable[[Path], Drawn | None]
-    folder: Path = Path()
+    name: str
+    make: Callable[[Path], Sequence[FigureSpec]]
+    folder: Path
+    fingerprint: str
     pdf: bool = False
-    fingerprint: str = ""
-
-    @property
-    def name(self) -> str:
-        """Of its record: that of the picture."""
-        return self.file
 
 
-class Planned(Protocol):
-    """What knows a figure before it is drawn: its kinds of figures do, each in its own way."""
-
-    @property
-    def file(self) -> str:
-        """Path of the picture relative to the results folder."""
-
-    @property
-    def title(self) -> str:
-        """What it shows."""
-
-    @property
-    def files(self) -> tuple[str, ...]:
-        """Data files that it reads."""
-
-
-Unfigured = Notice | None  # why there is no figure, or that there is nothing to show
-What = TypeVar("What", bound=Planned)
-
-
-class Figures(Recorded[FigureTask, FigureRecord, Unfigured]):
-    """The stage of the figures."""
+class Figures(Recorded[FigureTask, DrawnFigures, Notice]):
+    """The stage of the figures for publication."""
 
     name = "figures"
     kind = "figure"
-    record = FigureRecord
+    record = DrawnFigures
 
-    def taken(self, task: FigureTask, record: FigureRecord) -> FigureRecord | None:
-        """Take over the picture, its numbers, and its PDF if that is wanted."""
-        beside = [record.data] if record.data else []
-        beside += [str(Path(record.file).with_suffix(".pdf"))] if task.pdf else []
-        there = self.linked(task, record.file, record.file)
-        return record if there and all(map(self._store.link_beside, beside)) else None
-
-    def order(self, tasks: Sequence[tuple[int, FigureTask]]) -> list[tuple[int, FigureTask]]:
-        """Return what takes longest first: traces and spectra of the sliding."""
-        return sorted(tasks, key=lambda pair: pair[1].section != "sliding_figures")
+    def taken(self, task: FigureTask, record: DrawnFigures) -> DrawnFigures | None:
+        """Take over the pictures, their numbers, and their PDF if that is wanted."""
+        files = [name for one in record.figures for name in (one.file, one.data) if name]
+        files += [_pdf(one.file) for one in record.figures if task.pdf]
+        return record if all(map(self._store.link_beside, files)) else None
 
     @staticmethod
-    def work(task: FigureTask) -> FigureRecord | None:
-        """Draw one figure into the results."""
-        return draw_figure(task)
+    def work(task: FigureTask) -> DrawnFigures:
+        """Draw the figures of one subject into the results."""
+        specs = [one for spec in task.make(task.folder) if spec.series for one in on_paper(spec)]
+        return DrawnFigures(tuple(draw_figure(spec, task.folder, pdf=task.pdf) for spec in specs))
 
     def failed(self, task: FigureTask, error: BaseException) -> Notice:
-        """Return why a figure could not be drawn."""
-        return Notice("error", "", f"figure {task.title}", explain(error)[0])
+        """Return why figures could not be drawn."""
+        return Notice("error", "", f"figures of {task.name}", explain(error)[0])
 
 
-def draw_figure(task: FigureTask) -> FigureRecord | None:
-    """Draw one figure, and write it with the numbers that it shows."""
-    with DRAWING:
-        drawn = task.draw(task.folder)
-        if drawn is None:
-            return None
-        return save_figure(drawn, task.folder, task.file, pdf=task.pdf)
-
-
-def planned(
-    section: str,
-    figures: Sequence[What],
-    draw: Callable[[What, Path], Drawn | None],
+def figure_task(
+    name: str,
+    make: Callable[[Path], Sequence[FigureSpec]],
+    shaping: object,
+    files: Sequence[str],
     store: Store,
     *,
     pdf: bool = False,
+) -> FigureTask:
+    """Return a task with the checksum of all that shapes its figures.
+
+    Parameters
+    ----------
+    name
+        Of the subject.
+    make
+        What describes them: a function of a module, with its arguments.
+    shaping
+        Those arguments: their text differs when they do.
+    files
+        Data files that are read, relative to the results folder.
+    store
+        Where their checksums are known.
+    pdf
+        Whether figures are written as PDF, too.
+    """
+    identities = [store.identity(file) for file in files]
+    mark = sha256_of([code_of_figures(), name, repr(shaping), identities])
+    return FigureTask(name, make, store.folder, mark, pdf)
+
+
+def described_tasks(
+    specs: Sequence[FigureSpec], store: Store, *, pdf: bool = False
 ) -> list[FigureTask]:
-    """Make tasks of what is to be drawn."""
-    tasks = []
-    for what in figures:
-        identities = [store.identity(file) for file in what.files]
-        shaping = [code_of_figures(), draw.__qualname__, repr(what), identities]
-        tasks.append(
-            FigureTask(
-                section=section,
-                file=what.file,
-                title=what.title,
-                draw=partial(draw, what),
-                folder=store.folder,
-                pdf=pdf,
-                fingerprint=sha256_of(shaping),
-            )
+    """Return a task for each figure that is described already."""
+    return [figure_task(spec.id, partial(_given, spec), spec, (), store, pdf=pdf) for spec in specs]
+
+
+def _given(spec: FigureSpec, folder: Path) -> list[FigureSpec]:
+    return [spec]
+
+
+def draw_figure(spec: FigureSpec, folder: Path, *, pdf: bool = False) -> FigureRecord:
+    """Write a figure as SVG with the numbers that it shows, and return its record.
+
+    Parameters
+    ----------
+    spec
+        What it shows.
+    folder
+        The results folder.
+    pdf
+        Whether it is written as PDF, too.
+    """
+    # late: who draws no files waits for no matplotlib
+    from tribolab.figures.look.draw import draw
+
+    file = f"figures/{file_name(spec)}.svg"
+    with DRAWING:
+        data = write_figure(draw(spec), folder, file, pdf=pdf)
+    caption = f"{spec.title}. {spec.note}".strip()
+    return FigureRecord(file, data, caption, spec.alt or spec.title, spec.section)
+
+
+def write_figure(figure: Figure, folder: Path, file: str, *, pdf: bool = False) -> str:
+    """Write a figure and a table of its numbers, and return the table's file; "" if it has none.
+
+    Parameters
+    ----------
+    figure
+        From one of the functions of `tribolab.plot`.
+    folder
+        The results folder.
+    file
+        Path of the SVG relative to it; the numbers go to the same name with ``.csv``.
+    pdf
+        Whether it is written as PDF, too.
+    """
+    # late: who draws no files waits for no matplotlib
+    from tribolab import plot
+
+    plot.save(figure, folder / file)
+    if pdf:
+        plot.save(figure, folder / _pdf(file))
+    numbers = plot.figure_data(figure)
+    if not len(numbers):
+        return ""
+    data = Path(file).with_suffix(".csv").as_posix()
+    # nine digits: more than any eye or figure resolves
+    tables.write_csv(numbers, folder / data, digits=9)
+    return data
+
+
+def file_name(spec: FigureSpec) -> str:
+    """Return the name of a figure's files: curves are named after what they show.
+
+    Examples
+    --------
+    >>> file_name(FigureSpec(id="card-1", section="card-1", title="Sb-R, glycerol: friction"))
+    'stribeck_sb-r_glycerol'
+    """
+    if spec.section.startswith("card"):
+        return f"stribeck_{safe(spec.title.partition(':')[0])}"
+    return spec.id.replace("-", "_", 1)
+
+
+def on_paper(spec: FigureSpec) -> list[FigureSpec]:
+    """Return a figure with all its loads, named and shaded; the page shows one at a time.
+
+    If its legend would be too long, there is a figure for each load.
+    """
+    loads = sorted({one.load for one in spec.series if one.load is not None})
+    if not spec.one_load or len(loads) < 2:
+        return [spec]
+    ranks = {load: rank for rank, load in enumerate(loads)}
+    alone = len({one.surface for one in spec.series}) == 1
+
+    def named(one: Series) -> Series:
+        if one.load is None:
+            return one
+        marker = ranks[one.load] if alone else one.marker
+        return replace(one, label=f"{one.label}, {force_text(one.load)}", marker=marker)
+
+    whole = replace(spec, series=shaded_loads([named(one) for one in spec.series]))
+    if len(legend(whole.series)) <= _MAX_LABELS:
+        return [whole]
+    return [
+        replace(
+            spec,
+            id=f"{spec.id}_{safe(force_text(load)).replace('_', '')}",
+            title=f"{spec.title}, {force_text(load)}",
+            series=tuple(one for one in spec.series if one.load in (None, load)),
         )
-    return tasks
+        for load in loads
+    ]
+
+
+def key_of(record: FigureRecord) -> str:
+    """Return under which key of report.json a figure is listed."""
+    return SECTIONS[_KEYS.get(record.kind, 0)]
+
+
+def _pdf(file: str) -> str:
+    return str(Path(file).with_suffix(".pdf"))

@@ -11,16 +11,16 @@ import xarray as xr
 
 from tribolab.figures.axes import comparable
 from tribolab.figures.colours import GREY
-from tribolab.figures.curves import SPEED_AXIS, stribeck
-from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, SeriesLabels, Style, safe
+from tribolab.figures.curves import stribeck
+from tribolab.figures.spec import FigureSpec, Panel, Series, SeriesLabels
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome, number_of
 from tribolab.records.wording import with_error
 from tribolab.report.document.models import ModelRow
 from tribolab.report.live.points import RunPoint, at_speed, of_curve, point_error, told_point
-from tribolab.report.live.record import Band, Missed
+from tribolab.report.live.record import Band
 from tribolab.report.plain import listed, plain_speed
-from tribolab.words import is_dry, load_text, many, number, span, speeds
+from tribolab.words import force_text, is_dry, load_text, many, span, speeds
 
 if TYPE_CHECKING:
     from tribolab.records.parts import Row
@@ -42,8 +42,8 @@ class FrictionOverSpeed:
         Of every run, by its name.
     models
         By the name of the measured curve.
-    bands, missed
-        What the models do not know, and what they miss, by the same name.
+    bands
+        Uncertainty of the models, by the same name.
     surfaces
         Names in the order of the campaign, which their colours follow.
     """
@@ -52,7 +52,6 @@ class FrictionOverSpeed:
     points: Mapping[str, Sequence[RunPoint]]
     models: Mapping[str, ModelRow]
     bands: Mapping[str, Band]
-    missed: Mapping[str, Missed]
     surfaces: Sequence[str]
 
 
@@ -249,72 +248,25 @@ def _modelled(known: FrictionOverSpeed, model: ModelRow, curve: CurveRecord) -> 
     return [data]
 
 
-_PART = Axis("friction coefficient µ", log=True, decades=4)
-_PARTS: tuple[tuple[str, str, Style, int], ...] = (
-    ("friction_coefficient_solid", "shear in the solid contact", "dashed", 1),
-    ("friction_coefficient_couette", "shear of the liquid", "dotted", 2),
-    ("friction_without_factors", "without friction factors", "dashed", 3),
-)
-
-
-def model_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
-    """Return one figure for each surface and medium: the model's parts, and what it misses."""
+def load_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
+    """Return a figure for each load that compares surfaces, for publication."""
+    by_load: dict[float, list[CurveRecord]] = {}
+    for curve in known.curves:
+        if curve.outcome.normal_force is not None and curve.outcome.surface:
+            by_load.setdefault(curve.outcome.normal_force, []).append(curve)
     figures = []
-    for (surface, medium), curves in systems(known).items():
-        series: list[Series] = []
-        for curve in curves:
-            model = known.models.get(curve.outcome.name)
-            if model is not None and model.fit is not None:
-                series += _taken_apart(model, curve, known.missed.get(curve.outcome.name))
-        name = system_name(surface, medium)
+    for place, (load, curves) in enumerate(sorted(by_load.items()), start=1):
+        if len({curve.outcome.surface for curve in curves}) < 2:
+            continue
+        measured = [_measured(known, curve, "") for curve in curves]
+        spec = stribeck.spec(measured, surfaces=known.surfaces)
+        title = f"{force_text(load)}: friction over sliding speed"
+        note = "Bars: U95. Dry: open markers, dashed."
+        alt = f"Friction coefficient over sliding speed at {force_text(load)}: "
+        alt += f"{many(len(curves), 'measured curve')}."
         figures.append(
-            FigureSpec(
-                id=f"model-{safe(name)}",
-                section="model",
-                title=f"{name}: the model taken apart",
-                note="Above: what the computed friction is made of; its sum stands beside the "
-                "measured points on the first screen. Below: measured less model, with the "
-                "standard uncertainty of both: of the point, and of what the model takes as "
-                "given (viscosity, speed, load, radius, modulus) where it is stated.",
-                alt=f"Parts of the computed friction coefficient of {name} over sliding speed, "
-                "and the difference between measurement and model.",
-                panels=(Panel(SPEED_AXIS, _PART), Panel(SPEED_AXIS, Axis("measured − model"))),
-                series=tuple(series),
-                one_load=True,
+            replace(
+                spec, id=f"stribeck-load_{place}", section="curves", title=title, note=note, alt=alt
             )
         )
     return figures
-
-
-def _taken_apart(model: ModelRow, curve: CurveRecord, missed: Missed | None) -> list[Series]:
-    labels = labels_of(curve.outcome)
-    rows = _within(model.curve, curve)
-    speed = [row["sliding_speed_m_s"] for row in rows]
-    stressed = _has_stress(model)
-    series = []
-    for name, words, style, colour in _PARTS:
-        if stressed or name == "friction_coefficient_couette":
-            values = [row.get(name) for row in rows]
-            series.append(Series(words, speed, values, style, colour, **labels))
-    if stressed and missed is not None:
-        series.append(_missed(missed, curve, labels))
-    return series
-
-
-def _missed(missed: Missed, curve: CurveRecord, labels: SeriesLabels) -> Series:
-    words = [
-        f"v = {plain_speed(v)}\nmeasured − model = {number(off, 2)}\nmodel: {number(mu)}"
-        for v, off, mu in zip(missed.speed, missed.residual, missed.model, strict=True)
-        if off is not None and mu is not None
-    ]
-    return Series(
-        "measured − model",
-        missed.speed,
-        missed.residual,
-        style="points",
-        panel=1,
-        error=missed.error,
-        hover=words,
-        link=(curve.outcome.run_names[0],),
-        **labels,
-    )

@@ -1,135 +1,134 @@
-"""All live figures of a campaign: made from its records, and from data files where they changed."""
+"""The figures of a campaign that need its data files, by subject: for the page and as files."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor
 from functools import partial
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
 
 from tribolab.campaign.engine.stage import begun
 from tribolab.campaign.recorded import done_and_failed
+from tribolab.campaign.store.catalogue import Store
 from tribolab.figures.spec import FigureSpec
 from tribolab.records.joint_record import JointRecord
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import Notice
 from tribolab.report.document.models import ModelRow
-from tribolab.report.live.compared import comparisons
-from tribolab.report.live.curves import FrictionOverSpeed, card_figures, model_figures
-from tribolab.report.live.joint import record_of_joint_fits
-from tribolab.report.live.models import record_of_models
-from tribolab.report.live.points import RunPoint
-from tribolab.report.live.record import Band, LiveFigures, LiveTask, Missed, live_task
-from tribolab.report.live.shown import ShownFigure, shown_figures
-from tribolab.report.live.sliding import Judged, record_of_sliding
-from tribolab.report.live.surfaces import record_of_surfaces
+from tribolab.report.live.joint import joint_specs
+from tribolab.report.live.models import bands_of_models, model_specs
+from tribolab.report.live.record import Band, LiveFigures, LiveRecord, live_task
+from tribolab.report.live.shown import shown_figures
+from tribolab.report.live.sliding import Judged, sliding_specs
+from tribolab.report.live.surfaces import surface_specs
 from tribolab.report.slowest import slow_segments
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import OpenOutcome
 
+Make = Callable[[Path], Sequence[FigureSpec]]
+Bands = Callable[[Path], dict[str, Band]]
+
 
 def begun_live_figures(
-    outcome: OpenOutcome,
-    curves: Sequence[CurveRecord],
-    points: Mapping[str, Sequence[RunPoint]],
-    along: Sequence[FigureSpec],
-    rows: Mapping[str, ModelRow],
-    modes: Mapping[str, ModeRecord],
-    joints: Sequence[JointRecord],
-    executor: Executor | None = None,
-) -> Callable[[], tuple[list[ShownFigure], list[Notice]]]:
-    """Begin the figures that the page draws, and return what waits for them.
-
-    That gives the figures, and why others could not be made.
+    subjects: Sequence[Subject], store: Store, executor: Executor | None = None
+) -> Callable[[], tuple[list[LiveRecord], list[Notice]]]:
+    """Begin the figures of the page that need data files; the returned function waits for them.
 
     Parameters
     ----------
-    outcome
-        What the campaign came to.
-    curves
-        Measured curves that can be shown.
-    points
-        Friction over speed of each run, by its name.
-    along
-        Figures of friction from stroke to stroke.
-    rows
-        Models that are done, by their names.
-    modes
-        How the curves slide, by the curve's name.
-    joints
-        Joint fits that are done.
+    subjects
+        From `figure_subjects`.
+    store
+        Where records and checksums are known.
     executor
-        Where those that need data files are made; without one it is done here.
+        Where the figures are made; without one it is done here.
     """
-    surfaces = tuple(surface.name for surface in outcome.surfaces)
-    models = list(rows.values())
-    tasks = list(_tasks(outcome, curves, models, modes, joints, surfaces))
-    making = begun(LiveFigures(outcome.store, tasks), executor)
-
-    def made() -> tuple[list[ShownFigure], list[Notice]]:
-        records, findings = done_and_failed(making())
-        bands: dict[str, Band] = {}
-        missed: dict[str, Missed] = {}
-        for record in records:
-            bands |= record.bands
-            missed |= record.missed
-        by_curve = {row.model.curve: row for row in models}
-        known = FrictionOverSpeed(curves, points, by_curve, bands, missed, surfaces)
-        figures = [*card_figures(known), *comparisons(known), *along, *model_figures(known)]
-        return [
-            *shown_figures(figures),
-            *(figure for record in records for figure in record.figures),
-        ], findings
-
-    return made
+    tasks = [
+        live_task(
+            subject.name,
+            partial(_live_record, subject.make, subject.bands),
+            subject.shaping,
+            subject.files,
+            store,
+        )
+        for subject in subjects
+    ]
+    making = begun(LiveFigures(store, tasks), executor)
+    return lambda: done_and_failed(making())
 
 
-def _tasks(
+def _live_record(make: Make, bands: Bands | None, folder: Path) -> LiveRecord:
+    shown = shown_figures(make(folder))
+    return LiveRecord(shown, bands(folder) if bands is not None else {})
+
+
+class Subject(NamedTuple):
+    """Figures of one subject: what describes them, what shapes them, the data files they read."""
+
+    name: str
+    make: Make
+    shaping: object
+    files: Sequence[str]
+    bands: Bands | None = None
+
+
+def figure_subjects(
     outcome: OpenOutcome,
     curves: Sequence[CurveRecord],
     models: Sequence[ModelRow],
     modes: Mapping[str, ModeRecord],
     joints: Sequence[JointRecord],
-    surfaces: tuple[str, ...],
-) -> list[LiveTask]:
-    """Plan what is made from data files, of each kind all at once."""
+) -> list[Subject]:
+    """Return what can be drawn from the data files of a campaign, by subject.
+
+    Parameters
+    ----------
+    outcome
+        The campaign's results.
+    curves
+        Measured curves that can be shown.
+    models
+        Models that are done.
+    modes
+        How the curves slide, by the curve's name.
+    joints
+        Joint fits that are done.
+    """
+    surfaces = tuple(surface.name for surface in outcome.surfaces)
     judged = [
         Judged(curve.outcome, modes[curve.outcome.name], slow_segments(curve.outcome, outcome))
         for curve in curves
         if curve.outcome.name in modes
     ]
-    store = outcome.store
     done = [surface for surface in outcome.surfaces if surface.done]
     traced = dict.fromkeys(contact.slow.file for contact in judged if contact.slow)
     return [
-        live_task(
+        Subject(
             "models",
-            partial(record_of_models, models, surfaces),
+            partial(model_specs, models, surfaces),
             ([(row.labels, row.fit, row.sensitivity) for row in models], surfaces),
             [row.model.data_file for row in models],
-            store,
+            partial(bands_of_models, models),
         ),
-        live_task(
+        Subject(
             "joint fits",
-            partial(record_of_joint_fits, joints),
-            joints,
+            partial(joint_specs, joints, surfaces),
+            (joints, surfaces),
             [joint.file for joint in joints],
-            store,
         ),
-        live_task(
+        Subject(
             "surfaces",
-            partial(record_of_surfaces, done, surfaces),
+            partial(surface_specs, done, surfaces),
             ([(surface.name, surface.parts, surface.quality) for surface in done], surfaces),
             [surface.data_file for surface in done],
-            store,
         ),
-        live_task(
+        Subject(
             "sliding",
-            partial(record_of_sliding, judged, surfaces),
+            partial(sliding_specs, judged, surfaces),
             (judged, surfaces),
             list(traced),
-            store,
         ),
     ]

@@ -1,32 +1,25 @@
-"""What the models rest on: shear stress over load, what moves them, and inside the contact."""
+"""Figures of the models: curves with residuals, shear stress, sensitivity, inside the contact."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
+import pandas as pd
 
 from tribolab.campaign.store.data_files import read_data
-from tribolab.figures.spec import (
-    Axis,
-    FigureSpec,
-    Panel,
-    Series,
-    SeriesLabels,
-    Style,
-    places,
-    safe,
-    thinned,
-)
+from tribolab.figures.colours import surface_colours
+from tribolab.figures.film import film_profiles, lubrication_factors
+from tribolab.figures.mixed import mixed_curve, shear_stress
+from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, SeriesLabels, safe
 from tribolab.records.model_words import shear_stress_u95, stress_interval
 from tribolab.records.parts import number_of
 from tribolab.records.wording import with_error
 from tribolab.report.document.models import ModelRow
 from tribolab.report.live.curves import system_name
-from tribolab.report.live.record import Band, LiveRecord, Missed
-from tribolab.report.live.shown import shown_figures
+from tribolab.report.live.record import Band
 from tribolab.report.plain import plain_speed
 from tribolab.words import force_text, is_dry, percent
 
@@ -38,10 +31,10 @@ if TYPE_CHECKING:
 _MPA = 1e-6
 
 
-def record_of_models(
+def model_specs(
     models: Sequence[ModelRow], surfaces: Sequence[str], folder: Path
-) -> LiveRecord:
-    """Return the figures of the section on models, and what the curves need of the models.
+) -> list[FigureSpec]:
+    """Return the figures of the section on models that need their data files.
 
     Parameters
     ----------
@@ -52,32 +45,25 @@ def record_of_models(
     folder
         The results folder with their data files.
     """
-    bands, missed = _of_curves(models, folder)
-    colours = places([*surfaces, *(row.model.surface for row in models)])
-    drawn = [shear_stress_figure(models, colours), sensitivity(models, colours)]
-    drawn += _profiles(models, folder)
-    drawn.append(_factors(models, folder, colours))
-    return LiveRecord(shown_figures(drawn), bands, missed)
+    order = [*surfaces, *(row.model.surface for row in models)]
+    return [
+        *_curves(models, order, folder),
+        shear_stress_figure(models, order),
+        sensitivity(models, surface_colours(order)),
+        *_profiles(models, folder),
+        _factors(models, order, folder),
+    ]
 
 
-def _of_curves(
-    models: Sequence[ModelRow], folder: Path
-) -> tuple[dict[str, Band], dict[str, Missed]]:
-    """Return what models do not know and what they miss, by the name of the measured curve."""
-    bands, missed = {}, {}
+def bands_of_models(models: Sequence[ModelRow], folder: Path) -> dict[str, Band]:
+    """Return the uncertainty of each model, by the name of the measured curve."""
+    bands = {}
     for row in models:
-        name, parts = row.model.curve, row.model.parts
-        if "uncertainty" in parts:
+        if "uncertainty" in row.model.parts:
             data = _read(row, folder, "uncertainty")
             edges = (data[f"friction_coefficient_{end}"].values.tolist() for end in ("low", "high"))
-            bands[name] = Band(data["sliding_speed"].values.tolist(), *edges)
-        if row.fit is not None and "fit" in parts:
-            fit = _read(row, folder, "fit")
-            off = "friction_coefficient_residual"
-            names = ("sliding_speed", off, f"{off}_u", "friction_coefficient_model")
-            columns = [fit[name].values.tolist() for name in names]
-            missed[name] = Missed(*columns)
-    return bands, missed
+            bands[row.model.curve] = Band(data["sliding_speed"].values.tolist(), *edges)
+    return bands
 
 
 def _read(row: ModelRow, folder: Path, group: str) -> xr.Dataset:
@@ -89,42 +75,30 @@ def _labels(row: ModelRow) -> SeriesLabels:
     return {"surface": model.surface, "medium": model.medium, "load": model.normal_force}
 
 
-def shear_stress_figure(models: Sequence[ModelRow], colours: Mapping[str, int]) -> FigureSpec:
+def shear_stress_figure(models: Sequence[ModelRow], surfaces: Sequence[str]) -> FigureSpec:
     """Return the fitted shear stresses over the load."""
-    series = []
-    for (surface, medium), rows in _by_system(models).items():
-        fits = [(row, row.fit) for row in rows if row.fit and row.fit["shear_stress_Pa"] > 0]
-        for name, words, open_ in (
-            ("", "", True),
-            ("corrected_", ", with adhesion", False),
-        ):
-            known = [(r, f) for r, f in fits if np.isfinite(f[f"{name}shear_stress_Pa"])]
-            error = "corrected_shear_stress_error_Pa" if name else "shear_stress_total_error_Pa"
-            series.append(
-                Series(
-                    system_name(surface, medium) + (words if name else ""),
-                    [row.model.normal_force for row, _ in known],
-                    [fit[f"{name}shear_stress_Pa"] * _MPA for _, fit in known],
-                    style="points",
-                    colour=colours[surface],
-                    surface=surface,
-                    medium=medium,
-                    error=[shear_stress_u95(fit, fit[error]) * _MPA for _, fit in known],
-                    hover=[_told(row, fit, name) for row, fit in known],
-                    open=open_,
-                )
-            )
-    series = [drawn for drawn in series if drawn.x]
-    return FigureSpec(
-        "model-shear_stress",
-        "model",
-        "Shear stress in the contact",
-        "Open: as fitted, for the contact area without adhesion; filled: in the larger area that "
-        "adhesion makes. Bars: U95, with the spectrum's part where known.",
-        "Fitted shear stress over the load, by surface and medium.",
-        (Panel(Axis("load", "N"), Axis("shear stress σ", "MPa", least=0.0)),),
-        tuple(series),
+    rows = [
+        fit
+        | {
+            "surface": row.model.surface,
+            "medium": row.model.medium,
+            "normal_force_N": row.model.normal_force,
+            "corrected_u95_Pa": shear_stress_u95(fit, fit["corrected_shear_stress_error_Pa"]),
+            "hover": _told(row, fit, ""),
+            "corrected_hover": _told(row, fit, "corrected_"),
+        }
+        for row in models
+        if (fit := row.fit) and fit["shear_stress_Pa"] > 0
+    ]
+    if not rows:
+        return FigureSpec()
+    spec = shear_stress.spec(pd.DataFrame(rows), surfaces=surfaces)
+    return replace(
+        spec,
+        id="model-shear_stress",
+        section="model",
         width="whole",
+        alt="Fitted shear stress over the load, by surface and medium.",
     )
 
 
@@ -188,93 +162,75 @@ def _moved(change: Row) -> str:
     return "\n".join([*lines, str(change["reason"])])
 
 
-_PROFILES = (
-    ("separation", Axis("separation", "µm", log=True), 1e6),
-    ("contact_pressure", Axis("p solid", "MPa"), 1e-6),
-    ("fluid_pressure", Axis("p liquid", "MPa"), 1e-6),
-)
-_NOTHING = 1e-3  # of the highest pressure: beyond, nothing of a profile is to be seen
+def _curves(models: Sequence[ModelRow], order: Sequence[str], folder: Path) -> list[FigureSpec]:
+    """Return a figure for each surface and medium: measured, computed, and the residuals."""
+    figures = []
+    for (surface, medium), rows in _by_system(models).items():
+        specs = []
+        for row in rows:
+            if row.fit is None or not {"fit", "curve"} <= set(row.model.parts):
+                continue
+            spread = _read(row, folder, "uncertainty") if "uncertainty" in row.model.parts else None
+            fit, curve = (_read(row, folder, part) for part in ("fit", "curve"))
+            spec = mixed_curve.spec(fit, curve, uncertainty=spread, surface=surface, surfaces=order)
+            specs.append(_labelled(spec, row))
+        if specs:
+            name = system_name(surface, medium)
+            alt = f"Measured and computed friction coefficient of {name} over sliding speed, with "
+            figures.append(
+                _merged(specs, f"model-{safe(name)}", name, f"{alt}the residuals.", one_load=True)
+            )
+    return figures
+
+
+def _labelled(spec: FigureSpec, row: ModelRow) -> FigureSpec:
+    """Return a figure whose series have the medium and load of a model."""
+    return replace(spec, series=tuple(replace(one, **_labels(row)) for one in spec.series))
+
+
+def _merged(
+    specs: Sequence[FigureSpec], id: str, name: str, alt: str, *, one_load: bool
+) -> FigureSpec:
+    """Return one figure of what several have, for the section on models."""
+    series = tuple(one for spec in specs for one in spec.series)
+    title = f"{name}: {specs[0].title[:1].lower()}{specs[0].title[1:]}"
+    note = max((spec.note for spec in specs), key=len)  # that with a model
+    return replace(
+        specs[0],
+        note=note,
+        id=id,
+        section="model",
+        title=title,
+        alt=alt,
+        series=series,
+        one_load=one_load,
+    )
 
 
 def _profiles(models: Sequence[ModelRow], folder: Path) -> list[FigureSpec]:
     figures = []
     for (surface, medium), rows in _by_system(models).items():
-        series: list[Series] = []
-        for row in rows:
-            if "profiles" in row.model.parts:
-                series += _across(row, _read(row, folder, "profiles"))
         name = system_name(surface, medium)
-        x = Axis("across the contact", "mm")
-        figures.append(
-            FigureSpec(
-                f"model-profiles-{safe(name)}",
-                "model",
-                f"{name}: across the contact",
-                "The flat slides to the right. Mean separation, pressure that the solids carry, "
-                "and pressure in the liquid; a colour for each sliding speed.",
-                f"Mean separation, pressure in the solid contact and in the liquid of {name}.",
-                tuple(Panel(x, y) for _, y, _ in _PROFILES),
-                tuple(series),
-                one_load=True,
-            )
-        )
+        specs = [
+            _labelled(film_profiles.spec(_read(row, folder, "profiles")), row)
+            for row in rows
+            if "profiles" in row.model.parts
+        ]
+        if specs:
+            alt = f"Mean separation, pressure in the solid contact and in the liquid of {name}."
+            id = f"model-profiles-{safe(name)}"
+            figures.append(_merged(specs, id, name, alt, one_load=True))
     return figures
 
 
-def _across(row: ModelRow, data: xr.Dataset) -> list[Series]:
-    pressure = data["contact_pressure"] + data["fluid_pressure"]
-    seen = np.flatnonzero((pressure > _NOTHING * pressure.max()).any("sliding_speed").values)
-    kept = seen[thinned(seen.size, 160)]
-    series = []
-    for number in range(data.sizes["sliding_speed"]):
-        line = data.isel(sliding_speed=number, point=kept)
-        label = plain_speed(float(line["sliding_speed"]))
-        for panel, (name, _, factor) in enumerate(_PROFILES):
-            x, y = 1e3 * line["x"].values, factor * line[name].values
-            series.append(Series(label, x, y, colour=number, panel=panel, **_labels(row)))
-    return series
-
-
-_FACTORS: tuple[tuple[str, str, Style, int], ...] = (
-    ("pressure_flow_factor", "pressure flow factor", "line", 0),
-    ("shear_flow_factor", "shear flow factor", "dashed", 0),
-    ("shear_stress_factor", "friction factor of the mean shear", "line", 1),
-    ("shear_stress_correction", "friction factor of roughness-born pressure", "dashed", 1),
-    ("pressure_stress_factor", "friction factor of the pressure gradient", "dotted", 1),
-)
-
-
-def _factors(models: Sequence[ModelRow], folder: Path, colours: Mapping[str, int]) -> FigureSpec:
-    series, seen = [], set()
+def _factors(models: Sequence[ModelRow], order: Sequence[str], folder: Path) -> FigureSpec:
+    data: dict[str, xr.Dataset] = {}
     for row in models:
         surface = row.model.surface
-        if "factors" not in row.model.parts or surface in seen or is_dry(row.model.medium):
-            continue
-        seen.add(surface)
-        data = _read(row, folder, "factors")
-        for name, words, style, panel in _FACTORS:
-            series.append(
-                Series(
-                    surface,
-                    1e6 * data["separation"].values,
-                    data[name].values,
-                    style,
-                    colours[surface],
-                    panel,
-                    surface=surface,
-                    hover=(words,),
-                )
-            )
-    x = Axis("mean separation", "µm", log=True)
-    return FigureSpec(
-        "model-factors",
-        "model",
-        "Flow and friction factors",
-        "How roughness changes the flow of the liquid (above: full, by pressure; dashed, by shear) "
-        "and its friction (below: full, of the mean shear; dashed, of the pressure that roughness "
-        "makes; dotted, of the pressure gradient). Where surfaces agree their lines lie on each "
-        "other.",
-        "Flow factors and friction factors over the mean separation.",
-        (Panel(x, Axis("flow factor")), Panel(x, Axis("friction factor"))),
-        tuple(series),
-    )
+        if "factors" in row.model.parts and surface not in data and not is_dry(row.model.medium):
+            data[surface] = _read(row, folder, "factors")
+    if not data:
+        return FigureSpec()
+    alt = "Flow factors and friction factors over the mean separation."
+    spec = lubrication_factors.spec(data, surfaces=order)
+    return replace(spec, id="model-factors", section="model", alt=alt)

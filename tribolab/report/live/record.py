@@ -24,22 +24,12 @@ class Band(NamedTuple):
     high: list[float | None]
 
 
-class Missed(NamedTuple):
-    """Speeds [m/s] of a fit, measured less computed friction, its error, and the computed one."""
-
-    speed: list[float | None]
-    residual: list[float | None]
-    error: list[float | None]
-    model: list[float | None]
-
-
 @dataclass(frozen=True)
 class LiveRecord:
     """Figures made from data files, and what curves need of them, by the name of the curve."""
 
     figures: tuple[ShownFigure, ...] = ()
     bands: dict[str, Band] = field(default_factory=dict)
-    missed: dict[str, Missed] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

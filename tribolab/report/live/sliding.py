@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import xarray as xr
 
+from tribolab.figures.colours import surface_colours
 from tribolab.figures.curves import SPEED_AXIS
 from tribolab.figures.envelope import envelope_index
 from tribolab.figures.signals import LOOKED_AT, main_signal
+from tribolab.figures.slip import cumulative, waveform_map
+from tribolab.figures.slip_spectra import power_levels
 from tribolab.figures.spec import (
     Axis,
     FigureSpec,
@@ -20,24 +25,17 @@ from tribolab.figures.spec import (
     Style,
     Values,
     places,
-    thinned,
 )
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.parts import CurveOutcome
 from tribolab.report.live.curves import labels_of, system_name, told_apart
-from tribolab.report.live.record import LiveRecord
-from tribolab.report.live.shown import shown_figures
 from tribolab.report.plain import plain_speed
 from tribolab.report.slowest import Slow, lowest_loads
 from tribolab.words import force_text, is_dry, number
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 _UNDECIDED = "not decided"
 _STEADY = frozenset({"smooth sliding", _UNDECIDED})
 _APART = 1.2  # of two speeds, from which on they are not one
-_MOST_EVENTS = 300
 _EXCERPT = 800  # points of a slow trace
 # Of what is looked at and of what stands beside it: in a liquid, and dry, in the same colour.
 _STYLES: tuple[tuple[Style, Style], ...] = (("line", "dashed"), ("dotted", "dashdot"))
@@ -51,9 +49,9 @@ class Judged(NamedTuple):
     slow: Slow | None
 
 
-def record_of_sliding(
+def sliding_specs(
     judged: Sequence[Judged], surfaces: Sequence[str], folder: Path
-) -> LiveRecord:
+) -> list[FigureSpec]:
     """Return the figures of the section on stick-slip for which there are data.
 
     Parameters
@@ -71,7 +69,7 @@ def record_of_sliding(
     by_name = {contact.curve.name: contact for contact in judged}
     lowest = [by_name[curve.name] for curve in lowest_loads(contact.curve for contact in judged)]
     opened = [_opened(contact, colours, folder) for contact in lowest if contact.slow is not None]
-    figures = [
+    return [
         _waveforms(judged),
         _frequencies(judged, colours),
         _traces(opened),
@@ -79,7 +77,6 @@ def record_of_sliding(
         _events(opened),
         _spectrogram(opened),
     ]
-    return LiveRecord(shown_figures(figures))
 
 
 def _colours(judged: Sequence[Judged], surfaces: Sequence[str]) -> dict[str, int]:
@@ -88,7 +85,7 @@ def _colours(judged: Sequence[Judged], surfaces: Sequence[str]) -> dict[str, int
     # of one surface one load is opened, dry and in a liquid by their lines
     drawn = {(curve.surface, is_dry(curve.medium), _system(curve)) for curve in curves}
     if len({key[:2] for key in drawn}) == len(drawn):
-        of_surface = places([*surfaces, *(curve.surface for curve in curves)])
+        of_surface = surface_colours([*surfaces, *(curve.surface for curve in curves)])
         return {curve.name: of_surface[curve.surface] for curve in curves}
     own = places(_system(curve) for curve in curves)
     return {curve.name: own[_system(curve)] for curve in curves}
@@ -105,34 +102,41 @@ def _name(curve: CurveOutcome) -> str:
 
 def _waveforms(judged: Sequence[Judged]) -> FigureSpec:
     """Return which waveform is seen at every speed."""
-    series = []
-    colours = places(str(row["waveform"]) for contact in judged for row in contact.mode.speeds)
-    for contact in judged:
-        for waveform in dict.fromkeys(str(row["waveform"]) for row in contact.mode.speeds):
-            rows = [row for row in contact.mode.speeds if row["waveform"] == waveform]
-            series.append(
-                Series(
-                    waveform,
-                    [row["sliding_speed_m_s"] for row in rows],
-                    [_name(contact.curve)] * len(rows),
-                    style="points",
-                    colour=colours[waveform],
-                    hover=[_seen(contact, row) for row in rows],
-                    link=(contact.curve.run_names[0],),
-                    **(labels_of(contact.curve) | {"open": waveform in _STEADY}),
-                )
-            )
-    return FigureSpec(
-        "sliding-waveforms",
-        "sliding",
-        "Steady or stick-slip at every speed",
-        _waveform_note(colours),
-        "Class of waveform of each condition at each sliding speed.",
-        (Panel(SPEED_AXIS, Axis("")),),
-        tuple(series),
-        width="whole",
+    if not judged:
+        return FigureSpec()
+    curves = {_name(contact.curve): _waveform_curve(contact) for contact in judged}
+    spec = waveform_map.spec(curves)
+    waveforms = {str(row["waveform"]) for contact in judged for row in contact.mode.speeds}
+    return replace(
+        spec,
+        id="sliding-waveforms",
+        section="sliding",
+        note=_waveform_note(waveforms),
+        alt="Class of waveform of each condition at each sliding speed.",
         height=140 + 26 * len(judged),
-        rows=True,
+    )
+
+
+def _waveform_curve(contact: Judged) -> xr.Dataset:
+    """Return the waveforms of a curve as the figures take them."""
+    rows = contact.mode.speeds
+    drops = [np.nan if row["drop"] is None else row["drop"] for row in rows]
+    columns = {
+        "waveform": [str(row["waveform"]) for row in rows],
+        "drop": np.array(drops, float),
+        "hover": [_seen(contact, row) for row in rows],
+        "link": [contact.curve.run_names[0]] * len(rows),
+    }
+    labels = labels_of(contact.curve)
+    return xr.Dataset(
+        {name: ("sliding_speed", values) for name, values in columns.items()},
+        {"sliding_speed": [row["sliding_speed_m_s"] for row in rows]},
+        {
+            "surface": labels["surface"],
+            "medium": labels["medium"],
+            "normal_force_N": labels["load"],
+            "runs": labels["runs"],
+        },
     )
 
 
@@ -324,12 +328,9 @@ def _events(opened: Sequence[_Open]) -> FigureSpec:
     for contact in opened:
         if not contact.slip.sizes.get("event", 0):
             continue
-        drops = np.sort(contact.slip["event_drop"].values.astype(float))
-        drops = drops[np.isfinite(drops)]
-        kept = thinned(drops.size, _MOST_EVENTS)
-        share = (np.arange(drops.size) + 1) / max(drops.size, 1)
-        name, style = f"{contact.name}: {drops.size} drops", _STYLES[0][contact.labels["open"]]
-        series.append(contact.series(name, drops[kept], share[kept], style))
+        drops = contact.slip["event_drop"].values
+        name = f"{contact.name}: {int(np.isfinite(drops).sum())} drops"
+        series.append(contact.series(name, *cumulative(drops), _STYLES[0][contact.labels["open"]]))
     return FigureSpec(
         "sliding-events",
         "sliding",
@@ -347,22 +348,12 @@ def _spectrogram(opened: Sequence[_Open]) -> FigureSpec:
     series: list[Series] = []
     low, high = np.inf, 0.0
     for contact in opened:
-        slip = contact.slip
-        if not slip.sizes.get("frequency", 0):
+        levels = power_levels(contact.slip) if contact.slip.sizes.get("frequency", 0) else None
+        if levels is None or not levels[0].size:
             continue
-        forward = np.flatnonzero(slip["direction"].values >= 0)
-        order = forward[np.argsort(slip["sliding_speed"].values[forward], kind="stable")]
-        ratio = (slip["psd"] / slip["psd_background"]).values[order]
-        speed = np.repeat(slip["sliding_speed"].values[order, None], ratio.shape[1], axis=1)
-        f = np.broadcast_to(slip["frequency"].values, ratio.shape)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            level = np.log10(ratio)
-        # below the noise there is nothing to see
-        kept = np.isfinite(level) & (level > 0.3)
-        values = [float(f"{v:.3g}") for v in level[kept]]
-        low, high = (end(speed[kept], initial=was) for end, was in ((np.min, low), (np.max, high)))
-        drawn = contact.series(contact.name, speed[kept], f[kept], "heat", high=values)
-        series += [drawn] if values else []
+        speed, f, level = levels
+        low, high = min(low, speed.min()), max(high, speed.max())
+        series.append(contact.series(contact.name, speed, f, "heat", high=level))
     return FigureSpec(
         "sliding-spectrogram",
         "sliding",

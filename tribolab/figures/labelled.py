@@ -1,4 +1,4 @@
-"""Several results of one kind, by the labels that stand beside them in a figure."""
+"""Several results of one kind by their labels: surfaces, runs, conditions."""
 
 from __future__ import annotations
 
@@ -72,3 +72,34 @@ def parts(results: xr.Dataset, known: str) -> dict[str, xr.Dataset]:
                  for dim, k in zip(dims, place, strict=True)]  # fmt: skip
         named[", ".join(words)] = part
     return named
+
+
+# Datasets by the surface's name, or one with the dim ``surface``.
+SurfaceOrSeveral = Mapping[str, xr.Dataset] | xr.Dataset
+
+
+def by_surface(data: SurfaceOrSeveral) -> dict[str, xr.Dataset]:
+    """Return datasets by the surface's name, also from one that has a dim ``surface``.
+
+    Surfaces with different wavenumbers keep their own.
+    """
+    if not isinstance(data, xr.Dataset):
+        return dict(data)
+    if "surface" not in data.dims:
+        return {str(data.attrs.get("surface", "")): data}
+    separate = {str(name): data.sel(surface=name, drop=True) for name in data["surface"].to_numpy()}
+    if "wavenumber" not in data.dims:
+        return separate
+    return {name: part.dropna("wavenumber", how="all") for name, part in separate.items()}
+
+
+def by_load(data: xr.Dataset) -> list[tuple[float | None, xr.Dataset]]:
+    """Return the parts of a result at each load with the normal force [N], None if unknown."""
+    if "load" not in data.dims:
+        return [(None, data)]
+    separate = [data.isel(load=k) for k in range(data.sizes["load"])]
+    forces = [p["normal_force"].item() if "normal_force" in p else None for p in separate]
+    return [
+        (None if force is None else round(float(force), 6), part)
+        for force, part in zip(forces, separate, strict=True)
+    ]

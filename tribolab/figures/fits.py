@@ -1,0 +1,187 @@
+"""All loads in one fit, and what moves a model most."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+import xarray as xr
+
+from tribolab.figures.colours import BLUE, ORANGE, shade_of, surface_colours
+from tribolab.figures.curves import SPEED_AXIS
+from tribolab.figures.error_bars import COVERAGE
+from tribolab.figures.plotted import plotted
+from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, axis_of
+from tribolab.untyped import Arguments
+
+
+class FittedCurves(Protocol):
+    """What is drawn of a `JointFit`: its points and its curves."""
+
+    @property
+    def points(self) -> xr.Dataset:
+        """Measured points and the model (point)."""
+
+    @property
+    def curves(self) -> xr.Dataset:
+        """The model with its band (curve, sliding_speed)."""
+
+
+@plotted(panels=2)
+def joint_fit(fit: FittedCurves, *, surface: str = "", surfaces: Sequence[str] = ()) -> FigureSpec:
+    """Draw the curves of a joint fit with their band, and the relative residuals.
+
+    Above: points with 95 % intervals of their own errors; the model at each load with the 95 % band
+    of its parameters and of the errors shared by the points of a load. Below: the relative
+    residuals in %; lines: the share that the fit assigns to an offset per load and to errors
+    correlated between neighbouring speeds.
+
+    Parameters
+    ----------
+    fit
+        From `tribolab.fit_shear_stress_jointly`.
+    surface, surfaces
+        Its name, if there is only one, and all names of the study in their order, for the colours.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab.studies import xu2026
+    >>> psd, load = xu2026.psd("Sb-S", 301), [310.0, 910.0]
+    >>> speed = np.geomspace(1e-7, 1e-1, 19)
+    >>> curves = tl.stribeck_curve(xu2026.contact, psd, 1.4, load, 8e5, speed, cells=60)
+    >>> measured = curves[["friction_coefficient"]].isel(sliding_speed=slice(3, -3))
+    >>> measured["friction_coefficient_sem"] = 0.02 * measured.friction_coefficient
+    >>> fit = tl.fit_shear_stress_jointly(
+    ...     measured, xu2026.contact, psd, 1.4, measured["load"], curves=curves
+    ... )
+    >>> tl.plot.figure_data(joint_fit(fit)).series.unique().tolist()
+    ['310 N/m', '910 N/m']
+    """
+    series: list[Series] = []
+    names = [str(name) for name in fit.curves["curve"].values]
+    for name, look in zip(names, _looks(fit.curves, surface, surfaces), strict=True):
+        mine = fit.points.isel(point=fit.points["curve"].values == name)
+        series += _of_load(name, mine, fit.curves.sel(curve=name), look)
+    return FigureSpec(
+        title="All loads in one fit",
+        note="Points: measured, with 95 % intervals; lines: the model at each load; bands: 95 %, "
+        "from the parameters and the errors shared by the points of a load. Below: relative "
+        "residuals; lines: their share assigned to an offset per load and to errors correlated "
+        "between neighbouring speeds.",
+        panels=(
+            Panel(SPEED_AXIS, axis_of("friction_coefficient", log=True), name="friction"),
+            Panel(SPEED_AXIS, Axis("difference", "% of µ"), height=0.55, name="difference"),
+        ),
+        series=tuple(series),
+        marks=(Mark("y", 0.0, panel=1),),
+    )
+
+
+def _looks(curves: xr.Dataset, surface: str, surfaces: Sequence[str]) -> list[Arguments]:
+    """Return colour, shade and marker of each curve: the colour of the surface, dark at low load.
+
+    A dry curve has the colour of the wet one at its load, and another marker.
+    """
+    own = [str(name) or surface for name in curves["surface"].values]
+    colours = surface_colours([*surfaces, *own])
+    loads = curves["load"].values
+    looks: list[Arguments] = []
+    seen: list[tuple[str, float]] = []
+    for name, load in zip(own, loads, strict=True):
+        of_surface = np.unique(loads[[other == name for other in own]])
+        rank = int(np.searchsorted(of_surface, load))
+        again = seen.count((name, load))  # measured dry at a load that was measured wet, too
+        seen.append((name, load))
+        shade = shade_of(rank, of_surface.size)
+        marker = rank + again * of_surface.size
+        looks.append({"colour": colours[name], "shade": shade, "marker": marker})
+    return looks
+
+
+def _of_load(name: str, points: xr.Dataset, curve: xr.Dataset, look: Arguments) -> list[Series]:
+    """Return band, line, points and differences of one load."""
+    v, measured = curve["sliding_speed"].values, points["sliding_speed"].values
+    mu, sem = (points[f"friction_coefficient{end}"].values for end in ("", "_sem"))
+    off, shared = (
+        100 * np.expm1(points[part].values) for part in ("relative_residual", "shared_residual")
+    )
+    low, high = (curve[f"friction_coefficient_load_{end}"].values for end in ("low", "high"))
+    fine = np.isfinite(low) & np.isfinite(high)
+    series = [
+        Series(name, v[fine], low[fine], "band", high=high[fine], **look),
+        Series(name, v, curve["friction_coefficient"].values, **look),
+        Series(name, measured, mu, "points", error=COVERAGE * sem, **look),
+        Series(name, measured, off, "points", panel=1, error=100 * COVERAGE * sem / mu, **look),
+    ]
+    runs = points["run_number"].values if "run_number" in points else np.zeros(measured.size)
+    for run in np.unique(runs):
+        mine = np.flatnonzero(runs == run)
+        mine = mine[np.argsort(measured[mine])]
+        series.append(Series(name, measured[mine], shared[mine], panel=1, **look))
+    return series
+
+
+@plotted(panels=2)
+def model_sensitivity(
+    uncertainty: xr.Dataset, *, surface: str = "", surfaces: Sequence[str] = ()
+) -> FigureSpec:
+    """Draw the band of a model curve, and how far each unknown moves the curve.
+
+    Bars: the largest change of mu over all speeds, up and down, relative to the peak of the curve,
+    for the low and the high end of each range; the longest on top.
+
+    Parameters
+    ----------
+    uncertainty
+        From `tribolab.model_uncertainty`.
+    surface, surfaces
+        Its name, and all names of the study in their order, for the colour.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab.studies import xu2026
+    >>> given = {"viscosity": 1.4, "load": 310.0, "shear_stress": 0.0}
+    >>> spread = tl.model_uncertainty(xu2026.contact, None, speed=[1e-3, 1e-1], cells=100, **given)
+    >>> tl.plot.figure_data(model_sensitivity(spread)).panel.unique().tolist()
+    ['band', 'bars']
+    """
+    own: Arguments = {"colour": surface_colours([*surfaces, surface])[surface], "surface": surface}
+    v, mu = (uncertainty[name].values for name in ("sliding_speed", "friction_coefficient"))
+    low, high = (uncertainty[f"friction_coefficient_{end}"].values for end in ("low", "high"))
+    fine = np.isfinite(low) & np.isfinite(high)
+    model = f"model {surface}".strip()
+    series = [
+        Series("uncertainty", v[fine], low[fine], "band", high=high[fine], name=model, **own),
+        Series(model, v, mu, **own),
+    ]
+    names = uncertainty["variation"].values.astype(str)
+    change = 100 * (uncertainty["friction_coefficient_varied"].values - mu) / mu.max()
+    filled = np.nan_to_num(change)
+    place = np.argmax(np.abs(filled), axis=-1)[..., None]
+    most = np.take_along_axis(filled, place, axis=-1)[..., 0]  # signed, (variation, end)
+    most = np.where(np.isfinite(change).any(axis=-1), most, np.nan)
+    order = np.argsort(np.nanmax(np.abs(np.nan_to_num(most)), axis=1))
+    for end, colour in enumerate((BLUE, ORANGE)):
+        label = f"{('low', 'high')[end]} end of the range"
+        series.append(
+            Series(label, most[order, end], names[order].tolist(), "bars", colour, panel=1)
+        )
+    return FigureSpec(
+        title="Sensitivity of the model",
+        note="Left: the model with its band. Right: largest change of friction for the two ends of "
+        "the range of each unknown.",
+        panels=(
+            Panel(SPEED_AXIS, axis_of("friction_coefficient", log=True), name="band"),
+            Panel(
+                Axis("largest change of µ", "% of the peak", column="change_percent"),
+                Axis("", column="variation"),
+                name="bars",
+            ),
+        ),  # fmt: skip
+        series=tuple(series),
+        marks=(Mark("x", 0.0, panel=1),),
+        across=2,
+    )

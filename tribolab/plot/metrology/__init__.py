@@ -1,1 +1,0 @@
-"""Figures of how well a number is known: budgets, repeats, campaigns beside each other."""

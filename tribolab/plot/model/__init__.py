@@ -1,1 +1,0 @@
-"""Figures of mixed lubrication: beside the measurement, across the film, fitted jointly."""

@@ -1,1 +1,0 @@
-"""Figures of one run: its trace, its strokes, the start of sliding."""

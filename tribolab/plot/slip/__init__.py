@@ -1,1 +1,0 @@
-"""Figures of stick-slip: traces, events, spectra, and what oscillates when."""

@@ -1,1 +1,0 @@
-"""Figures of rough surfaces and of their contact."""
