@@ -298,13 +298,16 @@ def test_a_link_to_a_folder_stays_a_link(tmp_path):
         (errno.EROFS, "read-only"),
         (errno.EACCES, "no permission"),
         (errno.EIO, "disk reports an error"),
+        (errno.ESTALE, "file server has lost"),
+        (errno.EMFILE, "too many files are open"),
+        (errno.EADV, "cannot write here"),
     ],
 )
 def test_a_write_that_fails_is_one_clear_error_and_the_old_stays(tmp_path, number, words):
     output = tmp_path / "results"
     write(output, "old")
     with pytest.raises(OutputError, match=rf"{words}.*untouched"), staged(output):
-        raise OSError(number, os.strerror(number))
+        raise OSError(number, os.strerror(number), str(output / "answer.txt"))
     assert (output / "answer.txt").read_text() == "old"
 
 

@@ -6,67 +6,24 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from hostile.outside import SECRET, WAYS, foreign_filter, secret, write
 
 import tribolab as tl
 from tribolab.errors import ReadError
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.reading.raw.hdf5_safety import check_self_contained
 
-SECRET = "root:secret of this machine"
-
 
 @pytest.fixture
-def secret(tmp_path):
-    path = tmp_path / "elsewhere" / "secret.txt"
-    path.parent.mkdir()
-    path.write_text(SECRET * 40)
-    with h5py.File(path.with_suffix(".h5"), "w") as file:
-        file["Fx [N]"] = np.full(100, 7.0)
-    return path
-
-
-def external(file, secret):
-    size = secret.stat().st_size // 8
-    file.create_dataset("Fx [N]", (size,), "f8", external=[(str(secret), 0, 8 * size)])
-
-
-def external_bytes(file, secret):
-    file.create_dataset("notes", (100,), "u1", external=[(str(secret), 0, 100)])
-
-
-def external_in_group(file, secret):
-    external(file.create_group("a").create_group("b"), secret)
-
-
-def link(file, secret):
-    file["Fx [N]"] = h5py.ExternalLink(str(secret.with_suffix(".h5")), "/Fx [N]")
-
-
-def soft_link_through_a_link(file, secret):
-    file["away"] = h5py.ExternalLink(str(secret.with_suffix(".h5")), "/")
-    file["Fx [N]"] = h5py.SoftLink("/away/Fx [N]")
-
-
-def virtual(file, secret):
-    layout = h5py.VirtualLayout(shape=(100,), dtype="f8")
-    layout[:] = h5py.VirtualSource(str(secret.with_suffix(".h5")), "Fx [N]", shape=(100,))
-    file.create_virtual_dataset("Fx [N]", layout)
-
-
-WAYS = [external, external_bytes, external_in_group, link, soft_link_through_a_link, virtual]
+def away(tmp_path):
+    return secret(tmp_path)
 
 
 @pytest.mark.parametrize("ending", ["h5", "nc", "mat"])
 @pytest.mark.parametrize("way", WAYS, ids=lambda way: way.__name__)
-def test_data_from_another_file_are_refused_by_name_by_every_reader(way, ending, secret, tmp_path):
+def test_data_from_another_file_are_refused_by_name_by_every_reader(way, ending, away, tmp_path):
     path = tmp_path / f"a.{ending}"
-    userblock = 512 if ending == "mat" else 0
-    with h5py.File(path, "w", userblock_size=userblock) as file:
-        file["Time [s]"] = np.arange(100) / 10
-        way(file, secret)
-    if ending == "mat":
-        with path.open("r+b") as raw:
-            raw.write(b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM")
+    write(path, way, away)
     readers = [check_self_contained, tl.read, tl.read_scans]
     readers += [read_netcdf] * (ending == "nc")
     for reader in readers:
@@ -77,12 +34,7 @@ def test_data_from_another_file_are_refused_by_name_by_every_reader(way, ending,
 
 
 def test_a_filter_that_is_not_the_librarys_is_refused(tmp_path):
-    with h5py.File(tmp_path / "a.h5", "w") as file:
-        made = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
-        made.set_chunk((10,))
-        made.set_filter(32004, h5py.h5z.FLAG_OPTIONAL, ())
-        space = h5py.h5s.create_simple((100,))
-        h5py.h5d.create(file.id, b"Fx [N]", h5py.h5t.NATIVE_DOUBLE, space, made)
+    write(tmp_path / "a.h5", foreign_filter, tmp_path)
     with pytest.raises(ReadError, match=r"'Fx \[N\]' is packed with filter 32004"):
         check_self_contained(tmp_path / "a.h5")
 

@@ -1,5 +1,6 @@
 """Containers are read in a child process: what it does to itself costs one error."""
 
+import gzip
 import os
 import pickle
 import signal
@@ -12,11 +13,12 @@ from pathlib import Path
 import isolated_cases as cases
 import numpy as np
 import pytest
+from scipy.io import netcdf_file
 from typer.testing import CliRunner
 
 import tribolab
 from tribolab.cli import app
-from tribolab.errors import ReadError, TribolabError
+from tribolab.errors import OutputError, ReadError, TribolabError
 from tribolab.reading.netcdf.table_schema import load_schema
 from tribolab.reading.raw import limits, server
 from tribolab.reading.raw.opening import CrashedError, MissingLibraryError
@@ -182,6 +184,29 @@ def test_what_a_killed_process_left_is_removed_at_the_next_start(tmp_path, monke
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     scratch_place()
     assert not left.exists() and ours.exists() and (tmp_path / "tribolab-notes-x").exists()
+
+
+@pytest.mark.parametrize("packed", [True, False])
+def test_a_lack_of_scratch_files_is_not_reported_as_damage(packed, file, tmp_path, monkeypatch):
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "none"))
+    path = tmp_path / "a.csv.gz"
+    path.write_bytes(gzip.compress(FORCE.encode()))
+    with pytest.raises(OutputError, match="scratch files cannot be written.*set TMPDIR"):
+        tribolab.read(path) if packed else cases.read_bytes(file)
+
+
+def test_what_is_refused_is_looked_at_once(tmp_path, monkeypatch):
+    path, jobs = tmp_path / "a.nc", []
+    with netcdf_file(path, "w") as data:
+        data.createDimension("time", 2)
+        for number in range(5001):
+            data.createVariable(f"v{number}", "f8", ("time",))
+    run = server.ONLY.run
+    monkeypatch.setattr(server.ONLY, "run", lambda job: jobs.append(job) or run(job))
+    for reader in (tribolab.read, tribolab.read, tribolab.read_scans):
+        with pytest.raises(ReadError, match=r"a\.nc: more than 5000 variables"):
+            reader(path)
+    assert len(jobs) == 1
 
 
 def test_importing_the_package_starts_no_process():

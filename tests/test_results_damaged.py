@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from campaigns import copied
+from hostile.damage import KINDS, spoil
 from typer.testing import CliRunner
 
 from tribolab import cli
@@ -18,7 +19,6 @@ from tribolab.campaign.store.ledger import MARKER, Ledger
 from tribolab.errors import ConfigError, TribolabError
 
 RUN = "data/sb-r_dry_31N_01.nc"
-KINDS = ("catalogue.sqlite", RUN, "report.html", "report.json", "tables/friction.csv", MARKER)
 
 
 @pytest.fixture
@@ -28,29 +28,6 @@ def campaign(two_runs, tmp_path):
 
 def run(campaign):
     return run_campaign(campaign, jobs=1, figures="none")
-
-
-def spoil(path: Path, random: np.random.Generator) -> None:
-    """Flip bits, clear a block, cut, lengthen or mix up; the time of change stays if it can."""
-    state, content = path.stat(), bytearray(path.read_bytes())
-    before, how = bytes(content), random.integers(5)
-    at = random.integers(len(content))
-    if how == 0:
-        for place in random.integers(0, len(content), random.choice([1, 50])):
-            content[place] ^= 1 << random.integers(8)
-    elif how == 1:
-        content[at : at + 512] = bytes(len(content[at : at + 512]))
-    elif how == 2:
-        del content[at:]
-    elif how == 3:
-        content += random.bytes(64)
-    else:
-        content[at : at + 64] = random.bytes(len(content[at : at + 64]))
-    if bytes(content) == before:
-        content[at] ^= 1
-    path.unlink()  # not through a hard link
-    path.write_bytes(content)
-    os.utime(path, ns=(state.st_atime_ns, state.st_mtime_ns))
 
 
 def noticed(results: Path, name: str) -> bool:

@@ -30,6 +30,13 @@ CURES = {
     errno.EFBIG: "the file is larger than the file system or a limit (ulimit -f) allows; choose "
     "another folder with --output",
     errno.EIO: "the disk reports an error; choose another folder with --output",
+    errno.ENODEV: "the disk was removed; connect it again or choose another folder with --output",
+    errno.ENXIO: "the disk was removed; connect it again or choose another folder with --output",
+    errno.ESTALE: "the file server has lost this folder; mount it again",
+    errno.ETIMEDOUT: "the file server does not answer; try again later",
+    errno.EHOSTUNREACH: "the file server cannot be reached; try again later",
+    errno.EMFILE: "too many files are open (ulimit -n); use fewer processes with --jobs",
+    errno.ENFILE: "too many files are open on this machine; try again later",
     errno.ENAMETOOLONG: "a name that is too long; choose a shorter one with --output",
     errno.ELOOP: "a symbolic link that leads to itself; choose another folder with --output",
 }

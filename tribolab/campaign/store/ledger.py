@@ -89,12 +89,16 @@ class Ledger:
 
     @classmethod
     def read(cls, folder: Path) -> Ledger:
-        """Read the marker of a folder; one that is missing lists nothing."""
+        """Read the marker of a folder; one that is missing, or no regular file, lists nothing."""
         try:
-            text = (folder / MARKER).read_bytes()
+            text = (folder / MARKER).read_bytes() if (folder / MARKER).is_file() else b""
         except OSError:
+            text = b""
+        if not text:
             return cls(folder)
-        with contextlib.suppress(ValueError, LookupError, TypeError, AttributeError):
+        with contextlib.suppress(
+            *(ValueError, LookupError, TypeError, AttributeError, RecursionError)
+        ):
             listed = json.loads(text)
             whole = "blake2b" not in listed or listed["blake2b"] == _checksum(listed)
             inside = all(map(_is_inside, listed["files"]))

@@ -305,11 +305,11 @@ def exchange(former: Path, latter: Path) -> bool:
 
 
 def _is_about(error: OSError, room: Path, output: Path) -> bool:
-    """Whether an error is about writing here: about no file at all, or about one of ours."""
-    if error.errno not in CURES:
-        return False
-    path = None if error.filename is None else Path(str(error.filename))
-    return path is None or path.is_relative_to(room) or path.is_relative_to(output)
+    """Whether an error is about writing here: one of our files, or a full disk and the like."""
+    if error.filename is None:
+        return error.errno in CURES
+    path = Path(str(error.filename))
+    return path.is_relative_to(room) or path.is_relative_to(output)
 
 
 def _cure(error: OSError) -> str:

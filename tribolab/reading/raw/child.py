@@ -24,7 +24,7 @@ from tribolab.reading.raw.scratch import remove_scratch
 from tribolab.reading.raw.server import Ended, Job
 from tribolab.reading.raw.zip_safety import refuse_bomb
 
-_DONE, _ERROR, _NO_MEMORY, _TOO_LARGE, _NO_ROOM = 0, 3, 4, 5, 6
+_DONE, _ERROR, _NO_MEMORY, _TOO_LARGE = 0, 3, 4, 5
 _TEXT_PER_NUMBER = 4  # a cell as text is longer than a number
 _PIPE = 1 << 15  # bytes of names of modules
 _POLL = 0.01  # s between looks at a child, where the system cannot wait for one
@@ -137,7 +137,7 @@ def _work(job: Job) -> int:
     except MemoryError:
         return _NO_MEMORY
     except OSError as error:
-        return _TOO_LARGE if error.errno == errno.EFBIG else _NO_ROOM
+        return _TOO_LARGE if error.errno == errno.EFBIG else opening.NO_ROOM
     return code
 
 

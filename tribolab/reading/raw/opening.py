@@ -10,6 +10,7 @@ that a file costs some 10 ms.
 from __future__ import annotations
 
 import contextlib
+import errno
 import functools
 import os
 import tempfile
@@ -21,7 +22,7 @@ from typing import Any, ParamSpec, TypeVar
 from tribolab.errors import ReadError, TribolabError
 from tribolab.reading.raw import limits
 from tribolab.reading.raw.child_results import read_result, unpacked_error
-from tribolab.reading.raw.scratch import scratch_place
+from tribolab.reading.raw.scratch import scratch_errors, scratch_place
 from tribolab.reading.raw.server import ONLY, Ended, Job
 from tribolab.reading.raw.source import check_regular
 
@@ -38,6 +39,7 @@ _HANDLED = (
     *(RuntimeError, Warning),
 )
 
+NO_ROOM = 6  # exit code of a child that cannot write its result
 inside = False  # whether this is the child
 # What was refused, and what a function did not survive, and when [s], by path, size, time, inode
 # and function: a dozen readers may look at a file, each for some seconds.
@@ -129,7 +131,8 @@ def _in_child(
         before, when = _REFUSED.get((*asked, name), (None, 0.0))
         if before is not None and time.monotonic() < when + limits.PATIENCE.value:
             raise type(before)(str(before))
-    handle, target = tempfile.mkstemp(prefix=f"tribolab-{os.getpid()}-", dir=scratch_place())
+    with scratch_errors():
+        handle, target = tempfile.mkstemp(prefix=f"tribolab-{os.getpid()}-", dir=scratch_place())
     try:
         job = Job(
             function.__module__,
@@ -148,6 +151,9 @@ def _in_child(
             raise missing(path, ended)
         if ended.code == 0:
             return read_result(handle)
+        if ended.code == NO_ROOM:
+            with scratch_errors():
+                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         if ended.code == 3:
             raised = unpacked_error(read_result(handle))
             if isinstance(raised, RefusedError):

@@ -8,7 +8,10 @@ import functools
 import os
 import shutil
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
+
+from tribolab.errors import OutputError, brief
 
 
 def scratch_place() -> str:
@@ -26,9 +29,36 @@ def scratch_folder() -> Path:
     Path
         Where ``TMPDIR`` says, else in ``/var/tmp``, which is on a disk everywhere.
     """
-    folder = Path(tempfile.mkdtemp(prefix=f"tribolab-{os.getpid()}-", dir=scratch_place()))
+    with scratch_errors():
+        folder = Path(tempfile.mkdtemp(prefix=f"tribolab-{os.getpid()}-", dir=scratch_place()))
     _FOLDERS.append(folder)
     return folder
+
+
+def scratch_copy(path: Path, content: bytes) -> Path:
+    """Write what a file should contain to a scratch file of the same name."""
+    copy = scratch_folder() / path.name
+    with scratch_errors():
+        copy.write_bytes(content)
+    return copy
+
+
+@contextlib.contextmanager
+def scratch_errors() -> Iterator[None]:
+    """Report that scratch files cannot be written: that says nothing about the file that is read.
+
+    Raises
+    ------
+    OutputError
+        Instead of an `OSError`.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise OutputError(
+            f"scratch files cannot be written in {scratch_place()} ({brief(error)}); make room "
+            "there, or set TMPDIR to another folder"
+        ) from error
 
 
 def remove_scratch() -> None:

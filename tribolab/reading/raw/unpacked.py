@@ -14,7 +14,7 @@ from typing import Protocol
 
 from tribolab.errors import Cure, ReadError, TribolabError, shown
 from tribolab.reading.raw.opening import largest_unpacked
-from tribolab.reading.raw.scratch import scratch_folder
+from tribolab.reading.raw.scratch import scratch_errors, scratch_folder
 
 _GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
 _OFFICE = ("[Content_Types].xml", "main.xml")  # Office files and x3p are archives, too
@@ -216,7 +216,9 @@ def _copy(source: _Source, target: Path, size: int, path: Path) -> None:
         while part := source.read(_CHUNK):
             done += len(part)
             _refuse_larger(done, size, path)
-            file.write(part)
+            with scratch_errors():
+                file.write(part)
+                file.flush()
 
 
 def _refuse_larger(unpacked: int, size: int, path: Path) -> None:

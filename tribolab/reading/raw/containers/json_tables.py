@@ -7,6 +7,7 @@ import math
 import re
 from collections import Counter
 from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -216,7 +217,8 @@ def _simple(part: Json, key: str) -> list[Setting]:
     """Return what an object says of itself, a setting for each value: "radius: 15 mm"."""
     before = f"{_clean(key)} " if _SET.fullmatch(key) else ""
     found = (said for name, value in part.items() if (said := _setting(name, value)))
-    return [s._replace(key=f"{before}{s.key}", text=s.text[:_LONGEST]) for s in found]
+    few = islice(found, _MOST_SETTINGS)
+    return [s._replace(key=f"{before}{s.key}", text=s.text[:_LONGEST]) for s in few]
 
 
 def _setting(name: str, value: object) -> Setting | None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import functools
 from pathlib import Path
 
-from tribolab.reading.raw.scratch import scratch_folder
+from tribolab.reading.raw.scratch import scratch_copy
 
 _DRAFTS = {b"aBCR-1.0": b"aISO-1.0", b"bBCR-1.0": b"bISO-1.0"}
 _MARK = 8  # bytes
@@ -32,7 +32,4 @@ def as_standard(path: Path) -> Path:
 @functools.lru_cache(maxsize=8)
 def _copied(path: Path, size: int, modified: int) -> Path:
     content = path.read_bytes()
-    folder = scratch_folder()
-    copy = folder / path.name
-    copy.write_bytes(_DRAFTS[content[:_MARK]] + content[_MARK:])
-    return copy
+    return scratch_copy(path, _DRAFTS[content[:_MARK]] + content[_MARK:])

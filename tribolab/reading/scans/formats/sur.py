@@ -11,7 +11,7 @@ import zlib
 from pathlib import Path
 
 from tribolab.errors import ReadError, brief
-from tribolab.reading.raw.scratch import scratch_folder
+from tribolab.reading.raw.scratch import scratch_copy
 
 _PLAIN, _PACKED = b"DIGITAL SURF", b"DSCOMPRESSED"
 _HEADER = 512
@@ -61,10 +61,7 @@ def _copied(path: Path, size: int, modified: int) -> Path:
             f"{path}: the Surf file is damaged: {brief(error)}; is it whole?"
         ) from error
     header = _PLAIN + content[12 : _UNITS.start] + units + content[_UNITS.stop : _HEADER]
-    folder = scratch_folder()
-    copy = folder / path.name
-    copy.write_bytes(header + content[_HEADER : _HEADER + comment + private] + body)
-    return copy
+    return scratch_copy(path, header + content[_HEADER : _HEADER + comment + private] + body)
 
 
 def _unpacked(body: bytes, size: int) -> bytes:

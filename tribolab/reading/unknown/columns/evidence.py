@@ -213,8 +213,10 @@ def direction_evidence(facts: Facts) -> Iterator[Evidence]:
 def row_count_evidence(facts: Facts) -> Iterator[Evidence]:
     """Rule out a column "n" that increases by one: it is the number of the row."""
     for place, (name, unit, _) in enumerate(facts.bare):
-        steps = np.diff(facts.numbers[:, place])
-        if normalise_label(name) == "n" and unit is None and (steps == 1).all():
+        if normalise_label(name) != "n" or unit is not None:
+            continue
+        numbers = facts.numbers[:, place]
+        if np.isfinite(numbers).all() and (np.diff(numbers) == 1).all():
             yield Evidence(place, "", RULED_OUT, "it counts the rows")
 
 
