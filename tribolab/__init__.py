@@ -60,6 +60,8 @@ _PUBLIC = {
     "LineContact": "tribolab.contact.geometry",
     "PointContact": "tribolab.contact.geometry",
     "rough_point_contact": "tribolab.contact.point",
+    "rolling_friction": "tribolab.contact.rolling",
+    "collapse_test": "tribolab.fit.master_curve",
     "Liquid": "tribolab.lubrication.parameters",
     "Interface": "tribolab.lubrication.parameters",
     "Solver": "tribolab.lubrication.parameters",
@@ -153,6 +155,8 @@ __all__ = [
     "LineContact",
     "PointContact",
     "rough_point_contact",
+    "rolling_friction",
+    "collapse_test",
     "Liquid",
     "Interface",
     "Solver",
@@ -219,6 +223,7 @@ if TYPE_CHECKING:
     from tribolab.contact.line import rough_line_contact
     from tribolab.contact.persson import contact_area_ratio, mean_separation
     from tribolab.contact.point import rough_point_contact
+    from tribolab.contact.rolling import rolling_friction
     from tribolab.contact.separation import separation_table
     from tribolab.contact.work_of_adhesion import SurfaceEnergies, work_of_adhesion_spread
     from tribolab.deposit.pack import pack
@@ -227,6 +232,7 @@ if TYPE_CHECKING:
     from tribolab.fit.joint.fit import fit_shear_stress_jointly
     from tribolab.fit.joint.inputs import DryFriction
     from tribolab.fit.joint.priors import JointPriors
+    from tribolab.fit.master_curve import collapse_test
     from tribolab.fit.model_inputs import model_inputs
     from tribolab.fit.model_uncertainty import model_uncertainty
     from tribolab.fit.several import fit_shear_stresses

@@ -8,6 +8,7 @@ import numpy as np
 
 from tribolab.contact.area import other_area
 from tribolab.contact.separation import separation_table
+from tribolab.fit.left_out import left_out
 from tribolab.fit.stated_ranges import (
     LOAD_RANGE,
     RADIUS_RANGE,
@@ -28,13 +29,18 @@ _GAMMA = 0.5
 _FIXED = (
     ("liquid", "Newtonian and isothermal, its viscosity the same at every pressure and shear rate"),
     ("cavitation", "the liquid ruptures at one pressure, that outside or of its vapour"),
-    ("elasticity", "linear and without loss, of a half-space"),
+    ("elasticity", "linear and without loss"),
 )
 _FIXED_IF_ROUGH = (
     ("shear stress in the contact", "the same at every speed, load and temperature"),
     ("contact area", "without adhesion, at rest"),
     ("roughness", "Gaussian, isotropic and on one of the bodies"),
-    ("form of the flow factors", "effective-medium theory of the gaps' distribution"),
+    (
+        "form of the flow factors",
+        "effective-medium theory of the gaps' distribution: phi_f is 19 to 24 % above numerics at "
+        "2 to 3.2 h_rms, phi_p 4 % and phi_fs up to 31 % off their Gaussian limit beyond 7 h_rms, "
+        "and p(u) 8 to 17 % low below 0.14 h_rms",
+    ),
 )
 
 _WITH_ADHESION = "with adhesion in its mean field, at rest; films and pressures are without it"
@@ -187,7 +193,7 @@ def held_fixed(base: Base) -> list[Skipped]:
     fixed |= dict(_FIXED if base.psd is None else _FIXED + _FIXED_IF_ROUGH)
     if base.psd is not None and base.work_of_adhesion is not None:
         fixed["contact area"] = _WITH_ADHESION
-    return [Skipped(name, reason) for name, reason in fixed.items()]
+    return [*(Skipped(name, reason) for name, reason in fixed.items()), *left_out(base)]
 
 
 def _as_stated(base: Base) -> str:

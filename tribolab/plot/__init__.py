@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from tribolab.figures.look.draw import draw
     from tribolab.figures.look.knobs import knobs
     from tribolab.figures.look.style import figure_data, paper_style, save, svg
+    from tribolab.figures.master import master_curve
     from tribolab.figures.mixed import (
         friction_factor_effect,
         mixed_curve,
@@ -72,6 +73,7 @@ _HOMES = {
     "paper_style": "tribolab.figures.look.style",
     "save": "tribolab.figures.look.style",
     "svg": "tribolab.figures.look.style",
+    "master_curve": "tribolab.figures.master",
     "friction_factor_effect": "tribolab.figures.mixed",
     "mixed_curve": "tribolab.figures.mixed",
     "shear_stress": "tribolab.figures.mixed",
@@ -116,6 +118,7 @@ __all__ = [
     "lubrication_factors",
     "mixed_curve",
     "model_sensitivity",
+    "master_curve",
     "modulus",
     "paper_style",
     "precision",

@@ -1,0 +1,97 @@
+"""The master curve: friction in several liquids over viscosity times speed, with its regimes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from tribolab.figures.plotted import plotted
+from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, axis_of
+from tribolab.fit.master_curve import Collapse
+
+# Film ratio h/h_rms at which mixed lubrication begins and ends: G. Stachowiak, A. Batchelor,
+# Engineering Tribology (2013), Ch. 7
+_MIXED = ((1.0, "boundary | mixed"), (3.0, "mixed | full film"))
+
+
+@plotted()
+def master_curve(
+    curves: Sequence[xr.Dataset],
+    viscosity: Sequence[float],
+    *,
+    names: Sequence[str] = (),
+    collapse: Collapse | None = None,
+    model: xr.Dataset | None = None,
+    rms_roughness: float = 0.0,
+) -> FigureSpec:
+    """Draw friction in several liquids over viscosity times speed, and the regimes.
+
+    Parameters
+    ----------
+    curves
+        ``friction_coefficient`` (sliding_speed or entrainment_speed) of each liquid.
+    viscosity
+        Of each liquid [Pa s].
+    names
+        Of the liquids.
+    collapse
+        From `tribolab.collapse_test`: its common curve and p-value.
+    model
+        A computed curve with ``viscosity_Pa_s``; with `rms_roughness` [m] the film ratio shows
+        where mixed lubrication begins and ends.
+
+    Examples
+    --------
+    >>> import tribolab as tl
+    >>> from tribolab.studies import xu2026
+    >>> v = np.geomspace(1e-4, 1e-1, 7)
+    >>> made = [tl.stribeck_curve(xu2026.contact, None, eta, 310.0, 0.0, v) for eta in (0.5, 1.4)]
+    >>> figure = master_curve(made, [0.5, 1.4], names=["oil", "glycerol"])
+    >>> tl.plot.figure_data(figure).series.unique().tolist()
+    ['oil', 'glycerol']
+    """
+    labels = list(names) or [f"{eta:.3g} Pa s" for eta in viscosity]
+    series = []
+    for number, (name, curve, eta) in enumerate(zip(labels, curves, viscosity, strict=True)):
+        at, mu = _reduced(curve, eta)
+        sem = curve.get("friction_coefficient_sem")
+        error = () if sem is None else sem.values[_speed(curve) > 0]
+        series.append(Series(name, at, mu, "points", number, error=error))
+    if collapse is not None:
+        text = f"one curve (p = {collapse.p_value:.2g})"
+        series.append(Series(text, collapse.abscissa, collapse.fitted, "dashed", 6))
+    marks: tuple[Mark, ...] = ()
+    if model is not None:
+        at, mu = _reduced(model, model.attrs["viscosity_Pa_s"])
+        series.append(Series("model", at, mu, "line", 6))
+        if rms_roughness > 0:
+            film = model["central_separation"].values[_speed(model) > 0] / rms_roughness
+            marks = _regimes(at, film)
+    x = Axis("viscosity × speed", "N/m", log=True, column="viscosity_speed_N_m")
+    panel = Panel(x, axis_of("friction_coefficient", log=True))
+    return FigureSpec(
+        id="master_curve", title="Master curve", panels=(panel,), series=tuple(series), marks=marks
+    )
+
+
+def _speed(curve: xr.Dataset) -> np.ndarray:
+    mu = curve["friction_coefficient"]
+    return np.asarray(mu[mu.dims[0]].values)
+
+
+def _reduced(curve: xr.Dataset, viscosity: float) -> tuple[np.ndarray, np.ndarray]:
+    """Viscosity times speed [N/m] and friction, at rest left out."""
+    speed = _speed(curve)
+    return viscosity * speed[speed > 0], curve["friction_coefficient"].values[speed > 0]
+
+
+def _regimes(at: np.ndarray, film: np.ndarray) -> tuple[Mark, ...]:
+    """Mark where the film ratio passes the ends of mixed lubrication."""
+    return tuple(
+        Mark("x", float(np.exp(np.interp(np.log(limit), np.log(film), np.log(at)))),
+             style="dotted", above=text)
+        for limit, text in _MIXED
+        if film[0] < limit < film[-1]
+    )  # fmt: skip

@@ -1,0 +1,146 @@
+"""Whether friction in several liquids is one function of viscosity times speed."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy.interpolate import BSpline
+from scipy.stats import f as f_distribution
+
+from tribolab.errors import AnalysisError
+
+_COEFFICIENTS = 14  # of the spline; with seven the test is worthless
+
+
+class Collapse(NamedTuple):
+    """F-test of one curve against a level and a slope for each liquid.
+
+    Parameters
+    ----------
+    statistic, p_value
+        F and the chance of a larger one if there is one curve.
+    level, slope
+        Of each liquid relative to the first: ln mu, and d ln mu/d ln(eta v).
+    abscissa, fitted
+        eta v [N/m], rising, and the common curve there [1].
+    """
+
+    statistic: float
+    p_value: float
+    level: np.ndarray
+    slope: np.ndarray
+    abscissa: np.ndarray
+    fitted: np.ndarray
+
+
+def collapse_test(
+    curves: list[xr.Dataset],
+    viscosity: list[float],
+    *,
+    level_error: float = 0.05,
+    viscosity_error: float = 0.1,
+) -> Collapse:
+    """Test whether curves in several liquids collapse on one function of eta v.
+
+    Parameters
+    ----------
+    curves
+        ``friction_coefficient`` with ``_sem`` (sliding_speed), one for each liquid, of one contact
+        and load.
+    viscosity
+        Of each liquid [Pa s].
+    level_error, viscosity_error
+        Relative standard uncertainty [1] that all points of a liquid share, of friction and of
+        viscosity.
+
+    Returns
+    -------
+    Collapse
+
+    Raises
+    ------
+    AnalysisError
+        If there are fewer than two liquids or too few points.
+
+    Notes
+    -----
+    ln mu is a cubic spline of ln(eta v) with 14 coefficients, compared with that and a level and a
+    slope for each liquid but the first, by generalised least squares: noise of the points, and the
+    errors of level and viscosity, the latter times the curve's slope. In a Newtonian liquid the
+    curve is one at one load, exactly. A shear stress that depends on speed, another work of
+    adhesion of the liquid, shear thinning and heating break it.
+
+    Examples
+    --------
+    >>> speed = np.geomspace(1e-5, 1e-1, 13)
+    >>> def curve(eta):
+    ...     mu = 0.1 / (1 + (eta * speed / 1e-4) ** 0.5) + (eta * speed) ** 0.5
+    ...     data = {"friction_coefficient": mu, "friction_coefficient_sem": 0.03 * mu}
+    ...     return xr.Dataset({n: ("sliding_speed", v) for n, v in data.items()},
+    ...                       {"sliding_speed": speed})
+    >>> etas = [0.02, 0.2, 1.4]
+    >>> collapse_test([curve(eta) for eta in etas], etas).p_value > 0.9
+    True
+    """
+    if len(curves) < 2 or len(curves) != len(viscosity):
+        raise AnalysisError("curves: two liquids or more are wanted, and a viscosity for each")
+    parts = []
+    for number, (curve, eta) in enumerate(zip(curves, viscosity, strict=True)):
+        (dim,) = curve["friction_coefficient"].dims
+        mu, sem = (curve[f"friction_coefficient{end}"].values for end in ("", "_sem"))
+        x = np.log(np.maximum(eta * curve[dim].values, 1e-300))
+        good = (curve[dim].values > 0) & (mu > 0) & (sem > 0)
+        parts.append(np.stack([x, np.log(mu), sem / mu, np.full(x.size, number)])[:, good])
+    x, y, noise, liquid = np.concatenate(parts, axis=1)
+    extra = 2 * (len(curves) - 1)
+    if x.size <= _COEFFICIENTS + extra:
+        raise AnalysisError(
+            f"curves: more than {_COEFFICIENTS + extra} points are wanted; got {x.size}"
+        )
+    spline = _spline(x)
+    same = (liquid[:, None] == liquid).astype(float)
+    covariance = np.diag(noise**2) + level_error**2 * same
+    first = np.linalg.lstsq(spline / noise[:, None], y / noise, rcond=None)[0]
+    steep = np.gradient(spline @ first, x) if np.all(np.diff(x) > 0) else _slopes(x, spline @ first)
+    covariance += viscosity_error**2 * same * np.outer(steep, steep)
+    root = np.linalg.cholesky(covariance)
+    own = [(liquid == k).astype(float) for k in range(1, len(curves))]
+    more = np.stack([*own, *(one * (x - x.mean()) for one in own)], axis=1)
+    white = [np.linalg.solve(root, part) for part in (y[:, None], spline, more)]
+    target = white[0][:, 0]
+    rss, best = _least(white[1], target)
+    rss_more, wide = _least(np.hstack(white[1:]), target)
+    freedom = x.size - np.linalg.matrix_rank(np.hstack(white[1:]))
+    # the errors are known: chi-square per degree of freedom at least 1
+    statistic = (rss - rss_more) / extra / max(rss_more / freedom, 1.0)
+    found = wide[_COEFFICIENTS:]
+    order = np.argsort(x)
+    return Collapse(
+        float(statistic),
+        float(f_distribution.sf(statistic, extra, freedom)),
+        np.append(0.0, found[: len(own)]),
+        np.append(0.0, found[len(own) :]),
+        np.exp(x[order]),
+        np.exp((spline @ best)[order]),
+    )
+
+
+def _spline(x: np.ndarray) -> np.ndarray:
+    """Cubic B-splines with knots at quantiles (points, coefficients)."""
+    inner = np.quantile(x, np.linspace(0, 1, _COEFFICIENTS - 2)[1:-1])
+    low, high = x.min(), x.max()
+    knots = np.concatenate([np.full(4, low), inner, np.full(4, high)])
+    return np.asarray(BSpline.design_matrix(x, knots, 3).toarray())
+
+
+def _slopes(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    order = np.argsort(x, kind="stable")
+    at, first = np.unique(x[order], return_index=True)
+    return np.interp(x, at, np.gradient(y[order][first], at))
+
+
+def _least(matrix: np.ndarray, target: np.ndarray) -> tuple[float, np.ndarray]:
+    best = np.linalg.lstsq(matrix, target, rcond=None)[0]
+    return float(np.sum((target - matrix @ best) ** 2)), best
