@@ -164,3 +164,22 @@ def packed_points(place: np.ndarray, value: np.ndarray, *, deflate: bool) -> Jso
 
 def _planes(whole: np.ndarray, width: int) -> bytes:
     return whole.astype(f"<u{width}").view(np.uint8).reshape(-1, width).T.tobytes()
+
+
+def unpacked_points(packed: Json) -> tuple[np.ndarray, np.ndarray]:
+    """Return places on the clock and values of what `packed_points` packed (point).
+
+    Examples
+    --------
+    >>> packed = packed_points(np.array([0, 3]), np.array([1.0, 2.0]), deflate=True)
+    >>> [part.tolist() for part in unpacked_points(packed)]
+    [[0, 3], [1.0, 2.0]]
+    """
+    raw = base64.b64decode(packed["data"])
+    raw = zlib.decompress(raw) if packed["deflated"] else raw
+    width = packed["step_bytes"]
+    planes = np.frombuffer(raw, np.uint8).reshape(width + 2, packed["points"]).astype(np.int64)
+    level = planes[width] + 256 * planes[width + 1]
+    values = packed["low"] + (packed["high"] - packed["low"]) * level / _TOP
+    places = np.cumsum(256 ** np.arange(width) @ planes[:width])
+    return places, np.where(level > _TOP, np.nan, values)

@@ -149,7 +149,7 @@ def write_report(
     document = report_document(head)
     write_json(document, _documents(outcome), folder / "report.json")
     on_page = document | {"runs": briefs, "review": review_data(outcome.campaign, briefs)}
-    write_page(on_page, folder, lambda: _documents(outcome), store, live)
+    write_page(on_page, folder, lambda: _documents(outcome), store, live, points)
     store.save()
     tell("page", 1, 1)
 

@@ -21,22 +21,12 @@
     return said;
   }
 
-  // A card whose curves are of other loads says which one it shows.
-  function card(place) {
-    const loads = Array.from(place.querySelectorAll("[data-at-load]"), (one) => one.dataset.atLoad), wanted = view.get("load");
-    place.querySelector(".instead")?.remove();
-    if (!wanted || !loads.length || loads.includes(wanted)) return;
-    const words = `No curve at ${wanted}; shown is ${loads[0]}.`;
-    place.querySelector("h3").after(Object.assign(document.createElement("p"), { className: "instead missing", textContent: words }));
-  }
-
   function tell() {
     const words = missing();
     for (const place of document.querySelectorAll(".asked")) {
       place.textContent = words.length ? `Asked for, but not here: ${words.join("; ")}.` : "";
       place.hidden = !words.length;
     }
-    document.querySelectorAll(".answer").forEach(card);
   }
   view.changed(tell);
   addEventListener("hashchange", tell); // a place alone changes nothing else

@@ -2,7 +2,7 @@
 // All figures: drawn when the reader comes near them, again when the light or the view changes, and on paper.
 report.charts = (() => {
   const charts = new Map(); // by figure element
-  const { plotly, heightOf, state } = report.drawing;
+  const { plotly, heightOf, fills, state } = report.drawing;
 
   // Figures are made when the reader comes near; on a browser that cannot unpack, a word says so.
   // One after the other, so that the first of them answers before the last is drawn.
@@ -24,8 +24,10 @@ report.charts = (() => {
   }
   const sized = new ResizeObserver((entries) => {
     for (const entry of entries) {
-      const chart = charts.get(entry.target.closest("figure"));
-      if (chart?.drawn && !state.printing && entry.target.clientWidth && Math.abs(entry.target.clientWidth - chart.place._fullLayout.width) > 1) chart.paint();
+      const chart = charts.get(entry.target.closest("figure")), place = entry.target;
+      if (!chart?.drawn || state.printing || !place.clientWidth) continue;
+      const { width, height } = chart.place._fullLayout, filled = fills(place);
+      if (Math.abs(place.clientWidth - width) > 1 || (filled && Math.abs(place.clientHeight - height) > 1)) chart.paint();
     }
   });
 
@@ -52,7 +54,7 @@ report.charts = (() => {
     const widths = plots.map((plot) => plot.clientWidth); // all are read before the first is written: the page is laid out once
     plots.forEach((plot, place) => {
       const { panels, labels } = plot.dataset;
-      const size = panels && widths[place] && heightOf(plot, widths[place], Number(panels), Number(labels));
+      const size = panels && widths[place] && !fills(plot) && heightOf(plot, widths[place], Number(panels), Number(labels));
       if (size) plot.style.minHeight = `${size.plot + size.legend}px`;
       if (size) plot.querySelector(".still")?.setAttribute("height", size.plot + size.legend);
       near.observe(plot.closest("figure"));

@@ -27,8 +27,16 @@ report.drawing = (() => {
 
   const isOneOfMany = (place) => place.closest(".cards")?.childElementCount > FEW;
 
+  // On the first screen of a wide window figures have the height that is left.
+  const wide = matchMedia("(min-width: 68.76rem) and (min-height: 36rem)");
+  const fills = (place) => !state.printing && wide.matches && Boolean(place.closest(".cards"));
+
   // Known before a figure is drawn: what is below does not move when it comes.
   function heightOf(place, width, panels, labels) {
+    if (fills(place)) {
+      const rows = labels > 1 ? Math.ceil(labels / Math.max(1, Math.floor(width / 150))) * 21 : 0, room = Math.max(0, place.clientHeight - 120);
+      return { plot: place.clientHeight - Math.min(rows, room), legend: Math.min(rows, room), cut: rows > room };
+    }
     const columns = Math.max(1, Math.floor(width / (place.closest(".cards") ? 150 : 210))); // the words of a card are short
     const heights = place.dataset.height ? [Number(place.dataset.height)] : [320, 460, 620];
     const low = isOneOfMany(place) ? 130 : place.closest(".cards") ? 175 : 240;
@@ -59,5 +67,5 @@ report.drawing = (() => {
   // What stands first on the page has figures: the library comes while the other scripts start.
   if (document.querySelector(".cards figure.live")) plotly().catch(() => {}); // who draws says what failed
 
-  return { HUES, DARKER, SYMBOLS, DASHES, FONT, PAPER, HALF, THIRD, isOneOfMany, still, state, isDark, text, lines, force, axis, heightOf, plotly };
+  return { HUES, DARKER, SYMBOLS, DASHES, FONT, PAPER, HALF, THIRD, isOneOfMany, still, state, isDark, text, lines, force, axis, heightOf, fills, plotly };
 })();

@@ -28,7 +28,7 @@
   const contents = document.querySelector("nav .contents");
   const here = contents.querySelector(".here");
   const links = new Map();
-  for (const section of document.querySelectorAll("main > section")) {
+  for (const section of document.querySelectorAll("main section[id]")) {
     links.set(section, contents.querySelector(`a[href="#${section.id}"]`));
   }
   const narrow = matchMedia("(max-width: 60rem)");

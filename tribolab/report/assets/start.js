@@ -5,10 +5,12 @@
     const place = target && document.getElementById(target);
     if (!place) return;
     if (place.hidden) report.view.clear(); // what a link leads to is shown
+    if (place.matches("details.run") && report.openRun) await report.openRun(place);
     if (place.tagName === "DETAILS") {
       place.open = true;
       await report.unfold(place);
       place.querySelector("summary").focus({ preventScroll: true });
+      if (place.closest("#beside")) return;
     }
     place.closest("details:not([open])")?.setAttribute("open", "");
     place.scrollIntoView();
@@ -17,10 +19,10 @@
     const place = Array.from(document.querySelectorAll("details.run")).find((one) => one.dataset.run === name);
     if (place) report.view.go(place.id);
   };
-  const most = 40; // more at once than anyone looks at
-  function openAll(open) {
-    const every = Array.from(document.querySelectorAll("details.run:not([hidden])")).slice(0, open ? most : undefined);
-    return Promise.all(every.map((details) => { details.open = open; return open && report.unfold(details); }));
+  const most = 40; // more at once than anyone prints
+  function openAll() {
+    const every = Array.from(document.querySelectorAll("details.run:not([hidden])")).slice(0, most);
+    return Promise.all(every.map((details) => { details.open = true; return report.unfold(details); }));
   }
   document.addEventListener("click", (event) => {
     const link = event.target.closest?.("a[href^='#']");
@@ -44,13 +46,11 @@
       frame.remove();
     };
   }
-  document.getElementById("open-all")?.addEventListener("click", () => openAll(true));
-  document.getElementById("close-all")?.addEventListener("click", () => openAll(false));
   // Runs are printed only if the address asks for them: ?print=all
   if (new URLSearchParams(location.search).get("print") === "all") {
     document.documentElement.classList.add("print-all");
     const release = loading();
-    openAll(true).then(() => report.charts?.prepare()).finally(release);
+    openAll().then(() => report.charts?.prepare()).finally(release);
   }
   for (const call of report.begun) call();
   addEventListener("load", () => report.goTo(report.view.anchor));

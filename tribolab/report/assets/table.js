@@ -24,18 +24,8 @@
   }
 
   function lay(table) {
-    const { rows, most } = held(table), sorted = table.classList.contains("sorted"), shown = [];
-    let group = null, left = 0;
-    for (const row of rows) {
-      if (row.classList.contains("group")) group = sorted ? null : row;
-      else if (!row.hidden && shown.length >= most) left++;
-      else if (!row.hidden) {
-        if (group) shown.push(group);
-        group = null;
-        shown.push(row);
-      }
-    }
-    table.tBodies[0].replaceChildren(...shown);
+    const { rows, most } = held(table), seen = rows.filter((row) => !row.hidden), left = Math.max(seen.length - most, 0);
+    table.tBodies[0].replaceChildren(...seen.slice(0, most));
     const more = table.closest(".tabled")?.querySelector("[data-more]");
     if (!more) return;
     more.hidden = left === 0;
@@ -51,7 +41,7 @@
       head.dataset.place = place < 0 || order.length < 2 ? "" : place + 1;
     });
     table.classList.toggle("sorted", order.length > 0);
-    const entries = holder.rows.map((row) => ({ row, place: Number(row.dataset.place), keys: row.classList.contains("group") ? [] : order.map(([column]) => key(row, column)) }));
+    const entries = holder.rows.map((row) => ({ row, place: Number(row.dataset.place), keys: order.map(([column]) => key(row, column)) }));
     entries.sort((a, b) => {
       for (let k = 0; k < order.length; k++) {
         const x = a.keys[k] ?? null, y = b.keys[k] ?? null;
@@ -129,7 +119,7 @@
   const number = (text) => { const value = Number(text.replace("−", "-")); return text !== "" && Number.isFinite(value) ? value : text; };
   // What is seen of a table: hidden rows and columns are left out.
   report.cells = (table) => [table.tHead.rows[0], ...held(table).rows]
-    .filter((row) => !row.hidden && !row.classList.contains("group"))
+    .filter((row) => !row.hidden)
     .map((row) => Array.from(row.cells).filter((cell) => !cell.hidden).map(tidy));
 
   async function copied(text, button) {
@@ -158,28 +148,13 @@
     else report.save(`${name}.xlsx`, "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet", report.workbook(rows.map((row) => row.map(number))));
   }
 
-  // Columns beyond those that fit are there when they are asked for, all of them or one by one.
-  const rowsOf = (table) => [table.tHead.rows[0], ...held(table).rows].filter((row) => !row.classList.contains("group"));
+  // Columns beyond those that fit are there when they are asked for.
+  report.rows = (table) => (table ? held(table).rows : []);
   function showEvery(table, every) {
     table.classList.toggle("every", every);
-    for (const row of rowsOf(table)) for (const cell of row.querySelectorAll(".shown")) cell.classList.remove("shown");
     const button = table.closest(".tabled").querySelector("[data-every]");
     button.textContent = every ? "Fewer columns" : "More columns";
     button.setAttribute("aria-pressed", String(every));
-    if (table.id !== "runs-table") return;
-    for (const head of table.tHead.querySelectorAll(".extra")) document.querySelector(`[data-hides="${head.dataset.name}"]`).checked = every;
-  }
-  function show(table, place, shown) {
-    const extra = table.tHead.rows[0].cells[place].classList.contains("extra");
-    if (extra && table.classList.contains("every")) {
-      showEvery(table, false);
-      for (const row of rowsOf(table)) for (const cell of row.querySelectorAll(".extra")) cell.classList.add("shown");
-      for (const head of table.tHead.querySelectorAll(".extra")) document.querySelector(`[data-hides="${head.dataset.name}"]`).checked = true;
-    }
-    for (const row of rowsOf(table)) {
-      if (extra) row.cells[place].classList.toggle("shown", shown);
-      else row.cells[place].hidden = !shown;
-    }
   }
 
   function sortable(table) {
@@ -241,11 +216,6 @@
     }
     for (const field of document.querySelectorAll("[data-view]")) if (field.value !== view.get(field.dataset.view)) field.value = view.get(field.dataset.view);
     for (const box of document.querySelectorAll("input[data-hide]")) box.checked = !hidden.has(box.dataset.hide);
-    for (const piece of document.querySelectorAll("[data-at-load]")) {
-      const loads = Array.from(piece.parentNode.querySelectorAll(":scope > [data-at-load]"), (one) => one.dataset.atLoad);
-      const wanted = loads.includes(view.get("load")) ? view.get("load") : loads[0];
-      piece.classList.toggle("other", piece.dataset.atLoad !== wanted);
-    }
   }
 
   // A button in a head is not repeated on the next sheet of paper; text is.
@@ -265,20 +235,6 @@
       event.preventDefault();
       report.view.clear();
       for (const table of document.querySelectorAll("table.sorted")) { orders.delete(table); sort(table); }
-    });
-    const menu = form.querySelector("details.columns"), table = document.getElementById("runs-table");
-    if (!menu || !table) return;
-    const names = Array.from(table.tHead.rows[0].cells, (cell) => cell.dataset.name);
-    menu.addEventListener("change", (event) => {
-      const { checked } = event.target;
-      show(table, names.indexOf(event.target.dataset.hides), checked);
-      event.target.checked = checked;
-    });
-    document.addEventListener("click", (event) => { if (!menu.contains(event.target)) menu.open = false; });
-    menu.addEventListener("keydown", (event) => {
-      if (event.key !== "Escape") return;
-      menu.open = false;
-      menu.querySelector("summary").focus();
     });
   }
 

@@ -114,7 +114,9 @@ def _of_surfaces(surfaces: Sequence[SurfaceOutcome], rejected: Sequence[str]) ->
     scanned = [surface for surface in surfaces if surface.files]
     done = sum(surface.done for surface in scanned)
     suspect = sum(surface.quality == "suspect" for surface in scanned if surface.done)
-    text = f"{done} of {many(len(scanned), 'surface')}" + f" ({suspect} suspect)" * bool(suspect)
+    files = sum(len(surface.files) for surface in scanned)
+    text = f"{many(files, 'scan')}, {done} of {many(len(scanned), 'surface')} usable"
+    text += f" ({suspect} suspect)" * bool(suspect)
     if rejected:
         text += f"; scans of {', '.join(rejected)} rejected"
     status = "complete" if done == len(scanned) and not rejected else "incomplete"
@@ -153,7 +155,8 @@ def verdict(
         status = "complete"
     doubtful = sum(status_word(run) == "suspect" for run in runs)
     parts = [
-        f"{len(sound)} of {many(len(runs), 'run')} done" + f" ({doubtful} suspect)" * bool(doubtful)
+        f"{len(sound)} of {many(len(runs), 'run')} usable"
+        + f" ({doubtful} suspect)" * bool(doubtful)
     ]
     if failed:
         parts.append(f"{failed} failed")
@@ -195,6 +198,19 @@ def verdict(
         segments_rejected=segments_rejected,
         ranges=ranges,
     )
+
+
+def state_of(verdict: Mapping[str, Any]) -> str:
+    """Return the one word that page and terminal begin with.
+
+    Examples
+    --------
+    >>> state_of({"status": "complete", "suspect": 1}), state_of({"status": "incomplete"})
+    ('SUSPECT', 'CHECK')
+    """
+    if verdict["status"] == "complete":
+        return "SUSPECT" if verdict["suspect"] else "OK"
+    return "CHECK" if verdict["status"] == "incomplete" else "FAIL"
 
 
 _BAD = ("fail", "error")

@@ -90,7 +90,7 @@ def along_figures(strokes: Sequence[Strokes], count: int) -> list[FigureSpec]:
     return [
         FigureSpec(
             id="curves-along",
-            section="curves",
+            section="view-time",
             title="Friction from stroke to stroke",
             note="A point for each stroke, at the time of its middle; of very many the lowest and "
             f"the highest of each column.{which}",
@@ -98,6 +98,6 @@ def along_figures(strokes: Sequence[Strokes], count: int) -> list[FigureSpec]:
             panels=(Panel(Axis("time", "s"), Axis("friction coefficient µ")),),
             series=tuple(series),
             width="whole",
-            height=360,
+            height=430,
         )
     ]

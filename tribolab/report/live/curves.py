@@ -130,8 +130,8 @@ def _card(
     return replace(
         spec,
         id=f"card-{place}",
-        section=f"card-{place}",
-        title=f"{name}: friction over sliding speed",
+        section="view-curve",
+        title=name,
         alt=f"Friction coefficient over sliding speed of {name}: {many(len(curves), 'load')}, "
         f"{speeds(every)}, µ {span(values)}.",
         series=tuple(_on_card(series, one_load) for series in spec.series),

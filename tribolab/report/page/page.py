@@ -6,7 +6,8 @@ section.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,18 +16,20 @@ from markupsafe import Markup
 from tribolab.records.packed import deflated
 from tribolab.records.traces import script_json
 from tribolab.report.live.shown import ShownFigure
-from tribolab.report.page.answer import cards, of_nothing
+from tribolab.report.live.points import RunPoint
+from tribolab.report.page.doubts import doubts
 from tribolab.report.page.glossary import words_of
-from tribolab.report.page.in_short import in_short
+from tribolab.report.page.run_list import listed_runs
 from tribolab.report.page.sections import shown_sections
 from tribolab.report.page.templating import environment, framing, library
+from tribolab.report.page.views import views
 from tribolab.untyped import Json
-from tribolab.words import force_text
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.catalogue import Catalogue
 
-_MOST_ROWS = 100  # of the table of runs; more are packed, and laid out when they are asked for
+_MAX_ROWS = 100  # of the list of runs; more are packed, and laid out when they are asked for
+_MAX_DOUBTS = 4  # on the first screen
 RunDocuments = Callable[[], Iterable[Json]]
 
 
@@ -44,6 +47,7 @@ def write_page(
     runs: RunDocuments,
     store: Catalogue,
     live: Sequence[ShownFigure] = (),
+    points: Mapping[str, Sequence[RunPoint]] | None = None,
 ) -> Path:
     """Write ``report.html`` into the results folder, with what it shows inside it.
 
@@ -64,8 +68,10 @@ def write_page(
         It has the traces of the runs.
     live
         Figures that the page draws.
+    points
+        Friction over speed of each run, by its name.
     """
-    context = _context(document, folder, runs, store, live)
+    context = _context(document, folder, runs, store, live, points or {})
     template, frame = framing("report.html.j2", shown_sections(context), folder, draws=True)
     path = folder / "report.html"
     stream = template.stream(context | frame)
@@ -89,10 +95,15 @@ def _context(
     runs: RunDocuments,
     store: Catalogue,
     live: Sequence[ShownFigure],
+    points: Mapping[str, Sequence[RunPoint]],
 ) -> Json:
     surfaces = document.get("surfaces", [])
     every = document["runs"]
-    first, rest = parted(grouped_runs(every), _MOST_ROWS)
+    traces = {
+        run["name"]: json.loads(trace.coarse)
+        for run in every
+        if (trace := store.trace("run", run["name"])) is not None
+    }
     context = dict(document) | {
         "has_contact": any(surface["contact"] or surface["adhesion"] for surface in surfaces),
         "words": words_of(
@@ -103,14 +114,15 @@ def _context(
         ),
         "left_out": omitted_rows(every),
         "places": {run["name"]: place + 1 for place, run in enumerate(every)},
-        "cards": cards(document),
-        "short": in_short(document),
-        "unnamed": of_nothing(document),
+        "first_screen": True,
+        "views": views(document, live),
+        "doubts": doubts(document),
+        "most_doubts": _MAX_DOUBTS,
+        "listed": listed_runs(every, points, traces),
+        "most_rows": _MAX_ROWS,
         "live": live,
         "decided": document["review"]["entries"] if "review" in document else [],
         "review": script_json(document["review"]) if "review" in document else "",
-        "groups": first,
-        "more_groups": rest,
         "said": grouped_findings(document["findings"]),
     }
     template = environment(folder).get_template("run.html.j2")
@@ -126,56 +138,6 @@ def _context(
             yield Detail(run, place, deflated(text.encode()))
 
     return context | {"details": details}
-
-
-class Group(NamedTuple):
-    """Runs of one condition with their places on the page; with `head` its name stands above."""
-
-    title: str
-    total: int
-    runs: list[tuple[int, Json]]
-    head: bool
-
-
-def grouped_runs(runs: Sequence[Json]) -> list[Group]:
-    """Return the runs of each condition, under its name.
-
-    Examples
-    --------
-    >>> run = {"surface": "Sb-R", "medium": "dry", "nominal_normal_force_N": 31.0}
-    >>> [(one.title, [place for place, _ in one.runs]) for one in grouped_runs([run, run])]
-    [('Sb-R, dry, 31 N', [1, 2])]
-    """
-    groups: dict[tuple[str, str, float | None], list[tuple[int, Json]]] = {}
-    for place, run in enumerate(runs, start=1):
-        key = run["surface"], run["medium"], run["nominal_normal_force_N"]
-        groups.setdefault(key, []).append((place, run))
-    named = []
-    for (surface, medium, load), members in groups.items():
-        words = [surface, medium, "" if load is None else force_text(load)]
-        title = ", ".join(filter(None, words)) or "condition not named"
-        named.append(Group(title, len(members), members, True))
-    return named
-
-
-def parted(groups: Sequence[Group], most: int) -> tuple[list[Group], list[Group]]:
-    """Return groups up to so many runs, and what is left of them.
-
-    Examples
-    --------
-    >>> first, rest = parted([Group("dry", 3, [(1, {}), (2, {}), (3, {})], True)], 2)
-    >>> [len(one.runs) for one in first + rest], rest[0].head
-    ([2, 1], False)
-    """
-    first: list[Group] = []
-    rest: list[Group] = []
-    for group in groups:
-        room = max(most - sum(len(group.runs) for group in first), 0)
-        if room:
-            first.append(group._replace(runs=group.runs[:room]))
-        if group.runs[room:]:
-            rest.append(group._replace(runs=group.runs[room:], head=not room))
-    return first, rest
 
 
 def grouped_findings(findings: Sequence[Json]) -> list[Json]:

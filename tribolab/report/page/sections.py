@@ -38,20 +38,17 @@ class Section:
 
 
 _SECTIONS = (
-    Section("answer", "What was found", "sections/answer.html.j2", "runs"),
-    Section("curves", "Stribeck curves", "sections/curves.html.j2", "curves"),
-    Section("uncertainty", "Uncertainty and its parts", "sections/uncertainty.html.j2", "curves"),
-    Section("model", "Model beside measurement", "sections/model.html.j2", "models"),
-    Section(
-        "sliding", "Stick-slip and the sliding mode", "sections/sliding.html.j2", "sliding_mode"
-    ),
+    Section("answer", "Result", "sections/answer.html.j2"),
+    Section("curves", "Curves", "sections/curves.html.j2", "curves"),
+    Section("uncertainty", "Uncertainty", "sections/uncertainty.html.j2", "curves"),
+    Section("model", "Model", "sections/model.html.j2", "models"),
+    Section("sliding", "Stick-slip", "sections/sliding.html.j2", "sliding_mode"),
     Section("surfaces", "Surfaces", "sections/surfaces.html.j2"),
     Section("contact", "Contact", "sections/contact.html.j2", "has_contact"),
-    Section("runs", "Runs", "sections/runs.html.j2", "runs"),
-    Section("details", "Every run in detail", "sections/details.html.j2", "runs"),
-    Section("findings", "Findings and what was left out", "sections/findings.html.j2"),
-    Section("methods", "Methods and words", "sections/methods.html.j2"),
-    Section("provenance", "Where it comes from", "sections/provenance.html.j2"),
+    Section("findings", "Findings", "sections/findings.html.j2"),
+    Section("methods", "Methods", "sections/methods.html.j2"),
+    Section("provenance", "Provenance", "sections/provenance.html.j2"),
+    Section("details", "Runs", "sections/details.html.j2", "runs"),
 )
 
 
@@ -61,6 +58,6 @@ def shown_sections(document: Mapping[str, Any]) -> list[Section]:
     Examples
     --------
     >>> [section.id for section in shown_sections({"runs": ["one"]})]
-    ['answer', 'surfaces', 'runs', 'details', 'findings', 'methods', 'provenance']
+    ['answer', 'surfaces', 'findings', 'methods', 'provenance', 'details']
     """
     return [section for section in _SECTIONS if not section.key or document.get(section.key)]

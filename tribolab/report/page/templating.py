@@ -23,6 +23,7 @@ from tribolab.records.hurst_words import hurst_verdict, is_steep
 from tribolab.records.model_words import is_described, shear_stress_u95, stress_interval
 from tribolab.records.packed import deflated
 from tribolab.records.roughness_words import form_in_words, roughness_u95
+from tribolab.report.document.document import state_of
 from tribolab.report.page.glossary import HEADS, TERMS
 from tribolab.report.page.in_words import conditions, oscillation_text
 from tribolab.report.page.sections import Section
@@ -34,7 +35,7 @@ _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
 # Everything that may stand in a data address inside a quoted HTML attribute.
 _SAFE = " !$'()*+,-./:;=?@[]^_`{|}~"
 _STYLES = ("report.css", "still.css", "review.css")
-_SCRIPTS = ("first.js", "report.js", "view.js", "files.js", "table.js", "asked.js", "start.js")
+_SCRIPTS = ("first.js", "report.js", "view.js", "files.js", "table.js", "asked.js", "first_screen.js", "start.js")
 _REVIEW = ("review.js", "review_marks.js", "review_panel.js", "review_bar.js")
 _DRAWING = ("drawing.js", "picture.js", "touch.js", "chart.js", "charts.js", "trace.js", *_REVIEW)
 _LIBRARY, _LICENCE = "plotly-basic.min.js", "plotly.LICENSE"
@@ -155,7 +156,7 @@ def environment(folder: Path) -> jinja2.Environment:
         "breakable": breakable,
         "is_bad": judgement.is_bad,
         "status_word": judgement.status_word,
-        "why": judgement.why,
+        "state_of": state_of,
         "check": judgement.check_words,
         "stem": lambda file: Path(file).stem,
         "deflated": lambda text: deflated(str(text).encode()),

@@ -1,0 +1,115 @@
+"""The numbers that answer a campaign: one row per condition."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from tribolab.records.model_words import is_described, stress_interval
+from tribolab.records.roughness_words import roughness_u95
+from tribolab.records.wording import NORMAL, with_error
+from tribolab.report.live.curves import system_name
+from tribolab.report.live.points import point_error
+from tribolab.report.page.in_words import by_speed, half_speed
+from tribolab.report.plain import plain_speed
+from tribolab.words import load_text
+
+
+class KeyRow(NamedTuple):
+    """One row: its cells in words, and what it is of, for the choice of surface, medium, load."""
+
+    cells: tuple[str, ...]
+    surface: str = ""
+    medium: str = ""
+    load: float | None = None
+
+
+class KeyTable(NamedTuple):
+    """Heads and rows, the first cell of each being its name."""
+
+    heads: tuple[str, ...]
+    rows: tuple[KeyRow, ...]
+
+
+def friction_numbers(document: Mapping[str, Any]) -> KeyTable:
+    """Return what each measured curve amounts to: highest and lowest friction, and the model."""
+    models = {model["curve"]: model["fit"] for model in document.get("models", ())}
+    rough = {
+        surface["name"]: with_error(
+            1e6 * surface["roughness"]["Rq_m"],
+            None if (u := roughness_u95(surface["roughness"], "Rq")) is None else 1e6 * u,
+        )
+        for surface in document.get("surfaces", ())
+        if surface["roughness"] and surface["roughness"]["Rq_m"] is not None
+    }
+    single = all(len(curve["points"]) < 2 for curve in document["curves"])
+    heads = ["", "Load", *(["µ"] if single else ["Highest µ", "Half of it at", "Lowest µ"])]
+    heads += ["Shear stress (MPa)"] * bool(models) + ["Rq (µm)"] * bool(rough)
+    rows = []
+    for curve in document["curves"]:
+        known = by_speed(curve["points"])
+        if not known:
+            continue
+        name = system_name(curve["surface"], curve["medium"], curve["runs"])
+        cells = [name, load_text(curve["nominal_normal_force_N"], curve["load_from"])]
+        cells += [_at_speed(known[0])] if single else _extremes(known)
+        cells += [_stress(models.get(curve["name"]))] * bool(models)
+        cells += [rough.get(curve["surface"], "–")] * bool(rough)
+        labels = curve["surface"], curve["medium"], curve["nominal_normal_force_N"]
+        rows.append(KeyRow(tuple(cells), *labels))
+    return KeyTable(tuple(heads), tuple(rows))
+
+
+def _extremes(known: Sequence[Mapping[str, Any]]) -> list[str]:
+    high = max(known, key=lambda row: row["friction_coefficient"])
+    low = min(known, key=lambda row: row["friction_coefficient"])
+    half = half_speed(known[known.index(high) :]) if high["friction_coefficient"] > 0 else None
+    return [
+        _at_speed(high),
+        "not reached" if half is None else plain_speed(half),
+        _at_speed(low),
+    ]
+
+
+def _at_speed(row: Mapping[str, Any]) -> str:
+    mu = with_error(row["friction_coefficient"], point_error(row, ()).size)
+    return f"{mu} at {plain_speed(row['sliding_speed_m_s'])}"
+
+
+def _stress(fit: Mapping[str, Any] | None) -> str:
+    """Return the shear stress with its 95 % interval, or why there is none."""
+    if fit is None:
+        return "–"
+    if not is_described(str(fit["judgement"])):
+        return "model fails"
+    interval = stress_interval(fit["shear_stress_low_Pa"], fit["shear_stress_high_Pa"])
+    return f"{fit['shear_stress_Pa'] * 1e-6:.3g} ({interval})"
+
+
+def roughness_numbers(document: Mapping[str, Any]) -> KeyTable:
+    """Return roughness, slope and Hurst exponent of each surface, and how many scans agree."""
+    rows = []
+    for surface in document["surfaces"]:
+        row = surface["roughness"]
+        if row is None:
+            cells = (surface["name"], surface["reason"] or "no scan", *[""] * 5)
+        else:
+            cells = (
+                surface["name"],
+                *(_micrometres(row, name) for name in ("Ra", "Rq", "Rz")),
+                with_error(row["rms_slope"], None),
+                with_error(row["hurst_exponent"], _u95(row["hurst_exponent_standard_error"])),
+                f"{row['scans']:g}",
+            )
+        rows.append(KeyRow(cells, surface["name"]))
+    heads = ("", "Ra (µm)", "Rq (µm)", "Rz (µm)", "Slope rms", "Hurst exponent", "Scans")
+    return KeyTable(heads, tuple(rows))
+
+
+def _u95(standard_error: float | None) -> float | None:
+    return None if standard_error is None else NORMAL * standard_error
+
+
+def _micrometres(row: Mapping[str, Any], name: str) -> str:
+    value, error = row[f"{name}_m"], roughness_u95(row, name)
+    return with_error(None if value is None else 1e6 * value, None if error is None else 1e6 * error)

@@ -1,0 +1,147 @@
+"""All runs at a glance, the worst first: state, friction, deviation from the repeats, trace."""
+
+from __future__ import annotations
+
+import json
+import statistics
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from tribolab.records.judgement import is_bad, status_word, why
+from tribolab.records.wording import UNITS, with_error
+from tribolab.report.live.points import RunPoint, at_speed
+from tribolab.report.page.sparkline import spark_path
+from tribolab.report.plain import plain_speed
+from tribolab.words import MINUS
+
+_WORST_FIRST = ("failed", "rejected", "error", "rejected by hand", "kept", "suspect", "accepted")
+_ALL = "all speeds"
+_SAME = 1.1  # speeds within this ratio are one, as in the measured curves
+
+
+class ListedRun(NamedTuple):
+    """One row: `values` has friction and deviation in words for each of the speeds.
+
+    `place` is that of the run in the report, from 1; `spark` the outline of its trace as SVG path;
+    `worst` its rank.
+    """
+
+    run: Mapping[str, Any]
+    place: int
+    state: str
+    why: str
+    values: tuple[tuple[str, str], ...]
+    spark: str
+    worst: int = 0
+
+    @property
+    def packed(self) -> str:
+        """Friction and deviation at each speed, as JSON."""
+        return json.dumps(self.values, ensure_ascii=False, separators=(",", ":"))
+
+
+class RunList(NamedTuple):
+    """Rows, the worst first, the speeds at which they compare, and the one shown at first."""
+
+    rows: tuple[ListedRun, ...]
+    speeds: tuple[str, ...]
+    shown: int
+
+
+def listed_runs(
+    runs: Sequence[Mapping[str, Any]],
+    points: Mapping[str, Sequence[RunPoint]],
+    traces: Mapping[str, Mapping[str, Any]],
+) -> RunList:
+    """Return all runs, those that count least first, then those that deviate most.
+
+    Parameters
+    ----------
+    runs
+        As in report.json, at least their brief part.
+    points
+        Friction over speed of each run, by its name.
+    traces
+        Coarse trace of each run, by its name, as `tribolab.records.traces` has it.
+    """
+    speeds = _speeds(points)
+    means = {
+        run["name"]: [
+            _mean(at_speed(points.get(run["name"], ()), v)) for v in speeds
+        ] or [_overall(run)]
+        for run in runs
+    }
+    off = _deviations(runs, means)
+    shown = _most_common(list(means.values()))
+    rows = []
+    for place, run in enumerate(runs, start=1):
+        name, unit = run["name"], UNITS.get(run["quantity"] or "", "")
+        values = tuple(
+            (with_error(mu, None, unit) if mu is not None else "", _signed(deviation))
+            for mu, deviation in zip(means[name], off[name], strict=True)
+        )
+        spark = spark_path(traces[name]) if name in traces else ""
+        rows.append(ListedRun(run, place, status_word(run), why(run), values, spark))
+    order = sorted(rows, key=lambda row: _rank(row, off[row.run["name"]]))
+    ranked = tuple(row._replace(worst=rank) for rank, row in enumerate(order))
+    return RunList(ranked, tuple(map(plain_speed, speeds)) or (_ALL,), shown)
+
+
+def _rank(row: ListedRun, off: Sequence[float | None]) -> tuple[int, float]:
+    known = [abs(value) for value in off if value is not None]
+    grave = _WORST_FIRST.index(row.state) if row.state in _WORST_FIRST else len(_WORST_FIRST)
+    return grave, -statistics.median(known) if known else 0.0
+
+
+def _speeds(points: Mapping[str, Sequence[RunPoint]]) -> list[float]:
+    """Return the speeds of all runs, neighbours that count as one by their first."""
+    speeds: list[float] = []
+    for speed in sorted({point.speed for of_run in points.values() for point in of_run}):
+        if speed > (_SAME * speeds[-1] if speeds else 0):
+            speeds.append(speed)
+    return speeds
+
+
+def _most_common(means: Sequence[Sequence[float | None]]) -> int:
+    """Return which speed most runs have, of those the middle one."""
+    counts = [sum(value is not None for value in column) for column in zip(*means, strict=True)]
+    best = [place for place, count in enumerate(counts) if count == max(counts)]
+    return best[len(best) // 2] if best else 0
+
+
+def _mean(points: Sequence[RunPoint]) -> float | None:
+    return statistics.fmean(point.mu for point in points) if points else None
+
+
+def _overall(run: Mapping[str, Any]) -> float | None:
+    return next((found["value"] for found in run["highlights"]), None)
+
+
+def _deviations(
+    runs: Sequence[Mapping[str, Any]], means: Mapping[str, Sequence[float | None]]
+) -> dict[str, list[float | None]]:
+    """Return by how much each run is off the median of its usable repeats, at each speed."""
+    conditions: dict[tuple[Any, ...], list[Mapping[str, Any]]] = {}
+    for run in runs:
+        key = run["surface"], run["medium"], run["nominal_normal_force_N"], run["quantity"]
+        conditions.setdefault(key, []).append(run)
+    off: dict[str, list[float | None]] = {}
+    for (surface, medium, *_), members in conditions.items():
+        usable = [means[run["name"]] for run in members if not is_bad(run)]
+        for run in members:
+            row: list[float | None] = []
+            for place, mu in enumerate(means[run["name"]]):
+                known = [of_run[place] for of_run in usable if of_run[place] is not None]
+                alone = len(members) < 2 or not (surface or medium) or len(known) < 1
+                middle = statistics.median(v for v in known if v is not None) if known else 0.0
+                row.append(None if mu is None or alone or not middle else mu / middle - 1)
+            off[run["name"]] = row
+    return off
+
+
+def _signed(share: float | None) -> str:
+    """Return a deviation in percent with its sign, to a tenth below ten percent."""
+    if share is None:
+        return ""
+    text = f"{100 * share:+.{1 if abs(share) < 0.0995 else 0}f} %"
+    return text.replace("-", MINUS)

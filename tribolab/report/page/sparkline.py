@@ -1,0 +1,40 @@
+"""The outline of a run's trace, small enough for a row of a table."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from tribolab.records.packed import unpacked_points
+
+WIDTH, HEIGHT = 150, 30  # of the picture, in its own units
+_COLUMNS = 50  # each with its lowest and its highest value
+
+
+def spark_path(trace: Mapping[str, Any]) -> str:
+    """Return the main signal of a trace over time as an SVG path, `WIDTH` by `HEIGHT`.
+
+    Parameters
+    ----------
+    trace
+        As `tribolab.records.traces.decimated_trace` has it.
+    """
+    places, values = unpacked_points(trace["signals"][0])
+    knots, at_s = trace["clock"]
+    known = np.isfinite(values)
+    if known.sum() < 2 or not trace["length_s"] > 0:
+        return ""
+    time = np.interp(places[known], knots, at_s) / trace["length_s"]
+    low, high = values[known].min(), values[known].max()
+    y = HEIGHT * (1 - (values[known] - low) / (high - low)) if high > low else 0 * time + HEIGHT / 2
+    column = np.minimum((time * _COLUMNS).astype(int), _COLUMNS - 1)
+    first = np.flatnonzero(np.diff(column, prepend=-1))
+    ends = np.c_[np.maximum.reduceat(y, first), np.minimum.reduceat(y, first)]
+    ends[1::2] = ends[1::2, ::-1]  # down one column, up the next
+    x = np.round((column[first] + 0.5) * WIDTH / _COLUMNS).astype(int)
+    points = [
+        f"{a},{round(b)}" for a, pair in zip(x, ends, strict=True) for b in dict.fromkeys(pair)
+    ]
+    return f"M{' '.join(points)}"

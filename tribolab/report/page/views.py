@@ -1,0 +1,67 @@
+"""What the first screen shows: the test decides which view comes first, a button changes it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from tribolab.report.live.shown import ShownFigure
+from tribolab.report.page.key_numbers import KeyTable, friction_numbers, roughness_numbers
+
+_TITLES = {
+    "curve": "Friction over speed",
+    "distance": "Over distance",
+    "time": "Over time",
+    "cycles": "Over cycles",
+    "map": "Map",
+    "ramp": "Over speed, ramps",
+    "static": "Static and kinetic",
+    "load": "Over load",
+    "surfaces": "Surfaces",
+}
+_MIN_SPEEDS = 2  # of a curve
+
+
+class View(NamedTuple):
+    """Figures shown together, and the numbers below them."""
+
+    name: str
+    title: str
+    figures: tuple[ShownFigure, ...]
+    numbers: KeyTable | None = None
+
+    @property
+    def columns(self) -> int:
+        """How many figures are next to each other so that all of them fill the screen."""
+        count = len(self.figures)
+        return 1 if count == 1 else 2 if count in (2, 4) else 3 if count <= 9 else 4
+
+
+def views(document: Mapping[str, Any], live: Sequence[ShownFigure]) -> list[View]:
+    """Return the views of a campaign, the one that answers its test first.
+
+    Parameters
+    ----------
+    document
+        As in report.json.
+    live
+        All figures of the page; the section of those on the first screen is "view-" and its name.
+    """
+    figures: dict[str, list[ShownFigure]] = {}
+    for figure in live:
+        kind, _, name = figure.section.partition("-")
+        if kind == "view":
+            figures.setdefault(name, []).append(figure)
+    numbers = {
+        "curve": friction_numbers(document) if document["curves"] else None,
+        "surfaces": roughness_numbers(document) if document["surfaces"] else None,
+    }
+    found = [
+        View(name, title, tuple(figures[name]), numbers.get(name, numbers["curve"]))
+        for name, title in _TITLES.items()
+        if name in figures
+    ]
+    speeds = max((len(curve["points"]) for curve in document["curves"]), default=0)
+    if speeds < _MIN_SPEEDS:  # a single point is no curve
+        found.sort(key=lambda view: view.name == "curve")
+    return found
