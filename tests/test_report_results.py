@@ -147,7 +147,7 @@ def test_failed_run_leads_the_findings_with_its_reason(outcome, report):
     assert (first.severity, first.run, first.message) == ("fail", "broken", REASON)
     assert report["findings"][0]["message"] == REASON
     assert report["verdict"]["status"] == "incomplete"
-    assert "5 of 6 runs done; 1 failed; 30 segments" in report["verdict"]["text"]
+    assert "5 of 6 runs usable; 1 failed; 30 segments" in report["verdict"]["text"]
 
 
 def test_what_was_left_out_is_a_finding_with_reason_and_time(outcome):

@@ -28,7 +28,8 @@
     show();
     await report.unfold(details);
     report.charts?.watch(details);
-    if (!matchMedia("(min-width: 68.76rem)").matches) place.scrollIntoView();
+    if (matchMedia("(min-width: 68.76rem)").matches) scrollTo(0, 0);
+    else place.scrollIntoView();
   };
   function close() {
     if (!open) return;
@@ -42,8 +43,7 @@
     if (button?.dataset.shows) close(), show(button.dataset.shows);
     else if (button?.dataset.runAct === "close") {
       const { run } = open.dataset;
-      close();
-      show();
+      report.closeRun();
       report.view.go("answer");
       report.rows(table).find((row) => row.dataset.run === run)?.querySelector("a").focus();
     } else if (button?.dataset.runAct === "print") {
@@ -53,6 +53,7 @@
     const row = event.target.closest?.("#runs-table tr[data-run]");
     if (row && !event.target.closest("a, input, button")) report.goToRun(row.dataset.run);
   });
+  report.closeRun = () => { if (open) close(), show(); };
   addEventListener("afterprint", () => document.documentElement.classList.remove("print-run"));
   document.getElementById("print")?.addEventListener("click", () => print());
 

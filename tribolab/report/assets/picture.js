@@ -224,7 +224,8 @@ report.Picture = (() => {
     // a card has no room for many names: a point says its own, and the whole window shows all
     get written() {
       const labels = this.legend().length;
-      return this.place.closest(".cards") && !this.full && labels > MOST_LABELS ? 0 : labels;
+      const low = !this.full && report.drawing.fills(this.place) && this.place.closest(".cards").dataset.columns > 2;
+      return low || (this.place.closest(".cards") && !this.full && labels > MOST_LABELS) ? 0 : labels;
     }
 
     get sizes() { return heightOf(this.place, this.width, this.data.panels.length, this.written); }

@@ -29,7 +29,8 @@
   const here = contents.querySelector(".here");
   const links = new Map();
   for (const section of document.querySelectorAll("main section[id]")) {
-    links.set(section, contents.querySelector(`a[href="#${section.id}"]`));
+    const link = contents.querySelector(`a[href="#${section.id}"]`);
+    if (link) links.set(section, link);
   }
   const narrow = matchMedia("(max-width: 60rem)");
   let waiting = false;

@@ -2,15 +2,15 @@
 // Last: opening what a link points to, and drawing.
 (() => {
   report.goTo = async (target) => {
+    if (!target || target === "answer") report.closeRun?.();
     const place = target && document.getElementById(target);
     if (!place) return;
     if (place.hidden) report.view.clear(); // what a link leads to is shown
-    if (place.matches("details.run") && report.openRun) await report.openRun(place);
+    if (place.matches("details.run") && report.openRun) return report.openRun(place);
     if (place.tagName === "DETAILS") {
       place.open = true;
       await report.unfold(place);
       place.querySelector("summary").focus({ preventScroll: true });
-      if (place.closest("#beside")) return;
     }
     place.closest("details:not([open])")?.setAttribute("open", "");
     place.scrollIntoView();

@@ -212,7 +212,7 @@
     const shown = rows.filter((row) => !row.hidden).length;
     for (const said of document.querySelectorAll(".filters output")) {
       const away = rows.filter((row) => hidden.has(row.dataset.run)).length, gone = away ? `, ${away} hidden` : "";
-      said.textContent = shown === rows.length ? `${rows.length} ${rows.length === 1 ? "run" : "runs"}` : `${shown} of ${rows.length} runs${gone}`;
+      said.textContent = shown === rows.length ? "" : `${shown} of ${rows.length} runs${gone}`;
     }
     for (const field of document.querySelectorAll("[data-view]")) if (field.value !== view.get(field.dataset.view)) field.value = view.get(field.dataset.view);
     for (const box of document.querySelectorAll("input[data-hide]")) box.checked = !hidden.has(box.dataset.hide);

@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from tribolab.records.judgement import check_words, is_bad
-from tribolab.records.notice_words import STEPS_DIFFER, TRENDS
+from tribolab.records.judgement import check_words, is_bad, why
 from tribolab.report.live.curves import system_name
 from tribolab.report.plain import listed
 from tribolab.words import force_text, many
 
 _GRAVE = ("error", "fail", "suspect")
-_MAX_NAMED = 2  # runs named in a doubt
+_MAX_NAMED, _MAX_LISTED = 2, 6  # runs named in a doubt, and in that about all left out
+_REPEATS = "repeats"  # name of the check
+_COMPARE = "Compare its trace with those of its repeats."
 _UNCALIBRATED = "statistical only"
 
 
@@ -30,7 +31,7 @@ class Doubt(NamedTuple):
 
 
 def doubts(document: Mapping[str, Any]) -> list[Doubt]:
-    """Return the doubts about a campaign, those that agree but for the run as one.
+    """Return the doubts about a campaign: runs left out, odd repeats, all other findings.
 
     Parameters
     ----------
@@ -39,16 +40,35 @@ def doubts(document: Mapping[str, Any]) -> list[Doubt]:
     """
     found = [*_of_findings(document), *_missing_curves(document)]
     found.sort(key=lambda doubt: _GRAVE.index(doubt.level))
-    along = [row for row in document["findings"] if row["message"].startswith(_ALONG)]
-    if along:
-        who = _names([row["run"] for row in along])
-        text = f"{along[0]['message']}" if len(along) == 1 else "friction changes along the run"
-        found.append(Doubt("suspect", who, text, "", "#findings"))
-    found += _notes(document)
-    return found
+    return [*_left_out(document["runs"]), *_odd(document["runs"]), *found, *_notes(document)]
 
 
-_ALONG = (*TRENDS, STEPS_DIFFER)
+def _odd(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
+    """Name the runs that contradict their repeats."""
+    odd = [
+        (run["name"], row["message"])
+        for run in runs
+        for row in run["checks"]
+        if row["check"] == _REPEATS and not row["decision"] and not is_bad(run)
+    ]
+    if len(odd) > _MAX_NAMED:
+        names = ", ".join(name for name, _ in odd[:_MAX_LISTED])
+        more = f" and {len(odd) - _MAX_LISTED} more" if len(odd) > _MAX_LISTED else ""
+        yield Doubt("suspect", many(len(odd), "odd repeat"), f"{names}{more}", _COMPARE, "#runs")
+        return
+    for name, message in odd:
+        yield Doubt("suspect", name, message.rstrip("."), _COMPARE, f"run {name}")
+
+
+def _left_out(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
+    """Name the runs that no result includes, each with the gravest reason."""
+    bad = [run for run in runs if is_bad(run)]
+    for run in bad if len(bad) <= _MAX_NAMED else ():
+        yield Doubt("fail", run["name"], f"left out, {why(run)}", "", f"run {run['name']}")
+    if len(bad) > _MAX_NAMED:
+        named = [f"{run['name']} ({why(run).partition(':')[0]})" for run in bad[:_MAX_LISTED]]
+        more = f" and {len(bad) - _MAX_LISTED} more" if len(bad) > _MAX_LISTED else ""
+        yield Doubt("fail", many(len(bad), "run"), f"left out: {', '.join(named)}{more}", "", "#runs")
 
 
 def _notes(document: Mapping[str, Any]) -> Iterable[Doubt]:
@@ -62,39 +82,37 @@ def _notes(document: Mapping[str, Any]) -> Iterable[Doubt]:
 
 def _of_findings(document: Mapping[str, Any]) -> Iterable[Doubt]:
     runs = {run["name"]: run for run in document["runs"]}
-    grouped: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
+    bad = {name for name, run in runs.items() if is_bad(run)}
+    grouped: dict[tuple[str, str], list[tuple[list[str], str]]] = {}
     for row in document["findings"]:
-        if row["severity"] in _GRAVE and not row["message"].startswith(_ALONG):
-            key = row["severity"], row["where"] if row["where"] != "run" else row["message"]
-            grouped.setdefault(key, []).append(row)
-    for (severity, _), rows in grouped.items():
-        names = [name for row in rows for name in row["run"].split("; ") if name]
-        names = list(dict.fromkeys(names))
-        row = rows[0]
-        said = _said(row, runs.get(names[0])) if names else ""
-        text, cure = (said or row["message"]), ""
-        if said:
-            cure = row["message"][len(said) :].lstrip(". ")
-        if severity != "suspect" and names and all(is_bad(runs[n]) for n in names if n in runs):
-            text += ", left out"
-        if not said and row["where"] != "run":
-            text = f"{check_words(row['where'])}: {text}"
+        names = [name for name in row["run"].split("; ") if name]
+        left_out = bool(names) and bad.issuperset(names)
+        if row["severity"] not in _GRAVE or left_out or row["where"] == _REPEATS:
+            continue
+        grouped.setdefault((row["severity"], row["where"]), []).append((names, row["message"]))
+    for (severity, where), rows in grouped.items():
+        names = list(dict.fromkeys(name for members, _ in rows for name in members))
+        message = rows[0][1]
+        said = _said(message, runs.get(names[0])) if names else ""
+        cure = message[len(said) :].lstrip(". ") if said else ""
+        text = said or (message if where == "run" else f"{check_words(where)}: {message}")
         link = f"run {names[0]}" if len(names) == 1 else "#findings"
         yield Doubt(severity, _names(names, len(runs)), text.rstrip("."), cure, link)
 
 
-def _said(row: Mapping[str, Any], run: Mapping[str, Any] | None) -> str:
+def _said(message: str, run: Mapping[str, Any] | None) -> str:
     """Return the message of the check behind a finding, which the cure follows."""
     checks = run["checks"] if run is not None else ()
-    known = [check["message"] for check in checks if row["message"].startswith(check["message"])]
+    known = [check["message"] for check in checks if message.startswith(check["message"])]
     return max(known, key=len, default="")
 
 
-def _names(names: Sequence[str], of: int = 0) -> str:
-    names = list(dict.fromkeys(names))
+def _names(names: Sequence[str], of: int) -> str:
     if len(names) == of > 1:
         return "all runs"
-    return listed(names) if len(names) <= _MAX_NAMED else many(len(names), "run")
+    if len(names) <= _MAX_NAMED:
+        return listed(names)
+    return f"{many(len(names), 'run')}, e.g. {names[0]}"
 
 
 def _missing_curves(document: Mapping[str, Any]) -> Iterable[Doubt]:

@@ -43,7 +43,7 @@ def friction_numbers(document: Mapping[str, Any]) -> KeyTable:
         if surface["roughness"] and surface["roughness"]["Rq_m"] is not None
     }
     single = all(len(curve["points"]) < 2 for curve in document["curves"])
-    heads = ["", "Load", *(["µ"] if single else ["Highest µ", "Half of it at", "Lowest µ"])]
+    heads = ["Condition", "Load", *(["µ"] if single else ["Highest µ", "Half of it at", "Lowest µ"])]
     heads += ["Shear stress (MPa)"] * bool(models) + ["Rq (µm)"] * bool(rough)
     rows = []
     for curve in document["curves"]:
@@ -102,7 +102,7 @@ def roughness_numbers(document: Mapping[str, Any]) -> KeyTable:
                 f"{row['scans']:g}",
             )
         rows.append(KeyRow(cells, surface["name"]))
-    heads = ("", "Ra (µm)", "Rq (µm)", "Rz (µm)", "Slope rms", "Hurst exponent", "Scans")
+    heads = ("Surface", "Ra (µm)", "Rq (µm)", "Rz (µm)", "Slope rms", "Hurst exponent", "Scans")
     return KeyTable(heads, tuple(rows))
 
 

@@ -14,7 +14,9 @@ from tribolab.report.page.sparkline import spark_path
 from tribolab.report.plain import plain_speed
 from tribolab.words import MINUS
 
-_WORST_FIRST = ("failed", "rejected", "error", "rejected by hand", "kept", "suspect", "accepted")
+_ODD = "odd"
+_WORST_FIRST: tuple[str, ...] = ("failed", "rejected", "error", "rejected by hand", "kept")
+_WORST_FIRST += (_ODD, "suspect", "accepted")
 _ALL = "all speeds"
 _SAME = 1.1  # speeds within this ratio are one, as in the measured curves
 
@@ -81,10 +83,17 @@ def listed_runs(
             for mu, deviation in zip(means[name], off[name], strict=True)
         )
         spark = spark_path(traces[name]) if name in traces else ""
-        rows.append(ListedRun(run, place, status_word(run), why(run), values, spark))
+        rows.append(ListedRun(run, place, _state(run), why(run), values, spark))
     order = sorted(rows, key=lambda row: _rank(row, off[row.run["name"]]))
     ranked = tuple(row._replace(worst=rank) for rank, row in enumerate(order))
     return RunList(ranked, tuple(map(plain_speed, speeds)) or (_ALL,), shown)
+
+
+def _state(run: Mapping[str, Any]) -> str:
+    """Return the state of a run in words; one that contradicts its repeats is an odd one."""
+    word = status_word(run)
+    odd = any(row["check"] == "repeats" and not row["decision"] for row in run["checks"])
+    return _ODD if odd and word in ("done", "suspect") else word
 
 
 def _rank(row: ListedRun, off: Sequence[float | None]) -> tuple[int, float]:
