@@ -123,7 +123,8 @@ def names(page, figure):
 
 # For a browser: all that is folded away is opened, and all figures are drawn; returns how many.
 OPEN_ALL = (
-    "document.documentElement.classList.add('every'), Promise.all(Array.from(document.querySelectorAll('details'),"
+    "document.documentElement.classList.add('every'),"
+    "Promise.all(Array.from(document.querySelectorAll('details'),"
     "one => { one.open = true; return report.unfold(one) })).then(() => 0)"
 )
 DRAW_ALL = (

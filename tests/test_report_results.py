@@ -386,7 +386,7 @@ def test_the_campaign_s_note_stands_at_the_top_of_the_page(tmp_path, note):
     write_report(replace(made, campaign=campaign), figures="none")
     valid(json.loads((made.folder / "report.json").read_text()))
     top = (made.folder / "report.html").read_text(encoding="utf-8").split("</header>")[0]
-    assert ("<strong>Note:</strong> Simulated &lt;by&gt; a rig.</p>" in top) == bool(note)
+    assert ("Simulated &lt;by&gt; a rig.</li>" in top) == bool(note)
     assert ("campaign" in table(made, "findings")["where"].tolist()) == bool(note)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from scipy.signal import lfilter
+from tribolab.report.page.in_short import in_short
 
 import tribolab as tl
 from tribolab.friction.coefficient.coefficient import friction_coefficient
@@ -15,7 +16,6 @@ from tribolab.friction.running_in.steady_part import steady_segments, without_st
 from tribolab.friction.segments.find import find_segments
 from tribolab.records.notices import notices_of
 from tribolab.records.running_in_record import running_in_of
-from tribolab.report.page.in_short import in_short
 
 RATE, STROKES = 250.0, 120
 

@@ -35,12 +35,14 @@ from tribolab.report.figures.stage import (
     figure_task,
     key_of,
 )
-from tribolab.report.live.along import MOST_RUNS, Strokes, along_figures, strokes_of
+from tribolab.report.live.along import MAX_RUNS, Along, along_figures, along_of
 from tribolab.report.live.compared import comparisons
 from tribolab.report.live.curves import FrictionOverSpeed, card_figures, load_figures
+from tribolab.report.live.loads import over_load_figures
 from tribolab.report.live.gather import Subject, begun_live_figures, figure_subjects
 from tribolab.report.live.points import RunPoint, run_points
 from tribolab.report.live.shown import shown_figures
+from tribolab.report.live.starts import starts_of, static_figures
 from tribolab.report.page.page import prepare_page, write_page
 from tribolab.report.page.reviewing import review_data
 from tribolab.report.tables import SEVERITIES
@@ -121,8 +123,9 @@ def write_report(
     names = tuple(surface.name for surface in outcome.surfaces)
     by_curve = {row.model.curve: row for row in rows.values()}
     known = FrictionOverSpeed(shown, points, by_curve, bands, names)
-    curve_specs = [*card_figures(known), *comparisons(known), *along]
-    live = [*shown_figures(curve_specs), *(one for record in records for one in record.figures)]
+    curve_specs = [*card_figures(known), *comparisons(known)]
+    on_screen = [*curve_specs, *over_load_figures(known), *along]
+    live = [*shown_figures(on_screen), *(one for record in records for one in record.figures)]
     tasks = _figures([*curve_specs, *load_figures(known)], subjects, store, figures, pdf)
     drawn: dict[str, list[FigureRecord]] = {section: [] for section in SECTIONS}
     for record in begun(Figures(store, tasks), executor, tell)():
@@ -181,11 +184,12 @@ def _documents(outcome: Outcome) -> Iterator[Json]:
 def _runs(
     outcome: Outcome,
 ) -> tuple[list[Json], list[Notice], dict[str, list[RunPoint]], list[FigureSpec]]:
-    """Return what is brief of every run and said of it, its friction over speed and by strokes."""
+    """Return what is brief of every run and said of it, and its friction over speed and time."""
     briefs: list[Json] = []
     said: list[Notice] = []
     points: dict[str, list[RunPoint]] = {}
-    strokes: list[Strokes] = []
+    settled: list[Along] = []
+    held: list[RunRecord] = []
     count = 0
     for entry in outcome.store.all("run", RunRecord):
         briefs.append(brief_run(run_document(entry.record)))
@@ -195,10 +199,11 @@ def _runs(
         run = entry.record.outcome
         filed = dict(zip(run.measured_levels, run.load_levels, strict=True))
         points[name] = run_points(name, facts.segments, facts.offset, filed)
-        if (of_run := strokes_of(name, facts.segments)) is not None:
+        if (of_run := along_of(entry.record)) is not None:
             count += 1
-            strokes += [of_run] * (len(strokes) < MOST_RUNS)
-    return briefs, said, points, along_figures(strokes, count)
+            settled += [of_run] * (len(settled) < MAX_RUNS)
+        held += [entry.record] * bool(len(held) < MAX_RUNS and starts_of(entry.record))
+    return briefs, said, points, [*along_figures(settled, count), *static_figures(held)]
 
 
 def _of_parts(

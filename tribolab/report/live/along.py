@@ -1,103 +1,109 @@
-"""Friction from stroke to stroke: of runs with many strokes, which a mean alone hides."""
+"""Friction along runs at one speed, over distance, time and cycles: running-in and steady state."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
-import numpy as np
-
-from tribolab.figures.envelope import envelope_index
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, places
-from tribolab.records.parts import Row, number_of
-from tribolab.records.same_speed import of_one_speed
+from tribolab.friction.running_in.history import STRETCHES
+from tribolab.records.parts import BAD, number_of
+from tribolab.records.run_record import RunRecord
+from tribolab.records.running_in_record import RunningIn
+from tribolab.records.wording import with_error
 from tribolab.words import many
 
-MOST_RUNS = 8  # that are shown
-_FEWEST = 20  # strokes of one speed
-_COLUMNS = 250  # of a run, each with its lowest and its highest stroke
+MAX_RUNS = 8  # that are shown
 
 
-class Strokes(NamedTuple):
-    """A run, the moments of its strokes [s], and the friction coefficient of each (stroke)."""
+class Along(NamedTuple):
+    """A run at one speed: its record, and its running-in."""
 
-    run: str
-    time: np.ndarray
-    mu: np.ndarray
+    record: RunRecord
+    settled: RunningIn
 
 
-def strokes_of(name: str, segments: Sequence[Row]) -> Strokes | None:
-    """Return the strokes of a run; None where it has not many at any speed.
+def along_of(record: RunRecord) -> Along | None:
+    """Return a run that slides at one speed and is long enough to look for running-in."""
+    settled = record.facts.running_in
+    if len(settled) != 1 or record.outcome.quality in BAD:
+        return None
+    return Along(record, settled[0])
+
+
+_OVER = (
+    ("distance", Axis("sliding distance", "m"), "distance_m", ("start_m", "stop_m")),
+    ("time", Axis("time", "s"), "time_s", ("start_s", "stop_s")),
+    ("cycles", Axis("cycle"), "number", ("start_number", "stop_number")),
+)
+_MU = Axis("friction coefficient µ")
+
+
+def along_figures(runs: Sequence[Along], count: int) -> list[FigureSpec]:
+    """Return friction along runs over distance, time and cycles.
 
     Parameters
     ----------
-    name
-        Of the run.
-    segments
-        Rows of its segments, as in report.json; what a person rejected is left out.
-
-    Examples
-    --------
-    >>> rows = [{"sliding_speed_m_s": 0.1, "friction_coefficient": 0.3, "trimmed_start_s": t,
-    ...          "trimmed_stop_s": t + 0.5} for t in range(30)]
-    >>> strokes_of("pin", rows).time[:2].tolist(), strokes_of("pin", rows[:9])
-    ([0.25, 1.25], None)
-    """
-    if len(segments) < _FEWEST:
-        return None
-    counted = [row for row in segments if not row.get("rejected")]
-    keys = ("sliding_speed_m_s", "friction_coefficient", "trimmed_start_s", "trimmed_stop_s")
-    table = np.array([[number_of(row, key) for key in keys] for row in counted], float)
-    table = table.reshape(-1, len(keys))
-    speed, mu, start, stop = table.T
-    time = (start + stop) / 2
-    known = np.isfinite(mu) & np.isfinite(time)
-    if max((len(part) for part in of_one_speed(speed, known)), default=0) < _FEWEST:
-        return None
-    order = np.flatnonzero(known)[np.argsort(time[known], kind="stable")]
-    return Strokes(name, time[order], mu[order])
-
-
-def along_figures(strokes: Sequence[Strokes], count: int) -> list[FigureSpec]:
-    """Return the figure of friction from stroke to stroke, if there are runs with many.
-
-    Parameters
-    ----------
-    strokes
-        Of the runs that are shown.
+    runs
+        Those that are shown.
     count
-        How many runs have as many strokes.
+        How many there are.
     """
-    if not strokes:
-        return []
-    colours = places([each.run for each in strokes])
-    series = []
-    for each in strokes:
-        kept = envelope_index(each.time, each.mu, _COLUMNS)
-        series.append(
-            Series(
-                each.run,
-                each.time[kept],
-                each.mu[kept],
-                style="points",
-                colour=colours[each.run],
-                hover=(each.run,),
-                runs=(each.run,),
-                link=(each.run,),
+    figures = []
+    for name, axis, column, ends in _OVER:
+        series = [drawn for run in runs for drawn in _series(run, runs, column, ends)]
+        if not series or (name == "cycles" and all(r.settled.counted == STRETCHES for r in runs)):
+            continue
+        which = f" The first {len(runs)} of {count} runs." if count > len(runs) else ""
+        wear = any(drawn.panel for drawn in series)
+        figures.append(
+            FigureSpec(
+                id=f"along-{name}",
+                section=f"view-{name}",
+                title=_title(runs),
+                note=f"Dashes: steady state.{which}",
+                alt=f"Friction coefficient of {many(len(runs), 'run')} over {axis.label}.",
+                panels=(Panel(axis, _MU), *([Panel(axis, Axis("wear", "µm"))] * wear)),
+                series=tuple(series),
+                width="whole",
+                height=520 if wear else 430,
             )
         )
-    which = f" The first {len(strokes)} of {count} such runs." if count > len(strokes) else ""
-    return [
-        FigureSpec(
-            id="curves-along",
-            section="view-time",
-            title="Friction from stroke to stroke",
-            note="A point for each stroke, at the time of its middle; of very many the lowest and "
-            f"the highest of each column.{which}",
-            alt=f"Friction coefficient of the strokes of {many(len(strokes), 'run')} over time.",
-            panels=(Panel(Axis("time", "s"), Axis("friction coefficient µ")),),
-            series=tuple(series),
-            width="whole",
-            height=430,
+    return figures
+
+
+def _title(runs: Sequence[Along]) -> str:
+    """Return the steady value of a single run, or that friction along runs is shown."""
+    if len(runs) > 1:
+        return "Friction along the runs"
+    (settled,) = (run.settled for run in runs)
+    mean = with_error(settled.mean_friction_coefficient, settled.mean_friction_coefficient_U95)
+    if settled.is_unsteady:
+        return f"not steady at the end of the run; mean over all µ = {mean}"
+    steady = settled.steady_friction_coefficient, settled.steady_friction_coefficient_U95
+    return f"steady µ = {with_error(*steady)}; mean over all {mean}"
+
+
+def _series(run: Along, runs: Sequence[Along], column: str, ends: tuple[str, str]) -> list[Series]:
+    outcome, settled = run.record.outcome, run.settled
+    colour = places([each.record.outcome.name for each in runs])[outcome.name]
+    labels = {"colour": colour, "runs": (outcome.name,), "link": (outcome.name,)}
+    labels |= {"surface": outcome.surface, "medium": outcome.medium}
+    rows = [row for row in run.record.course if number_of(row, column) is not None]
+    if column == "number" and settled.counted == STRETCHES:
+        return []
+    x = [number_of(row, column) for row in rows]
+    mu = [number_of(row, "friction_coefficient") for row in rows]
+    drawn = [Series(outcome.name, x, mu, thin=True, hover=(outcome.name,), **labels)]
+    start, stop = (getattr(settled, end) for end in ends)
+    level, error = settled.steady_friction_coefficient, settled.steady_friction_coefficient_U95
+    if None not in (start, stop, level):
+        words = f"{outcome.name}: steady µ = {with_error(level, error)}"
+        drawn.append(
+            Series("steady", [start, stop], [level] * 2, "dashed", hover=(words,), **labels)
         )
-    ]
+    wear = [number_of(row, "wear_depth_m") for row in rows]
+    if any(depth is not None for depth in wear):
+        depth = [None if each is None else 1e6 * each for each in wear]
+        drawn.append(Series(outcome.name, x, depth, panel=1, thin=True, **labels))
+    return drawn

@@ -19,6 +19,7 @@ from tribolab.records.parts import Notice
 from tribolab.report.document.models import ModelRow
 from tribolab.report.live.joint import joint_specs
 from tribolab.report.live.models import bands_of_models, model_specs
+from tribolab.report.live.ramps import MAX_RUNS, has_ramps, ramp_specs
 from tribolab.report.live.record import Band, LiveFigures, LiveRecord, live_task
 from tribolab.report.live.shown import shown_figures
 from tribolab.report.live.sliding import Judged, sliding_specs
@@ -105,7 +106,10 @@ def figure_subjects(
     ]
     done = [surface for surface in outcome.surfaces if surface.done]
     traced = dict.fromkeys(contact.slow.file for contact in judged if contact.slow)
+    ramps = [run for run in outcome.runs if has_ramps(run)][:MAX_RUNS]
+    alone = not outcome.runs  # then the surfaces are the answer
     return [
+        Subject("ramps", partial(ramp_specs, ramps), ramps, [run.data_file for run in ramps]),
         Subject(
             "models",
             partial(model_specs, models, surfaces),
@@ -121,8 +125,8 @@ def figure_subjects(
         ),
         Subject(
             "surfaces",
-            partial(surface_specs, done, surfaces),
-            ([(surface.name, surface.parts, surface.quality) for surface in done], surfaces),
+            partial(surface_specs, done, surfaces, alone),
+            ([(surface.name, surface.parts, surface.quality) for surface in done], surfaces, alone),
             [surface.data_file for surface in done],
         ),
         Subject(

@@ -53,7 +53,7 @@ class _Opened:
 
 
 def surface_specs(
-    surfaces: Sequence[SurfaceOutcome], order: Sequence[str], folder: Path
+    surfaces: Sequence[SurfaceOutcome], order: Sequence[str], alone: bool, folder: Path
 ) -> list[FigureSpec]:
     """Return the figures of the sections on surfaces and contact for which there are data.
 
@@ -63,6 +63,8 @@ def surface_specs(
         What the campaign knows of them.
     order
         Names in the order of the campaign, which colours follow.
+    alone
+        Whether there are no runs: then profiles and spectra are on the first screen.
     folder
         The results folder with their data files.
     """
@@ -71,6 +73,7 @@ def surface_specs(
     specs = []
     for name, describe in _FIGURES.items():
         section = name.partition("-")[0]
+        section = "view-surfaces" if alone and section == "surfaces" else section
         spec = describe(opened)
         if spec is None or not spec.series:
             continue

@@ -68,7 +68,9 @@ def _left_out(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
     if len(bad) > _MAX_NAMED:
         named = [f"{run['name']} ({why(run).partition(':')[0]})" for run in bad[:_MAX_LISTED]]
         more = f" and {len(bad) - _MAX_LISTED} more" if len(bad) > _MAX_LISTED else ""
-        yield Doubt("fail", many(len(bad), "run"), f"left out: {', '.join(named)}{more}", "", "#runs")
+        yield Doubt(
+            "fail", many(len(bad), "run"), f"left out: {', '.join(named)}{more}", "", "#runs"
+        )
 
 
 def _notes(document: Mapping[str, Any]) -> Iterable[Doubt]:

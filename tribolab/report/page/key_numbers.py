@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from tribolab.records.model_words import is_described, stress_interval
 from tribolab.records.roughness_words import roughness_u95
+from tribolab.records.running_in_record import length_text
 from tribolab.records.wording import NORMAL, with_error
 from tribolab.report.live.curves import system_name
 from tribolab.report.live.points import point_error
@@ -43,7 +44,11 @@ def friction_numbers(document: Mapping[str, Any]) -> KeyTable:
         if surface["roughness"] and surface["roughness"]["Rq_m"] is not None
     }
     single = all(len(curve["points"]) < 2 for curve in document["curves"])
-    heads = ["Condition", "Load", *(["µ"] if single else ["Highest µ", "Half of it at", "Lowest µ"])]
+    heads = [
+        "Condition",
+        "Load",
+        *(["µ"] if single else ["Highest µ", "Half of it at", "Lowest µ"]),
+    ]
     heads += ["Shear stress (MPa)"] * bool(models) + ["Rq (µm)"] * bool(rough)
     rows = []
     for curve in document["curves"]:
@@ -86,6 +91,38 @@ def _stress(fit: Mapping[str, Any] | None) -> str:
     return f"{fit['shear_stress_Pa'] * 1e-6:.3g} ({interval})"
 
 
+def settled_numbers(document: Mapping[str, Any]) -> KeyTable | None:
+    """Return running-in and steady friction of each run at one speed; None without such runs."""
+    rows = []
+    for run in document["runs"]:
+        if len(run["running_in"]) != 1:
+            continue
+        (settled,) = run["running_in"]
+        finished = settled["steady_friction_coefficient"] is not None
+        begin, end = (length_text(settled[name]) for name in ("start_m", "end_m"))
+        over = "not finished" if not finished else begin if settled["start_m"] else "none"
+        cells = [
+            run["name"],
+            *(_mean(settled, name) if finished or name == "mean" else "–" for name in _MEANS),
+            f"{over} of {end}" if finished and settled["start_m"] else over,
+            settled["verdict"],
+            plain_speed(settled["sliding_speed_m_s"]),
+        ]
+        rows.append(
+            KeyRow(tuple(cells), run["surface"], run["medium"], run["nominal_normal_force_N"])
+        )
+    heads = ("Run", "Steady µ", "Mean over all", "Runs in over", "Verdict", "Speed")
+    return KeyTable(heads, tuple(rows)) if rows else None
+
+
+_MEANS = ("steady", "mean")
+
+
+def _mean(settled: Mapping[str, Any], name: str) -> str:
+    name = f"{name}_friction_coefficient"
+    return with_error(settled[name], settled[f"{name}_U95"])
+
+
 def roughness_numbers(document: Mapping[str, Any]) -> KeyTable:
     """Return roughness, slope and Hurst exponent of each surface, and how many scans agree."""
     rows = []
@@ -112,4 +149,6 @@ def _u95(standard_error: float | None) -> float | None:
 
 def _micrometres(row: Mapping[str, Any], name: str) -> str:
     value, error = row[f"{name}_m"], roughness_u95(row, name)
-    return with_error(None if value is None else 1e6 * value, None if error is None else 1e6 * error)
+    return with_error(
+        None if value is None else 1e6 * value, None if error is None else 1e6 * error
+    )

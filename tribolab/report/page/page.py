@@ -15,11 +15,12 @@ from markupsafe import Markup
 
 from tribolab.records.packed import deflated
 from tribolab.records.traces import script_json
-from tribolab.report.live.shown import ShownFigure
 from tribolab.report.live.points import RunPoint
+from tribolab.report.live.shown import ShownFigure
 from tribolab.report.page.doubts import doubts
 from tribolab.report.page.glossary import words_of
 from tribolab.report.page.run_list import listed_runs
+from tribolab.report.page.scan_list import listed_scans
 from tribolab.report.page.sections import shown_sections
 from tribolab.report.page.templating import environment, framing, library
 from tribolab.report.page.views import views
@@ -119,6 +120,7 @@ def _context(
         "doubts": doubts(document),
         "most_doubts": _MAX_DOUBTS,
         "listed": listed_runs(every, points, traces),
+        "scans": listed_scans(document) if not every else [],
         "most_rows": _MAX_ROWS,
         "live": live,
         "decided": document["review"]["entries"] if "review" in document else [],

@@ -17,7 +17,8 @@ from tribolab.words import MINUS
 _ODD = "odd"
 _WORST_FIRST: tuple[str, ...] = ("failed", "rejected", "error", "rejected by hand", "kept")
 _WORST_FIRST += (_ODD, "suspect", "accepted")
-_ALL = "all speeds"
+_ALL, _STEADY = "all speeds", "steady"
+_DIGITS = 6  # of a deviation: two repeats deviate alike
 _SAME = 1.1  # speeds within this ratio are one, as in the measured curves
 
 
@@ -67,14 +68,13 @@ def listed_runs(
         Coarse trace of each run, by its name, as `tribolab.records.traces` has it.
     """
     speeds = _speeds(points)
-    means = {
-        run["name"]: [
-            _mean(at_speed(points.get(run["name"], ()), v)) for v in speeds
-        ] or [_overall(run)]
-        for run in runs
-    }
+    means = {run["name"]: _means(run, points.get(run["name"], ()), speeds) for run in runs}
+    shown_as = tuple(map(plain_speed, speeds)) or (_ALL,)
+    if any(len(run["running_in"]) == 1 for run in runs):
+        shown_as = _STEADY, *shown_as
+        means = {run["name"]: [_steady(run), *means[run["name"]]] for run in runs}
     off = _deviations(runs, means)
-    shown = _most_common(list(means.values()))
+    shown = 0 if _STEADY in shown_as else _most_common(list(means.values()))
     rows = []
     for place, run in enumerate(runs, start=1):
         name, unit = run["name"], UNITS.get(run["quantity"] or "", "")
@@ -86,7 +86,7 @@ def listed_runs(
         rows.append(ListedRun(run, place, _state(run), why(run), values, spark))
     order = sorted(rows, key=lambda row: _rank(row, off[row.run["name"]]))
     ranked = tuple(row._replace(worst=rank) for rank, row in enumerate(order))
-    return RunList(ranked, tuple(map(plain_speed, speeds)) or (_ALL,), shown)
+    return RunList(ranked, shown_as, shown)
 
 
 def _state(run: Mapping[str, Any]) -> str:
@@ -99,7 +99,7 @@ def _state(run: Mapping[str, Any]) -> str:
 def _rank(row: ListedRun, off: Sequence[float | None]) -> tuple[int, float]:
     known = [abs(value) for value in off if value is not None]
     grave = _WORST_FIRST.index(row.state) if row.state in _WORST_FIRST else len(_WORST_FIRST)
-    return grave, -statistics.median(known) if known else 0.0
+    return grave, -round(statistics.median(known), _DIGITS) if known else 0.0
 
 
 def _speeds(points: Mapping[str, Sequence[RunPoint]]) -> list[float]:
@@ -120,6 +120,21 @@ def _most_common(means: Sequence[Sequence[float | None]]) -> int:
 
 def _mean(points: Sequence[RunPoint]) -> float | None:
     return statistics.fmean(point.mu for point in points) if points else None
+
+
+def _means(
+    run: Mapping[str, Any], points: Sequence[RunPoint], speeds: Sequence[float]
+) -> list[float | None]:
+    return [_mean(at_speed(points, speed)) for speed in speeds] or [_overall(run)]
+
+
+def _steady(run: Mapping[str, Any]) -> float | None:
+    """Return steady friction of a run at one speed, else its mean over all."""
+    if len(run["running_in"]) != 1:
+        return None
+    (settled,) = run["running_in"]
+    steady: float | None = settled["steady_friction_coefficient"]
+    return settled["mean_friction_coefficient"] if steady is None else steady
 
 
 def _overall(run: Mapping[str, Any]) -> float | None:

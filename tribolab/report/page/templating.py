@@ -35,7 +35,16 @@ _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
 # Everything that may stand in a data address inside a quoted HTML attribute.
 _SAFE = " !$'()*+,-./:;=?@[]^_`{|}~"
 _STYLES = ("report.css", "still.css", "review.css")
-_SCRIPTS = ("first.js", "report.js", "view.js", "files.js", "table.js", "asked.js", "first_screen.js", "start.js")
+_SCRIPTS = (
+    "first.js",
+    "report.js",
+    "view.js",
+    "files.js",
+    "table.js",
+    "asked.js",
+    "first_screen.js",
+    "start.js",
+)
 _REVIEW = ("review.js", "review_marks.js", "review_panel.js", "review_bar.js")
 _DRAWING = ("drawing.js", "picture.js", "touch.js", "chart.js", "charts.js", "trace.js", *_REVIEW)
 _LIBRARY, _LICENCE = "plotly-basic.min.js", "plotly.LICENSE"

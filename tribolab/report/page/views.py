@@ -6,16 +6,20 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from tribolab.report.live.shown import ShownFigure
-from tribolab.report.page.key_numbers import KeyTable, friction_numbers, roughness_numbers
+from tribolab.report.page.key_numbers import (
+    KeyTable,
+    friction_numbers,
+    roughness_numbers,
+    settled_numbers,
+)
 
 _TITLES = {
     "curve": "Friction over speed",
+    "static": "Static and kinetic",
     "distance": "Over distance",
     "time": "Over time",
     "cycles": "Over cycles",
-    "map": "Map",
     "ramp": "Over speed, ramps",
-    "static": "Static and kinetic",
     "load": "Over load",
     "surfaces": "Surfaces",
 }
@@ -52,12 +56,12 @@ def views(document: Mapping[str, Any], live: Sequence[ShownFigure]) -> list[View
         kind, _, name = figure.section.partition("-")
         if kind == "view":
             figures.setdefault(name, []).append(figure)
-    numbers = {
-        "curve": friction_numbers(document) if document["curves"] else None,
-        "surfaces": roughness_numbers(document) if document["surfaces"] else None,
-    }
+    friction = friction_numbers(document) if document["curves"] else None
+    settled = settled_numbers(document)
+    numbers = {"distance": settled, "time": settled, "cycles": settled, "ramp": None}
+    numbers["surfaces"] = roughness_numbers(document) if document["surfaces"] else None
     found = [
-        View(name, title, tuple(figures[name]), numbers.get(name, numbers["curve"]))
+        View(name, title, tuple(figures[name]), numbers.get(name, friction))
         for name, title in _TITLES.items()
         if name in figures
     ]

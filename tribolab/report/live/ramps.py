@@ -1,0 +1,123 @@
+"""Friction over speed of runs whose speed never stays constant."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from tribolab.figures.signals import LOOKED_AT, main_signal
+from tribolab.figures.spec import Axis, FigureSpec, Panel, Series
+from tribolab.records.parts import BAD, RunOutcome
+from tribolab.report.live.record import LiveRecord
+from tribolab.report.live.shown import shown_figures
+from tribolab.words import many
+
+MAX_RUNS = 8
+_SPEEDS = "sliding_velocity", "set_speed"
+_BINS_PER_DECADE = 12
+_MIN_SAMPLES = 5  # of a bin
+_MIN_DECADES = 0.3
+_SMOOTHED = 50  # parts of a record in which the speed rises or falls
+
+
+def has_ramps(run: RunOutcome) -> bool:
+    """Whether a run may have ramps alone: it was read and has no segment."""
+    return run.done and run.segments == 0 and run.quality not in BAD
+
+
+def record_of_ramps(runs: Sequence[RunOutcome], folder: Path) -> LiveRecord:
+    """Return friction over the momentary speed of runs without constant speed.
+
+    Parameters
+    ----------
+    runs
+        What they came to.
+    folder
+        The results folder with their data files.
+    """
+    series = [
+        drawn
+        for place, run in enumerate(runs)
+        for drawn in _legs(run, place, folder / run.data_file)
+    ]
+    spec = FigureSpec(
+        id="ramps",
+        section="view-ramp",
+        title="Friction over speed, ramps",
+        note="Means and standard deviations over small ranges of speed. Filled: the speed rises; "
+        "open: it falls. The zero of the friction force is not removed.",
+        alt=f"Friction over the momentary speed of {many(len(runs), 'run')}.",
+        panels=(Panel(Axis("sliding speed v", "m/s", log=True), Axis("friction coefficient µ")),),
+        series=tuple(series),
+        width="whole",
+        height=430,
+    )
+    return LiveRecord(shown_figures([spec]))
+
+
+def _legs(run: RunOutcome, place: int, file: Path) -> list[Series]:
+    # late: starting stays quick
+    from tribolab.reading.netcdf.netcdf import read_groups
+
+    groups = read_groups(file, ("run", "friction"), only={"run": (*LOOKED_AT, *_SPEEDS)})
+    signals, friction = groups.values()
+    name = next((n for n in _SPEEDS if n in signals), "")
+    if not name or not ({"friction_coefficient", "normal_force"} & set(signals)):
+        return []
+    velocity = np.asarray(signals[name], float)
+    speed = np.abs(velocity)
+    mu = np.asarray(main_signal(signals, friction).values, float) * np.where(velocity < 0, -1, 1)
+    known = np.isfinite(mu) & (speed > 0)
+    if not known.any():
+        return []
+    low, high = np.percentile(speed[known], (1, 99))
+    decades = float(np.log10(high / low))
+    if decades < _MIN_DECADES:
+        return []
+    edges = np.geomspace(low, high, 1 + int(np.ceil(_BINS_PER_DECADE * decades)))
+    rising = _rising(speed)
+    drawn = []
+    for leg, words in ((rising, "rising"), (~rising, "falling")):
+        x, mean, spread = _binned(speed[known & leg], mu[known & leg], edges)
+        if x:
+            drawn.append(
+                Series(
+                    f"{run.name}, {words}",
+                    x,
+                    mean,
+                    style="points",
+                    colour=place,
+                    error=spread,
+                    pale=True,
+                    surface=run.surface,
+                    medium=run.medium,
+                    load=None,
+                    runs=(run.name,),
+                    link=(run.name,),
+                    open=words == "falling",
+                    joined=True,
+                )
+            )
+    return drawn
+
+
+def _rising(speed: np.ndarray) -> np.ndarray:
+    """Return whether the speed rises at each sample, judged over parts of the record."""
+    edges = np.linspace(0, speed.size, min(_SMOOTHED, speed.size) + 1).astype(int)
+    means = np.add.reduceat(np.nan_to_num(speed), edges[:-1]) / np.diff(edges)
+    return np.repeat(np.gradient(means) > 0, np.diff(edges))
+
+
+def _binned(
+    speed: np.ndarray, mu: np.ndarray, edges: np.ndarray
+) -> tuple[list[float], list[float], list[float]]:
+    rows = np.digitize(speed, edges)
+    found = [
+        (float(np.exp(np.log(speed[mine]).mean())), float(mu[mine].mean()), float(mu[mine].std()))
+        for number in range(1, edges.size)
+        if (mine := rows == number).sum() >= _MIN_SAMPLES
+    ]
+    x, mean, spread = zip(*found, strict=True) if found else ((), (), ())
+    return list(x), list(mean), list(spread)

@@ -1,0 +1,69 @@
+"""Static and kinetic friction over the time of rest before each start."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, places
+from tribolab.friction.statistics import NORMAL
+from tribolab.records.parts import BAD, Row, number_of
+from tribolab.records.run_record import RunRecord
+from tribolab.words import many
+
+_MIN_TIMES = 3  # of rest that differ: else the rests are those between strokes
+_MIN_RATIO = 1.5  # of two times of rest that differ
+
+
+def starts_of(record: RunRecord) -> tuple[Row, ...]:
+    """Return the starts of a run after rests of different lengths; none of another test."""
+    rows = [row for row in record.starts if (number_of(row, "waiting_time_s") or 0) > 0]
+    times: list[float] = []
+    for time in sorted(number_of(row, "waiting_time_s") or 0.0 for row in rows):
+        if not times or time > _MIN_RATIO * times[-1]:
+            times.append(time)
+    return tuple(rows) if len(times) >= _MIN_TIMES and record.outcome.quality not in BAD else ()
+
+
+def static_figures(runs: Sequence[RunRecord]) -> list[FigureSpec]:
+    """Return static and kinetic friction over the time of rest, of runs that have both."""
+    held = [(run.outcome, rows) for run in runs if (rows := starts_of(run))]
+    if not held:
+        return []
+    colours = places([outcome.name for outcome, _ in held])
+    series = []
+    for outcome, rows in held:
+        x = [number_of(row, "waiting_time_s") for row in rows]
+        for name, words in (
+            ("static_friction_coefficient", "static"),
+            ("friction_coefficient", "kinetic"),
+        ):
+            error = [number_of(row, f"{name}_sem") for row in rows]
+            series.append(
+                Series(
+                    f"{outcome.name}, {words}",
+                    x,
+                    [number_of(row, name) for row in rows],
+                    style="points",
+                    colour=colours[outcome.name],
+                    error=[None if each is None else NORMAL * each for each in error],
+                    surface=outcome.surface,
+                    medium=outcome.medium,
+                    runs=(outcome.name,),
+                    link=(outcome.name,),
+                    open=words == "kinetic",
+                )
+            )
+    return [
+        FigureSpec(
+            id="static-kinetic",
+            section="view-static",
+            title="Static and kinetic friction over the time of rest",
+            note="Filled: static friction of each start ± U95; open: kinetic friction after it.",
+            alt=f"Static and kinetic friction coefficients of {many(len(held), 'run')} over the "
+            "time of rest.",
+            panels=(Panel(Axis("time of rest", "s", log=True), Axis("friction coefficient µ")),),
+            series=tuple(series),
+            width="whole",
+            height=430,
+        )
+    ]

@@ -1,0 +1,35 @@
+"""All scans at a glance, the worst first."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import PurePath
+from typing import Any, NamedTuple
+
+_ORDER = ("error", "fail", "suspect")
+
+
+class ListedScan(NamedTuple):
+    """A scan, its surface, and the gravest objection of its checks in words."""
+
+    name: str
+    surface: str
+    state: str
+    why: str
+
+
+def listed_scans(document: Mapping[str, Any]) -> list[ListedScan]:
+    """Return the scans of all surfaces, those with objections first."""
+    rows = []
+    for surface in document["surfaces"]:
+        for file in surface["files"]:
+            name = PurePath(file).name
+            said = [
+                row
+                for row in surface["checks"]
+                if row["status"] in _ORDER and PurePath(row["scan"]).name == name
+            ]
+            said.sort(key=lambda row: _ORDER.index(row["status"]))
+            state, why = (said[0]["status"], said[0]["message"]) if said else ("ok", "")
+            rows.append(ListedScan(name, surface["name"], state, why))
+    return sorted(rows, key=lambda row: [*_ORDER, row.state].index(row.state))
