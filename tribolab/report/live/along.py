@@ -11,6 +11,7 @@ from tribolab.records.parts import BAD, number_of
 from tribolab.records.run_record import RunRecord
 from tribolab.records.running_in_record import RunningIn
 from tribolab.records.wording import with_error
+from tribolab.untyped import Arguments
 from tribolab.words import many
 
 MAX_RUNS = 8  # that are shown
@@ -87,7 +88,7 @@ def _title(runs: Sequence[Along]) -> str:
 def _series(run: Along, runs: Sequence[Along], column: str, ends: tuple[str, str]) -> list[Series]:
     outcome, settled = run.record.outcome, run.settled
     colour = places([each.record.outcome.name for each in runs])[outcome.name]
-    labels = {"colour": colour, "runs": (outcome.name,), "link": (outcome.name,)}
+    labels: Arguments = {"colour": colour, "runs": (outcome.name,), "link": (outcome.name,)}
     labels |= {"surface": outcome.surface, "medium": outcome.medium}
     rows = [row for row in run.record.course if number_of(row, column) is not None]
     if column == "number" and settled.counted == STRETCHES:

@@ -1,0 +1,101 @@
+"""What the uncertainty of the measured curves is made of: one bar for each part, and what helps."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from tribolab.figures.spec import Axis, FigureSpec, Panel, Series
+from tribolab.metrology.budget_parts import BETWEEN, NOISE, coverage_factor
+from tribolab.records.part_records import CurveRecord
+from tribolab.records.parts import number_of
+from tribolab.words import many, percent
+
+_MIN_SHARE = 0.005  # of the variance: less is no bar
+_MIN_GAIN = 0.01  # of U95: less is no advice
+
+
+class Contribution(NamedTuple):
+    """One part of the uncertainty of one point.
+
+    `relative` is its standard uncertainty over µ, `share` that of the variance, `gain` by how much
+    U95 would shrink: by one more repeat, or if the part were known twice as well.
+    """
+
+    part: str
+    relative: float
+    share: float
+    gain: float
+
+
+def contributions(curves: Iterable[CurveRecord]) -> list[Contribution]:
+    """Return all parts of the uncertainty of all points."""
+    found = []
+    for curve in curves:
+        points = {row["sliding_speed_m_s"]: row for row in curve.points}
+        for piece in curve.budget:
+            row = points.get(piece["sliding_speed_m_s"], {})
+            mu, share = number_of(row, "friction_coefficient"), number_of(piece, "share")
+            size = number_of(piece, "contribution")
+            if not mu or share is None or size is None:
+                continue
+            dof = number_of(row, "friction_coefficient_dof") or math.inf
+            runs = number_of(row, "runs") or 1.0
+            part = str(piece["part"])
+            gain = _gain(part, share, dof, runs)
+            found.append(Contribution(part, abs(size / mu), share, gain))
+    return found
+
+
+def _gain(part: str, share: float, dof: float, runs: float) -> float:
+    """Return by how much U95 of a point shrinks: by one more repeat, or half of another part."""
+    if part != BETWEEN:
+        return 1 - math.sqrt(1 - 0.75 * share)
+    smaller = math.sqrt(1 - share / (runs + 1))
+    factors = coverage_factor(dof + 1) / coverage_factor(dof)
+    return 1 - smaller * float(factors)
+
+
+def contribution_figures(curves: Sequence[CurveRecord]) -> list[FigureSpec]:
+    """Return one bar for each part: its root-mean-square standard uncertainty over all points."""
+    parts: dict[str, list[Contribution]] = {}
+    every = contributions(curves)
+    for each in every:
+        parts.setdefault(each.part, []).append(each)
+    count = sum(len(curve.points) for curve in curves)
+    size = {
+        part: 100 * math.sqrt(sum(each.relative**2 for each in mine) / max(count, 1))
+        for part, mine in parts.items()
+    }
+    share = {part: sum(each.share for each in mine) / max(count, 1) for part, mine in parts.items()}
+    kept = sorted((part for part in size if share[part] >= _MIN_SHARE), key=lambda p: size[p])
+    if not kept:
+        return []
+    return [
+        FigureSpec(
+            id="uncertainty-parts",
+            section="uncertainty",
+            title="Parts of the uncertainty",
+            note=f"{_advice(parts, share, count)} Root mean square over {many(count, 'point')}.",
+            alt=f"Standard uncertainty of the friction coefficient by {many(len(kept), 'part')}.",
+            panels=(Panel(Axis("standard uncertainty", "% of µ"), Axis("")),),
+            series=(Series("part", [size[part] for part in kept], kept, style="bars"),),
+            width="whole",
+            height=90 + 36 * len(kept),
+            rows=True,
+        )
+    ]
+
+
+def _advice(parts: dict[str, list[Contribution]], share: dict[str, float], count: int) -> str:
+    """Say what dominates and what would help most."""
+    first = max(share, key=lambda part: share[part])
+    gains = {part: sum(each.gain for each in mine) / count for part, mine in parts.items()}
+    best = max(gains, key=lambda part: gains[part])
+    says = f"Largest part: {first} ({percent(share[first])} of the variance)."
+    if gains[best] < _MIN_GAIN:
+        return says
+    means = {BETWEEN: "One more repeat of each condition", NOISE: "Records four times as long"}
+    what = means.get(best, f"Half the uncertainty of “{best}”")
+    return f"{says} {what} would reduce U95 by about {percent(gains[best])}."
