@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from scipy.signal import lfilter
-from tribolab.report.page.in_short import in_short
 
 import tribolab as tl
 from tribolab.friction.coefficient.coefficient import friction_coefficient
@@ -178,15 +177,3 @@ def test_cycles_are_discarded_and_the_steady_part_is_taken():
     part = steady_segments(pin, whole, friction_coefficient(pin, whole))
     mu = friction_coefficient(pin, part).friction_coefficient.item()
     assert part.trimmed_start.item() > 1500 and abs(mu - 0.31) < 0.001
-
-
-def test_what_changes_along_a_run_stands_above_the_cards():
-    def finding(run, message):
-        return {"run": run, "message": message}
-
-    told = [finding("pin", "friction falls along the run from 0.2 to 0.1"), finding("pin", "else")]
-    assert in_short({"curves": [], "findings": told}) == [
-        "pin: friction falls along the run from 0.2 to 0.1."
-    ]
-    many = [finding(f"pin {n}", "friction rises along the run") for n in range(7)]
-    assert in_short({"curves": [], "findings": many}) == ["Friction changes along 7 runs."]

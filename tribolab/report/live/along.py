@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tribolab.figures.colours import BLACK
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, places
 from tribolab.friction.running_in.history import STRETCHES
 from tribolab.records.parts import BAD, number_of
@@ -37,6 +38,7 @@ _OVER = (
     ("time", Axis("time", "s"), "time_s", ("start_s", "stop_s")),
     ("cycles", Axis("cycle"), "number", ("start_number", "stop_number")),
 )
+_INK: Arguments = {"colour": BLACK}
 _MU = Axis("friction coefficient µ")
 
 
@@ -101,7 +103,7 @@ def _series(run: Along, runs: Sequence[Along], column: str, ends: tuple[str, str
     if None not in (start, stop, level):
         words = f"{outcome.name}: steady µ = {with_error(level, error)}"
         drawn.append(
-            Series("steady", [start, stop], [level] * 2, "dashed", hover=(words,), **labels)
+            Series("steady", [start, stop], [level] * 2, "dashed", hover=(words,), **labels | _INK)
         )
     wear = [number_of(row, "wear_depth_m") for row in rows]
     if any(depth is not None for depth in wear):

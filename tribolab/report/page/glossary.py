@@ -116,11 +116,13 @@ TERMS: dict[str, str] = {
 
 # Heads of columns that are explained by a word of the glossary or in their own words.
 HEADS: dict[str, str] = {
-    "Run": "Number of the run on this page; leads to its trace and segments.",
-    "File": "Name of the run, from its raw file.",
-    "Status": "done; suspect: look at it; rejected: its checks failed, or a person said so (by "
-    "hand), and no curve rests on it; failed: it could not be read.",
-    "Why": "Why a run stands as it does: the gravest objection of its checks, or the error.",
+    "Run": "Name of the run, from its raw file. Below it the gravest objection of its checks.",
+    "State": "ok; suspect: a check doubts it; odd: it contradicts its repeats; rejected: its "
+    "checks failed, or a person rejected it, and no curve includes it; failed: not read.",
+    "Dev.": "Deviation from the median of the usable repeats at the chosen speed.",
+    "Runs in over": "Distance after which friction is steady.",
+    "Steady µ": "Mean friction coefficient ± U95 (within the run) of the steady part.",
+    "Half of it at": "Speed at which µ drops to half its maximum.",
     "Noise": GLOSSARY["Noise"],
     "Drift": GLOSSARY["Drift"],
     "Left out": GLOSSARY["Left out"],
@@ -152,9 +154,6 @@ HEADS: dict[str, str] = {
     "Standard deviation": "How far friction varies about its mean while sliding.",
     "Trend": "Change of friction along the segment, and whether chance alone explains it.",
     "± U95": GLOSSARY["± U95"],
-    "Degrees of freedom": GLOSSARY["Degrees of freedom"],
-    "Standard uncertainty": "Root of the sum of squares of all parts, without Student's t.",
-    "Parts of the variance": "Share of each part in the square of the standard uncertainty.",
     "Includes": "Between runs: " + GLOSSARY["between runs"] + " Within the run: the scatter within "
     "the only run.",
     "Macroscopic (mJ/m²)": "Effective work of adhesion seen without a magnifier, as the load "

@@ -12,6 +12,8 @@ from tribolab.report.live.curves import system_name
 from tribolab.report.plain import listed
 from tribolab.words import force_text, many
 
+_MIN_SHARE = 0.005  # of the variance: less is not listed
+
 
 def by_speed(points: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     """Return the rows of a curve with friction at a known speed, from slow to fast."""
@@ -35,6 +37,18 @@ def half_speed(falling: Sequence[Mapping[str, Any]]) -> float | None:
             v, w = (math.log(each["sliding_speed_m_s"]) for each in (row, other))
             return math.exp(v + share * (w - v))
     return None
+
+
+def budget_shares(curve: Mapping[str, Any]) -> list[tuple[str, float]]:
+    """Return the parts of a curve's uncertainty, each with its mean share of the variance."""
+    shares: dict[str, float] = {}
+    for piece in curve["budget"]:
+        shares[piece["part"]] = shares.get(piece["part"], 0.0) + (piece["share"] or 0.0)
+    mean = {part: total / len(curve["points"]) for part, total in shares.items()}
+    return sorted(
+        ((part, share) for part, share in mean.items() if share > _MIN_SHARE),
+        key=lambda pair: -pair[1],
+    )
 
 
 def conditions(of: Sequence[Mapping[str, Any]]) -> str:

@@ -25,7 +25,7 @@ from tribolab.records.packed import deflated
 from tribolab.records.roughness_words import form_in_words, roughness_u95
 from tribolab.report.document.document import state_of
 from tribolab.report.page.glossary import HEADS, TERMS
-from tribolab.report.page.in_words import conditions, oscillation_text
+from tribolab.report.page.in_words import budget_shares, conditions, oscillation_text
 from tribolab.report.page.sections import Section
 from tribolab.report.plain import plain_speed, plain_speeds, without_exponents
 from tribolab.untyped import Json
@@ -183,6 +183,7 @@ def environment(folder: Path) -> jinja2.Environment:
         "shear_stress_u95": shear_stress_u95,
         "roughness_u95": roughness_u95,
         "NORMAL": wording.NORMAL,
+        "budget_shares": budget_shares,
         "conditions": conditions,
         "oscillating": oscillation_text,
         "is_described": is_described,
