@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 from tribolab.records.model_words import is_described, stress_interval
-from tribolab.records.parts import Row
+from tribolab.records.parts import Row, number_of
 from tribolab.records.roughness_words import roughness_u95
 from tribolab.records.running_in_record import length_text
 from tribolab.records.wording import NORMAL, with_error
@@ -149,7 +149,7 @@ def _u95(standard_error: float | None) -> float | None:
 
 
 def _micrometres(row: Row, name: str) -> str:
-    value, error = row[f"{name}_m"], roughness_u95(row, name)
+    value, error = number_of(row, f"{name}_m"), roughness_u95(row, name)
     return with_error(
         None if value is None else 1e6 * value, None if error is None else 1e6 * error
     )
