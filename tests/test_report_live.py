@@ -351,7 +351,10 @@ def test_on_a_narrow_screen_only_tables_move_and_their_first_column_stays(browse
 
 @pytest.mark.slow
 def test_every_figure_is_drawn_again_when_the_light_changes(browser, results):
-    ink = "Array.from(document.querySelectorAll('.js-plotly-plot'), p => p.layout.font.color)"
+    ink = (
+        "Array.from(document.querySelectorAll('.js-plotly-plot')).filter(p => p.clientWidth)"
+        ".map(p => p.layout.font.color)"
+    )
     with browser.page(f"{(results / 'report.html').as_uri()}#run-1") as page:
         page.wait("document.querySelector('#run-1 .nsewdrag') !== null")
         drawn(page, "curves-compared")
