@@ -18,7 +18,8 @@ SEM = {"friction_coefficient_U95": 0.02, "runs": 2}
 
 def run(name, load, status="done", quality="pass"):
     labels = {"surface": "Sb-R", "medium": "glycerol", "nominal_normal_force_N": load}
-    said = {"checks": [], "reason": "x.csv: no unit", "error": "", "highlights": [], "running_in": []}
+    said = {"checks": [], "reason": "x.csv: no unit", "error": "", "highlights": []}
+    said["running_in"] = []
     said |= {"quantity": "friction_coefficient", "decisions": []}
     if quality == "fail":
         said["checks"] = [CHECK]

@@ -37,9 +37,10 @@ from tribolab.report.figures.stage import (
 )
 from tribolab.report.live.along import MAX_RUNS, Along, along_figures, along_of
 from tribolab.report.live.compared import comparisons
+from tribolab.report.live.contributions import contribution_figures
 from tribolab.report.live.curves import FrictionOverSpeed, card_figures, load_figures
-from tribolab.report.live.loads import over_load_figures
 from tribolab.report.live.gather import Subject, begun_live_figures, figure_subjects
+from tribolab.report.live.loads import over_load_figures
 from tribolab.report.live.points import RunPoint, run_points
 from tribolab.report.live.shown import shown_figures
 from tribolab.report.live.starts import starts_of, static_figures
@@ -124,7 +125,7 @@ def write_report(
     by_curve = {row.model.curve: row for row in rows.values()}
     known = FrictionOverSpeed(shown, points, by_curve, bands, names)
     curve_specs = [*card_figures(known), *comparisons(known)]
-    on_screen = [*curve_specs, *over_load_figures(known), *along]
+    on_screen = [*curve_specs, *over_load_figures(known), *along, *contribution_figures(shown)]
     live = [*shown_figures(on_screen), *(one for record in records for one in record.figures)]
     tasks = _figures([*curve_specs, *load_figures(known)], subjects, store, figures, pdf)
     drawn: dict[str, list[FigureRecord]] = {section: [] for section in SECTIONS}

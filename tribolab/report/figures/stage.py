@@ -170,11 +170,11 @@ def file_name(spec: FigureSpec) -> str:
 
     Examples
     --------
-    >>> file_name(FigureSpec(id="card-1", section="card-1", title="Sb-R, glycerol: friction"))
+    >>> file_name(FigureSpec(id="card-1", section="view-curve", title="Sb-R, glycerol"))
     'stribeck_sb-r_glycerol'
     """
-    if spec.section.startswith("card"):
-        return f"stribeck_{safe(spec.title.partition(':')[0])}"
+    if spec.section == "view-curve":
+        return f"stribeck_{safe(spec.title)}"
     return spec.id.replace("-", "_", 1)
 
 

@@ -15,7 +15,7 @@ _SAME = 1.1  # speeds within this ratio are one, as in the measured curves
 _LOAD, _MU = Axis("normal force", "N"), Axis("friction coefficient µ")
 
 
-def load_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
+def over_load_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
     """Return friction over load of each surface and medium measured at several loads."""
     several = {
         name: [curve for curve in curves if curve.outcome.normal_force is not None]

@@ -10,8 +10,6 @@ import numpy as np
 from tribolab.figures.signals import LOOKED_AT, main_signal
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series
 from tribolab.records.parts import BAD, RunOutcome
-from tribolab.report.live.record import LiveRecord
-from tribolab.report.live.shown import shown_figures
 from tribolab.words import many
 
 MAX_RUNS = 8
@@ -27,7 +25,7 @@ def has_ramps(run: RunOutcome) -> bool:
     return run.done and run.segments == 0 and run.quality not in BAD
 
 
-def record_of_ramps(runs: Sequence[RunOutcome], folder: Path) -> LiveRecord:
+def ramp_specs(runs: Sequence[RunOutcome], folder: Path) -> list[FigureSpec]:
     """Return friction over the momentary speed of runs without constant speed.
 
     Parameters
@@ -42,19 +40,26 @@ def record_of_ramps(runs: Sequence[RunOutcome], folder: Path) -> LiveRecord:
         for place, run in enumerate(runs)
         for drawn in _legs(run, place, folder / run.data_file)
     ]
-    spec = FigureSpec(
-        id="ramps",
-        section="view-ramp",
-        title="Friction over speed, ramps",
-        note="Means and standard deviations over small ranges of speed. Filled: the speed rises; "
-        "open: it falls. The zero of the friction force is not removed.",
-        alt=f"Friction over the momentary speed of {many(len(runs), 'run')}.",
-        panels=(Panel(Axis("sliding speed v", "m/s", log=True), Axis("friction coefficient µ")),),
-        series=tuple(series),
-        width="whole",
-        height=430,
+    return (
+        []
+        if not series
+        else [
+            FigureSpec(
+                id="ramps",
+                section="view-ramp",
+                title="Friction over speed, ramps",
+                note="Means and standard deviations over small ranges of speed. Filled: the speed rises; "
+                "open: it falls. The zero of the friction force is not removed.",
+                alt=f"Friction over the momentary speed of {many(len(runs), 'run')}.",
+                panels=(
+                    Panel(Axis("sliding speed v", "m/s", log=True), Axis("friction coefficient µ")),
+                ),
+                series=tuple(series),
+                width="whole",
+                height=430,
+            )
+        ]
     )
-    return LiveRecord(shown_figures([spec]))
 
 
 def _legs(run: RunOutcome, place: int, file: Path) -> list[Series]:
