@@ -40,26 +40,24 @@ def ramp_specs(runs: Sequence[RunOutcome], folder: Path) -> list[FigureSpec]:
         for place, run in enumerate(runs)
         for drawn in _legs(run, place, folder / run.data_file)
     ]
-    return (
-        []
-        if not series
-        else [
-            FigureSpec(
-                id="ramps",
-                section="view-ramp",
-                title="Friction over speed, ramps",
-                note="Means and standard deviations over small ranges of speed. Filled: the speed rises; "
-                "open: it falls. The zero of the friction force is not removed.",
-                alt=f"Friction over the momentary speed of {many(len(runs), 'run')}.",
-                panels=(
-                    Panel(Axis("sliding speed v", "m/s", log=True), Axis("friction coefficient µ")),
-                ),
-                series=tuple(series),
-                width="whole",
-                height=430,
-            )
-        ]
-    )
+    if not series:
+        return []
+    return [
+        FigureSpec(
+            id="ramps",
+            section="view-ramp",
+            title="Friction over speed, ramps",
+            note="Means and standard deviations over small ranges of speed. Filled: the speed "
+            "rises; open: it falls. The zero of the friction force is not removed.",
+            alt=f"Friction over the momentary speed of {many(len(runs), 'run')}.",
+            panels=(
+                Panel(Axis("sliding speed v", "m/s", log=True), Axis("friction coefficient µ")),
+            ),
+            series=tuple(series),
+            width="whole",
+            height=430,
+        ),
+    ]
 
 
 def _legs(run: RunOutcome, place: int, file: Path) -> list[Series]:
