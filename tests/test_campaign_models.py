@@ -243,7 +243,7 @@ def test_a_model_that_fails_or_is_not_wanted_stops_nothing(campaign, outcome, mo
     def refuse(*given, **more):
         raise AnalysisError("at 1 m/s: no film was found; take more cells")
 
-    monkeypatch.setattr("tribolab.campaign.models.analysis.stribeck_curve", refuse)
+    monkeypatch.setattr("tribolab.campaign.models.analysis.solve_curve", refuse)
     other, folder = changed(campaign, "\n[model]\npoints = 9\n", "failing")
     made = process(other, folder, previous=outcome.folder)
     (model,) = made.models
