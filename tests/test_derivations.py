@@ -46,18 +46,9 @@ FOLLOWS = [
     ({"set_normal_force": 20.0}, "normal_force", 20.0),
     ({"inner_radius": 0.02, "outer_radius": 0.03}, "track_radius", 0.025),
     ({"ball_radius": 0.006, "contact_sine": 0.5}, "track_radius", 0.003),
+    ({"friction_force_signal": 2.0, "friction_force_gain": 5.0}, "friction_force", 10.0),
+    ({"normal_force_signal": 2.0, "normal_force_gain": 5.0}, "normal_force", 10.0),
 ]
-for name in (
-    *("friction_force", "friction_reading", "normal_force", "position", "rotation_speed"),
-):
-    FOLLOWS += [
-        ({f"{name}_raw": 3.0, f"{name}_tare": 1.0}, f"{name}_signal", 2.0),
-        ({f"{name}_signal": 2.0, f"{name}_gain": 5.0}, name, 10.0),
-        ({f"{name}_signal": 2.0, f"{name}_sensitivity": 0.5}, name, 4.0),
-    ]
-for name in ("friction_force", "friction_reading", "normal_force"):
-    bridge = {"signal": 0.01, "rated_output": 2e-3, "excitation": 5.0, "rated_load": 100.0}
-    FOLLOWS += [({f"{name}_{part}": number for part, number in bridge.items()}, name, 100.0)]
 FACTS = frozenset({"crank"})
 
 

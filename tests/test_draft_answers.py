@@ -13,8 +13,6 @@ from tribolab import cli
 from tribolab.errors import ReadError, UnitError
 from tribolab.reading.unknown.proposal.answers import corrected
 from tribolab.reading.unknown.proposal.draft import dialect_name, draft_dialect
-from tribolab.reading.unknown.proposal.several_files import draft_of_examples
-from tribolab.reading.unknown.proposal.sparklines import BARS
 from tribolab.units import to_si
 
 
@@ -79,34 +77,8 @@ def test_without_a_terminal_nothing_is_asked_and_the_guess_is_tried(tmp_path, mo
     done = describe(file.name)
     assert done.exit_code == 0 and "which column" not in done.stdout
     assert "friction coefficient 0.2" in done.stdout
-    assert re.search(r"friction_force N +[▁-█]{40} +5\.\d+ +6\.\d+", done.stdout)
+    assert re.search(r"friction_force N +5\.\d+ +6\.\d+", done.stdout)
     assert re.search(r"\n 10 +0\.9 ", done.stdout)  # ten rows as understood
-
-
-def test_columns_that_differ_between_examples_are_optional(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    names = ["Time [ms]", "Fx [mN]", "Fz [N]", "v [mm/s]"]
-    first = dict(zip(names, log(load=30.0).values(), strict=True))
-    second = {name: values for name, values in first.items() if name != "v [mm/s]"}
-    second["Temperature [degC]"] = np.full(400, 23.5)
-    files = [write(tmp_path / "a.csv", first), write(tmp_path / "b.csv", second)]
-    done = command("info", *files, "--write", "both.toml")
-    assert done.exit_code == 0
-    both = tomllib.loads((tmp_path / "both.toml").read_text())
-    rules = {column["quantity"]: column for column in both["column"]}
-    assert {name for name, rule in rules.items() if rule.get("optional")} == {
-        "sliding_velocity",
-        "temperature",
-    }
-    one, two = (tl.read(file, "both.toml") for file in files)
-    assert "sliding_velocity" in one and "temperature" not in one
-    assert "sliding_velocity" not in two
-    np.testing.assert_allclose(two.temperature, 296.65)
-    assert "tried:  a.csv: 400 rows" in done.stdout and "tried:  b.csv: 400 rows" in done.stdout
-    semicolons = tmp_path / "c.csv"
-    semicolons.write_text(files[0].read_text().replace(",", ";"))
-    with pytest.raises(ReadError, match="dialect of its own"):
-        draft_of_examples([files[0], semicolons])
 
 
 def test_only_what_is_unusual_stands_in_the_toml(tmp_path):
@@ -301,16 +273,6 @@ def test_a_decimal_comma_of_an_amount_is_named():
         to_si("46,0 N", "N", "load")
 
 
-def test_numbers_alone_of_any_name_are_asked_about_as_heights(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    rng = np.random.default_rng(6)
-    lines = "\n".join(" ".join(f"{z:.3f}" for z in part) for part in rng.standard_normal((50, 8)))
-    (tmp_path / "p.txt").write_text(f"Nombre de points: 400\n[VALEURS]\n{lines}\n")
-    done = describe("p.txt", "--ask", typed="0.5 um\num\n")
-    assert done.exit_code == 0, done.output
-    assert tl.read_scans("p.txt", instrument="p.toml").attrs["pitch_m"] == pytest.approx(5e-7)
-
-
 def test_strokes_may_be_typed_and_one_of_both_is_not_enough(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     time = np.arange(0, 20, 0.005)
@@ -356,20 +318,3 @@ def test_a_description_that_was_drafted_of_a_file_is_named_where_it_lies(tmp_pat
     assert describe(file.name, "--ask", typed="1\nms\n2\nmN\n3\nN\n\n\n").exit_code == 0
     told = command("info", file.name)
     assert told.exit_code == 3 and "--instrument odd.toml is a description of it" in told.output
-
-
-def test_of_fast_strokes_the_first_are_shown(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    time = np.arange(0, 60, 0.01)
-    force = 3 * np.sign(np.sin(2 * np.pi * 1.0 * time + 0.1))
-    file = write(tmp_path / "pin.csv", {"Time [s]": time, "Friction force [N]": force})
-    shown = describe(file.name).stdout
-    (lasts,) = re.findall(r"signals +first ([\d.]+) s", shown)
-    assert float(lasts) == pytest.approx(6, abs=0.1)  # twelve strokes at 1 Hz
-    (line,) = [line for line in shown.splitlines() if line.strip().startswith("friction_force N ")]
-    high = "".join("1" if block in "▅▆▇█" else "0" for block in line if block in BARS)
-    assert len(re.findall("(?=01|10)", high)) == pytest.approx(11, abs=1)
-    steady = write(
-        tmp_path / "steady.csv", {"Time [s]": time, "Friction force [N]": 3 + force / 100}
-    )
-    assert "first" not in describe(steady.name).stdout.split("signals")[1].splitlines()[0]

@@ -92,14 +92,6 @@ def test_a_gear_or_an_amplifier_that_the_signals_may_miss_is_asked_about(
     np.testing.assert_allclose(np.abs(speed), 2 * np.pi * 0.02, rtol=1e-6)
 
 
-def test_a_name_of_the_file_may_say_the_radius_in_chinese(tmp_path: Path) -> None:
-    names = "Time [s]\tRotation [rpm]\tFriction force [N]\tNormal force [N]"
-    turns = np.full(TIME.size, 60.0)
-    file = written(tmp_path, "#", names, TIME, turns, FRICTION, LOAD, name="GCr15_半径15mm_3.txt")
-    speed = tl.read(file).sliding_velocity
-    np.testing.assert_allclose(np.abs(speed), 2 * np.pi * 0.015, rtol=1e-6)
-
-
 @pytest.mark.parametrize(
     ("wanted", "found"), [("Last satt", "Last målt"), ("Soll-Last", "Ist-Last")]
 )

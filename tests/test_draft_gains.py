@@ -8,7 +8,6 @@ import pytest
 import tribolab as tl
 from tribolab.app.file_info import file_lines
 from tribolab.errors import TribolabError
-from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
 from tribolab.reading.unknown.proposal.questions import GuessedError
 
 TIME = np.arange(600) / 10
@@ -22,71 +21,6 @@ def _file(folder: Path, head: list[str], names: str, *columns: np.ndarray, name:
     file = folder / f"{name}.csv"
     file.write_text("\n".join([*head, names, *rows]) + "\n", encoding="utf-8")
     return file
-
-
-def _counts(values: np.ndarray, each: float, zero: int = 0) -> np.ndarray:
-    return np.round(values * each) + zero
-
-
-@pytest.mark.parametrize(
-    ("name", "volts"),
-    [
-        ("Friction bridge (100 N = 2.0 mV/V, excitation 5 V) [mV]", FRICTION / 100 * 2 * 5),
-        ("Reibkraft (10 N/V) [mV]", FRICTION / 10 * 1e3),
-        ("Friction (0.5 V/N) [V]", FRICTION * 0.5),
-    ],
-)
-def test_the_name_of_a_column_says_what_a_volt_is_worth(
-    tmp_path: Path, name: str, volts: np.ndarray
-) -> None:
-    names = ["Time", "Position", name.rpartition(" ")[0], "Normal force"]
-    units = ["s", "mm", name.rpartition("[")[2].rstrip("]"), "N"]
-    file = _file(tmp_path, [";".join(names)], ";".join(units), TIME, WAY, volts, LOAD)
-    run = tl.read(file)
-    np.testing.assert_allclose(run.friction_force, FRICTION, atol=2e-3)
-
-
-@pytest.mark.parametrize(
-    "head",
-    [
-        ["cell_T (tangential): 51300 counts/N", "cell_N (normal): 431.7 counts/gf"],
-        ["# cella T (tangenziale): 51300 conteggi/N", "# cella N (normale): 431.7 conteggi/gf"],
-        ["% cell T - Tangentialkraft, 51300 Impulse/N; cell N: Normalkraft 431.7 Impulse/gf"],
-    ],
-)
-def test_a_line_that_names_a_column_says_what_a_count_is_worth(
-    tmp_path: Path, head: list[str]
-) -> None:
-    label = "cella" if "cella" in head[0] else "cell"
-    columns = TIME, _counts(WAY, 400), _counts(FRICTION, 51300), _counts(LOAD / 9.80665e-3, 431.7)
-    head = [*head, "motor: 400 steps/mm"]
-    file = _file(tmp_path, head, f"time (s);steps;{label}_T;{label}_N", *columns)
-    run = tl.read(file)
-    np.testing.assert_allclose(run.friction_force, FRICTION, atol=1e-4)
-    np.testing.assert_allclose(run.normal_force, LOAD, atol=1e-3)
-    np.testing.assert_allclose(run.position, WAY / 1e3, atol=1e-5)
-    kept = save_draft(draft_dialect(file), tmp_path / "own.toml")
-    other = [line.replace("51300", "25650") for line in head]
-    again = _file(tmp_path, other, f"time (s);steps;{label}_T;{label}_N", *columns, name="b")
-    np.testing.assert_allclose(tl.read(again, kept).friction_force, 2 * FRICTION, atol=2e-4)
-
-
-def test_a_line_of_another_column_says_nothing(tmp_path: Path) -> None:
-    columns = TIME, WAY, _counts(FRICTION, 1000), _counts(LOAD, 1000)
-    file = _file(tmp_path, ["cell_A: 1000 counts/N"], "time (s);x (mm);cell_T;cell_N", *columns)
-    with pytest.raises(TribolabError, match="friction"):
-        tl.read(file)
-
-
-def test_the_zero_of_a_load_may_lie_far_below_it(tmp_path: Path) -> None:
-    """Counts that were not tared: what reads far below zero at rest is not pressed."""
-    head = ["cell_T (tangential): 51300 counts/N", "cell_N (normal): 1000 counts/N"]
-    columns = TIME, WAY, _counts(FRICTION, 51300), _counts(LOAD, 1000, -6000)
-    run = tl.read(_file(tmp_path, head, "time (s);x (mm);cell_T;cell_N", *columns))
-    segments = tl.find_segments(run)
-    mu = tl.friction_coefficient(run, segments)
-    assert mu.friction_coefficient.values == pytest.approx([0.3], rel=0.01)
-    assert mu.normal_force.values == pytest.approx([10.0], rel=0.01)
 
 
 def test_a_legend_above_the_table_says_the_units_of_its_columns(tmp_path: Path) -> None:
@@ -116,69 +50,6 @@ def test_what_turns_is_a_crank_where_the_text_says_so(tmp_path: Path) -> None:
     assert np.median(segments.sliding_speed.values) == pytest.approx(0.09, rel=0.01)
     file = _file(tmp_path, ["Tribómetro biela-manivela"], names, *columns, name="b")
     assert "drive" in tl.read(file).attrs
-
-
-@pytest.mark.parametrize(
-    ("above", "column", "signal"),
-    [
-        ("Friction: 12.5 N/V, zero 0.21 V", "Friction [V]", FRICTION / 12.5 + 0.21),
-        ("Friction: 0.002 N/count, offset 118", "Friction [counts]", FRICTION / 0.002 + 118),
-        ("Kanal 1: 0.002 N/enhet, nollvärde 118 enheter", "Kanal 1", FRICTION / 0.002 + 118),
-        (
-            "Friction: 100 N = 2.013 mV/V, 5 V, zero 0.4 mV",
-            "Friction [mV]",
-            FRICTION / 100 * 2.013 * 5 + 0.4,
-        ),
-    ],
-)
-def test_a_zero_beside_a_factor_is_taken_off(
-    tmp_path: Path, above: str, column: str, signal: np.ndarray
-) -> None:
-    above = above.replace("Kanal 1:", "Kanal 1  friktionskraft")
-    signal = signal if column.endswith("V]") else np.round(signal)
-    names = f"Time [s];Position [mm];{column};Normal force [N]"
-    file = _file(tmp_path, [above], names, TIME, WAY, signal, LOAD)
-    np.testing.assert_allclose(tl.read(file).friction_force, FRICTION, atol=2e-3)
-    done = _file(tmp_path, [f"{above} (subtracted)"], names, TIME, WAY, signal, LOAD, name="b")
-    off = tl.read(done).friction_force - FRICTION
-    assert float(off.min()) > 0.2 and float(off.max() - off.min()) < 0.01
-
-
-@pytest.mark.parametrize("zero", ["0.236 N", "0.04 mV/V"])
-def test_a_zero_in_another_unit_than_the_signal_is_asked_about(tmp_path: Path, zero: str) -> None:
-    names = "Time [s];Position [mm];Friction [mV];Normal force [N]"
-    above = f"Friction: 100 N = 2.013 mV/V, 5 V, zero {zero}"
-    file = _file(tmp_path, [above], names, TIME, WAY, FRICTION, LOAD)
-    with pytest.raises(TribolabError, match="what a volt of 'Friction .mV.' is worth"):
-        tl.read(file)
-
-
-def test_channels_with_numbers_for_names_are_what_the_text_says_of_them(tmp_path: Path) -> None:
-    turns = np.where(TIME < 10, 0.0, 120.0)  # 1/min
-    head = [
-        "Track radius (mm)\t32,5",
-        "Sampling rate (Hz)\t10",
-        "Channel 1\tfriction force\tcalibration 0,00152 N/count\tzero 118 counts",
-        "Channel 2\tnormal force\tcalibration 0,00305 N/count\tzero -42 counts",
-        "Channel 3\trotation speed\tcalibration 0,05 rpm/count\tzero 0 counts",
-    ]
-    columns = (
-        np.arange(1, TIME.size + 1),
-        _counts(FRICTION, 1 / 0.00152, 118),
-        _counts(LOAD, 1 / 0.00305, -42),
-        _counts(turns, 20),
-    )
-    rows = ["\t".join(f"{x:.0f}" for x in row) for row in zip(*columns, strict=True)]
-    file = tmp_path / "board.dat"
-    file.write_text("\n".join([*head, "", "No\tChannel 1\tChannel 2\tChannel 3", *rows]) + "\n")
-    run = tl.read(file)
-    np.testing.assert_allclose(run.time, TIME, atol=1e-9)
-    np.testing.assert_allclose(run.friction_force, FRICTION, atol=1e-3)
-    np.testing.assert_allclose(run.normal_force, LOAD, atol=2e-3)
-    np.testing.assert_allclose(
-        run.sliding_velocity, turns * 2 * np.pi / 60 * 0.0325, rtol=1e-9, atol=1e-12
-    )
-    assert any("drafted from the file" in line for line in file_lines(file))
 
 
 @pytest.mark.parametrize("name", ["averaging_10", "reduction_10", "factor_in_text"])
@@ -213,25 +84,25 @@ def test_a_gear_between_motor_and_disc_is_asked_about(said, tmp_path):
         tl.read(file)
 
 
-@pytest.mark.parametrize(
-    ("zero", "off"),
-    [
-        ("Fx zero: 0.05 V (not subtracted)", 0.5),
-        ("Zero friction: 0.5 N (to be subtracted)", 0.5),
-        ("Fx zero: 0.05 V (subtracted)", 0.0),
-    ],
-)
-def test_a_zero_in_a_line_of_its_own_is_taken_off_a_signal_in_volts(zero, off, tmp_path):
-    names = "Time [s];Position [mm];Fx [V];Fz [V]"
-    head = ["Fx: 10 N/V", "Fz: 10 N/V", zero]
-    file = _file(tmp_path, head, names, TIME, WAY, FRICTION / 10 + off / 10, LOAD / 10)
-    np.testing.assert_allclose(tl.read(file).friction_force, FRICTION, atol=1e-3)
-
-
 def test_a_gain_that_is_stated_before_the_name_is_used(shared_data):
     run = tl.read(shared_data / "cases/gain_in_text_SOUND.csv")
     found = tl.friction_coefficient(run, tl.find_segments(run))
     np.testing.assert_allclose(found.friction_coefficient, 0.3, rtol=0.01)
+
+
+@pytest.mark.parametrize(
+    ("line", "asked"),
+    [
+        ("Bridge: 100 N = 2.0 mV/V, 5 V", "what a volt of 'Fx .V.' is worth.*'Bridge: 100 N = 2.0"),
+        ("Fx: 10 N/V, zero 0.05 V", "without 'Fx: 10 N/V, zero 0.05 V'"),
+        ("Fx: 10 N/V\nFriction offset: 0.5 N", "was taken off the signal"),
+    ],
+)
+def test_a_calibration_that_is_not_applied_is_quoted(line, asked, tmp_path):
+    names = "Time [s];Position [mm];Fx [V];Normal force [N]"
+    file = _file(tmp_path, [line], names, TIME, WAY, FRICTION / 10, LOAD)
+    with pytest.raises(GuessedError, match=asked):
+        tl.read(file)
 
 
 @pytest.mark.parametrize(

@@ -313,23 +313,6 @@ def test_several_frequencies_in_a_line_are_asked_about(tmp_path, said):
         tl.read(tmp_path / "a.csv")
 
 
-def test_what_turns_without_contact_while_its_zero_is_read_is_no_friction(tmp_path):
-    """The unloaded step had the speed of the first, and was averaged into it."""
-    rng = np.random.default_rng(3)
-    force = np.repeat([0.12, 1.62, 1.32], 600) + 0.02 * rng.standard_normal(1800)
-    speed = np.repeat([50, 50, 100], 600)
-    rows = "\n".join(
-        f"{n / 10:.1f};{v};{f:.4f}" for n, (v, f) in enumerate(zip(speed, force, strict=True))
-    )
-    head = "Normalkraft: 10 N\nSpurradius: 20 mm\nBemerkung: zu Beginn 55 s unbelastet"
-    file = tmp_path / "a.csv"
-    file.write_text(f"{head}\nZeit [s];Drehzahl [1/min];Reibkraft [N]\n{rows}\n")
-    run = tl.read(file)
-    assert run.attrs["load_stated_from_s"] == pytest.approx(60, abs=0.2)
-    mu = tl.friction_coefficient(run, tl.find_segments(run)).friction_coefficient.values
-    np.testing.assert_allclose(mu, [0.15, 0.12], atol=0.002)
-
-
 @pytest.mark.parametrize("name", ["fuerza_friccion_N", "forza_attrito_N", "force_frottement_N"])
 def test_a_force_of_friction_needs_no_article(tmp_path, name):
     rows = "\n".join(f"{n / 10:.1f};2.0;3.0;10" for n in range(200))

@@ -7,7 +7,6 @@ import pytest
 
 import tribolab as tl
 from tribolab.errors import ReadError
-from tribolab.reading.unknown.layout.lines import find_encoding
 from tribolab.reading.unknown.proposal.draft import draft_dialect
 
 ROWS = 400
@@ -112,23 +111,6 @@ def test_dates_that_two_forms_read_alike_are_no_guess(tmp_path):
     assert "written" not in str(told.value) and "radius" in str(told.value)
     torque = draft_dialect(tmp_path / "ring.csv").understood.columns[3]
     assert torque.file_unit == "N・m"
-
-
-@pytest.mark.parametrize(
-    ("encoding", "text"),
-    [
-        ("cp1250", "Siła tarcia, Obciążenie, Zużycie, Promień"),
-        ("cp1251", "Длина трассы, мкм: 0,5; Ординаты профиля"),
-        ("koi8-r", "Длина трассы, мкм: 0,5; Ординаты профиля"),
-        ("cp1254", "Sürtünme kuvveti, Ağırlık, hız değeri, şaft"),
-        ("latin-1", "Größe in µm, 20 °C, m³/s, mm², été, señal, Ångström"),
-        ("latin-1", "¿Qué señal? 5 £ per m³ of x¹ and mm³"),
-        ("cp1252", "cœur – 20 °C “x” œuvre"),
-    ],
-)
-def test_an_encoding_of_one_byte_a_letter_is_told_by_letters_that_stand_together(encoding, text):
-    found, notes = find_encoding(f"{text}\n1;2\n".encode(encoding))
-    assert found == encoding and len(notes) == 1
 
 
 def test_a_polish_header_gives_load_radius_and_the_speed_of_each_run(tmp_path):
@@ -370,22 +352,6 @@ def test_a_stroke_either_way_from_the_middle_is_half_of_it(stroke, length, tmp_p
     head = f"{stroke}\nFrequency: 1 Hz\nCrank drive\nTime [s],Friction force [N]\n"
     (tmp_path / "a.csv").write_text(head + rows + "\n", "utf-8")
     assert tl.read(tmp_path / "a.csv").attrs["stroke_m"] == pytest.approx(length)
-
-
-def test_the_name_of_a_file_states_speed_and_load(tmp_path):
-    rows = "\n".join(f"{n / 10:.1f},{1.2 + n % 3 / 100}" for n in range(300))
-    (tmp_path / "PTFE_3N_10mms_2.csv").write_text(f"time_s,Ft_N\n{rows}\n", "utf-8")
-    run = tl.read(tmp_path / "PTFE_3N_10mms_2.csv")
-    found = tl.friction_coefficient(run, tl.find_segments(run))
-    assert float(found.sliding_speed[0]) == pytest.approx(0.01)
-    assert float(found.friction_coefficient[0]) == pytest.approx(1.21 / 3, rel=1e-3)
-
-
-def test_heights_lie_evenly_between_a_stated_start_and_end(tmp_path):
-    heights = "\n".join(f"{z:.3f}" for z in np.random.default_rng(9).normal(0, 1, 601))
-    head = "X start: 0 mm\nX end: 3 mm\nN = 601\nUnit Z: um\n\n"
-    (tmp_path / "line.txt").write_text(head + heights + "\n", "utf-8")
-    assert tl.read_scans(tmp_path / "line.txt").attrs["pitch_m"] == pytest.approx(5e-6)
 
 
 SHAFT = "\n".join(

@@ -111,7 +111,6 @@ def test_a_load_cell_is_asked_about_unless_another_force_or_the_load_tells(tmp_p
     [
         "stepping  0.25 um",
         "step 0.25 um",
-        "sampling 4 points/um",
         "dx=0.25um",
         "Abtastschritt 0,25 µm",
         "pas 0,25 µm",
@@ -129,22 +128,6 @@ def test_the_distance_of_heights_is_told_in_many_words(said, tmp_path):
     scan = tl.read_scans(path)
     assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
     np.testing.assert_allclose(scan.height[0], 1e-9 * heights, atol=1e-10)
-
-
-@pytest.mark.parametrize(
-    ("name", "said", "guess"),
-    [
-        ("disc_R21.5_b.txt", "Rig", "'R21.5' of the file's name is the radius of the track"),
-        ("a.txt", "Geometry: ring; R = 21.5 mm", "'Geometry: ring; R = 21.5 mm' is the radius"),
-        ("a.txt", "disc dia. 43 mm", "'disc dia. 43 mm' is twice the radius of the track"),
-    ],
-)
-def test_what_may_be_the_radius_is_asked_about_and_the_draft_takes_it(name, said, guess, tmp_path):
-    head = f"{said}\nTime [s]\tRotation [rpm]\tFriction [N]\tLoad [N]"
-    path = table(tmp_path / name, head, T, 60.0, FORCE, LOAD)
-    assert guess in refusal(path)
-    run = tl.read(path, tl.draft_dialect(path).dialect)
-    np.testing.assert_allclose(run.sliding_velocity, 2 * np.pi * RADIUS, rtol=1e-6)
 
 
 def test_a_sentence_states_strokes_a_speed_and_a_load(tmp_path):

@@ -83,28 +83,6 @@ def test_an_angle_of_contacts_that_is_not_said_is_asked(tmp_path):
         tl.read(written(tmp_path / "a.txt", above, header, (time, rpm, torque, axial)))
 
 
-@pytest.mark.parametrize(
-    ("name", "asked"),
-    [
-        ("POD_run07_r12p5mm.txt", ""),
-        ("disc7_r12.5mm_b.txt", ""),
-        ("a_rad12_5mm.txt", ""),
-        ("R12_5.txt", "'R12_5' of the file's name is the radius of the track in mm"),
-        ("pod-d25mm.txt", "'d25mm' of the file's name is twice the radius"),
-        ("disc_rad12.5.txt", "in mm"),
-    ],
-)
-def test_a_radius_in_the_name_of_a_file_is_taken_or_asked_about(name, asked, tmp_path):
-    time, rpm, friction, load = columns(friction=4.0)
-    header = "Time [s]\tDisc [rpm]\tFriction [N]\tLoad [N]"
-    path = written(tmp_path / name, ["POD"], header, (time, rpm, friction, load))
-    if asked:
-        with pytest.raises(GuessedError, match=asked):
-            tl.read(path)
-    run = tl.read(path, tl.draft_dialect(path).dialect if asked else None)
-    assert float(run.sliding_velocity.max()) == pytest.approx(8 * np.pi * 12.5e-3, rel=1e-6)
-
-
 TWIN = {
     "Chinese": (
         "上试样直径(mm):\t40",
@@ -162,42 +140,6 @@ def test_the_turns_tell_whether_a_length_is_the_way(name, length, kept, tmp_path
     assert float(run.sliding_velocity.max()) == pytest.approx(4 * np.pi * 0.02)
 
 
-@pytest.mark.parametrize(
-    "said",
-    [
-        "Load cell not zeroed - first and last segment are pin lifted off",
-        "Anfangs 5 s ohne Last",
-        "début à vide, puis mise en charge",
-        "開始5秒 無負荷",
-        "Första 4 s utan last",
-        "Сначала без нагрузки",
-    ],
-)
-@pytest.mark.parametrize("torque", [False, True])
-def test_words_tell_where_the_zero_of_a_record_without_a_load_signal_is(said, torque, tmp_path):
-    time, rpm, friction, _ = columns(friction=4.0, turns=(0.0, 0.0, 60.0, 120.0))
-    signal = friction + 0.3 + 0.01 * np.sin(time * 9)
-    header = "Time [s]\tDisc [rpm]\t" + ("Torque [N cm]" if torque else "Friction [N]")
-    above = ["POD", said, "Track radius: 20 mm", "Load: 10 N"]
-    rows = (time, rpm, 2 * signal if torque else signal)
-    run = tl.read(written(tmp_path / "a.txt", above, header, rows))
-    assert coefficient(run) == pytest.approx(0.4, rel=3e-3)
-    assert run.attrs["friction_force_zero_N"] == pytest.approx(0.3, abs=0.003)
-
-
-def test_a_programme_holds_radius_and_turns_and_a_step_without_load(tmp_path):
-    step = np.repeat([0, 1, 2], HOLD)
-    signal = np.where(step > 0, 20.0, 0) + 1.5 + 0.01 * np.sin(np.arange(step.size) * 9)
-    above = ["試験機", "荷重[gf],100", "ステップ,回転半径[mm],回転数[rpm],時間[s],備考"]
-    above += ["0,-,0,5,無負荷(ゼロ点)", "1,3.0,60,4,", "2,6.0,60,4,"]
-    rows = (np.arange(step.size) * 0.1, step, signal)
-    header = "時間[s],ステップ,摩擦力[gf]"
-    run = tl.read(written(tmp_path / "a.csv", above, header, rows, delimiter=","))
-    speeds = 2 * np.pi * np.array([3e-3, 6e-3])
-    np.testing.assert_allclose(run.sliding_velocity[[HOLD, -1]], speeds, rtol=1e-6)
-    assert coefficient(run) == pytest.approx(0.2, rel=2e-3)
-
-
 def test_a_seal_on_a_shaft_has_its_load_its_drag_and_a_clock_of_days(tmp_path):
     time, rpm, torque, _ = columns(friction=40.0, noise=1e-4)
     above = ["Banco prova paraolio", "Albero: Ø 80 mm, C45 temprato, Ra 0,3 µm"]
@@ -235,40 +177,6 @@ def test_a_weight_on_a_lever_presses_more(said, tmp_path):
     assert coefficient(run) == pytest.approx(0.86 / 0.0175 / 490.3325, rel=2e-3)
 
 
-BEARINGS = {
-    "Swedish": ("Glidlagerrigg", "Axeldiameter: 60 mm", "Momentarm: 250 mm")
-    + ("Last: två cylindrar, A och B (summan = lagerlast)", "LastA [kN]\tLastB [kN]\tArmkraft [N]"),
-    "German": ("Gleitlager", "Wellendurchmesser: 60 mm", "Hebelarm: 250 mm")
-    + ("-", "Last links [kN]\tLast rechts [kN]\tHebelkraft [N]"),
-    "English": ("Journal bearing rig", "Shaft diameter: 60 mm", "Torque arm: 250 mm")
-    + ("Load: 2 kN", "Load 1 [kN]\tLoad 2 [kN]\tArm force [N]"),
-}
-
-
-@pytest.mark.parametrize("language", BEARINGS)
-def test_a_force_on_an_arm_and_two_loads_make_the_friction_of_a_bearing(language, tmp_path):
-    time, rpm, force, load = columns(friction=10.0, load=1.0, turns=(0.0, 60.0, 120.0, 240.0))
-    *above, header = BEARINGS[language]
-    rows = (time, rpm / 60, load, load, force)
-    run = tl.read(written(tmp_path / "a.txt", above, f"t [s]\tn [Hz]\t{header}", rows))
-    assert float(run.normal_force[0]) == pytest.approx(2000, rel=0.01)
-    assert coefficient(run) == pytest.approx(10 * 0.25 / 0.03 / 2000, rel=2e-3)
-    assert float(run.sliding_velocity.max()) == pytest.approx(8 * np.pi * 0.03)
-
-
-def test_whether_numbered_loads_add_up_is_asked_and_what_each_states_is_no_sum(tmp_path):
-    time, rpm, force, load = columns(friction=1.0)
-    header = "t [s]\tn [1/min]\tLoad 1 [N]\tLoad 2 [N]\tFriction [N]"
-    rows = (time, rpm, load, load, force)
-    above = ["Pin on disc", "Track radius: 20 mm"]
-    path = written(tmp_path / "a.txt", above, header, rows)
-    with pytest.raises(GuessedError, match="the sum of columns 3 and 4"):
-        tl.read(path)
-    path = written(tmp_path / "b.txt", [*above, "Load: 10 N"], header, rows)
-    with pytest.raises(GuessedError, match="of several columns for normal_force"):
-        tl.read(path)
-
-
 def test_of_a_torque_in_divisions_only_what_one_is_worth_is_missing(tmp_path):
     time, rpm, torque, load = columns(friction=40.0, load=50.0)
     above = ["Схема: ролик - колодка. Ролик диаметром 50 мм, сталь 45; колодка - баббит"]
@@ -293,28 +201,6 @@ def test_turns_a_minute_are_read_in_many_languages(unit, tmp_path):
     above = ["POD", "Track radius: 20 mm"]
     run = tl.read(written(tmp_path / "a.txt", above, header, (time, rpm, friction, load)))
     assert float(run.sliding_velocity.max()) == pytest.approx(8 * np.pi * 0.02)
-
-
-def test_steps_of_a_ring_have_loads_of_their_own_and_the_first_its_zero(tmp_path):
-    lines = ["Tribómetro rotativo", "Radio medio de la pista;22,5 mm", "Frecuencia;50 Hz"]
-    lines += [
-        "Nota: el tiempo empieza en cada paso. Paso 0: sin contacto (carga 0 N), cero del par."
-    ]
-    rng, zero = np.random.default_rng(4), 0.0142
-    for step, (turns, load, mu) in enumerate([(20, 0, 0), (12, 40, 0.13), (75, 40, 0.07)]):
-        lines += ["", f"[Paso {step}]", f"Carga;{load},0 N"]
-        lines += ["Tiempo (s);Velocidad (rpm);Par de rozamiento (N·m)"]
-        torque = zero + mu * load * 0.0225 + 2e-4 * rng.standard_normal(300)
-        for n, one in enumerate(torque):
-            lines.append(f"{n / 50:.2f};{turns:.2f};{one:.5f}".replace(".", ","))
-    path = tmp_path / "ring.txt"
-    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    run = tl.read(path)
-    assert sorted(set(run.normal_force.values)) == [0.0, 40.0]
-    assert run.attrs["friction_force_zero_N"] == pytest.approx(zero / 0.0225, rel=2e-3)
-    curve = tl.friction_coefficient(run, tl.find_segments(run))
-    np.testing.assert_allclose(curve.sliding_speed, [0.02827, 0.17671], rtol=1e-3)
-    np.testing.assert_allclose(curve.friction_coefficient, [0.13, 0.07], atol=5e-4)
 
 
 @pytest.mark.parametrize(

@@ -131,55 +131,6 @@ def test_every_term_of_a_column_is_known_and_none_means_two_forces():
             assert options[0].quantity == name and options[0].score > 0.85, term
 
 
-def test_the_programme_above_the_signals_tells_the_speed_of_each_step(tmp_path):
-    rng = np.random.default_rng(3)
-    programme = {1: 50, 2: 100, 4: 250}
-    lines = ["Prüfstand 3", "Reibradius;12,5;mm", "Prüfprogramm:"]
-    lines += ["Stufe;Drehzahl [1/min];Dauer [s]", *(f"{k};{v};60" for k, v in programme.items())]
-    lines += ["", "Zeit [s];Stufe;Reibmoment [mNm];Normalkraft [N]"]
-    rows = [(k, 0.1 * n) for k in programme for n in range(200)]
-    for n, (step, _) in enumerate(rows):
-        torque = 375 * (0.1 + 0.01 * step) * (1 + 0.01 * rng.standard_normal())
-        lines.append(f"{n / 10:.1f};{step};{torque:.2f};30,0".replace(".", ","))
-    (tmp_path / "rig.csv").write_text("\n".join(lines) + "\n", "utf-8")
-    run = tl.read(tmp_path / "rig.csv")
-    assert run.attrs["speed_from"] == "stated"
-    found = tl.friction_coefficient(run, tl.find_segments(run))
-    speeds = [2 * np.pi * rpm / 60 * 0.0125 for rpm in programme.values()]
-    np.testing.assert_allclose(found.sliding_speed, speeds, rtol=1e-6)
-    np.testing.assert_allclose(found.friction_coefficient, [0.11, 0.12, 0.14], rtol=0.01)
-
-
-@pytest.mark.parametrize("rest", [0, 3])
-@pytest.mark.parametrize("mark", ["  ", ";"])
-def test_a_profile_goes_on_from_line_to_line_where_it_has_as_many_points_as_it_says(
-    rest, mark, tmp_path
-):
-    heights = np.random.default_rng(4).normal(0, 2, 800 + rest)
-    rows = [mark.join(f"{z:.3f}" for z in heights[n : n + 8]) for n in range(0, heights.size, 8)]
-    head = f"Portable tester\nNumber of points: {heights.size}\nPitch: 1.5 um\nUnit: um\nData:\n"
-    (tmp_path / "line.txt").write_text(head + "\n".join(rows) + "\n", "utf-8")
-    scan = tl.read_scans(tmp_path / "line.txt")
-    np.testing.assert_allclose(scan.height.values[0], 1e-6 * heights, atol=1e-9)
-    assert scan.attrs["pitch_m"] == pytest.approx(1.5e-6)
-
-
-@pytest.mark.parametrize("mark", [";", "\t", " "])
-def test_a_programme_is_found_however_its_cells_are_parted(mark, tmp_path):
-    rows = [
-        mark.join(("Step", "Speed[rpm]", "Load[N]")),
-        *(f"{k}{mark}{60 * k}{mark}20" for k in (1, 2)),
-    ]
-    head = ["Track radius: 10 mm", *rows, ""]
-    body = [f"{n / 10:.1f}\t{1 + n // 200}\t{4 + n % 3 / 100}" for n in range(400)]
-    text = "\n".join([*head, "Time [s]\tStep\tFriction force [N]", *body])
-    (tmp_path / "rig.txt").write_text(text + "\n", "utf-8")
-    run = tl.read(tmp_path / "rig.txt")
-    found = tl.friction_coefficient(run, tl.find_segments(run))
-    np.testing.assert_allclose(found.sliding_speed, 2 * np.pi * 0.01 * np.array([1, 2]))
-    np.testing.assert_allclose(found.friction_coefficient, 4.01 / 20, rtol=1e-3)
-
-
 def test_a_programme_that_says_two_things_of_a_step_is_refused(tmp_path):
     dialect = tmp_path / "rig.toml"
     dialect.write_text(

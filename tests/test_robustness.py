@@ -29,7 +29,6 @@ from tribolab.reading.raw.containers.mat import read_variables
 from tribolab.reading.raw.opening import damage_told
 from tribolab.reading.scan_files import read_scans
 from tribolab.reading.scans.results import read_tester_results
-from tribolab.reading.text.wrapped_lines import numbers_in
 from tribolab.reading.unknown.proposal.draft import draft_dialect
 from tribolab.reading.unknown.proposal.questions import GuessedError
 from tribolab.rubber.modulus import read_modulus
@@ -420,11 +419,6 @@ def test_a_file_that_is_endless_in_one_way_is_drafted_or_refused(tmp_path, text)
         assert "endless.csv" in str(error)
     else:
         assert [column.quantity for column in columns][::2] == ["time", "normal_force"]
-
-
-def test_a_row_of_numbers_that_ends_in_a_word_goes_on_over_no_lines():
-    row = ",".join(map(str, range(400)))
-    assert numbers_in(row + ",end\n" + row + ",\n1,,2", ",") == 400
 
 
 def test_times_without_end_are_no_rows_written_twice():

@@ -31,8 +31,6 @@ DRAFTED = {
     "Spanish": "\n".join(["Distancia [mm];Perfil [um]", ROWS.replace(",", ";")]) + "\n",
     "a unit alone": f"Abtastabstand: 0,25 µm\nEinheit: µm\nMesswerte:\n{GERMAN}\n",
     "in inches": f"Traverse length: 0.001968503937 inch\nPoints: 200\nZ [um]\n{COLUMN}\n",
-    "points in a millimetre": f"Punten per mm: 4000\nHoogte (um)\n{COLUMN}\n",
-    "speed and rate": f"Tastsnelheid: 0.5 mm/s\nBemonsteringsfrequentie: 2 kHz\nZ [um]\n{COLUMN}\n",
     "a table of results above": f"Name,Value,Unit\nRa,0.5,um\nRz,1.2,um\n\nX [mm],Z [um]\n{ROWS}\n",
 }
 
@@ -508,45 +506,6 @@ def test_a_heading_of_letters_of_two_bytes_is_found(tmp_path):
     scan = read_scans(tmp_path / "a.csv")
     np.testing.assert_allclose(scan.height.values[0], 1e-6 * HEIGHTS, atol=1e-12)
     assert scan.attrs["pitch_m"] == pytest.approx(5e-7)
-
-
-def test_a_ruler_below_heights_that_go_on_from_line_to_line_is_no_height(tmp_path):
-    cells = [f"{z:8.3f}".replace(".", ",") for z in HEIGHTS[:397]]
-    lines = ["".join(cells[n : n + 8]) for n in range(0, 397, 8)]
-    head = "Punktabstand     : 0,0008 mm\nEinheit Höhe     : µm\n-----------------\nProfilpunkte\n"
-    text = head + "\n".join(lines) + "\n-----------------\nEnde\n"
-    (tmp_path / "a.txt").write_text(text, "cp1252")
-    with pytest.raises(TribolabError, match="--write my.toml"):  # no map of 49 x 8 and a rest
-        read_scans(tmp_path / "a.txt")
-    (tmp_path / "a.txt").write_text(f"Anzahl Punkte    : 397\n{text}", "cp1252")
-    scan = read_scans(tmp_path / "a.txt")
-    np.testing.assert_allclose(scan.height.values[0], 1e-6 * HEIGHTS[:397], atol=1e-12)
-    assert scan.attrs["pitch_m"] == pytest.approx(8e-7)
-
-
-@pytest.mark.parametrize(
-    ("head", "encoding"),
-    [
-        ("Скорость перемещения датчика: 40,0 мм/с\n\nВремя, мс;Высота, мм", "cp1251"),
-        ("Vorschubgeschwindigkeit: 40,0 mm/s\n\nZeit [ms];Höhe [mm]", "cp1252"),
-        ("Sensor speed = 2,4 m/min\n\nTime [ms];Height [mm]", "ascii"),
-        ("测量速度: 40 mm/s\n\n时间 [ms];高度 [mm]", "gb18030"),
-    ],
-)
-def test_heights_by_the_clock_lie_as_far_apart_as_the_sensor_goes(tmp_path, head, encoding):
-    rows = "\n".join(f"{n / 2:.1f};{z / 50:.5f}" for n, z in enumerate(HEIGHTS))
-    (tmp_path / "a.txt").write_text((head + "\n" + rows).replace(".", ",") + "\n", encoding)
-    scan = read_scans(tmp_path / "a.txt")
-    assert scan.attrs["pitch_m"] == pytest.approx(2e-5, rel=1e-9)
-    np.testing.assert_allclose(scan.height.values[0], 2e-5 * HEIGHTS, atol=1e-8)
-
-
-def test_heights_by_an_uneven_clock_or_beside_a_force_are_no_profile(tmp_path):
-    time = np.cumsum(1 + (np.arange(400) % 2))
-    for name, head, last in (("a", "Time [s];Height [mm]", ""), ("b", "t [s];z [mm];Fx [N]", ";1")):
-        rows = "\n".join(f"{t};{z:.3f}{last}" for t, z in zip(time, HEIGHTS, strict=True))
-        (tmp_path / f"{name}.txt").write_text(f"Sensor speed: 40 mm/s\n{head}\n{rows}\n")
-        assert draft_dialect(tmp_path / f"{name}.txt").kind != "scan"
 
 
 @pytest.mark.parametrize(

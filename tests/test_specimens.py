@@ -33,31 +33,6 @@ def _is_right(run: object) -> None:
     assert np.isnan(starts.waiting_time.values).all()
 
 
-@pytest.mark.parametrize(
-    ("names", "speed"),
-    [
-        ("Extension (mm);Load (N)", "Crosshead speed;150;mm/min"),
-        ("Traversenweg [mm];Kraft [N]", "Prüfgeschwindigkeit: 150 mm/min"),
-        ("Déplacement (mm);Force (N)", "Vitesse d'essai : 150 mm/min"),
-        ("Extension (mm);Load (N)", "Crosshead speed 150 mm/min"),
-    ],
-)
-def test_specimens_side_by_side_have_the_way_for_a_clock(
-    tmp_path: Path, names: str, speed: str
-) -> None:
-    pulls = _pulls()
-    head = ["Sled weight;200;g", speed, "", "Specimen 1;;Specimen 2;;Specimen 3;"]
-    rows = [
-        ";".join(f"{way[k]:.3f};{force[k]:.4f}" for way, force in pulls)
-        for k in range(len(pulls[0][0]))
-    ]
-    file = tmp_path / "sled.csv"
-    file.write_text("\n".join([*head, ";".join([names] * 3), *rows]) + "\n", encoding="utf-8")
-    run = tl.read(file)
-    assert run.attrs["time_source"] == "position and a stated speed"
-    _is_right(run)
-
-
 @pytest.mark.parametrize("number", ["Specimen No", "Éprouvette", "Probekörper Nr."])
 def test_specimens_below_each_other_are_segments_of_their_own(tmp_path: Path, number: str) -> None:
     rows, passed = [], 0.0

@@ -81,30 +81,6 @@ def _strokes(frequencies, lasts=6.0, rate=500, seed=2):
     return time, step, force + 0.05 * rng.standard_normal(force.size)
 
 
-def test_a_programme_in_the_header_says_how_often_each_step_comes(tmp_path):
-    frequencies = (1.0, 2.0, 5.0)
-    time, step, force = _strokes(frequencies)
-    rows = "\n".join(f"{t:.3f};{k};{f:.4f}" for t, k, f in zip(time, step, force, strict=True))
-    programme = "\n".join(f"{k};{f:.1f};6" for k, f in enumerate(frequencies, 1))
-    head = (
-        "Carga normal (N);25.0\nCarrera, pico a pico (mm);6.00\nMovimiento;Senoidal\n\n"
-        f"Etapa;Frecuencia (Hz);Duración (s)\n{programme}\n\n"
-    )
-    (tmp_path / "a.csv").write_text(f"{head}Tiempo (s);Etapa;Fuerza de fricción (N)\n{rows}\n")
-    run = tl.read(tmp_path / "a.csv")
-    assert "rows_left_out" not in run.attrs
-    np.testing.assert_allclose(
-        [float(f) for f in run.attrs["stroke_frequency_Hz_of_steps"].split(";")],
-        frequencies,
-        rtol=1e-3,
-    )
-    found = tl.friction_coefficient(run, tl.find_segments(run))
-    middle = found.sliding_speed.groupby(np.round(found.sliding_speed, 3)).mean()
-    np.testing.assert_allclose(middle, [18e-3, 36e-3, 90e-3], rtol=5e-3)
-    np.testing.assert_allclose(found.friction_coefficient, 0.12, atol=0.002)
-    assert "ramp" not in found.attrs.get("left_out", "")
-
-
 @pytest.mark.parametrize("stated", [1.0, 3.0, 5.0])
 def test_a_frequency_that_friction_does_not_have_is_no_speed(tmp_path, stated):
     time, _, force = _strokes((2.0,), lasts=20.0)

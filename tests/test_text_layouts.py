@@ -1,14 +1,13 @@
 """Arrangements of text that other labs write: read with their names, units and settings."""
 
 import json
-import zipfile
 
 import numpy as np
 import pytest
 
 import tribolab as tl
 from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
-from tribolab.reading.unknown.proposal.questions import GuessedError, missing_words
+from tribolab.reading.unknown.proposal.questions import missing_words
 
 RNG = np.random.default_rng(21)
 TIME = np.round(0.1 * np.arange(300), 3)
@@ -22,91 +21,6 @@ def both_ways(path):
     return tl.read(path), tl.read(path, instrument=kept)
 
 
-def test_a_log_of_several_messages_with_tags_and_glued_units_is_a_table(tmp_path):
-    stamp = "2024-05-14 09:31:{0:06.3f} "
-    lines = [stamp.format(1) + "[main] INFO config: pin=steel track_radius=8.5mm rate=5Hz"]
-    for n, (force, load) in enumerate(zip(FORCE, LOAD, strict=True)):
-        at = stamp.format(2 + n / 10)
-        lines.append(f"{at}[daq] DATA seq={n} n=30.0rpm FT={force}N FN={load}N flags=0x1f")
-        if n % 40 == 7:
-            lines.append(at + "[env] STAT rh=44.0% room=22.0C")
-            lines.append(at + "[usb] WARN crc error")
-    (tmp_path / "a.log").write_text("\n".join(lines) + "\n")
-    for run in both_ways(tmp_path / "a.log"):
-        np.testing.assert_allclose(run.friction_force, FORCE)
-        np.testing.assert_allclose(run.normal_force, LOAD)
-        np.testing.assert_allclose(run.sliding_velocity, 0.0085 * np.pi)
-        np.testing.assert_allclose(np.diff(run.time), 0.1, rtol=1e-4)
-
-
-@pytest.mark.parametrize(
-    ("mark", "comma", "units"), [(",", False, True), (";", True, True), ("\t", False, False)]
-)
-def test_a_number_to_a_row_beside_its_channel_is_a_column(tmp_path, mark, comma, units):
-    own = {"FT": ("N", FORCE, 0.0), "FN": ("N", LOAD, 0.01), "Position": ("mm", 2 * TIME, 0.03)}
-    rows = []
-    for name, (unit, values, late) in own.items():
-        label = "PLC1." + name if units else f"{name} [{unit}]"
-        for at, value in zip(TIME + late, values + 2 * late * (name == "Position"), strict=True):
-            rows.append((at, label, f"{value:.4f}", unit))
-    rows += [(1e-4 + 10 * n, "SYS.ALIVE", "1", "-") for n in range(3)]
-    rows += [(2e-4 + n, "SYS.T_PLATE" if units else "T_PLATE", "21.5", "degC") for n in range(30)]
-    lines = ["# export of a historian", mark.join(["time_s", "tag", "value", "unit"][: 3 + units])]
-    for at, *cells in sorted(rows):
-        line = mark.join([f"{at:.4f}", *cells[: 2 + units]])
-        lines.append(line.replace(".", ",").replace("PLC1,", "PLC1.") if comma else line)
-    (tmp_path / "a.csv").write_text("\n".join(lines) + "\n")
-    for run in both_ways(tmp_path / "a.csv"):
-        np.testing.assert_allclose(run.friction_force, FORCE)
-        assert float(np.abs(run.normal_force.values[1:] - LOAD[1:]).max()) < 0.03
-        np.testing.assert_allclose(run.position[1:], 2e-3 * TIME[1:], atol=1e-7)
-
-
-def test_a_direction_that_alternates_is_no_channel(tmp_path):
-    rows = (f"{n // 2},{'FB'[n % 2]},{f}\n" for n, f in enumerate(FORCE))
-    (tmp_path / "a.csv").write_text("cycle,direction,friction coefficient\n" + "".join(rows))
-    assert draft_dialect(tmp_path / "a.csv").layout.arrangement == "below names"
-
-
-LEGENDS = {
-    "list": "columns:\n  t     time, s (10 per second)\n  a     tangential force, N, raw\n"
-    "  b     normal force on the pin, N\n  c     sliding speed, mm/s\n",
-    "colons": "# t: time in s\n# a: friction force (N)\n# b: load [N]\n# c: speed / mm/s\n",
-    "one line": "# t time (s), a friction force (N), b normal force (N), c sliding speed (mm/s)\n",
-}
-
-
-@pytest.mark.parametrize("legend", LEGENDS)
-@pytest.mark.parametrize("mark", [";", " "])
-def test_short_names_mean_what_the_text_above_explains(tmp_path, legend, mark):
-    rows = [mark.join(map(str, row)) for row in zip(TIME, FORCE, LOAD, 0 * TIME + 5, strict=True)]
-    text = LEGENDS[legend] + "\n" + mark.join("tabc") + "\n" + "\n".join(rows) + "\n"
-    (tmp_path / "a.txt").write_text(text)
-    for run in both_ways(tmp_path / "a.txt"):
-        np.testing.assert_allclose(run.friction_force, FORCE)
-        np.testing.assert_allclose(run.normal_force, LOAD)
-        np.testing.assert_allclose(run.sliding_velocity, 5e-3)
-
-
-def test_settings_are_no_explanations(tmp_path):
-    rows = [",".join(map(str, row)) for row in zip(TIME, FORCE, LOAD, strict=True)]
-    head = "Load: constant\nFriction: raw signal\nTime: 12:30\nspeed: 5 mm/s\n"
-    text = head + "Time [s],Friction [N],Load [N]\n" + "\n".join(rows) + "\n"
-    (tmp_path / "a.txt").write_text(text)
-    assert draft_dialect(tmp_path / "a.txt").layout.arrangement == "below names"
-
-
-def test_the_readme_of_an_archive_is_the_header_of_its_table(tmp_path):
-    rows = [";".join(map(str, row)) for row in zip(TIME, FORCE, LOAD, 0 * TIME + 5, strict=True)]
-    with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
-        archive.writestr("x/README.txt", LEGENDS["list"])
-        archive.writestr("x/photo.jpg", b"\xff\xd8\0")
-        archive.writestr("x/12.csv", "t;a;b;c\n" + "\n".join(rows) + "\n")
-    for run in both_ways(tmp_path / "a.zip"):
-        np.testing.assert_allclose(run.friction_force, FORCE)
-        np.testing.assert_allclose(run.normal_force, LOAD)
-
-
 def columnar():
     return {"t": TIME.tolist(), "Ft": FORCE.tolist(), "Fn": LOAD.tolist(), "v": [5.0] * TIME.size}
 
@@ -114,18 +28,7 @@ def columnar():
 UNITS = {"t": "s", "Ft": "N", "Fn": "N", "v": "mm/s"}
 
 
-def of_segments():
-    half = TIME.size // 2
-    parts = [slice(0, half), slice(half, None)]
-    segments = [
-        {"name": f"part {k}", "set": {"v": 5}, "data": {n: v[p] for n, v in columnar().items()}}
-        for k, p in enumerate(parts)
-    ]
-    return {"meta": {"units": UNITS, "operator": "x"}, "segments": segments}
-
-
 JSON = {
-    "segments": of_segments,
     "split": lambda: {
         "columns": [f"{n} [{u}]" for n, u in UNITS.items()],
         "data": [list(row) for row in zip(*columnar().values(), strict=True)],
@@ -157,7 +60,6 @@ def test_columns_in_json_are_a_table(tmp_path, form, indent):
         np.testing.assert_allclose(run.normal_force, LOAD)
         np.testing.assert_allclose(run.sliding_velocity, 5e-3)
         np.testing.assert_allclose(np.diff(run.time), 0.1, rtol=1e-6)
-        assert ("step" in run) == (form == "segments")
 
 
 def test_settings_in_objects_of_json_are_found(tmp_path):
@@ -182,61 +84,6 @@ def check(path):
         np.testing.assert_allclose(run.normal_force, LOAD)
         np.testing.assert_allclose(run.sliding_velocity, 5e-3)
         np.testing.assert_allclose(np.diff(run.time), 0.1, rtol=1e-6)
-
-
-@pytest.mark.parametrize("mark", [";", ",", "\t"])
-@pytest.mark.parametrize("apart", [True, False])
-def test_a_signal_to_a_row_is_a_column(tmp_path, mark, apart):
-    lines = ["Sample: PTFE"]
-    for (name, unit), values in zip(SIGNALS.items(), COLUMNS, strict=True):
-        head = [name, unit] if apart else [f"{name} [{unit}]"]
-        lines.append(mark.join([*head, *map(str, values)]))
-    (tmp_path / "a.txt").write_text("\n".join(lines) + "\n")
-    check(tmp_path / "a.txt")
-
-
-def test_long_signals_in_rows_are_read_as_a_whole(tmp_path):
-    many = 60_000
-    rows = [f"{name} [{unit}]" for name, unit in SIGNALS.items()]
-    values = (0.01 * np.arange(many), np.full(many, 1.5), np.full(many, 10), np.full(many, 5))
-    text = [";".join([n, *(f"{x:.6f}" for x in v)]) for n, v in zip(rows, values, strict=True)]
-    (tmp_path / "a.csv").write_text("\n".join(text) + "\n")
-    assert tl.read(tmp_path / "a.csv").sizes["time"] == many
-
-
-@pytest.mark.parametrize("left", [True, False])
-def test_numbers_that_touch_are_parted_at_the_ends_of_their_columns(tmp_path, left):
-    way = "<" if left else ">"
-    heads = [("TIME", "FRIC", "LOAD", "SPEED"), ("[S]", "[mN]", "[N]", "[MM/S]")]
-    lines = ["".join(f"{word:{way}8}" for word in head).rstrip() for head in heads]
-    rows = zip(TIME, -1e3 * FORCE, LOAD, 0 * TIME + 1000.5, strict=True)
-    lines += [f"{a:{way}8.2f}{b:{way}8.2f}{c:{way}8.4f}{d:{way}8.3f}" for a, b, c, d in rows]
-    (tmp_path / "a.txt").write_text("\n".join(lines) + "\n")
-    for run in both_ways(tmp_path / "a.txt"):
-        np.testing.assert_allclose(run.friction_force, -FORCE, atol=1e-5)
-        np.testing.assert_allclose(run.normal_force, LOAD)
-        np.testing.assert_allclose(run.sliding_velocity, 1.0005)
-
-
-def test_names_that_stand_twice_are_told_apart_by_the_row_above(tmp_path):
-    head = ";Tangential;;Normal;;Drive\nTime;Force;Temp;Force;Temp;Speed\ns;N;C;N;C;mm/s\n"
-    rows = (f"{t};{f};21;{n};22;5\n" for t, f, n in zip(TIME, FORCE, LOAD, strict=True))
-    (tmp_path / "a.csv").write_text(head + "".join(rows))
-    check(tmp_path / "a.csv")
-
-
-@pytest.mark.parametrize("mark", [";", ","])
-def test_columns_with_clocks_of_their_own_are_put_on_one(tmp_path, mark):
-    head = ["t1 [s]", "FT [N]", "t2 [s]", "FN [N]", "t3 [s]", "x [mm]"]
-    lines = [mark.join(head)]
-    for n, (t, force, load) in enumerate(zip(TIME, FORCE, LOAD, strict=True)):
-        slow = [f"{TIME[2 * n]}", f"{10 * TIME[2 * n]:.4f}"] if 2 * n < TIME.size else ["", ""]
-        lines.append(mark.join([f"{t}", f"{force}", f"{t}", f"{load}", *slow]))
-    (tmp_path / "a.csv").write_text("\n".join(lines) + "\n")
-    for run in both_ways(tmp_path / "a.csv"):
-        np.testing.assert_allclose(run.friction_force, FORCE)
-        np.testing.assert_allclose(run.normal_force, LOAD)
-        np.testing.assert_allclose(run.position[:-1], 1e-2 * TIME[:-1], atol=1e-9)
 
 
 @pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
@@ -337,20 +184,6 @@ def test_a_temperature_is_no_clock(tmp_path):
     run = tl.read(tmp_path / "a.csv")
     assert run.sizes["time"] == TIME.size
     np.testing.assert_allclose(run.normal_force, LOAD)
-
-
-def test_comments_between_rows_part_no_table(tmp_path):
-    rows = [f"{n / 50:.2f};{0.1 * n:.2f};6.0;1.5" for n in range(400)]
-    parts = ["\n".join(rows[k : k + 100]) for k in range(0, 400, 100)]
-    marked = "\n".join(f"# {k}. step: 5 mm/s\n{part}" for k, part in enumerate(parts, 1))
-    text = f"# Wiper\n# Time [s];Position [mm];Load [N];Friction force [N]\n{marked}\n"
-    (tmp_path / "a.csv").write_text(text)
-    run = tl.read(tmp_path / "a.csv")
-    assert run.sizes["time"] == 400
-    other = text.replace("# 2. step: 5 mm/s", "Results of the second part")
-    (tmp_path / "b.csv").write_text(other)
-    with pytest.raises(GuessedError, match="the table goes on below"):
-        tl.read(tmp_path / "b.csv")
 
 
 def test_settings_may_stand_below_a_table_that_begins_the_file(tmp_path):

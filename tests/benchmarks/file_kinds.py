@@ -31,6 +31,50 @@ from tribolab.rig.layouts import KINDS, write_kind  # noqa: E402
 
 SHARED = Path(__file__).parents[3] / "shared" / "data"
 WAYS = (AT_ONCE, DRAFTED, DESCRIBED, NOT)
+READERS = """
+## Kinds that a reader in Python reads
+
+No file of a published rig and no manufacturer's documentation shows these layouts. Such a file is
+asked about or refused; the reader named here goes next to the campaign (`instrument =
+"my_reader.py"`, run with `--trust`).
+
+| kind | reader |
+|---|---|
+| each number behind its name (`t:1.5 F:2.0`) | the one below |
+| one JSON record a line | `pd.read_json(path, lines=True)` |
+| columns listed one to a line above the numbers | `pd.read_csv(path, skiprows=n, names=names)` |
+| short names explained above, names in two rows | the same |
+| steps or specimens side by side | `pd.read_csv`, then `pd.concat` of its parts |
+| a channel to a row (time, name, number) | `pd.read_csv(path).pivot(index=, columns=, values=)` |
+| a signal to a row | `pd.read_csv(path, header=None, index_col=0).T` |
+| columns with clocks of their own | `np.interp` onto the clock of the friction force |
+| numbers that touch, in columns of fixed width | `pd.read_fwf(path, widths=widths)` |
+| one column that goes on from line to line | `np.fromstring(text, sep=" ")` |
+| volts or counts with a calibration in a sentence, but `Gain Fx: 10 N/V` | multiply by it |
+| two load cells that add up | add the columns |
+| a table of the steps' speeds in the header | one column of the speed of each step |
+| sheets or groups that are steps of one run | `pd.concat(pd.read_excel(path, sheet_name=None))` |
+| text between the rows of one table | `pd.read_csv(path, comment="#")` |
+| heights of a distance sensor over time | heights and `speed * time` as `height` and `x` |
+
+```python
+import re
+import xarray as xr
+
+
+def can_read(head):
+    return "yes" if re.match(rb"t:[\\d.]+ F:", head) else "no"
+
+
+def read(path):
+    rows = re.findall(r"t:(\\S+) F:(\\S+) N:(\\S+) v:(\\S+)", path.read_text())
+    t, ft, fn, v = zip(*((float(x) for x in row) for row in rows))
+    units = {"friction_force": (ft, "N"), "normal_force": (fn, "N")}
+    units["sliding_velocity"] = v, "mm/s"
+    signals = {name: ("time", x, {"units": unit}) for name, (x, unit) in units.items()}
+    return xr.Dataset(signals, {"time": ("time", list(t), {"units": "ms"})})
+```
+"""
 
 
 class Line(NamedTuple):
@@ -185,7 +229,7 @@ standard error, relative to the truth.
 
 The numbers to compare with were computed independently; files without friction are refused.
 
-{table(others)}"""
+{table(others)}{READERS}"""
 
 
 def main() -> int:

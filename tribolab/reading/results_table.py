@@ -16,7 +16,6 @@ _NUMERIC = 0.5  # of a row's cells
 _PARAMETER = re.compile(
     r"[RPWS](?:a|q|z|t|p|v|c|sk|ku|dq|dr|Sm|z1max|max|3z|k|pk|vk|pc)\d?\s*(?:[\[(/_ ].{0,12})?"
 )
-_COMMON = ("Ra", "Rq", "Rz", "Sa", "Sq", "Sz")
 _CELLS = re.compile(r"\s*[;\t]\s*|\s*,(?!\d)\s*|\s{2,}")
 _BLANKS = re.compile(r"[^\S\t]{3,}")  # the search for cells takes the square of their number
 _COMMAS = re.compile(r"\s*,\s*")

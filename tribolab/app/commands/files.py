@@ -171,22 +171,21 @@ def _describe(
     from tribolab.reading.unknown.proposal.draft import (
         as_profile,
         check_target,
+        draft_dialect,
         holds_heights,
         save_draft,
     )
-    from tribolab.reading.unknown.proposal.several_files import draft_of_examples
     from tribolab.reading.unknown.proposal.show import print_draft, print_next, print_signals
 
-    draft = draft_of_examples(files, name)
+    draft = draft_dialect(files[0], name)
     target = target or Path(f"{draft.name}.toml")
     asking = ask or (ask is None and sys.stdin.isatty() and sys.stdout.isatty())
     print_draft(draft, console(), rows=not asking)
     if draft.dialect is not None:
         check_target(target, force=force)
     if asking:
-        before = draft
         draft = ask_about(draft, _prompt, say)
-        print_signals(draft, console(), blocks=draft.dialect != before.dialect)
+        print_signals(draft, console())
     if holds_heights(draft) and draft.dialect is None:
         check_target(target, force=force)
         draft = as_profile(draft)

@@ -8,7 +8,6 @@ import numpy as np
 from pydantic import Field, NonNegativeInt, PositiveInt, model_validator
 
 from tribolab.reading.dialect.checked_text import BinaryField, Encoding, Pattern, Strict
-from tribolab.reading.text.arrangements import Arrangement
 
 TEXT_CONTAINERS = ("json", "declared records")  # files that begin as text and name their columns
 
@@ -42,18 +41,10 @@ class Text(Strict):
         "", description="mark between the thousands of a number, as the comma of '1,234.5'"
     )
     missing: tuple[str, ...] = Field((), description="texts that stand for no value, error codes")
-    wrapped: bool = Field(
-        False, description="one column whose numbers go on from line to line, many in each"
-    )
-    arrangement: Arrangement = Field(
+    arrangement: Literal["below names", "json", "declared records"] = Field(
         "below names",
-        description="where the numbers do not stand below a line of names: 'columns listed' one to "
-        "a line above them, 'names in rows' before each number as in 't:1.5 F:2.0', short 'names "
-        "explained' above as in 'FT  friction force, N', 'names in two rows' where the one above "
-        "tells alike ones apart, tables of the same columns 'side by side', 'a channel to a row' "
-        "(moment, name, number), 'a signal to a row', 'clocks of their own' for some columns, "
-        "'touching' numbers in columns of fixed width, 'json', or the 'declared records' of binary "
-        "numbers behind text; [header] then finds the line of names that is made of it",
+        description="'json', or the 'declared records' of binary numbers behind text, where the "
+        "numbers are not in lines below a line of names",
     )
     end: Pattern | None = Field(None, description="a line matching this ends the table")
     skip_lines: Pattern | None = Field(

@@ -39,7 +39,7 @@ Instrument = str | Path | Dialect  # a name, a TOML file, or what it says
 _SHOWN = 5  # mistakes of a dialect that are told at once
 _LEAVING = {  # keys by table: no instrument needs them, and the next release will not know them
     "tables": ("steps",),
-    "text": ("arrangement", "wrapped"),
+    "text": ("arrangement",),
     "derived": ("way",),
     "header": ("only",),
     "rows": ("left_out",),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
@@ -71,21 +71,20 @@ class Rule(NamedTuple):
 @functools.cache
 def rules() -> tuple[Rule, ...]:
     """Return the rules of physics.toml, in its order."""
-    return tuple(rule for block in _toml()["rule"] for rule in _rules(block))
+    return tuple(map(_rule, _toml()["rule"]))
 
 
-def _rules(block: Mapping[str, Any]) -> Iterator[Rule]:
-    for name in block.get("of", ("",)):
-        yield Rule(
-            block["gives"].replace("{of}", name),
-            block["formula"].replace("{of}", name),
-            block.get("rate", False),
-            block.get("use", "both"),
-            block.get("if", ""),
-            tuple(block.get("asks", ())),
-            block.get("doubt", ""),
-            block.get("speed", ""),
-        )
+def _rule(block: Mapping[str, Any]) -> Rule:
+    return Rule(
+        block["gives"],
+        block["formula"],
+        block.get("rate", False),
+        block.get("use", "both"),
+        block.get("if", ""),
+        tuple(block.get("asks", ())),
+        block.get("doubt", ""),
+        block.get("speed", ""),
+    )
 
 
 def units_written() -> Mapping[str, list[str]]:

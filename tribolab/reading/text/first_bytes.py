@@ -19,7 +19,6 @@ from tribolab.reading.raw.readers import answers, installed_readers
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.raw.unpacked import ZIP, holds_arrays, is_workbook, unpacked
 from tribolab.reading.results_table import find_other_test, find_results_table
-from tribolab.reading.text.arrangements import holds_names
 
 HEAD = 1 << 20  # bytes looked at for preamble and header
 
@@ -146,7 +145,6 @@ def fits_format(format_of_file: str, format_of_dialect: str) -> bool:
 
 
 _MOST_JSON = 1 << 28  # bytes: it is read as a whole
-_LINES = 100  # that tell whether each is a record of its own
 
 
 def _is_json(head: bytes) -> bool:
@@ -154,8 +152,6 @@ def _is_json(head: bytes) -> bool:
     if not _JSON.match(head):
         return False
     text = head.decode("utf-8-sig", errors="replace").lstrip()
-    if holds_names(text.split("\n")[:_LINES]):
-        return False  # a record to a line
     try:
         end = json.JSONDecoder().raw_decode(text)[1]
     except (ValueError, RecursionError):  # it goes on beyond what is looked at, or too deep

@@ -1,7 +1,6 @@
 """The files that instruments of other labs would have written of a run whose truth is known."""
 
 from tribolab.rig.layouts import (
-    arranged,  # noqa: F401 - they add kinds
     clocks_and_text,  # noqa: F401
     formats,  # noqa: F401
     makers,  # noqa: F401

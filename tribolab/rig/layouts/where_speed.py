@@ -43,19 +43,6 @@ def _rotary_steps(record: MeasuredRecord, folder: Path) -> Path:
     return write_table(folder / "disc.csv", columns, [*head, "Ball radius: 3 mm", ""])
 
 
-def _programme(record: MeasuredRecord, folder: Path) -> Path:
-    """Say in a table above the signals how fast each step turns; nothing measures it."""
-    legs, first = np.unique(record.motion.leg, return_index=True)
-    last = np.append(first[1:], record.motion.leg.size) - 1
-    middle = (first + last) // 2
-    turns = 60 * record.motion.velocity[middle] / _RADIUS / _TURN
-    head = ["Disc test", "Track radius: 25 mm", "Step,Speed [rpm],Remark"]
-    head += [f"{leg:.0f},{rpm:.4f}," for leg, rpm in zip(legs, turns, strict=True)]
-    step = Cells("Step", "", record.motion.leg, 0)
-    columns = [time_of(record), step, friction_of(record), normal_of(record)]
-    return write_table(folder / "programme.csv", columns, [*head, ""])
-
-
 def _stated_ratio(record: MeasuredRecord, folder: Path) -> Path:
     mean = Cells("Mean speed", "mm/s", 2e3 * record.motion.velocity, 3)
     columns = [time_of(record), mean, friction_of(record, "Traction force"), normal_of(record)]
@@ -238,7 +225,6 @@ _RADIUS_TYPED = (
 
 for _name, _about, _run, _write in (
     ("rotary_steps", "disc: steps, radius in the header", on_disc, _rotary_steps),
-    ("programme", "disc: a table of steps in the header", on_disc, _programme),
     ("stated_ratio", "mean speed, slide-to-roll ratio in the header", on_disc, _stated_ratio),
     ("rotary_torque", "disc: torque and radius", on_disc, _rotary_torque),
     ("two_load_channels", "two load channels, one filled", on_disc, _two_load_channels),

@@ -143,12 +143,11 @@ def table_encoding(dialect: Dialect) -> str:
 
 
 def is_wide(dialect: Dialect) -> bool:
-    """Whether text is mended to UTF-8: wide letters, arranged anew, or such missing words."""
+    """Whether text is converted to UTF-8: wide letters, or missing words with other letters."""
     encoding = dialect.text.encoding.lower().replace("_", "-")
     words = not all(word.isascii() for word in dialect.text.missing)
     plain = encoding.startswith(("utf-8", "ascii"))
-    arranged = dialect.text.arrangement != "below names"
-    return arranged or encoding.startswith(("utf-16", "utf-32")) or (words and not plain)
+    return encoding.startswith(("utf-16", "utf-32")) or (words and not plain)
 
 
 def compiled(pattern: str, dialect: Dialect) -> Guarded[bytes]:

@@ -16,11 +16,9 @@ from tribolab.reading.dialect.delimited.headers import (
     table_encoding,
 )
 from tribolab.reading.dialect.model import Dialect
-from tribolab.reading.text.arrangements import below_names
 from tribolab.reading.text.first_bytes import File
 from tribolab.reading.text.number_spelling import is_unusual, usual, without_commas_in_quotes
 from tribolab.reading.text.thousands import without_thousands
-from tribolab.reading.text.wrapped_lines import unwrapped
 
 _ODD_ENDS = 3  # a line end that went through two programs is CR CR LF; more were not seen
 
@@ -47,9 +45,7 @@ def _with_usual_lines(file: File, dialect: Dialect, head_only: bool) -> bytes | 
         if wide:
             marked = head[:2] in (b"\xff\xfe", b"\xfe\xff")
             decoder = codecs.getincrementaldecoder("utf-16" if marked else dialect.text.encoding)()
-            told = line_feeds(decoder.decode(content, final=not head_only))
-            text = dialect.text
-            content = below_names(told, text.arrangement, text.delimiter).encode()
+            content = line_feeds(decoder.decode(content, final=not head_only)).encode()
     except (OSError, UnicodeDecodeError) as error:
         raise ReadError(f"{file.path}: the file cannot be read: {error}") from error
     content = line_feeds(content)
@@ -114,9 +110,6 @@ def _respelling(dialect: Dialect, head: bytes) -> Callable[[str], str] | None:
         steps.append(without_commas_in_quotes)
     if _is_unusual(head, text.encoding):
         steps.append(usual)
-    if text.wrapped:  # blanks are tabs by now
-        mark = "\t" if text.delimiter == "whitespace" else text.delimiter
-        steps.append(lambda table: unwrapped(table, mark))
     if not steps:
         return None
     return lambda table: functools.reduce(lambda so_far, step: step(so_far), steps, table)

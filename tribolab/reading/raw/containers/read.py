@@ -22,7 +22,6 @@ _READERS = {
     "declared records": ("declared_records", "read_declared_records"),
 }
 CONTAINERS = frozenset(_READERS)
-IN_GROUPS = CONTAINERS - {"parquet", "feather", "json"}  # tables that may be steps, by their names
 
 
 def read_container(path: Path, form: str) -> RawFile:

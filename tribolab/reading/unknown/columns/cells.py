@@ -36,11 +36,6 @@ class Cells(NamedTuple):
 def read_cells(layout: Layout) -> Cells:
     """Return the numbers and words of all rows of a table.
 
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-
     Raises
     ------
     ReadError

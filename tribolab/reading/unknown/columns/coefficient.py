@@ -22,13 +22,6 @@ _OVER_N = re.compile(r"\w{1,3}\s*/\s*N")  # a symbol and its unit, or divided by
 def disagreement(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[str]:
     """Say so where the forces' ratio is not the coefficient beside them, or can be none at all.
 
-    Parameters
-    ----------
-    columns
-        The columns as they are understood.
-    numbers
-        Their numbers (rows, columns) as written.
-
     Returns
     -------
     list of str

@@ -71,17 +71,7 @@ def _fits(texts: Sequence[str], form: str) -> bool:
 
 
 def take_dates(columns: list[DraftColumn], layout: Layout, cells: Cells) -> list[DraftColumn]:
-    """Take the first column of dates for time if no column of numbers is; its numbers change.
-
-    Parameters
-    ----------
-    columns
-        The columns as they are understood.
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    cells
-        From `tribolab.reading.unknown.columns.cells.read_cells`.
-    """
+    """Take the first column of dates for time if no column of numbers is; its numbers change."""
     numbers, text = cells.numbers, cells.text
     timed = [c for c in columns if c.quantity == "time" and c.used and not text[c.place - 1]]
     dates = [] if timed or not any(text) else list(_dates(columns, layout, cells))

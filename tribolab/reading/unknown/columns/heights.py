@@ -66,26 +66,6 @@ def beside_x(columns: list[DraftColumn]) -> list[DraftColumn] | None:
     ]
 
 
-def heights_by_clock(columns: list[DraftColumn]) -> list[DraftColumn] | None:
-    """Return heights behind the moments at which a sensor on its way took them, and nothing else.
-
-    The moments are not used: their interval and how fast the sensor goes make the distance.
-    """
-    if len(columns) != 2:
-        return None
-    (clock, beat, _), (name, unit, say) = (bare_name(column) for column in columns)
-    moments, heights = matches(clock, beat), matches(name, unit, scan=True)
-    if not moments or moments[0].quantity != "time" or beat is None:
-        return None
-    if not heights or heights[0].quantity != "height" or unit is None or not converts(unit, "m"):
-        return None
-    note = "its interval and how fast the sensor goes make the distance of points"
-    height = columns[1]._replace(
-        quantity="height", unit=unit if say else columns[1].unit, used=True
-    )
-    return [columns[0]._replace(unit=beat, note=note), height]
-
-
 def as_heights(column: DraftColumn, *, stated: bool, unit: str = "um") -> DraftColumn:
     """Take a column without a known name for heights: what a pitch before it is of.
 

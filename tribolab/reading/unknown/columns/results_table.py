@@ -15,15 +15,7 @@ _SWEEP = 8  # rows of a sweep up or down, at least, where there are several
 
 
 def are_points(columns: Sequence[DraftColumn], numbers: np.ndarray) -> bool:
-    """Whether every row is of another speed than its neighbours, in sweeps up and down.
-
-    Parameters
-    ----------
-    columns
-        The columns as they are understood.
-    numbers
-        Their numbers (rows, columns) as written.
-    """
+    """Whether every row is of another speed than its neighbours, in sweeps up and down."""
     held = {column.quantity: column for column in columns if column.used}
     speeds = ("sliding_velocity", "rotation_speed", "rolling_speed")
     column = next((held[name] for name in speeds if name in held), None)

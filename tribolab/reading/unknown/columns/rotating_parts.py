@@ -32,11 +32,6 @@ def torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
     """Return the one column that holds a torque by its name, else by its unit; with its unit.
 
     What a person called so goes before both.
-
-    Parameters
-    ----------
-    columns
-        The columns as they are understood.
     """
     if (said := _said(columns, "torque")) is not None:
         return said
@@ -47,13 +42,7 @@ def torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
 
 
 def unscaled_torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the one column that is named as a torque, but holds divisions, counts or volts.
-
-    Parameters
-    ----------
-    columns
-        The columns as they are understood.
-    """
+    """Return the one column that is named as a torque, but holds divisions, counts or volts."""
     if torque_of(columns) is not None:
         return None
     fitting = []
@@ -67,13 +56,7 @@ def unscaled_torque_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
 
 
 def angle_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the one column that holds an angle of rotation, with its unit.
-
-    Parameters
-    ----------
-    columns
-        The columns as they are understood.
-    """
+    """Return the one column that holds an angle of rotation, with its unit."""
     named = _said(columns, "angle") or _only_column(columns, _ANGLE.search, "rad")
     return named or _only_column(columns, _TURNS_IN_ANGLES.search, "rad")
 
@@ -100,13 +83,7 @@ def turns_of(columns: Sequence[DraftColumn], numbers: np.ndarray) -> DraftColumn
 
 
 def radius_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the one column that holds the radius of a track, with its unit.
-
-    Parameters
-    ----------
-    columns
-        The columns as they are understood.
-    """
+    """Return the one column that holds the radius of a track, with its unit."""
     return _only_column(columns, is_track_radius, "m")
 
 

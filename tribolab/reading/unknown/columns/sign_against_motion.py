@@ -22,13 +22,6 @@ COUNTED_SO = "it is counted against the motion: no friction drives what slides"
 def against_motion(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[DraftColumn]:
     """Turn a friction force that points along the motion wherever it slides.
 
-    Parameters
-    ----------
-    columns
-        The columns as they are understood.
-    numbers
-        Their numbers (rows, columns) as written.
-
     Notes
     -----
     It has to be so with what the signal shows at rest, or where nothing presses, taken off and with

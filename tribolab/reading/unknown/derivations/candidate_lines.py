@@ -35,13 +35,7 @@ def candidate_lines(layout: Layout, follows: Follows, lack: str) -> str:
 
 
 def likely_value(layout: Layout, follows: Follows, lack: str) -> Amount | None:
-    """Return what these lines state; None if they state nothing, or two amounts.
-
-    Parameters
-    ----------
-    layout, follows, lack
-        As `candidate_lines` takes them.
-    """
+    """Return what these lines state; None if they state nothing, or two amounts."""
     values = [value for value in _perhaps(layout, follows, lack) if stated_number(value) > 0]
     return values[0] if len({amount_of(value) for value in values}) == 1 else None
 
@@ -82,15 +76,7 @@ def _perhaps(layout: Layout, follows: Follows, lack: str) -> list[Amount]:
 
 
 def find_stated_load(values: Sequence[Amount], understood: Understood) -> Amount | None:
-    """Return the load that the text states, or that a person took a line for.
-
-    Parameters
-    ----------
-    values
-        From `tribolab.reading.unknown.header.settings.numeric_settings`.
-    understood
-        What was found out about the columns, and what was agreed to.
-    """
+    """Return the load that the text states, or that a person took a line for."""
     agreed = confirmed_value(values, understood.agreed, "load")
     if agreed is None:
         return find_load(values)

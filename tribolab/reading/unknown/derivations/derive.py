@@ -16,21 +16,13 @@ from tribolab.reading.unknown.header.stroke_settings import stated_strokes
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Understood
 
-_MEASURED = (
-    *("friction_reading", "arm_force", "friction_force_signal", "friction_force_raw"),
-    *("friction_reading_signal",),
-)
+_MEASURED = ("friction_reading", "arm_force", "friction_force_signal")
 _PRESSED = 0.5  # of the largest load: what is less is no contact
 _HELD = 1.1  # times what was set, or as much less: a measured load that is held at it
 
 
 def what_follows(layout: Layout, understood: Understood) -> Follows:
     """Find out what follows of a run where no column holds it.
-
-    Parameters
-    ----------
-    layout, understood
-        What was found out about the file.
 
     Notes
     -----
@@ -50,13 +42,7 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
 
 
 def held_quantities(understood: Understood) -> set[str]:
-    """Return what columns hold; with a unit still to be filled in, a column is there all the same.
-
-    Parameters
-    ----------
-    understood
-        What was found out about the columns.
-    """
+    """Return what columns hold, those whose unit has still to be filled in included."""
     return {c.quantity for c in understood.columns if c.quantity and (c.used or c.fill_in)}
 
 

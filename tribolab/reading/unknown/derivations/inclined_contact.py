@@ -66,13 +66,7 @@ def _words(text: str) -> str:
 
 
 def find_inclined(layout: Layout) -> Inclined | None:
-    """Return the inclined contacts that the text above a table, or the file's name, speaks of.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    """
+    """Return the inclined contacts that the text above a table, or the file's name, speaks of."""
     lines = [line.strip()[:_LONGEST] for line in layout.text_above()]
     texts = {text: _words(text) for text in (*lines, layout.file.path.stem)}
     found = {
@@ -103,13 +97,7 @@ def find_inclined(layout: Layout) -> Inclined | None:
 
 
 def axial_force_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the one column of the force along the axis, if it is not called that on the contacts.
-
-    Parameters
-    ----------
-    columns
-        The columns as they are understood.
-    """
+    """Return the one column of the axial force, if it is not called the force on the contacts."""
     held = [c for c in columns if c.used and c.quantity == "normal_force" and not c.optional]
     on_contacts = part_pattern("on_contacts")
     named = [c for c in held if not on_contacts.search(normalise_label(bare_name(c)[0]))]
@@ -117,15 +105,7 @@ def axial_force_of(columns: Sequence[DraftColumn]) -> DraftColumn | None:
 
 
 def guesses_of_inclined(layout: Layout, columns: Sequence[DraftColumn]) -> list[str]:
-    """Say what has to be guessed of the load on inclined contacts; nothing if it is known.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    columns
-        The columns as they are understood.
-    """
+    """Say what has to be guessed of the load on inclined contacts; nothing if it is known."""
     inclined = find_inclined(layout)
     held = {column.quantity for column in columns if column.used}
     if inclined is None or "friction_coefficient" in held:
@@ -139,13 +119,7 @@ def guesses_of_inclined(layout: Layout, columns: Sequence[DraftColumn]) -> list[
 
 
 def radius_of_ball(values: Sequence[Amount]) -> Amount | None:
-    """Return the radius of the ball, if just one size of it is stated.
-
-    Parameters
-    ----------
-    values
-        From `tribolab.reading.unknown.header.settings.numeric_settings`.
-    """
+    """Return the radius of the ball, if just one size of it is stated."""
     ball = part_pattern("contact_ball")
     sizes = [v for v in values if v.unit and converts(v.unit, "m")]
     sizes = [v for v in sizes if ball.search(v.key) or v.key in _DIAMETERS]

@@ -18,7 +18,6 @@ from tribolab.reading.unknown.columns.dates import take_dates
 from tribolab.reading.unknown.columns.heights import (
     as_heights,
     beside_x,
-    heights_by_clock,
     in_stated_unit,
     side_by_side,
 )
@@ -29,34 +28,27 @@ from tribolab.reading.unknown.columns.results_table import are_points
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
 from tribolab.reading.unknown.columns.sign_against_motion import against_motion
 from tribolab.reading.unknown.columns.unit_and_sign import FORCES
-from tribolab.reading.unknown.columns.unloaded_start import with_zero
-from tribolab.reading.unknown.derivations.calibrations import find_calibrations
-from tribolab.reading.unknown.derivations.distance_sensor import of_sensor
+from tribolab.reading.unknown.derivations.gains import find_gain
 from tribolab.reading.unknown.derivations.inclined_contact import guesses_of_inclined
-from tribolab.reading.unknown.derivations.load_cells import adding_up, loads_that_add
+from tribolab.reading.unknown.derivations.load_cells import loads_that_add
 from tribolab.reading.unknown.derivations.nodata_values import take_stated_missing
 from tribolab.reading.unknown.derivations.two_bodies import (
     exclude_surface_speeds,
     find_surface_speeds,
 )
-from tribolab.reading.unknown.header.columns_from_settings import columns_from_settings
-from tribolab.reading.unknown.header.counts import apply_count_scale
 from tribolab.reading.unknown.header.factors import unapplied_factors, unapplied_height_factors
 from tribolab.reading.unknown.header.lengths import confirm_lever_arm_force
 from tribolab.reading.unknown.header.profiles import (
     find_height_unit,
     find_pitch,
-    find_point_density,
     find_profile_length,
     find_unit_along,
-    pitch_of_clock,
 )
 from tribolab.reading.unknown.header.sampling import find_pace, find_sampling
 from tribolab.reading.unknown.header.slip import as_entrainment_speed
-from tribolab.reading.unknown.header.zero import load_zeros_in_doubt
+from tribolab.reading.unknown.header.zero import load_zeros_in_doubt, unloaded_start_in_doubt
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import NO_NUMBERS, DraftColumn, Kind, Understood
-from tribolab.units import conversion, positive
 
 _REACH = 0.05  # of a scan's length; heights that reach farther are in a smaller unit
 
@@ -65,13 +57,12 @@ class _Spacing(NamedTuple):
     """What the text above a table says of the distance of a profile's points."""
 
     pitch: Amount | None
-    density: str
     length: Amount | None
 
     @property
     def is_stated(self) -> bool:
         """Whether heights without positions have their places."""
-        return self.pitch is not None or bool(self.density) or self.length is not None
+        return self.pitch is not None or self.length is not None
 
 
 class _Interpretation(NamedTuple):
@@ -80,19 +71,11 @@ class _Interpretation(NamedTuple):
     kind: Kind
     columns: list[DraftColumn]
     guesses: Sequence[str] = ()
-    pitch: str = ""
-    lacks: str = ""
     pitched: bool = False  # heights have no positions, but a pitch that is or has to be stated
 
 
 def understand(layout: Layout) -> Understood:
-    """Interpret the columns of a file.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    """
+    """Interpret the columns of a file."""
     cells = read_cells(layout)
     spacing = _stated_spacing(layout)
     found = _interpret(layout, cells, spacing)
@@ -101,7 +84,6 @@ def understand(layout: Layout) -> Understood:
     if found.kind == "run":
         columns, doubts = _combined_forces(layout, columns, cells.numbers)
         guesses += doubts
-    columns = apply_count_scale(layout, columns, cells.numbers)
     columns = _without_words(take_dates(columns, layout, cells), cells)
     found = found._replace(columns=columns, guesses=guesses)
     if found.kind == "run":
@@ -111,9 +93,7 @@ def understand(layout: Layout) -> Understood:
 
 def _stated_spacing(layout: Layout) -> _Spacing:
     pitch = find_pitch(layout)
-    density = "" if pitch is not None else find_point_density(layout)
-    length = None if pitch is not None or density else find_profile_length(layout)
-    return _Spacing(pitch, density, length)
+    return _Spacing(pitch, None if pitch is not None else find_profile_length(layout))
 
 
 def _interpret(layout: Layout, cells: Cells, spacing: _Spacing) -> _Interpretation:
@@ -128,14 +108,14 @@ def _interpret(layout: Layout, cells: Cells, spacing: _Spacing) -> _Interpretati
         return profile
     if says_something(columns):
         kind, columns = decide_by_name(layout, columns, numbers, proofs, placed=spacing.is_stated)
-        if kind == "table" and find_calibrations(layout, columns):  # volts, and what one is worth
-            kind = "run"
-        return _Interpretation(kind, columns, pitch=spacing.density, pitched=spacing.is_stated)
+        if kind == "table" and find_gain(layout, columns, "friction_force") is not None:
+            kind = "run"  # volts, and what one is worth
+        return _Interpretation(kind, columns, pitched=spacing.is_stated)
     # late: starting stays quick
     from tribolab.reading.unknown.columns.behaviour import by_behaviour
 
     kind, columns, guesses = by_behaviour(columns, numbers, (along, unit))
-    return _Interpretation(kind, columns, guesses, pitch=spacing.density, pitched=spacing.is_stated)
+    return _Interpretation(kind, columns, guesses, pitched=spacing.is_stated)
 
 
 def _profile_of(
@@ -146,25 +126,15 @@ def _profile_of(
     *,
     stated: bool,
 ) -> _Interpretation | None:
-    """Return columns as profiles if they are side by side, behind positions, or of a sensor."""
+    """Return columns as profiles if they are side by side, or behind positions."""
     alone = layout.width == 1 and _may_be_heights(columns[0])
     if spacing.is_stated and (alone or side_by_side(columns)):
-        likely = _likely_unit(layout, numbers, spacing.pitch, spacing.density)
+        likely = _likely_unit(numbers, spacing.pitch)
         columns = [as_heights(column, stated=stated, unit=likely) for column in columns]
-        return _Interpretation("scan", columns, pitch=spacing.density, pitched=True)
+        return _Interpretation("scan", columns, pitched=True)
     if (placed := beside_x(columns)) is not None:
-        return _Interpretation("scan", placed, pitch=spacing.density, pitched=spacing.is_stated)
-    if (timed := heights_by_clock(columns)) is not None:
-        pitch = pitch_of_clock(layout, _seconds(timed[0], numbers))
-        if pitch:
-            return _Interpretation("scan", timed, pitch=pitch, pitched=True)
-    sensed = None if spacing.is_stated else of_sensor(layout, columns, numbers)
-    if sensed is None:
-        return None
-    pitched = bool(sensed.pitch or sensed.lacks)
-    return _Interpretation(
-        "scan", sensed.columns, pitch=sensed.pitch, lacks=sensed.lacks, pitched=pitched
-    )
+        return _Interpretation("scan", placed, pitched=spacing.is_stated)
+    return None
 
 
 def _combined_forces(
@@ -174,7 +144,7 @@ def _combined_forces(
     columns = force_or_ratio(columns)
     columns = exclude_surface_speeds(columns, find_surface_speeds(layout, columns, numbers))
     columns = confirm_lever_arm_force(layout, columns)
-    columns = as_entrainment_speed(layout, adding_up(layout, columns, numbers))
+    columns = as_entrainment_speed(layout, columns)
     doubts = disagreement(columns, numbers) + guesses_of_inclined(layout, columns)
     return columns, doubts + load_zeros_in_doubt(layout, columns)
 
@@ -200,15 +170,11 @@ def _of_run(layout: Layout, cells: Cells, found: _Interpretation) -> Understood:
     from tribolab.reading.unknown.columns.clock import find_clock, summed
 
     numbers, guesses = cells.numbers, [*found.guesses]
-    # a factor with which a force is calculated is not ignored
-    calibrations = find_calibrations(layout, found.columns)
-    applied = [shown(made.text, 40) for made in calibrations if made.text]
-    guesses = [said for said in guesses if not any(text in said for text in applied)]
     columns = _without_counter(layout, found.columns, numbers)
     period = summed(columns, numbers)
-    columns = against_motion(columns_from_settings(layout, columns, numbers), numbers)
+    columns = against_motion(columns, numbers)
     on_repeat, restart, columns = find_clock(layout, columns, numbers)
-    columns = with_zero(layout, columns, numbers)
+    guesses += unloaded_start_in_doubt(layout, columns)
     kind = _kind_by_columns("run", layout, columns)
     result = Understood(
         kind,
@@ -258,8 +224,6 @@ def _of_other(
             tuple(guesses),
             pitch_pattern=pitch.pattern if pitch is not None else "",
             length_pattern=length.pattern if length is not None else "",
-            pitch=found.pitch,
-            lacks=found.lacks,
         )
     kind = _kind_by_columns(found.kind, layout, columns)
     result = Understood(
@@ -282,7 +246,6 @@ def _kind_by_columns(kind: Kind, layout: Layout, columns: list[DraftColumn]) -> 
         return kind
     timed = any(c.quantity == "time" and c.used for c in columns)
     made = torque_of(columns) is not None or angle_of(columns) is not None
-    made = made or bool(find_calibrations(layout, columns))
     return "run" if timed or made or loads_that_add(columns) else "table"
 
 
@@ -319,11 +282,6 @@ def _without_counter(
     return [other if column is clock else column for column in columns]
 
 
-def _seconds(column: DraftColumn, numbers: np.ndarray) -> np.ndarray:
-    """Return the numbers of a column of time in seconds."""
-    return conversion(column.read_unit or "s", "s")[0] * numbers[:, column.place - 1]
-
-
 def _may_be_heights(column: DraftColumn) -> bool:
     """Whether a single column may be heights: its name is not known, nor its unit another's."""
     name, unit, _ = bare_name(column)
@@ -334,11 +292,9 @@ def _may_be_heights(column: DraftColumn) -> bool:
     return converts(unit, "m") and height and not matches(name, unit)
 
 
-def _likely_unit(layout: Layout, numbers: np.ndarray, pitch: Amount | None, density: str) -> str:
+def _likely_unit(numbers: np.ndarray, pitch: Amount | None) -> str:
     """Return the unit that heights may be in: um, or nm where they were as large as the scan."""
-    step = (
-        pitch.si("m") if pitch is not None else positive(density, "m", "pitch") if density else 0.0
-    )
+    step = pitch.si("m") if pitch is not None else 0.0
     reach = float(np.nanmax(numbers) - np.nanmin(numbers)) if np.isfinite(numbers).any() else 0.0
     return "nm" if 0 < step * len(numbers) * _REACH < 1e-6 * reach else "um"
 

@@ -13,8 +13,8 @@ from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, radius_of, torque_of, turns_of
-from tribolab.reading.unknown.derivations.calibrations import SYMBOLS, find_calibrations
 from tribolab.reading.unknown.derivations.candidate_lines import confirmed_value, find_stated_load
+from tribolab.reading.unknown.derivations.gains import find_gain
 from tribolab.reading.unknown.derivations.inclined_contact import (
     axial_force_of,
     find_inclined,
@@ -30,7 +30,6 @@ from tribolab.reading.unknown.derivations.two_bodies import (
     shaft_of_torque,
     speed_symbol,
 )
-from tribolab.reading.unknown.header.counts import zero_in_counts
 from tribolab.reading.unknown.header.lengths import (
     find_arm,
     find_radius,
@@ -38,7 +37,6 @@ from tribolab.reading.unknown.header.lengths import (
     is_at_arm,
     slides_on_rim,
 )
-from tribolab.reading.unknown.header.programme import find_programme
 from tribolab.reading.unknown.header.settings import numeric_settings, text_settings
 from tribolab.reading.unknown.header.slip import find_slide_roll_ratio, stated_rotation
 from tribolab.reading.unknown.header.stroke_settings import (
@@ -78,8 +76,6 @@ class _Facts:
         # with a unit still to be filled in, a column is there all the same
         self.names = {c.quantity for c in self.columns if c.quantity and (c.used or c.fill_in)}
         self.values = list(numeric_settings(layout))
-        if "step" in self.names:
-            self.values += find_programme(layout)
         self.given: Known = {}
 
     def add(self, quantity: str, symbol: str, source: Source, number: float | None = None) -> None:
@@ -95,17 +91,11 @@ class _Facts:
 
 
 def find_known(layout: Layout, understood: Understood) -> KnownRun:
-    """Return what is known of a run.
-
-    Parameters
-    ----------
-    layout, understood
-        What was found out about the file.
-    """
+    """Return what is known of a run."""
     known = _Facts(layout, understood)
     doubt = _add_friction(known)
     _add_columns(known)
-    doubt = _add_calibrations(known) or doubt
+    doubt = _add_gains(known) or doubt
     pair = _pair_of(known)
     if pair is None:
         _add_track(known)
@@ -139,9 +129,6 @@ def _add_friction(known: _Facts) -> Amount | None:
         known.add_value("torque_zero", zero)
         known.add_value("arm", find_arm(known.values))
         return zero_in_doubt(layout, known.values, unit, said)
-    if zero is None:  # what a converter counts was not tared
-        numbers = known.understood.numbers[:, reading.place - 1]
-        zero = zero_in_counts(known.values, reading, numbers)
     if zero is not None:
         known.add("friction_reading", "friction_reading", reading)
         known.add_value("friction_zero", zero)
@@ -166,23 +153,17 @@ def _add_columns(known: _Facts) -> None:
         known.add_value("contact_area", area[0])
 
 
-def _add_calibrations(known: _Facts) -> Amount | None:
-    """Add signals and what makes quantities of them; return a zero of the friction in doubt."""
-    layout, values, said, doubt = known.layout, known.values, known.understood.zero, None
-    for quantity, column, members, _ in find_calibrations(layout, known.columns):
-        name, tared = quantity, any(role == "tare" for role, _, _ in members)
-        if quantity == "friction_force" and not tared:  # its zero may be in a line of its own
-            in_volts = find_zero(layout, values, "V", said)
-            in_newtons = None if in_volts is not None else find_zero(layout, values, "N", said)
-            doubt = zero_in_doubt(layout, values, "V", said)
-            doubt = doubt or zero_in_doubt(layout, values, "N", said)
-            tared = in_volts is not None
-            name = quantity if in_newtons is None else "friction_reading"
-            known.add_value(f"{name}_tare", in_volts)
-            known.add_value("friction_zero", in_newtons)
-        known.add(f"{name}_{'raw' if tared else 'signal'}", SYMBOLS[quantity], column)
-        for role, symbol, value in members:
-            known.add(f"{name}_{role}", symbol, value)
+def _add_gains(known: _Facts) -> Amount | None:
+    """Add forces in volts with a stated gain; return a zero of the friction that may be in it."""
+    doubt = None
+    for force in ("friction_force", "normal_force"):
+        gain = None if force in known.names else find_gain(known.layout, known.columns, force)
+        if gain is not None:
+            known.add(f"{force}_signal", f"{force}_signal", gain.column)
+            known.add_value(f"{force}_gain", gain.factor)
+            if force == "friction_force" and not known.understood.zero:
+                doubt = find_zero(known.layout, known.values, "N")
+                doubt = doubt or zero_in_doubt(known.layout, known.values, "N")
     return doubt
 
 

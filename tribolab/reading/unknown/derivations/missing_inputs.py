@@ -14,8 +14,8 @@ from tribolab.reading.unknown.columns.rotating_parts import (
     torque_of,
     unscaled_torque_of,
 )
-from tribolab.reading.unknown.derivations.calibrations import column_in_volts
 from tribolab.reading.unknown.derivations.derive import held_quantities
+from tribolab.reading.unknown.derivations.gains import column_in_volts
 from tribolab.reading.unknown.derivations.model import CRANK, SAYS_FRICTION, Follows
 from tribolab.reading.unknown.model import NO_NUMBERS, WHICH_FORCE, DraftColumn, Understood
 from tribolab.reversals import reversals
@@ -39,18 +39,12 @@ class Uncalibrated(NamedTuple):
             )
         return (
             f"what a volt of '{label}' is worth (such as 8.2 N/V), for the friction: 'tribolab "
-            "dialect' asks for it in a terminal"
+            "info FILE --write my.toml' asks for it in a terminal"
         )
 
 
 def lacking(understood: Understood, follows: Follows) -> list[MissingInput | Uncalibrated]:
-    """Return what a friction coefficient over speed needs, and neither columns nor text hold.
-
-    Parameters
-    ----------
-    understood, follows
-        What was found out about the file.
-    """
+    """Return what a friction coefficient over speed needs, and neither columns nor text hold."""
     columns = understood.columns
     known = {name: follows.given[name] for name in follows.given}
     at_arm = "arm_force" in known
@@ -82,13 +76,7 @@ def lacking(understood: Understood, follows: Follows) -> list[MissingInput | Unc
 
 
 def unknown_of(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
-    """Return the columns of which nothing is known, but those of what turns.
-
-    Parameters
-    ----------
-    columns
-        The columns as they are understood.
-    """
+    """Return the columns of which nothing is known, but those of what turns."""
     turning = (
         torque_of(columns),
         angle_of(columns),

@@ -8,7 +8,6 @@ import numpy as np
 
 from tribolab.reading.scans.stated_missing import take_stated
 from tribolab.reading.text.cells import split_row
-from tribolab.reading.unknown.derivations.distance_sensor import lost_values
 from tribolab.reading.unknown.header.settings import numeric_settings
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
@@ -31,7 +30,6 @@ def take_stated_missing(
     stated = [
         (v.text, v.number) for v in numeric_settings(layout, bare=True) if v.number == v.number
     ]
-    stated += lost_values(layout.text_above(bare=True))
     heights = [c.place - 1 for c in columns if c.used and c.quantity == "height"]
     taken = {number for place in heights for _, number, _ in take_stated(numbers[:, place], stated)}
     if not taken:

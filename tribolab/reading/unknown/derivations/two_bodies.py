@@ -43,17 +43,7 @@ class Pair(NamedTuple):
 def find_surface_speeds(
     layout: Layout, columns: Sequence[DraftColumn], numbers: np.ndarray
 ) -> Pair | None:
-    """Return the two columns of how fast two surfaces go, where their names are those of bodies.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    columns
-        The columns as they are understood.
-    numbers
-        Their numbers (rows, columns) as written.
-    """
+    """Return the two columns of how fast two surfaces go, where their names are those of bodies."""
     speeds = [(column, _speed_of(column)) for column in columns]
     texts = (layout.file.path.stem, *layout.text_above())
     for quantity in _SPEEDS:
@@ -89,15 +79,7 @@ def _speed_of(column: DraftColumn) -> str:
 
 
 def exclude_surface_speeds(columns: Sequence[DraftColumn], pair: Pair | None) -> list[DraftColumn]:
-    """Return columns of which neither surface's speed is that of the sliding.
-
-    Parameters
-    ----------
-    columns
-        The columns as they are understood.
-    pair
-        From `find_surface_speeds`.
-    """
+    """Return columns of which neither surface's speed is that of the sliding."""
     places = {column.place for column in pair.columns} if pair is not None else set()
     return [
         c._replace(quantity=None, used=False, guessed=(), options=(), fill_in="", note=_SURFACE)
@@ -108,15 +90,7 @@ def exclude_surface_speeds(columns: Sequence[DraftColumn], pair: Pair | None) ->
 
 
 def radii_of_surfaces(pair: Pair, values: Sequence[Amount]) -> tuple[Amount, ...]:
-    """Return the radii of two bodies that the text states; one of both where it states but one.
-
-    Parameters
-    ----------
-    pair
-        From `find_surface_speeds`.
-    values
-        From `tribolab.reading.unknown.header.settings.numeric_settings`.
-    """
+    """Return the radii of two bodies that the text states; one of both where it states but one."""
     sizes = [v._replace(to="m") for v in values if v.unit and converts(v.unit, "m")]
     sizes = [
         v._replace(scale=0.5) if v.means("diameter") else v
@@ -171,15 +145,7 @@ def speed_symbol(column: DraftColumn, name: str) -> tuple[DraftColumn, str]:
 
 
 def shaft_of_torque(layout: Layout, pair: Pair) -> int | None:
-    """Return on which body's shaft (0, 1) the torque is measured, if a line says so.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    pair
-        From `find_surface_speeds`.
-    """
+    """Return on which body's shaft (0, 1) the torque is measured, if a line says so."""
     torque = key_pattern("torque")
     clauses = [
         normalise_label(clause)

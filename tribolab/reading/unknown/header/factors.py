@@ -16,7 +16,7 @@ from tribolab.reading.lexicon.lexicon import (
     text_pattern,
 )
 from tribolab.reading.numbers import Number, numbers_in
-from tribolab.reading.unknown.header.counts import count_scale
+from tribolab.reading.unknown.header.calibration_lines import states_calibration, states_raw_zero
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
@@ -26,11 +26,6 @@ _MOST_CONTACTS = 12
 
 def unapplied_factors(layout: Layout) -> list[str]:
     """List the factors by which signals may still have to be multiplied: levers, gains, contacts.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
 
     Returns
     -------
@@ -64,7 +59,7 @@ def unapplied_height_factors(
         single = single_number(text)
         factor = single and not single[2] and says("height_factor", single[0]) and single[1] != 1
         step = whole and says("step_of_gauge", text) and not _states_one(text)
-        counted = any("/" in n.unit for n in numbers_in(text)) and count_scale(text) is not None
+        counted = states_calibration(text)
         if factor or ((step or counted) and not scaled):
             said.append(f"heights are read as they stand, not times '{shown(text, 40)}'")
     return said
@@ -103,6 +98,8 @@ def _unapplied(line: str) -> str:
     multiplies = any(_multiplies(line, number) and number.value != 1 for number in numbers)
     if multiplies or (says("signal", line) and says("scaled_in_words", line)):
         return f"signals are read as they stand, and not as the file says: '{shown(line, 60)}'"
+    if states_raw_zero(line):
+        return f"signals are read as they stand, without '{shown(line, 40)}'"
     single = single_number(line)
     if single is None or single[2] or single[1] == 1:
         return ""

@@ -15,13 +15,7 @@ _LONGEST = 200  # characters of a line that are looked at
 
 
 def slides_on_rim(layout: Layout) -> bool:
-    """Whether a file says that the track is the outside of what turns, as in block on ring.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    """
+    """Whether a file says that the track is the outside of what turns, as in block on ring."""
     texts = (layout.file.path.stem, *layout.text_above())
     return any(says("slides_on_rim", text[:_LONGEST]) for text in texts)
 
@@ -60,13 +54,7 @@ def find_radius(values: Sequence[Amount], *, rim: bool = False) -> Amount | None
 
 
 def find_ring(values: Sequence[Amount]) -> tuple[Amount, Amount] | None:
-    """Return the inner and the outer radius of a ring that slides on its face, or their diameters.
-
-    Parameters
-    ----------
-    values
-        From `numeric_settings`.
-    """
+    """Return the inner and outer radius of a ring that slides on its face, or their diameters."""
     for concept, scale in (("track_radius", 1.0), ("diameter", 0.5)):
         sizes = _lengths(values).of(concept)
         inner, outer = sizes.only("inner_side"), sizes.only("outer_side")
@@ -80,13 +68,7 @@ def find_ring(values: Sequence[Amount]) -> tuple[Amount, Amount] | None:
 
 
 def find_arm(values: Sequence[Amount]) -> Amount | None:
-    """Return the arm of a torque, if just one of a file's amounts is one.
-
-    Parameters
-    ----------
-    values
-        From `numeric_settings`.
-    """
+    """Return the arm of a torque, if just one of a file's amounts is one."""
     return _lengths(values).only("arm")
 
 
@@ -102,15 +84,7 @@ def is_at_arm(column: DraftColumn) -> bool:
 
 
 def confirm_lever_arm_force(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftColumn]:
-    """Let a force that is named as one on an arm be no guess if the text states the arm.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    columns
-        The columns as they are understood.
-    """
+    """Let a force that is named as one on an arm be no guess if the text states the arm."""
     held = [c for c in columns if c.used and c.quantity == "friction_force" and is_at_arm(c)]
     if len(held) != 1 or find_arm(numeric_settings(layout)) is None:
         return list(columns)

@@ -18,11 +18,6 @@ def find_load(values: Sequence[Amount]) -> Amount | None:
     """Return the load that the text before the table states, as a force; None if none, or several.
 
     If the text states none, that of the file's name. A load of zero is none.
-
-    Parameters
-    ----------
-    values
-        From `numeric_settings`.
     """
     fitting = Amounts(
         value._replace(name="set_normal_force", unit=_force_unit(value), to=None)
@@ -51,13 +46,7 @@ def _are_one(one: Amount, other: Amount) -> bool:
 
 
 def lifted_on_return(layout: Layout) -> bool:
-    """Whether the text says that nothing presses on the way back: a sled that is lifted.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    """
+    """Whether the text says that nothing presses on the way back: a sled that is lifted."""
     lines = (line[:_LONGEST] for line in layout.text_above())
     return any(_says_lifted(line) and says("on_return", line) for line in lines)
 
@@ -74,11 +63,5 @@ def _says_lifted(line: str) -> bool:
 
 
 def stated_number(value: Amount) -> float:
-    """Return the number that an amount's text states, in its unit; NaN if it is none.
-
-    Parameters
-    ----------
-    value
-        From `numeric_settings`.
-    """
+    """Return the number that an amount's text states, in its unit; NaN if it is none."""
     return value.scale * value.number

@@ -55,13 +55,7 @@ class Sampling(NamedTuple):
 
 
 def find_sampling(layout: Layout) -> Sampling | None:
-    """Return the sample rate, or the interval of samples, before the table; None if there is none.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    """
+    """Return the stated sample rate, or interval of samples; None if there is none."""
     if (above := interval_above(layout)) is not None:
         return Sampling(*above)
     lines = layout.text_above(bare=layout.width == 1)

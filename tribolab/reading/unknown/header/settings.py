@@ -36,7 +36,7 @@ def numeric_settings(layout: Layout, *, bare: bool = False) -> Amounts:
             number += 1
             name = f"{amount.name}_{number}"
         found.setdefault(name, amount._replace(name=name))
-    return Amounts(_of_steps(amount, layout) for amount in found.values() if _holds(amount, layout))
+    return Amounts(_of_steps(amount, layout) for amount in found.values())
 
 
 def text_settings(layout: Layout, *, bare: bool = False) -> tuple[tuple[str, str], ...]:
@@ -69,18 +69,6 @@ def lines_without_unit(layout: Layout, *, bare: bool = False) -> list[str]:
 
 def _text_above(layout: Layout, *, bare: bool) -> tuple[str, ...]:
     return tuple(layout.text_above(bare=bare or layout.width == 1))
-
-
-def _holds(amount: Amount, layout: Layout) -> bool:
-    """Whether no line between the rows states another: "Step 2: 30 rpm" below "Step 1: 10 rpm"."""
-    if layout.skip_lines is None or amount.source != "preamble":
-        return True
-    skipped = re.compile(layout.skip_lines)
-    inside = [line for block in layout.blocks for line in layout.lines[block.start : block.stop]]
-    texts = "\n".join(line for line in inside if line.strip() and skipped.match(line))
-    said = {match[1] for match in re.finditer(amount.pattern, texts, re.MULTILINE)}
-    first = re.search(amount.pattern, amount.text)
-    return not said - {first[1] if first else ""}
 
 
 def _of_steps(amount: Amount, layout: Layout) -> Amount:

@@ -18,13 +18,7 @@ _STEP = re.compile(rf"^{STEP_WORD}\d*n?$")
 
 
 def find_slide_roll_ratio(values: Sequence[Amount]) -> Amount | None:
-    """Return the slide-to-roll ratio that a file states as a number or in per cent, or None.
-
-    Parameters
-    ----------
-    values
-        From `numeric_settings`.
-    """
+    """Return the slide-to-roll ratio that a file states as a number or in per cent, or None."""
     fitting = [v for v in values if not v.own_unit or v.is_in("1")]
     ratio = Amounts(fitting).only("slide_roll_ratio")
     if ratio is None:
@@ -34,13 +28,6 @@ def find_slide_roll_ratio(values: Sequence[Amount]) -> Amount | None:
 
 def as_entrainment_speed(layout: Layout, columns: Sequence[DraftColumn]) -> list[DraftColumn]:
     """Take a speed next to a slide-to-roll ratio for the mean one of both surfaces.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    columns
-        The columns as they are understood.
 
     Returns
     -------
@@ -65,13 +52,7 @@ def as_entrainment_speed(layout: Layout, columns: Sequence[DraftColumn]) -> list
 
 
 def stated_rotation(values: Sequence[Amount]) -> Amount | None:
-    """Return the one rotation speed that the text states, as a value of the dialect.
-
-    Parameters
-    ----------
-    values
-        From `tribolab.reading.unknown.header.settings.numeric_settings`.
-    """
+    """Return the one rotation speed that the text states, as a value of the dialect."""
     turns = [value for value in values if _is_rotation(value)]
     return turns[0]._replace(unit="rpm", to="rad/s", name="rotation") if len(turns) == 1 else None
 

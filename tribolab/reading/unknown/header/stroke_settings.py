@@ -35,13 +35,6 @@ def find_strokes(values: Sequence[Amount], understood: Understood) -> Strokes | 
     """Return length and frequency of strokes, of the text above the table and of columns.
 
     A column takes precedence over the text: it says when the setting changes.
-
-    Parameters
-    ----------
-    values
-        From `numeric_settings`.
-    understood
-        What is known of the columns.
     """
     lengths, frequencies = _of_columns(understood)
     stroke, frequency, guess = _stated(values)
@@ -89,13 +82,7 @@ def strokes_from_answer(values: Sequence[Amount], said: tuple[str, str]) -> Stro
 
 
 def find_strokes_above(values: Sequence[Amount]) -> Strokes | None:
-    """Return the length and frequency of strokes that stand above the table.
-
-    Parameters
-    ----------
-    values
-        From `numeric_settings`.
-    """
+    """Return the length and frequency of strokes that stand above the table."""
     stroke, frequency, guess = _stated(values)
     if stroke is None or frequency is None:
         return None
@@ -121,13 +108,7 @@ def strokes_of_turns(values: Sequence[Amount], often: DraftColumn) -> Strokes | 
 
 
 def stated_strokes(values: Sequence[Amount]) -> tuple[Amount, ...]:
-    """Return what stands above the table of strokes, to be held against a recorded position.
-
-    Parameters
-    ----------
-    values
-        From `numeric_settings`.
-    """
+    """Return what stands above the table of strokes, to be held against a recorded position."""
     strokes = find_strokes_above(values)
     if strokes is None or strokes.guess:
         return ()

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
+from tribolab.errors import shown
 from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.interpret.names import matches
+from tribolab.reading.interpret.phrases import phrases
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import part_pattern, says
+from tribolab.reading.numbers import decimal
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.unknown.header.settings import numeric_settings
+from tribolab.reading.unknown.layout.step_marks import STEP_WORD
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
 _LONGEST = 300  # characters of a line that are looked at
+_STEP_ZERO = re.compile(rf"{STEP_WORD}\W{{0,3}}0(?!\d)", re.IGNORECASE)
+_ROW = re.compile(r"\s*\"?[01]\"?\s*[,;\t]")  # of a programme: its first step
 STILL = "it is still in the signal"
 _OTHER = {"normal_force", "set_normal_force", "temperature", "position"}
 
@@ -28,7 +35,7 @@ def find_zero(layout: Layout, values: Sequence[Amount], unit: str, said: str = "
     values
         From `numeric_settings`.
     unit
-        "N" of a force, "N m" of a torque, "V" of a signal.
+        "N" of a force, "N m" of a torque.
     said
         What a person said of it: "taken off", or "in it".
 
@@ -41,20 +48,14 @@ def find_zero(layout: Layout, values: Sequence[Amount], unit: str, said: str = "
     in_it = said == "in it" or (not said and _is_still_in(layout, zero))
     if zero is None or not in_it:
         return None
-    name = {"N m": "torque_zero", "V": "friction_signal_zero"}.get(unit, "friction_zero")
+    name = "torque_zero" if unit == "N m" else "friction_zero"
     return zero._replace(name=name, unit=zero.own_unit, to=unit)
 
 
 def zero_in_doubt(
     layout: Layout, values: Sequence[Amount], unit: str, said: str = ""
 ) -> Amount | None:
-    """Return a stated zero of which nothing says whether it was taken off the signal.
-
-    Parameters
-    ----------
-    layout, values, unit, said
-        As for `find_zero`.
-    """
+    """Return a stated zero of which nothing says whether it was taken off the signal."""
     zero = _stated(values, unit)
     if zero is None or said or _is_still_in(layout, zero):
         return None
@@ -63,15 +64,7 @@ def zero_in_doubt(
 
 
 def load_zeros_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> list[str]:
-    """Say of stated zeros of the load that the numbers of its one column are read without them.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    columns
-        As they are understood.
-    """
+    """Say of stated zeros of the load that the numbers of its one column are read without them."""
     forces = any(c.used and c.quantity == "normal_force" for c in columns)
     volts = any(converts(c.file_unit or split_name(c.label)[1] or "", "V") for c in columns)
     zeros = [
@@ -90,14 +83,35 @@ def load_zeros_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> list[
     ]
 
 
-def friction_column(columns: Sequence[DraftColumn]) -> DraftColumn | None:
-    """Return the column that holds the friction force, of which a zero may be taken off.
+def unloaded_start_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> list[str]:
+    """Say of a record that is stated to begin without contact that its zero is not taken off."""
+    held = {c.quantity for c in columns if c.used}
+    if "normal_force" in held or "friction_coefficient" in held:
+        return []  # the load tells where nothing presses
+    lines = (line.strip()[:_LONGEST] for line in layout.text_above())
+    said = [line for line in lines if _says_unloaded_start(line)]
+    return [f"the friction is read as it stands, although '{shown(line, 60)}'" for line in said[:1]]
 
-    Parameters
-    ----------
-    columns
-        As they are understood.
+
+def _says_unloaded_start(line: str) -> bool:
+    """Whether a line says that nothing presses at first, in words or as a load of zero.
+
+    >>> lines = ("first 3 s without load", "step 0: load 0 N", "0;0 rpm;0 N", "no load cell")
+    >>> [_says_unloaded_start(line) for line in lines]
+    [True, True, True, False]
     """
+    begins = says("at_start", line) or _STEP_ZERO.search(line)
+    if begins and says("zero_word", line):
+        return True
+    unloaded = says("without_contact", line.replace("load cell", "loadcell"))
+    unloaded = unloaded or any(
+        said.unit == "N" and not decimal(said.number) for said in phrases(line)
+    )
+    return bool(unloaded and (begins or _ROW.match(line)))
+
+
+def friction_column(columns: Sequence[DraftColumn]) -> DraftColumn | None:
+    """Return the column that holds the friction force, of which a zero may be taken off."""
     held = [c for c in columns if c.used and c.quantity == "friction_force" and not c.optional]
     return held[0] if len(held) == 1 else None
 

@@ -51,10 +51,15 @@ def _is_footer(line: str, first: str, grammar: Grammar) -> bool:
 
 
 def main_blocks(blocks: list[Block]) -> tuple[list[Block], int]:
-    """Return the blocks under the same header that hold most numbers; how many others there are."""
+    """Return the blocks under the same header that hold most numbers; how many others there are.
+
+    Blocks without a header count only if none of their width has one.
+    """
     weight: Counter[tuple[tuple[str, ...] | None, int]] = Counter()
+    headed = {block.width for block in blocks if block.heading is not None}
     for block in blocks:
-        weight[_key(block)] += len(block.rows) * block.width
+        if block.heading is not None or block.width not in headed:
+            weight[_key(block)] += len(block.rows) * block.width
     key = weight.most_common(1)[0][0]
     main = [block for block in blocks if _key(block) == key]
     if key[0] is None:  # without a header nothing joins several tables

@@ -20,8 +20,7 @@ class HeldColumn(NamedTuple):
     """A column: its name as the reader finds it, that within its table, its unit, its numbers.
 
     `said` is whether the reader finds the unit by itself; `shown` is what it is called for whoever
-    looks for its meaning, where that is not its name. `unloaded` are its numbers in a table without
-    contact, if there is one.
+    looks for its meaning, where that is not its name.
     """
 
     name: str
@@ -31,7 +30,6 @@ class HeldColumn(NamedTuple):
     table: str = ""
     said: bool = True
     shown: str = ""
-    unloaded: np.ndarray | None = None
 
 
 def better_name(name: str, meaning: str) -> str:

@@ -13,8 +13,8 @@ from tribolab.errors import ReadError
 from tribolab.reading.content.containers import seconds_of
 from tribolab.reading.dialect.containers import name_and_unit
 from tribolab.reading.raw.clocks import INTERVAL_PATTERN, OneClock, on_one_clock
-from tribolab.reading.raw.containers.read import CONTAINERS, IN_GROUPS, read_container
-from tribolab.reading.raw.containers.workbook import read_sheet, read_sheets
+from tribolab.reading.raw.containers.read import CONTAINERS, read_container
+from tribolab.reading.raw.containers.workbook import read_sheet
 from tribolab.reading.raw.model import RawColumn, RawFile, Setting, text_of
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.text.first_bytes import File
@@ -28,13 +28,10 @@ from tribolab.reading.unknown.layout.container_column import (
 from tribolab.reading.unknown.layout.header import Heading
 from tribolab.reading.unknown.layout.sheets import main_sheet
 from tribolab.reading.unknown.layout.step_marks import Block
-from tribolab.reading.unknown.layout.steps import HeldSteps, find_steps, unit_beside
 from tribolab.reading.unknown.layout.text_layout import Held, Layout
 from tribolab.reading.unknown.model import Understood
 
 DRAFTED_FROM = CONTAINERS | {"excel"}
-_UNLOADED = 0.3  # of the usual load; its zero may be as large
-_WITH_ZERO = {"friction_force", "normal_force", "friction_coefficient", None}
 
 
 def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
@@ -51,16 +48,14 @@ def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
         If it holds no columns of numbers of one length, or is damaged.
     """
     try:
-        held, raw, steps = _workbook(file) if file.container == "excel" else _container(file)
+        held, raw = _workbook(file) if file.container == "excel" else _container(file)
     except (ReadError, ImportError):
         raise
     except Exception as error:  # each of these libraries has its own ways to say "damaged"
         raise ReadError(f"this {file.container} file cannot be read", where=file.path) from error
-    if steps is not None:
-        return _layout_of_steps(file, held, raw, steps)
     placed, settings, clocks, guesses = _whole(raw)
     text = text_of(([clocks.setting] if clocks else []) + settings)
-    every = [_held(column, table, text, held.form) for table, column in placed]
+    every = [_held(column, table, held.form) for table, column in placed]
     every = [column for column in every if column.values.dtype.kind in "fiu" and column.values.size]
     length = max((c.values.size for c in every), default=0)
     columns = one_of_each([c for c in every if c.values.size == length])
@@ -71,31 +66,21 @@ def layout_of_columns(file: File) -> tuple[Layout, tuple[HeldColumn, ...]]:
     held = held._replace(increment=clocks.clock.interval if clocks else 0.0)
     if held.others:
         guesses = (*guesses, f"the longest of several alike is meant, not {held.others}")
-    layout = _laid_out(file, columns, [text], [length])
+    layout = _laid_out(file, columns, text, length)
     return layout._replace(held=held, guesses=guesses), tuple(columns)
 
 
-def _container(file: File) -> tuple[Held, RawFile, HeldSteps | None]:
-    """Return where columns are in a container, its tables, and those of them that are steps."""
+def _container(file: File) -> tuple[Held, RawFile]:
+    """Return where columns are in a container, and its tables."""
     form = {"netcdf": "hdf5"}.get(file.container, file.container)  # both begin alike
-    raw = _without_units(read_container(file.path, form))
-    steps = find_steps(raw) if form in IN_GROUPS else None
-    if form == "json" and len(raw.tables) > 1:
-        steps = HeldSteps(raw.tables, "", ())
-    return Held(form), raw, steps
+    return Held(form), _without_units(read_container(file.path, form))
 
 
-def _workbook(file: File) -> tuple[Held, RawFile, HeldSteps | None]:
-    """Return the main sheet of a workbook, or all that are steps if others have its columns."""
-    held, names = main_sheet(file.path)
-    if held.others:
-        wanted = [split_name(name)[0] for name in names]
-        sheets = read_sheets(file.path, wanted, held.line, units_below=held.units_below)
-        sheets = _without_units(sheets)
-        if (steps := find_steps(sheets)) is not None:
-            return held, sheets, steps
+def _workbook(file: File) -> tuple[Held, RawFile]:
+    """Return the main sheet of a workbook."""
+    held = main_sheet(file.path)
     sheet = read_sheet(file.path, held.sheet, held.line, units_below=held.units_below)
-    return held, _without_units(sheet), None
+    return held, _without_units(sheet)
 
 
 def _without_units(raw: RawFile) -> RawFile:
@@ -134,73 +119,30 @@ def _whole(raw: RawFile) -> tuple[_Placed, list[Setting], OneClock | None, tuple
     return placed, list(raw.as_one_table().settings), clocks, doubts
 
 
-def _held(column: RawColumn, table: str, text: str, form: str, *, step: bool = False) -> HeldColumn:
-    """Return a column with the unit that settings say, and moments as seconds from the first."""
+def _held(column: RawColumn, table: str, form: str) -> HeldColumn:
+    """Return a column, of moments as seconds from the first."""
     label, unit, values = column.label, column.unit, column.values
-    name = label if step or form == "tdms" else column.path or label
+    name = label if form == "tdms" else column.path or label
     if values.dtype.kind in "Mm":
         seconds = seconds_of(values)
         known = seconds[np.isfinite(seconds)]
         passed = seconds - known[0] if known.size else seconds
         return HeldColumn(name, label, "s", passed, table, said=False, shown=f"time {label}")
-    beside = None if unit else unit_beside(text, label, counted=values.dtype.kind in "iu")
-    shown = better_name(label, column.meaning)
-    return HeldColumn(name, label, unit or beside, values, table, said=beside is None, shown=shown)
+    return HeldColumn(name, label, unit, values, table, shown=better_name(label, column.meaning))
 
 
-def _layout_of_steps(
-    file: File, held: Held, raw: RawFile, found: HeldSteps
-) -> tuple[Layout, tuple[HeldColumn, ...]]:
-    """Lay steps out one below the other, each below its settings and the names."""
-    clocks = [on_one_clock(table.columns) for table in found.steps] if held.form == "tdms" else []
-    tables, texts = [], []
-    for number, table in enumerate(found.steps):
-        clock = clocks[number] if clocks else None
-        columns = table.columns
-        if clock is not None:
-            columns = tuple(
-                c._replace(values=v) for c, v in zip(columns, clock.values, strict=True)
-            )
-        tables.append(columns)
-        texts.append(text_of([*([clock.setting] if clock else []), *table.settings]))
-    said = "\n".join([text_of(raw.settings), texts[0]])
-    texts[0] = said.strip("\n")
-    zeros = {column.label: column.values for table in found.zeros for column in table.columns}
-    held_columns = []
-    for place, column in enumerate(tables[0]):
-        values = np.concatenate([columns[place].values for columns in tables])
-        own = _held(column._replace(values=values), "", said, held.form, step=True)
-        group = found.steps[0].name if held.form == "tdms" else ""
-        held_columns.append(own._replace(table=group, unloaded=zeros.get(column.label)))
-    rows = [columns[0].values.size for columns in tables]
-    layout = _laid_out(file, held_columns, texts, rows)
-    increment = 1.0 if clocks and clocks[0] is not None else 0.0  # each step says its own
-    held = held._replace(steps=found.pattern, zero=found.zero, increment=increment)
-    return layout._replace(held=held), tuple(held_columns)
-
-
-def _laid_out(
-    file: File, columns: Sequence[HeldColumn], texts: Sequence[str], rows: Sequence[int]
-) -> Layout:
-    """Return the layout of tables of so many rows, each below a text and the names of columns."""
+def _laid_out(file: File, columns: Sequence[HeldColumn], text: str, rows: int) -> Layout:
+    """Return the layout of a table of so many rows, below a text and the names of columns."""
     cells = tuple(_cell(column) for column in columns)
     if not any(cells):
         raise ReadError("its columns have no names", where=file.path)
-    most = max(ROWS // len(rows), 2)
-    lines: list[str] = []
-    blocks: list[Block] = []
-    kept: list[int] = []
-    first = 0
-    for text, count in zip(texts, rows, strict=True):
-        lines += [*text.split("\n"), "\t".join(cells)] if text else ["\t".join(cells)]
-        above = Heading(len(lines) - 1, None, cells, (), True)
-        shown = min(count, most)
-        blocks.append(Block(len(lines), len(lines), tuple(range(shown)), len(cells), above))
-        kept += range(first, first + shown)
-        first += count
-    numbers = np.empty((len(kept), len(columns)))
+    lines = [*text.split("\n"), "\t".join(cells)] if text else ["\t".join(cells)]
+    heading = Heading(len(lines) - 1, None, cells, (), True)
+    shown = min(rows, ROWS)
+    block = Block(len(lines), len(lines), tuple(range(shown)), len(cells), heading)
+    numbers = np.empty((shown, len(columns)))
     for place, column in enumerate(columns):
-        numbers[:, place] = column.values[kept]
+        numbers[:, place] = column.values[:shown]
     return Layout(
         file=file,
         encoding="utf-8",
@@ -209,16 +151,15 @@ def _laid_out(
         decimal=".",
         width=len(cells),
         lines=tuple(lines),
-        blocks=tuple(blocks),
+        blocks=(block,),
         others=0,
-        heading=blocks[0].heading,
+        heading=heading,
         header_line=None,
         header_pattern=None,
         skip=0,
-        repeats=len(rows) > 1,
+        repeats=False,
         step=None,
         end=None,
-        skip_lines=None,
         whole=True,
         notes=(),
         guesses=(),
@@ -235,27 +176,12 @@ def _cell(column: HeldColumn) -> str:
 def as_held(understood: Understood, columns: Sequence[HeldColumn], held: Held) -> Understood:
     """Return what was understood, with the columns named as the file's reader finds them."""
     named = []
-    loaded = held.zero and _is_loaded(understood, columns)
     for column, own in zip(understood.columns, columns, strict=True):
         unit = column.unit if own.said or column.unit is not None else own.unit
-        told = own.unloaded is not None and column.quantity in _WITH_ZERO and not loaded
-        zero = held.zero if told else ""
         group = own.table if held.form == "tdms" else ""
         column = column._replace(name=own.name, group=group, occurrence=1)
-        named.append(column._replace(unit=unit, zero=zero))
-    if loaded:
-        guess = f"{held.zero} is no step of the run by its name, though it is under load"
-        understood = understood._replace(guesses=(*understood.guesses, guess))
+        named.append(column._replace(unit=unit))
     timed = any(column.used and column.quantity == "time" for column in named)
     if held.increment and understood.kind == "run" and not timed:
         understood = understood._replace(rate_pattern=INTERVAL_PATTERN, rate_unit="s")
     return understood._replace(columns=tuple(named), missing=())
-
-
-def _is_loaded(understood: Understood, columns: Sequence[HeldColumn]) -> bool:
-    """Whether a table that is named as one without contact has a load all the same."""
-    for column, own in zip(understood.columns, columns, strict=True):
-        if column.quantity == "normal_force" and own.unloaded is not None:
-            usual = float(np.nanpercentile(np.abs(own.values), 75))
-            return abs(float(np.nanmedian(own.unloaded))) > _UNLOADED * usual
-    return False

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 
 from tribolab.reading.lexicon.lexicon import eastern_words, known_words
 from tribolab.reading.text.cells import split_row
-from tribolab.reading.text.east_asian_encodings import eastern_encoding
 from tribolab.reading.text.first_bytes import HEAD, wide_encoding
 
 _EASTERN = ("gb18030", "cp932", "big5", "cp949", "cp1251")
@@ -103,61 +102,30 @@ class Grammar:
 
 
 def find_encoding(head: bytes) -> tuple[str, list[str]]:
-    """Return the encoding, and what was guessed of it (which changes no number)."""
+    """Return the encoding, and what was guessed of it (which changes no number).
+
+    Text that is not UTF-8 is in the encoding in which it has the most known words; without any in
+    that of Western Europe.
+    """
     if wide := wide_encoding(head):
         return wide, []
     try:
         # the head may end inside a character
         head[: max(len(head) - 3, 0) if len(head) == HEAD else None].decode("utf-8")
     except UnicodeDecodeError:
-        if eastern := _eastern(head) or eastern_encoding(head, whole=len(head) < HEAD):
+        if eastern := _eastern(head):
             return eastern, [f"the encoding is {eastern}: names of columns are words in it"]
         name = _of_single_bytes(head)
         return name, [f"the encoding is {name}: the file is not UTF-8"]
     return "utf-8", []
 
 
-# Words of Cyrillic letters are bytes above 0xc0 side by side, as Western words never are; between
-# ASCII letters, a few bytes are letters in the middle of Europe or in Turkey and signs elsewhere
-_CYRILLIC = re.compile(rb"[\xc0-\xff\xa8\xb8]{3,}")
-_CENTRAL = re.compile(rb"[A-Za-z][\xb3\xb9\xbf\x9f\x9d\xbe\xbc](?=[a-z])|(?<![^\s;,])\xa3(?=[a-z])")
-_TURKISH = re.compile(rb"[A-Za-z][\xf0\xfe]|\xfe(?=[a-z])|[A-Za-z]\xfd[a-z]{2}\w*\xfd")
-_MOSTLY, _HALF = 0.8, 0.5
 _BEGINNING = 1 << 15  # bytes: settings and names stand there
 _SINGLE_BYTES = (
     *("latin-1", "cp1252", "cp1250", "iso8859-2", "cp1254", "cp1251", "koi8-r", "cp1253"),
     *("cp437", "cp852", "cp866", "mac-roman"),
 )
-_COMMON_LETTERS = {  # half and more of any text in these languages
-    "cp1251": frozenset("оеаинтсрвлк"),
-    "koi8-r": frozenset("оеаинтсрвлк"),
-    "cp1253": frozenset("αοιετσνρηά"),
-}
-
-
-def _common(words: bytes, encoding: str) -> float:
-    """Return which share of bytes are common letters in an encoding, small ones above."""
-    text = words.decode(encoding, errors="replace")
-    share = sum(sign in _COMMON_LETTERS[encoding] for sign in text.lower()) / max(len(text), 1)
-    return share + 0.01 * sum(map(str.islower, text)) / max(len(text), 1)
-
-
-def _of_single_bytes(head: bytes) -> str:
-    """Return in which encoding of one byte a letter a text is, by which of them stand together."""
-    if told := _by_terms(head):
-        return told
-    high = sum(byte >= 0x80 for byte in head)
-    words = b"".join(_CYRILLIC.findall(head))
-    if len(words) >= _MOSTLY * high:
-        common = {name: _common(words, name) for name in _COMMON_LETTERS}
-        best = max(common, key=lambda name: common[name])
-        if common[best] >= _HALF:
-            return best
-    if _CENTRAL.search(head):
-        return "cp1250"
-    if _TURKISH.search(head):
-        return "cp1254"
-    return "cp1252" if re.search(rb"[\x80-\x9f]", head) else "latin-1"
+_EASTERN_UNITS = re.compile(r"(?<!\w)(?:μm|\u2103)(?!\w)")  # where no word is known
 
 
 @functools.cache
@@ -166,14 +134,16 @@ def _terms_with_own_letters() -> frozenset[str]:
     return frozenset(term for term in every if not term.isascii() and len(term) > 2)
 
 
-def _by_terms(head: bytes) -> str:
-    """Return the encoding in which most is said in terms of laboratories; "" where none is."""
+def _of_single_bytes(head: bytes) -> str:
+    """Return in which encoding of one byte a letter most is said in terms of laboratories."""
     said = {}
     for name in _SINGLE_BYTES:
         text = head[:_BEGINNING].decode(name, errors="replace").lower()
         said[name] = sum(len(term) for term in _terms_with_own_letters() if term in text)
     best = max(said, key=lambda name: said[name])  # of equals the first
-    return best if said[best] else ""
+    if said[best]:
+        return best
+    return "cp1252" if re.search(rb"[\x80-\x9f]", head) else "latin-1"
 
 
 def _eastern(head: bytes) -> str:
@@ -185,7 +155,8 @@ def _eastern(head: bytes) -> str:
         except UnicodeDecodeError:
             continue
         written = "".join(text.lower().split())  # as words are in the vocabulary
-        known[name] = sum(word in written for word in eastern_words())
+        known[name] = 2 * sum(word in written for word in eastern_words())
+        known[name] += bool(_EASTERN_UNITS.search(text)) and name != "cp1251"
     best = max(known, key=lambda name: known[name], default="")
     return best if best and known[best] else ""
 

@@ -20,11 +20,6 @@ _DIMENSIONS = {"Time": "s", "Frequency": "Hz"}
 def units_above(layout: Layout) -> dict[int, str]:
     """Return the units of the columns (from 1) that lines above the names say.
 
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-
     Returns
     -------
     dict
@@ -46,13 +41,7 @@ def units_above(layout: Layout) -> dict[int, str]:
 
 
 def interval_above(layout: Layout) -> tuple[str, str] | None:
-    """Return a pattern of the interval of samples, and its unit, where no column of X holds it.
-
-    Parameters
-    ----------
-    layout
-        From `tribolab.reading.unknown.layout.text_layout.find_layout`.
-    """
+    """Return a pattern of the interval of samples, and its unit, where no column of X holds it."""
     said = _said_above(layout)
     apart, of = said.get("Delta_X", []), said.get("X_Dimension", ["Time"])
     if not apart or not apart[0] or of[:1] != ["Time"]:

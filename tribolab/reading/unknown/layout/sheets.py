@@ -15,8 +15,8 @@ _ABOVE = 40  # rows of a sheet above its names
 _MOMENTS = (dt.datetime, dt.time, dt.timedelta)
 
 
-def main_sheet(path: Path) -> tuple[Held, set[str]]:
-    """Return where the sheet is that holds most rows of numbers below names, and these names.
+def main_sheet(path: Path) -> Held:
+    """Return where the sheet is that holds most rows of numbers below names.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def main_sheet(path: Path) -> tuple[Held, set[str]]:
         raise ReadError("no sheet holds numbers below names", where=path)
     _, held, names = max(tables, key=lambda table: table[0])
     alike = [t[1].sheet for t in tables if t[1] is not held and len(t[2] & names) > 1]
-    return held._replace(others=", ".join(f"'{shown(sheet, 30)}'" for sheet in alike[:4])), names
+    return held._replace(others=", ".join(f"'{shown(sheet, 30)}'" for sheet in alike[:4]))
 
 
 def _names_row(rows: Sequence[Sequence[object]]) -> int | None:

@@ -5,16 +5,14 @@ Only the first megabyte is looked at line by line, and the end of a longer file 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.errors import ReadError, shown
 from tribolab.reading.dialect.delimited.normalised_text import line_feeds
 from tribolab.reading.raw import limits
-from tribolab.reading.text.arrangements import Arrangement
 from tribolab.reading.text.cells import split_row
 from tribolab.reading.text.first_bytes import HEAD, File
 from tribolab.reading.text.number_spelling import (
@@ -24,8 +22,6 @@ from tribolab.reading.text.number_spelling import (
     without_commas_in_quotes,
 )
 from tribolab.reading.text.thousands import Mark, find_thousands, without_thousands
-from tribolab.reading.text.wrapped_lines import numbers_in, unwrapped
-from tribolab.reading.unknown.layout.arrangement import arranged, arranged_table
 from tribolab.reading.unknown.layout.blocks import find_blocks, main_blocks
 from tribolab.reading.unknown.layout.header import Heading
 from tribolab.reading.unknown.layout.lines import (
@@ -41,15 +37,11 @@ from tribolab.reading.unknown.layout.patterns import (
     last_lines,
     step_pattern,
 )
-from tribolab.reading.unknown.layout.step_marks import Block, without_marks
+from tribolab.reading.unknown.layout.step_marks import Block
 
-_MOST_IN_A_LINE = 64
-_LONGEST = 200  # characters of a line that are looked at
-_COUNT = re.compile(r"(?<![\d.,])(\d{2,7})(?![\d.,])[^\d]{0,20}$")  # "Number of points: 5600"
 _FEW = 20  # lines at the end that tell what parts cells
 _CELLS = 4  # times as many marks as columns: blanks that align, commas of decimals
 _WIDE, _FEWEST_OF_WIDE = 1000, 5  # columns, and rows: a line end that is lost makes such a line
-_MOST_TURNED = 1 << 28  # bytes of a file of few long lines
 _MOST_ABOVE = 500  # lines of text above a table that are looked at
 
 
@@ -57,9 +49,7 @@ class Held(NamedTuple):
     """Where columns are in a file that names them: its format, and of a workbook the sheet.
 
     `increment` is the time [s] from row to row where the file has a clock and no column of it;
-    `others` names tables besides the chosen one that have columns of the same names. `steps` is
-    the pattern of the names of tables that are steps, `zero` where a zero is read, as a dialect
-    says both.
+    `others` names tables besides the chosen one that have columns of the same names.
     """
 
     form: str
@@ -68,8 +58,6 @@ class Held(NamedTuple):
     units_below: bool = False
     increment: float = 0.0
     others: str = ""
-    steps: str = ""
-    zero: str = ""
 
 
 class Layout(NamedTuple):
@@ -95,15 +83,12 @@ class Layout(NamedTuple):
     repeats: bool
     step: str | None
     end: str | None
-    skip_lines: str | None
     whole: bool
     notes: tuple[str, ...]
     guesses: tuple[str, ...]
     held: Held | None = None
     thousands: Mark = ""
     quoted: bool = False
-    wrapped: bool = False
-    arrangement: Arrangement = "below names"
     foot: tuple[str, ...] = ()
     numbers: np.ndarray | None = None
 
@@ -194,8 +179,6 @@ def find_layout(file: File) -> Layout:
     encoding, notes = find_encoding(file.head)
     guesses: list[str] = []
     raw = file.head if file.size <= HEAD else file.head[: file.head.rfind(b"\n") + 1]
-    if file.size > HEAD and raw.count(b"\n") < _FEW and file.size <= _MOST_TURNED:
-        raw = file.path.read_bytes()  # a signal to a row
     text = raw.decode(encoding, errors="replace").removeprefix("\ufeff")
     text = usual(text) if is_unusual(text) else text
     quoted = has_commas_in_quotes(text)
@@ -204,7 +187,6 @@ def find_layout(file: File) -> Layout:
     if thousands := find_thousands(lines):
         apart = any("\t" in line or ";" in line for line in lines[-_FEW:])
         lines = tuple(without_thousands(x, thousands, ";" if apart else ",") for x in lines)
-    lines, arrangement = arranged(lines)
     _refuse_wide(file, lines)
     grammar = find_grammar(lines)
     if grammar is None:
@@ -212,20 +194,10 @@ def find_layout(file: File) -> Layout:
             f"{file.path}: no table of numbers stands in the file; a dialect describes text with "
             "at least one row of numbers"
         )
-    blocks, skip_lines = without_marks(lines, find_blocks(lines, grammar), grammar)
+    blocks = find_blocks(lines, grammar)
     main, others = main_blocks(blocks)
-    plain = arrangement == "below names"
-    if plain and (other := arranged_table(lines, main[0], grammar.delimiter)):
-        lines, arrangement = other
-        blocks, skip_lines = without_marks(lines, find_blocks(lines, grammar), grammar)
-        main, others = main_blocks(blocks)
-    wrapped = file.size <= HEAD and _go_on(lines, main, grammar)
-    if wrapped:
-        table = "\n".join(lines[main[0].start :])
-        lines = (*lines[: main[0].start], *unwrapped(table, grammar.delimiter).split("\n"))
-        blocks, skip_lines = without_marks(lines, find_blocks(lines, grammar), grammar)
-        main, others = main_blocks(blocks)
     first = main[0]
+    guesses += _rows_that_may_belong(lines, blocks, main, grammar)
     rows = sum(len(block.rows) for block in main)
     if first.width > limits.COLUMNS.value or (first.width > _WIDE and rows < _FEWEST_OF_WIDE):
         raise ReadError(
@@ -237,7 +209,7 @@ def find_layout(file: File) -> Layout:
     if heading and pattern is None and len(main) > 1:
         main, others = main[:1], others + len(main) - 1
         guesses.append("only the first of several tables is read: their headers are not unique")
-    tail = last_lines(file, encoding) if arrangement == "below names" else []
+    tail = last_lines(file, encoding)
     end = end_pattern(lines, main, tail, grammar)
     if tail and pattern is not None and end is not None:
         repeats = True  # only then is the whole file searched for the end of the table
@@ -264,16 +236,26 @@ def find_layout(file: File) -> Layout:
         repeats=repeats,
         step=step_pattern(lines, main) if repeats else None,
         end=end,
-        skip_lines=skip_lines,
-        whole=file.size <= HEAD or arrangement == "a signal to a row",
+        whole=file.size <= HEAD,
         notes=tuple(notes),
         guesses=tuple(guesses),
         thousands=thousands,
         quoted=quoted,
-        wrapped=wrapped,
-        arrangement=arrangement,
         foot=_foot(lines, main, tail, grammar) if end is not None and len(main) == 1 else (),
     )
+
+
+def _rows_that_may_belong(
+    lines: Sequence[str], blocks: Sequence[Block], main: Sequence[Block], grammar: Grammar
+) -> list[str]:
+    """Say of rows below a line of text that they are not read: the table may go on there."""
+    chosen = next(n for n, block in enumerate(blocks) if block == main[-1])
+    later = blocks[chosen + 1 :]
+    alike = (b for b in later if b.heading is None and b.width == main[-1].width)
+    rows = sum(len(b.rows) for b in alike if not grammar.is_footer(lines[b.start]))
+    mark = next((line.strip() for line in lines[main[-1].stop :] if line.strip()), "")
+    said = f"the table ends at '{shown(mark, 40)}': {rows} rows below it are not read"
+    return [said] if rows else []
 
 
 def _foot(
@@ -284,13 +266,3 @@ def _foot(
         return tuple(lines[main[-1].stop :])
     last = max((n for n, row in enumerate(tail, 1) if grammar.width(row)), default=len(tail))
     return tuple(tail[last:])
-
-
-def _go_on(lines: Sequence[str], main: Sequence[Block], grammar: Grammar) -> bool:
-    """Whether one column goes on from line to line: as many numbers as the text above says."""
-    first = main[0]
-    if len(main) > 1 or first.heading is not None or not 1 < first.width <= _MOST_IN_A_LINE:
-        return False
-    count = numbers_in("\n".join(lines[first.start :]), grammar.delimiter)
-    above = (_COUNT.search(line[:_LONGEST]) for line in lines[: first.start])
-    return len(first.rows) > 1 and count in {int(match[1]) for match in above if match}

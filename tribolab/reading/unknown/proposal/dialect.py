@@ -70,13 +70,7 @@ class Described(NamedTuple):
 
 
 def describe(layout: Layout, understood: Understood) -> Described:
-    """Return what a dialect has to say of a file.
-
-    Parameters
-    ----------
-    layout, understood
-        What was found out about the file.
-    """
+    """Return what a dialect has to say of a file."""
     follows = what_follows(layout, understood)
     proposed, stated = _values(layout, understood, follows)
     if layout.delimiter == "whitespace":
@@ -84,7 +78,6 @@ def describe(layout: Layout, understood: Understood) -> Described:
             header_pattern=any_blanks(layout.header_pattern),
             step=any_blanks(layout.step),
             end=any_blanks(layout.end),
-            skip_lines=any_blanks(layout.skip_lines),
         )
         understood = understood._replace(rate_pattern=any_blanks(understood.rate_pattern))
         proposed = [value._replace(pattern=any_blanks(value.pattern)) for value in proposed]
@@ -126,7 +119,6 @@ def dialect_of(name: str, described: Described) -> Dialect:
         "recognise": _recognise(described),
         "text": set_keys(Text, text if held is not None else _text(layout, understood)),
         "header": set_keys(Header, _header(layout) if held is None else _sheet(layout)),
-        "tables": {"steps": held.steps} if held is not None and held.steps else None,
         "time": set_keys(Time, _time(understood)),
         "rows": {"are": "points"} if understood.points else None,
         "speed": _speed(described),
@@ -188,7 +180,7 @@ def _recognise(described: Described) -> Mapping[str, Any]:
     layout = described.layout
     if not layout.heading:
         return {"columns": layout.width}
-    if layout.held is not None and layout.held.form == "tdms" and not layout.held.steps:
+    if layout.held is not None and layout.held.form == "tdms":
         return {}  # channels of groups are not known by their names alone
     names = (c.name for c in described.columns if c.name and not c.optional)
     return {"header": tuple(dict.fromkeys(names))}
@@ -199,22 +191,18 @@ def _text(layout: Layout, understood: Understood) -> Mapping[str, Any]:
         "encoding": layout.encoding,
         "delimiter": layout.delimiter,
         "decimal": "," if layout.decimal != "." or layout.quoted else ".",
-        "arrangement": layout.arrangement,
-        "wrapped": layout.wrapped,
         "thousands": layout.thousands,
         "missing": understood.missing,
         "end": layout.end or None,
-        "skip_lines": layout.skip_lines or None,
     }
 
 
 def _sheet(layout: Layout) -> Mapping[str, Any]:
     held = layout.held
-    if held is None or not (held.form == "excel" if held.steps else held.sheet):
+    if held is None or not held.sheet:
         return {}
     units = "row" if held.units_below else "brackets"
-    sheet = None if held.steps else held.sheet
-    return {"line": held.line, "units": units, "sheet": sheet}
+    return {"line": held.line, "units": units, "sheet": held.sheet}
 
 
 def _header(layout: Layout) -> Mapping[str, Any]:

@@ -18,11 +18,6 @@ def leave_out_doubtful(draft: AnyDraft) -> tuple[AnyDraft, tuple[str, ...]]:
 
     Friction, load and speed may each be certain from one column: then no other column of them is
     needed. A time is always needed.
-
-    Parameters
-    ----------
-    draft
-        From `tribolab.reading.unknown.proposal.draft.draft_dialect`.
     """
     understood = draft.understood
     if understood is None or draft.kind != "run":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,8 +12,6 @@ from tribolab.errors import ReadError, shown
 from tribolab.quantities import quantity
 from tribolab.reading import cures
 from tribolab.reading.interpret.missing import MissingInput
-from tribolab.reading.interpret.phrases import phrases
-from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.unknown.columns.rotating_parts import torque_of
@@ -22,13 +20,12 @@ from tribolab.reading.unknown.derivations.candidate_lines import candidate_lines
 from tribolab.reading.unknown.derivations.derive import what_follows
 from tribolab.reading.unknown.derivations.missing_inputs import Uncalibrated, lacking, unknown_of
 from tribolab.reading.unknown.derivations.model import Follows
+from tribolab.reading.unknown.header.calibration_lines import calibration_lines
 from tribolab.reading.unknown.header.settings import lines_without_unit
 from tribolab.reading.unknown.header.zero import STILL
-from tribolab.reading.unknown.layout.step_marks import further_words, is_numbered
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import NO_NUMBERS, DraftColumn, Understood
 from tribolab.reading.unknown.proposal.model import Drafted
-from tribolab.unit_names import WEIGHTS
 
 COUNTED = "heights in counts, of which the file does not say how much one is"
 HEIGHTS = (
@@ -61,25 +58,12 @@ class Question(NamedTuple):
         return f"{self.about}: {self.guess}{others}"
 
 
-_COMMENTS = ("#", "%", "//")
-_FORCES = ("normal_force", "set_normal_force")
-_MOTIONS = ("sliding_velocity", "rotation_speed", "position", "set_speed", "rolling_speed")
-
-
 def questions(draft: Drafted) -> list[Question]:
-    """Return what had to be guessed of a file, or is missing; none if its header says it all.
-
-    Parameters
-    ----------
-    draft
-        From `tribolab.reading.unknown.proposal.draft.draft_dialect`.
-    """
+    """Return what had to be guessed of a file, or is missing; none if its header says it all."""
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
         return []
     asked = [Question("table", guess) for guess in (*layout.guesses, *understood.guesses)]
-    if layout.skip_lines and not _are_titles(layout, understood):
-        asked.append(Question("lines of text", "the table goes on below", ("it ends there",)))
     if (
         understood.kind == "run"
         and not (understood.rate_pattern or understood.rate or understood.points)
@@ -103,39 +87,8 @@ def questions(draft: Drafted) -> list[Question]:
         if moves and column.quantity == "rotation_speed" and column.fill_in:
             continue  # how it moves is told without it
         if column.guessed or column.fill_in:
-            asked.append(_of_column(column))
+            asked.append(_of_column(layout, column))
     return asked
-
-
-def _are_titles(layout: Layout, understood: Understood) -> bool:
-    """Whether all lines of text between the rows are comments, or titles of steps counted on.
-
-    What titles say besides has to be what a column holds, too: a load or a radius of each step
-    alone would be lost.
-    """
-    skipped = re.compile(layout.skip_lines or "$^")
-    between = [
-        line
-        for block in layout.blocks
-        for line in layout.lines[block.start : block.stop]
-        if line.strip() and skipped.match(line)
-    ]
-    if is_numbered(between) or all(line.lstrip().startswith(_COMMENTS) for line in between):
-        return True
-    said = further_words(between)
-    if said is None:
-        return False
-    names = {c.quantity for c in understood.columns if c.used}
-    units = {phrase.unit for words in said for phrase in phrases(words)}
-    return all(_is_held(unit, names) for unit in units)
-
-
-def _is_held(unit: str, names: Collection[str | None]) -> bool:
-    """Whether what is stated in a unit is held by a column, too, or is no setting of a contact."""
-    for si_unit, held in (("N", _FORCES), ("m/s", _MOTIONS), ("rad/s", _MOTIONS), ("m", ())):
-        if converts(unit, si_unit):
-            return any(name in names for name in held)
-    return unit not in WEIGHTS
 
 
 def _of_texts(understood: Understood) -> list[Question]:
@@ -171,53 +124,41 @@ def _of_roles(understood: Understood, follows: Follows) -> list[Question]:
     return asked
 
 
-def _of_column(column: DraftColumn) -> Question:
+def _of_column(layout: Layout, column: DraftColumn) -> Question:
     about = f"column {column.place}" + (f" '{shown(column.label, 30)}'" if column.label else "")
     guess = "; ".join(column.guessed)
     if column.fill_in and (column.counted or column.read_unit is None):
         asks = "what is one count?" if column.counted else "in which unit?"
-        unsaid = f"{column.quantity}, {asks}"
+        lines = calibration_lines(layout, bare=True) if column.counted else ""
+        unsaid = f"{column.quantity}, {asks}" + (f" (the file states {lines})" if lines else "")
         guess = f"{guess}; {unsaid}" if guess else unsaid
     return Question(about, guess, tuple(dict.fromkeys(column.options)))
 
 
 def lacks_friction(draft: Drafted) -> bool:
-    """Whether a run holds a torque of which no radius is known, and no friction else.
-
-    Parameters
-    ----------
-    draft
-        From `tribolab.reading.unknown.proposal.draft.draft_dialect`.
-    """
+    """Whether a run holds a torque of which no radius is known, and no friction else."""
     lacks = (lack for lack in _lacks(draft) if lack.member != "friction_force")
     return any("friction" in lack.goals for lack in lacks)
 
 
 def missing_words(draft: Drafted) -> list[str]:
-    """Return what a run's file does not say and a friction coefficient over speed needs.
-
-    Parameters
-    ----------
-    draft
-        From `tribolab.reading.unknown.proposal.draft.draft_dialect`.
-    """
+    """Return what a run's file does not say and a friction coefficient over speed needs."""
     lacks = _lacks(draft)
     unused = [f"the unit of '{line}', which is not used" for line in _unused(draft, lacks)]
     if draft.layout is None or draft.understood is None:
         return [str(lack) for lack in lacks] + unused
     follows = what_follows(draft.layout, draft.understood)
-    told = [(str(lack), candidate_lines(draft.layout, follows, lack.member)) for lack in lacks]
+    told = [
+        (str(lack), calibration_lines(draft.layout))
+        if isinstance(lack, Uncalibrated)
+        else (str(lack), candidate_lines(draft.layout, follows, lack.member))
+        for lack in lacks
+    ]
     return [lack + (f"; is it {line}?" if line else "") for lack, line in told] + unused
 
 
 def without_unit_and_missed(draft: Drafted) -> list[str]:
-    """Return the lines that may say what a run lacks, had they a unit: 'Stroke=12'.
-
-    Parameters
-    ----------
-    draft
-        From `tribolab.reading.unknown.proposal.draft.draft_dialect`.
-    """
+    """Return the lines that may say what a run lacks, had they a unit: 'Stroke=12'."""
     return _unused(draft, _lacks(draft))
 
 
@@ -233,13 +174,7 @@ def _unused(draft: Drafted, lacks: Sequence[object]) -> list[str]:
 
 
 def unsaid_distance(draft: Drafted) -> str:
-    """Return what heights without positions leave open, with the line that says too little of it.
-
-    Parameters
-    ----------
-    draft
-        From `tribolab.reading.unknown.proposal.draft.draft_dialect`; its answer is `HEIGHTS`.
-    """
+    """Return what heights without positions leave open, with the line that says too little."""
     lines = lines_without_unit(draft.layout, bare=True) if draft.layout else []
     said = ", ".join(f"'{shown(line, 40)}'" for line in lines)
     return f"{HEIGHTS}; of {said} the unit is not said" if lines else HEIGHTS
@@ -290,13 +225,7 @@ def _and_more(count: int) -> list[str]:
 
 
 def understood_columns(draft: Drafted) -> list[str]:
-    """Return the columns that are understood: quantity, name in the file, unit.
-
-    Parameters
-    ----------
-    draft
-        From `tribolab.reading.unknown.proposal.draft.draft_dialect`.
-    """
+    """Return the columns that are understood: quantity, name in the file, unit."""
     said = []
     for column in draft.understood.columns if draft.understood else ():
         if column.used and column.quantity and not column.guessed:

@@ -28,13 +28,7 @@ _ON_REPEAT = {
 
 
 def remarks_of(described: Described) -> Remarks:
-    """Return the comments of a drafted dialect.
-
-    Parameters
-    ----------
-    described
-        From `tribolab.reading.unknown.proposal.dialect.describe`.
-    """
+    """Return the comments of a drafted dialect."""
     layout, understood, follows, stated, _ = described
     read = [*described.columns, *(column for _, column in follows.symbols)]
     above = {f"column.{n}": _about_column(c) for n, c in enumerate(read)}
@@ -82,8 +76,6 @@ def _behind(described: Described) -> dict[str, str]:
     return {
         "pitch_value": "its heights have no positions",
         "length_value": "its heights have no positions",
-        "text.skip_lines": "guessed: the table goes on",
-        "text.wrapped": "one column: its numbers go on from line to line",
         "time.epoch": "tells when it was recorded",
         "time.on_repeat": _ON_REPEAT.get(understood.on_repeat, ""),
         "time.restart": "the clock starts anew, or wraps",

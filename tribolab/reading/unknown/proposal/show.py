@@ -19,14 +19,9 @@ from tribolab.reading.unknown.derivations.derive import what_follows
 from tribolab.reading.unknown.derivations.model import Follows
 from tribolab.reading.unknown.model import DraftColumn
 from tribolab.reading.unknown.proposal.model import SHOWN, Drafted
-from tribolab.reading.unknown.proposal.sparklines import BARS, PLAIN, sparks
-from tribolab.reversals import reversals
 
 _PRE = '<pre style="font-family: monospace; line-height: 1.25">{code}</pre>'
 _COLUMNS = 12  # of raw cells that are shown side by side
-_WIDE = 40  # of a signal that is shown as a line of them
-_TO_AND_FRO = ("sliding_velocity", "friction_force", "friction_coefficient")
-_STROKES = 12  # that are shown of many
 _ABREAST = 5  # quantities side by side
 _LISTED = 60  # columns that are not used and shown all the same
 
@@ -41,7 +36,7 @@ def print_draft(draft: Drafted, console: Console, *, rows: bool = True) -> None:
     console
         Where to.
     rows
-        Whether the first rows are shown; each signal as a line of blocks is in any case.
+        Whether the first rows are shown.
     """
     kinds = {"run": "a run", "scan": "a scan", "table": "a table, neither a run nor a scan"}
     console.print(f"[bold]{escape(str(draft.path))}[/]: {kinds[draft.kind]}")
@@ -60,41 +55,19 @@ def print_draft(draft: Drafted, console: Console, *, rows: bool = True) -> None:
             console.print(f"  - {escape(guess)}", soft_wrap=True)
 
 
-def print_signals(
-    draft: Drafted, console: Console, *, rows: bool = True, blocks: bool = True
-) -> None:
-    """Print the first rows in SI as they were understood, and each signal as a line of blocks."""
+def print_signals(draft: Drafted, console: Console, *, rows: bool = True) -> None:
+    """Print the first rows in SI as they were understood, and the range of each signal."""
     signals = draft.signals()
     for table in _rows_tables(signals) if rows else ():
         console.print(table)
-    if not draft.dialect or not blocks:
+    if not draft.dialect:
         return
-    part, which = _seen(signals)
-    table = _table("signals", which, "from", "to")
-    letters = BARS if console.encoding.startswith("utf") else PLAIN
-    table.columns[1].no_wrap = True
+    table = _table("signals", "from", "to")
     for name, values in signals.items():
         known = values[np.isfinite(values)]
         ends = (f"{known.min():.4g}", f"{known.max():.4g}") if known.size else ("", "")
-        table.add_row(_with_unit(name), sparks(values[part], _WIDE, letters), *ends)
+        table.add_row(_with_unit(name), *ends)
     console.print(table)
-
-
-def _seen(signals: Mapping[str, np.ndarray]) -> tuple[slice, str]:
-    """Return which samples of the signals a line of blocks can show, and say so; all of slow ones.
-
-    >>> fast = np.sin(np.arange(4000.0))
-    >>> _seen({"time": 0.01 * np.arange(4000), "friction_force": fast})
-    (slice(0, 38, None), 'first 0.37 s')
-    """
-    turns = max((reversals(signals[name]) for name in _TO_AND_FRO if name in signals), default=0)
-    if turns <= _WIDE / 2:
-        return slice(None), ""
-    count = len(next(iter(signals.values())))
-    last = max(2, round(_STROKES * count / turns))
-    time = signals.get("time")
-    lasted = np.nan if time is None else float(time[last - 1] - time[0])
-    return slice(0, last), f"first {lasted:.3g} s" if np.isfinite(lasted) else f"first {last} rows"
 
 
 def draft_html(draft: Drafted) -> str:

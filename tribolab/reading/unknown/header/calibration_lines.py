@@ -1,0 +1,63 @@
+"""Lines above a table that say what a volt or a count of a signal is, or where its zero is.
+
+They are quoted when a person is asked for it.
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+
+from tribolab.errors import shown
+from tribolab.reading.lexicon.lexicon import alternatives, normalise_label, part_pattern, says
+from tribolab.reading.numbers import numbers_in
+from tribolab.reading.unknown.layout.text_layout import Layout
+
+_LONGEST = 200  # characters of a line that are looked at
+_QUOTED = 3
+_RAW = re.compile(rf"[mkµμu]?V|{alternatives('count')}", re.IGNORECASE)
+_EQUALS = re.compile(rf"\s?{alternatives('equals')}\s?", re.IGNORECASE)
+_UNIT_OF_NAME = re.compile(r"[\[(](\w{1,12}/\w{1,12})[\])]")
+
+
+def calibration_lines(layout: Layout, *, bare: bool = False) -> str:
+    """Quote the lines that say what a volt or a count is, or the zero in them; "" if none does.
+
+    With `bare`, heights are meant, which may have no header.
+    """
+    lines = [line[:_LONGEST].strip() for line in layout.text_above(bare=bare)]
+    found = [line for line in lines if states_calibration(line) or states_raw_zero(line)]
+    return " or ".join(f"'{shown(line, 50)}'" for line in dict.fromkeys(found[:_QUOTED]))
+
+
+def states_calibration(line: str) -> bool:
+    """Whether a line says what a volt or a count is worth.
+
+    >>> stated = ("Encoder: 500 counts/mm", "1 N = 4213 counts", "Gain [N/mV]: 2.3", "2 mV/V")
+    >>> [states_calibration(line) for line in (*stated, "Speed: 2 mm/s", "Supply: 5 V")]
+    [True, True, True, True, False, False]
+    """
+    numbers = numbers_in(line)
+    units = [number.unit for number in numbers] + _UNIT_OF_NAME.findall(line)
+    if any("/" in unit and any(map(_RAW.fullmatch, unit.split("/"))) for unit in units):
+        return True
+    return any(
+        _EQUALS.fullmatch(line[one.end : other.start])
+        and one.unit
+        and other.unit
+        and bool(_RAW.fullmatch(one.unit)) != bool(_RAW.fullmatch(other.unit))
+        for one, other in itertools.pairwise(numbers)
+    )
+
+
+def states_raw_zero(line: str) -> bool:
+    """Whether a line states a zero in volts or counts, which may still be in the signal.
+
+    >>> lines = ("Zero: 118 counts", "Offset 0.02 V (subtracted)", "Zero: 0 V", "Range: 10 V")
+    >>> [states_raw_zero(line) for line in lines]
+    [True, False, False, False]
+    """
+    raw = any(n.value and _RAW.fullmatch(n.unit) for n in numbers_in(line))
+    if not raw or not part_pattern("zero").search(normalise_label(line)):
+        return False
+    return not (says("zero_taken_off", line) or says("zero_is_taken_off", line))
