@@ -246,6 +246,7 @@ def _kind_by_columns(kind: Kind, layout: Layout, columns: list[DraftColumn]) -> 
         return kind
     timed = any(c.quantity == "time" and c.used for c in columns)
     made = torque_of(columns) is not None or angle_of(columns) is not None
+    made = made or find_gain(layout, columns, "friction_force") is not None
     return "run" if timed or made or loads_that_add(columns) else "table"
 
 
