@@ -113,6 +113,8 @@ class Basis:
             slid[first:start] = 0.0
             held[part] = last[first]
         usual = float(median(rested[np.minimum(ends, len(way)) - 1]))
+        if usual <= 0.0:  # rests of one sample: nothing relaxes in them
+            return
         for tau in _TIMES:
             for length in _BACK:
                 back = np.exp(-slid / (self.longest * length))
