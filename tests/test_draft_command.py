@@ -3,10 +3,13 @@
 import re
 import shlex
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+import tribolab as tl
 from tribolab import cli
+from tribolab.app import describing
 from tribolab.app.file_info import run_lines
 from tribolab.errors import ConfigError
 from tribolab.reading.dialect.find import load_dialect
@@ -97,3 +100,23 @@ def test_the_command_refuses_with_the_exit_codes_of_the_house(tmp_path, monkeypa
     assert not (tmp_path / "dma.toml").exists()
     nowhere = command("dialect", "a.csv", "--output", "no/such/folder/a.toml")
     assert nowhere.exit_code == 3 and "cannot be written" in nowhere.stderr
+
+
+def test_a_profile_without_positions_needs_one_answer(tmp_path, monkeypatch, shared_data):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(describing, "is_terminal", lambda: True)
+    file = shared_data / "profiles_mat_MIT/Luftpresser_1_56_ak.mat"
+    asked = []
+
+    def answer(question, default):
+        asked.append(question)
+        return "0.5 um"
+
+    monkeypatch.setattr(describing, "_prompt", answer)
+    described = describing.describe_by_questions([file], keep=True)
+    assert len(asked) == 1 and described.name == "luftpresser_1_56_ak.toml"
+    height = tl.read_scans(file, described).height.values[0]
+    x = np.arange(height.size)
+    rest = height - np.polynomial.Polynomial.fit(x, height, 1)(x)
+    assert np.std(rest) == pytest.approx(0.4371e-6, rel=1e-3)
+    assert describing.describe_by_questions([described], keep=True) is None

@@ -239,7 +239,7 @@ def test_a_distance_of_heights_without_a_unit_is_told(tmp_path):
     file = tmp_path / "trace.txt"
     heights = "\n".join(f"{n % 7}" for n in range(200))
     file.write_text(f"# spacing: 0.8\n# heights in nm\n\n{heights}\n")
-    with pytest.raises(tl.TribolabError, match="of '# spacing: 0.8' the unit is not said"):
+    with pytest.raises(tl.TribolabError, match="'# spacing: 0.8' has no unit"):
         tl.read_scans(file)
 
 

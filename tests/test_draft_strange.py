@@ -509,7 +509,7 @@ def test_an_amplitude_from_end_to_end_is_the_stroke(said, stroke, tmp_path):
 def test_heights_alone_say_that_their_distance_is_missing(tmp_path):
     file = tmp_path / "trace.txt"
     file.write_text("Traverse: 2.0 mm\nElevation (um)\n" + "".join(f"{x:.4f}\n" for x in T))
-    with pytest.raises(tl.TribolabError, match="how far they lie apart"):
+    with pytest.raises(tl.TribolabError, match="distance of neighbouring heights"):
         tl.read(file)
 
 

@@ -14,6 +14,7 @@ from tribolab.qc.register import STATUSES
 from tribolab.qc.scan import profiles
 from tribolab.qc.scan.checks import SCAN_CHECKS, check_scans
 from tribolab.reading.scan_files import read_scans
+from tribolab.reading.scans.extent import doubt_about_heights, impossible_heights
 from tribolab.reading.scans.results import read_tester_results
 from tribolab.rig.scan_faults import SCAN_FAULTS, exported, strike
 
@@ -318,3 +319,14 @@ def test_limits_and_names_are_the_user_s():
         check_scans(xr.Dataset({"force": ("time", [1.0])}))
     with pytest.raises(ConfigError, match="no fault of scans"):
         strike(exported(rig.scans("Sb-R", length=2e-3)), "stepps")
+
+
+def test_a_map_whose_heights_are_far_larger_than_itself_is_suspect(shared_data):
+    scan = read_scans(shared_data / "surfacetopography_MIT/gwyddion-export-german.txt")
+    assert "span 14.8 m on a length of 8.23e-06 m" in scan.attrs["doubtful"]
+    x = 1e-6 * np.arange(32)
+    rough = np.random.default_rng(2).normal(0, 1e-7, (32, 32))
+    bare = xr.Dataset({"height": (("y", "x"), rough)}, {"y": x, "x": x})
+    assert doubt_about_heights(bare) == "" and impossible_heights(bare) == ""
+    assert "rms slope" in doubt_about_heights(bare.assign(height=1000 * bare.height))
+    assert "no instrument" in impossible_heights(bare.assign(height=1e6 * bare.height))

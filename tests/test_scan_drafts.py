@@ -64,7 +64,7 @@ def test_what_would_be_guessed_is_told_instead(tmp_path):
         read_scans(path)
     with pytest.raises(ReadError, match="x is in mm"):
         read_scans(written(tmp_path, f"X,Z\n{ROWS}\n"))
-    with pytest.raises(ReadError, match=r"how far they lie apart: .*pitch = \"\(a length\)\""):
+    with pytest.raises(ReadError, match=r"neighbouring heights, pitch = \"\(a length\)\""):
         read_scans(written(tmp_path, f"Z [um]\n{COLUMN}\n"))
 
 
@@ -308,7 +308,7 @@ def test_heights_in_counts_are_asked_about_and_never_taken_for_lengths(tmp_path)
     file = tmp_path / "counts.txt"
     heights = "\n".join(str(n % 9) for n in range(300))
     file.write_text(f"Spacing: 0.5 um\nHeight [counts]\n{heights}\n")
-    with pytest.raises(TribolabError, match="does not say how much one is"):
+    with pytest.raises(TribolabError, match="how much one count of the heights is"):
         read_scans(file)
     assert not draft_dialect(file).toml
     file.write_text(f"Spacing: 0.5 um\nResolution: 10 nm/count\nHeight [counts]\n{heights}\n")

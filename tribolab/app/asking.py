@@ -14,6 +14,7 @@ from tribolab.quantities import QUANTITIES, quantity
 from tribolab.reading.dialect.zero_reading import parse_zero
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.unit_texts import converts, is_unit
+from tribolab.reading.scans.extent import likely_height_unit
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
 from tribolab.reading.unknown.derivations.candidate_lines import (
     amount_of,
@@ -21,11 +22,10 @@ from tribolab.reading.unknown.derivations.candidate_lines import (
     likely_value,
 )
 from tribolab.reading.unknown.derivations.derive import what_follows
-from tribolab.reading.unknown.derivations.load_cells import ADDS
 from tribolab.reading.unknown.derivations.missing_inputs import lacking
 from tribolab.reading.unknown.header.load import stated_number
 from tribolab.reading.unknown.layout.text_layout import Layout
-from tribolab.reading.unknown.model import Agreed, DraftColumn, Understood, other_units
+from tribolab.reading.unknown.model import Agreed, DraftColumn, Reason, Understood, other_units
 from tribolab.reading.unknown.proposal.answers import column_of, corrected, fits
 from tribolab.reading.unknown.proposal.calibration_factor import (
     ANGLE,
@@ -34,7 +34,8 @@ from tribolab.reading.unknown.proposal.calibration_factor import (
     si_unit_of,
     worth_of,
 )
-from tribolab.reading.unknown.proposal.draft import Draft, as_profile, holds_counts, holds_heights
+from tribolab.reading.unknown.proposal.draft import Draft, as_profile
+from tribolab.units import positive
 
 _NONE = "-"
 _YES = ("yes", "y")
@@ -75,7 +76,7 @@ def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
     if draft.layout is None or draft.understood is None:
         return draft
     alone = len(draft.understood.columns) == 1  # one column of numbers is no run
-    if draft.kind == "table" and (alone or holds_heights(draft) or holds_counts(draft)):
+    if draft.kind == "table" and (alone or draft.unsaid):
         return _ask_for_pitch(draft, ask, say)
     if draft.kind == "scan":
         for name, words in _SCAN.items():
@@ -165,13 +166,25 @@ def _ask_for_pitch(draft: Draft, ask: Ask, say: Say) -> Draft:
         pitch = _ask_amount(question, "pitch", "m", _NONE, ask, say)
     if not (pitch or understood.pitched):
         return draft
-    if not holds_counts(draft):
-        guess = _unit_guess(understood.columns[0], "height")
-        unit = ask(f"in which unit does column {understood.columns[0].place} write it?", guess)
-        return as_profile(draft, pitch, unit.strip())
+    if draft.unsaid != "count":
+        return as_profile(draft, pitch, _height_unit(understood, pitch, ask, say))
     question = "how much is one count, with its unit (e.g. 0.5 nm)?"
     count = _ask_amount(question, "count", "m", _NONE, ask, say)
     return as_profile(draft, pitch, count) if count else draft
+
+
+def _height_unit(understood: Understood, pitch: str, ask: Ask, say: Say) -> str:
+    """Return the unit of heights: as the file states it, as its numbers tell, or as is typed."""
+    column = understood.columns[0]
+    unit = column.read_unit
+    if unit is None and pitch:
+        unit = likely_height_unit(understood.numbers[:, column.place - 1], positive(pitch, "m", ""))
+        if unit:
+            say(f"heights in {unit}: in another unit no instrument measures such a profile")
+    if unit:
+        return unit
+    guess = _unit_guess(column, "height")
+    return ask(f"in which unit does column {column.place} write it?", guess).strip()
 
 
 def _ask_amount(
@@ -282,7 +295,8 @@ def _with_sum(draft: Draft, typed: str, ask: Ask) -> Draft:
             fill_in="",
             unit=said[c.place].unit or None,
             scale=said[c.place].scale,
-            note=ADDS,
+            note=Reason.ADDS.value,
+            reason=Reason.ADDS,
         )
         if c.place in said
         else c

@@ -137,8 +137,10 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
         if instrument is None and kind_of(path) == "unknown" and _is_text(path):
             # a map or profile, but for its units
             bare = isinstance(error, NotSaidError) and not holds_run(path, by_name=False)
+            draft = draft_of(path)
+            named = draft is not None and draft.kind == "table"
             try:
-                known_log(path) if bare else read_log(path)  # says what is missing
+                known_log(path) if bare and not named else read_log(path)  # says what is missing
             except ReadError as as_run:
                 if bare:
                     what = f"{as_run.what}; taken for a profile or map, {error.what}"
@@ -152,11 +154,12 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
 def _is_told(path: Path, error: ReadError) -> bool:
     """Whether an error says of a scan, and of nothing else, what is wrong with it."""
     # late: starting stays quick
+    from tribolab.reading.scans.extent import RefusedScanError
     from tribolab.reading.scans.formats.undescribed import is_own_text
     from tribolab.reading.unknown.proposal.questions import GuessedError, questions
 
-    if isinstance(error, GuessedError):
-        return False  # which is told again
+    if isinstance(error, GuessedError | RefusedScanError):
+        return isinstance(error, RefusedScanError)  # the other is told again
     try:
         check_regular(path)
         if is_own_text(path):

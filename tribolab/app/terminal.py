@@ -17,10 +17,10 @@ from tribolab.campaign.settings.files import inputs_outside
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.errors import harmless
 from tribolab.provenance import as_text
-from tribolab.records.notice_words import NOT_NEEDED, OUTSIDE, RIG_STIFFNESS, STEPS_DIFFER, TRENDS
+from tribolab.records.notice_words import CHANGES, DOUBTFUL_COLUMNS, STICK_SLIP, STROKE_ENDS
 from tribolab.records.part_records import CurveRecord, SurfaceRecord
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome, SurfaceOutcome
-from tribolab.records.roughness_words import DOUBTFUL_FORM, roughness_in_words
+from tribolab.records.roughness_words import FORM, roughness_in_words
 from tribolab.records.run_record import RunRecord
 from tribolab.words import LOAD_MEASURED, LOAD_VARIES, Count, load_text
 
@@ -212,11 +212,11 @@ def _told_of_runs(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
     """Say of a few runs which part of each stroke counts, and whether they ran in, or wore out."""
     few = done if len(done) <= _HANDFUL else ()
     return [
-        f"{run.name}: {'left out: ' * notice.message.startswith(OUTSIDE)}{notice.message}"
+        f"{run.name}: {'left out: ' * (notice.where == STROKE_ENDS)}{notice.message}"
         for run in few
         if (entry := outcome.store.get("run", run.name, RunRecord)) is not None
         for notice in entry.record.notices
-        if notice.message.startswith((*TRENDS, OUTSIDE, NOT_NEEDED, STEPS_DIFFER, RIG_STIFFNESS))
+        if notice.where in (*CHANGES, STROKE_ENDS, DOUBTFUL_COLUMNS, STICK_SLIP)
     ]
 
 
@@ -296,8 +296,7 @@ def _doubts(surface: SurfaceOutcome) -> list[str]:
     return [
         finding.message
         for finding in surface.findings
-        if not finding.check
-        and (finding.severity == "suspect" or finding.message.startswith(DOUBTFUL_FORM))
+        if finding.check == FORM or (not finding.check and finding.severity == "suspect")
     ]
 
 

@@ -44,12 +44,12 @@ def kind_of(path: str | Path, instrument: str | Path | None = None) -> str:
         if isinstance(dialect, PythonReader):
             dialect = with_columns(dialect, path)
         return "scan" if is_scan(dialect) else "run"
-    if _holds_map(path):
-        return "scan"
     try:
         file = peek(path)
     except ReadError:  # no file, an empty one, or a format of profilometers
-        return "unknown"
+        return "scan" if _holds_map(path) else "unknown"
+    if file.format != "text" and _holds_map(path):
+        return "scan"
     if file.format == "netcdf":
         return "run"
     if is_results(file.head):

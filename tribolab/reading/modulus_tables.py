@@ -16,6 +16,7 @@ from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import known_words, names, normalise_label
 from tribolab.reading.raw.opening import damage_told, isolated
 from tribolab.reading.raw.source import check_regular
+from tribolab.reading.text.first_bytes import peek
 
 HEAD = 200  # rows among which the names stand
 _LARGEST = 32 << 20  # bytes of a table in text
@@ -198,8 +199,7 @@ def numbers_of(row: Row, columns: dict[str, Column], decimal: str) -> list[float
 def _text(path: Path, longest: int | None) -> Iterator[tuple[list[Row], str]]:
     """Yield the rows of a text for each delimiter that may be its own."""
     try:
-        with path.open("rb") as file:
-            raw = file.read(_LARGEST + 1 if longest is None else 400 * longest)
+        raw = path.read_bytes() if longest is None else peek(path).head[: 400 * longest]
     except OSError as error:
         raise ReadError(f"{path}: the file cannot be opened: {error}") from error
     if len(raw) > _LARGEST:

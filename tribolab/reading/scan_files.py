@@ -17,11 +17,13 @@ from tribolab.errors import ReadError
 from tribolab.reading import cures
 from tribolab.reading.dialect.find import Dialect, Instrument
 from tribolab.reading.raw.source import read_unchanged
-from tribolab.reading.scans.extent import doubt_about_heights
-from tribolab.reading.scans.formats.column_map import UnclearOrderError
+from tribolab.reading.scans.extent import (
+    RefusedScanError,
+    doubt_about_heights,
+    impossible_heights,
+)
 from tribolab.reading.scans.formats.undescribed import is_own_text
 from tribolab.reading.scans.read_scan import files_of, read_known_scans, stacked
-from tribolab.reading.unknown.proposal.draft import holds_counts, holds_heights
 from tribolab.reading.unknown.proposal.questions import (
     GuessedError,
     how_to_keep,
@@ -32,6 +34,7 @@ from tribolab.reading.unknown_run import (
     DRAFTED,
     draft_of,
     lacks_distance,
+    left_open,
     measures_other_things,
 )
 from tribolab.stamping import stamp
@@ -170,20 +173,22 @@ def file_of(trace: Path) -> Path:
 
 def _read(file: Path, units: dict[str, str | None]) -> list[xr.Dataset]:
     try:
-        return read_known_scans([file], **units)
-    except UnclearOrderError:
+        scans = read_known_scans([file], **units)
+        return [_doubted(scan, impossible_heights(scan)) for scan in scans]
+    except RefusedScanError:
         raise
     except ReadError as error:
         dialect = None if any(units.values()) else _drafted(file, error)
         if dialect is None:
             raise
         told = {"instrument": DRAFTED, "to_keep_it": how_to_keep(file)}
-        return [_doubted(scan.assign_attrs(told)) for scan in read_known_scans([file], dialect)]
+        scans = read_known_scans([file], dialect)
+        return [_doubted(scan.assign_attrs(told), doubt_about_heights(scan)) for scan in scans]
 
 
-def _doubted(scan: xr.Dataset) -> xr.Dataset:
-    doubt = doubt_about_heights(scan)
-    return scan.assign_attrs(doubtful=doubt) if doubt else scan
+def _doubted(scan: xr.Dataset, doubt: str) -> xr.Dataset:
+    said = "; ".join(filter(None, [scan.attrs.get("doubtful", ""), doubt]))
+    return scan.assign_attrs(doubtful=said) if said else scan
 
 
 def _drafted(file: Path, error: ReadError) -> Dialect | None:
@@ -191,10 +196,8 @@ def _drafted(file: Path, error: ReadError) -> Dialect | None:
     draft = draft_of(file)
     if draft is None or draft.known or is_own_text(file):
         return None
-    if draft.kind == "table" and (holds_heights(draft) or holds_counts(draft)):
-        raise ReadError(
-            draft.answer, where=file, cure=cures.unknown_instrument(file, cures.SURFACE)
-        ) from error
+    if draft.unsaid:
+        raise left_open(draft) or error from error
     if draft.kind == "table" and measures_other_things(draft):
         raise ReadError(draft.answer, where=file) from error
     if draft.kind != "scan":

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar, Unpack
 
 from tribolab.aliases import PathLike
-from tribolab.errors import LacksError, ReadError
+from tribolab.errors import LacksError, ReadError, shown
 from tribolab.reading import cures
 from tribolab.reading.dialect.find import Dialect, Instrument, UnknownFileError
 from tribolab.reading.interpret.unit_texts import converts, measures_something
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from tribolab.reading.unknown.proposal.draft import Draft
 
 DRAFTED = "drafted from the file"
+_LISTED = 8  # columns of an unknown table that are named
 
 
 class _Described(Protocol):
@@ -127,9 +128,38 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     """Return the dialect that a file's own header makes; else say what it leaves open."""
     # late: starting stays quick
     from tribolab.reading.unknown.proposal.optional_columns import leave_out_doubtful
+
+    try:
+        draft = _drafted_once(path)
+    except (ReadError, OSError, ImportError) as reason:
+        if peek(path).format != "text" or not isinstance(reason, ReadError):
+            raise error from reason
+        said = str(reason.what).removeprefix(f"{path}: ")
+        raise UnknownFileError(f"{error.what}: {said}", where=path, cure=error.cure) from reason
+    if (unsaid := left_open(draft)) is not None:
+        raise unsaid from error
+    if draft.kind == "table" and measures_other_things(draft):
+        raise ReadError(draft.answer, where=path) from error
+    if draft.kind == "table" and draft.labels:
+        named = ", ".join(f"'{shown(label, 20)}'" for label in draft.labels[:_LISTED])
+        more = f" and {len(draft.labels) - _LISTED} more" if len(draft.labels) > _LISTED else ""
+        what = f"{error.what}; of its columns {named}{more} none is known as time, place or height"
+        raise UnknownFileError(what, where=path, cure=error.cure) from error
+    if draft.kind == "table" or (draft.kind == "scan" and peek(path).format != "text"):
+        raise error
+    if draft.kind == "scan":
+        what = "no known instrument writes such a file; it looks like a profile or map"
+        raise ReadError(what, where=path, cure=cures.PROFILE) from error
+    draft, _ = leave_out_doubtful(draft)
+    assert draft.dialect is not None  # only tables have none
+    return draft.dialect
+
+
+def left_open(draft: Draft) -> ReadError | None:
+    """Return what a file leaves open that a run or profile needs; None if it says all of it."""
+    # late: starting stays quick
+    from tribolab.reading.unknown.proposal.optional_columns import leave_out_doubtful
     from tribolab.reading.unknown.proposal.questions import (
-        COUNTED,
-        HEIGHTS,
         GuessedError,
         lacks_friction,
         missing_words,
@@ -137,27 +167,18 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
         understood_columns,
     )
 
-    draft = draft_of(path)
-    if draft is not None and draft.answer.startswith((HEIGHTS, COUNTED)):
-        raise ReadError(draft.answer, where=path, cure=error.cure) from error
-    if draft is not None and draft.kind == "table" and measures_other_things(draft):
-        raise ReadError(draft.answer, where=path) from error
-    if draft is None or draft.kind == "table":
-        raise error
+    if draft.unsaid:
+        known = understood_columns(draft) or [f"height '{shown(draft.labels[0], 20)}'"]
+        return GuessedError(draft.path, [], cures.SURFACE, [draft.answer], known)
+    if draft.kind == "table":
+        return None
     draft, _ = leave_out_doubtful(draft)
-    asked = questions(draft)
-    known = understood_columns(draft)
+    asked, known = questions(draft), understood_columns(draft)
     if unsaid := lacks_distance(draft):
-        raise GuessedError(path, asked, cures.SURFACE, unsaid, known) from error
+        return GuessedError(draft.path, asked, cures.SURFACE, unsaid, known)
     if asked or lacks_friction(draft):
-        raise GuessedError(path, asked, cures.RUN, missing_words(draft), known) from error
-    if draft.kind == "scan" and peek(path).format != "text":
-        raise error
-    if draft.kind == "scan":
-        what = "no known instrument writes such a file; it looks like a profile or map"
-        raise ReadError(what, where=path, cure=cures.PROFILE) from error
-    assert draft.dialect is not None  # only tables have none
-    return draft.dialect
+        return GuessedError(draft.path, asked, cures.RUN, missing_words(draft), known)
+    return None
 
 
 def measures_other_things(draft: Draft) -> bool:
@@ -188,10 +209,14 @@ def _says_all(path: Path) -> Dialect | None:
 def draft_of(path: Path) -> Draft | None:
     """Draft a dialect; None of what it cannot be drafted from, or holds no table."""
     try:
-        status = path.stat()
-        return _draft_as_it_was(path, status.st_size, status.st_mtime_ns)
-    except (ReadError, OSError, ImportError):
+        return _drafted_once(path)
+    except (ReadError, OSError, ImportError):  # which `_drafted` says
         return None
+
+
+def _drafted_once(path: Path) -> Draft:
+    status = path.stat()
+    return _draft_as_it_was(path, status.st_size, status.st_mtime_ns)
 
 
 @functools.lru_cache(maxsize=1)  # whether it is a run is asked just before it is read

@@ -1,9 +1,10 @@
-"""How the notices of a run begin that the terminal and the page's first lines pick out."""
+"""What the notices of a run are about, as the terminal and the page's first lines pick them out."""
 
 from __future__ import annotations
 
-OUTSIDE = "what lies outside "  # of strokes of which a part counts
-NOT_NEEDED = "left out, as no result needs them"  # columns whose unit or name is in doubt
-RIG_STIFFNESS = "stiffness of the rig"
-STEPS_DIFFER = "friction at one speed differs from step to step"
-TRENDS = ("friction rises along", "friction falls along")
+STROKE_ENDS = "stroke ends"  # parts of strokes that do not count
+DOUBTFUL_COLUMNS = "doubtful columns"  # whose unit or name is in doubt
+STICK_SLIP = "stick-slip"  # the stiffness of the rig beside the critical one
+STEPS = "steps"  # friction that differs from step to step
+RUNNING_IN = "running-in"  # or wear
+CHANGES = (RUNNING_IN, STEPS)

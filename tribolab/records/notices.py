@@ -14,7 +14,13 @@ from tribolab.friction.oscillation.waveform import CLASSES, NOT_LOOKED_AT
 from tribolab.friction.segments.find import why_no_segment
 from tribolab.medians import median
 from tribolab.records.decision_rows import decision_notices
-from tribolab.records.notice_words import NOT_NEEDED, OUTSIDE, RIG_STIFFNESS
+from tribolab.records.notice_words import (
+    DOUBTFUL_COLUMNS,
+    RUNNING_IN,
+    STEPS,
+    STICK_SLIP,
+    STROKE_ENDS,
+)
 from tribolab.records.parts import Notice
 from tribolab.records.run_facts import (
     counting,
@@ -87,35 +93,36 @@ def notices_of(
         say("note", "friction", text)
     for each in running_in:
         if each.text:
-            say("suspect" if each.is_unsteady else "note", "friction", f"{each.text}.")
+            say("suspect" if each.is_unsteady else "note", RUNNING_IN, f"{each.text}.")
     if quantity == "friction_coefficient" and quantity in friction:
         if differ := steps_that_differ(friction, values):
-            say("suspect", "friction", differ)
+            say("suspect", STEPS, differ)
     for text in _remarks(friction):
         say("note", "friction", text)
     if str(friction.attrs.get("offset", "")).startswith("none"):
         say("note", "friction", f"offset of the force: {friction.attrs['offset']}")
     if (track := position_range(segments)) is not None:
         low, high = (f"{1e3 * end:.4g}" for end in track)
-        say("note", "left out", f"{OUTSIDE}positions {low} to {high} mm of each stroke")
+        text = f"what lies outside positions {low} to {high} mm of each stroke"
+        say("note", STROKE_ENDS, text)
     if (share := segments.attrs.get("stroke_middle")) is not None and segments.sizes["segment"]:
         share = float(share)
         whole, used = times_of_strokes(segments)
         strokes = many(segments.sizes["segment"], "stroke")
-        text = f"{OUTSIDE}the middle {percent(share)} of the way of each of {strokes}"
+        text = f"what lies outside the middle {percent(share)} of the way of each of {strokes}"
         slow = " (at the ends the contact is slow)" if (whole - used) / whole > 1 - share else ""
-        say("note", "left out", f"{text}: {duration(whole - used)} of {duration(whole)}{slow}")
+        say("note", STROKE_ENDS, f"{text}: {duration(whole - used)} of {duration(whole)}{slow}")
     for entry in left_out(segments):
         text = f"{many(entry.intervals, 'interval')}, {duration(entry.duration_s)}"
         say("note", "left out", f"{entry.reason}: {text}")
     if inertia := inertia_said(run.attrs):
         say("note", "inertia", inertia)
     if slip is not None and (distance := distance_to_critical(slip)):
-        say("note", "stick-slip", distance)
+        say("note", STICK_SLIP, distance)
     if unused := str(run.attrs.get("columns_not_used", "")):
         say("note", "columns", f"not used: {unused}")
     if doubtful := str(run.attrs.get("left_out", "")):
-        say("note", "columns", f"{NOT_NEEDED}: {doubtful}")
+        say("note", DOUBTFUL_COLUMNS, f"left out, as no result needs them: {doubtful}")
     if segments.attrs.get("rows_are") == "points":
         say("note", "rows", _RESULTS)
     return notices
@@ -163,7 +170,7 @@ def distance_to_critical(slip: xr.Dataset) -> str:
     kinds = kinds[kinds != NOT_LOOKED_AT]
     if np.isnan(rig) or not kinds.size:
         return ""
-    said = f"{RIG_STIFFNESS} {rig:.4g} N/m"
+    said = f"stiffness of the rig {rig:.4g} N/m"
     if (kinds == CLASSES[0]).all():
         return f"{said}: above the critical stiffness, as friction is steady at all speeds"
     steepest = slip["loading_stiffness"].values

@@ -11,7 +11,7 @@ from tribolab.words import Count, number
 
 _BEND = 0.1  # of Pq, by which a circle is none to speak of
 _MOST = 5  # surfaces that are named
-DOUBTFUL_FORM = "a circle of"  # how the text of a form that may be waviness begins
+FORM = "form"  # what a finding on a form that may be waviness is about
 _FORMS = {"polynomial": "polynomial of degree 2"}
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.records.notice_words import STEPS_DIFFER
 from tribolab.records.same_speed import of_one_speed
 from tribolab.words import many, percent
 
@@ -45,7 +44,8 @@ def steps_that_differ(friction: xr.Dataset, values: np.ndarray) -> str:
     steps = np.unique(step[np.isfinite(step)]).size
     usual = percent(float(np.median(apart)))
     return (
-        f"{STEPS_DIFFER} (temperature, surface?), usually by {usual}, at "
+        "friction at one speed differs from step to step (temperature, surface?), usually by "
+        f"{usual}, at "
         f"{many(len(apart), 'speed')} of {many(steps, 'step')}: the curve is a mean "
         "of them, tables/friction.csv has each"
     )

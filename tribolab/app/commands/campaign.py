@@ -161,6 +161,7 @@ def run(
     """
     with reported(debug, audience="campaign"):
         # late: starting stays quick
+        from tribolab.app.describing import describe_by_questions
         from tribolab.app.first_campaign import (
             campaign_file,
             results_of,
@@ -170,6 +171,8 @@ def run(
         from tribolab.app.run import run_campaign, run_here_if_lost
 
         run_it = partial(run_here_if_lost, say=partial(say, to_stderr=True))
+        if instrument is None and (described := describe_by_questions(campaign, keep=True)):
+            instrument = str(described)
         file, written = campaign_file(campaign, Path(), instrument)
         place = output or file.parent / results_of(file)
         new_folder = written and not place.exists()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import shlex
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -18,7 +17,6 @@ from tribolab.app.reported import (
     InstrumentOption,
     Jobs,
     Quiet,
-    fail,
     leaving,
     reported,
 )
@@ -121,7 +119,9 @@ def info(
     """
     with reported(debug):
         if write is not None:
-            _describe(files, write, write.stem, force=force, ask=ask)
+            from tribolab.app.describing import describe  # late: starting stays quick
+
+            describe(files, write, write.stem, force=force, ask=ask)
             return
         # late: starting stays quick
         from tribolab.app.quick import importing
@@ -139,6 +139,11 @@ def info(
                 say(f"tribolab: {description.error}", to_stderr=True)
             else:
                 say("\n".join(description.lines))
+        if instrument is None and all(description.error for description in described):
+            from tribolab.app.describing import describe_by_questions  # late: quick starts
+
+            if describe_by_questions(files, keep=False) is not None:
+                raise typer.Exit
         alone = len(described) == 1 and not described[0].error
         if alone and not holds_modulus(described[0].file):
             file = shlex.quote(str(described[0].file))
@@ -157,49 +162,9 @@ def dialect(
 ) -> None:
     """Describe an unknown instrument: as `tribolab info FILE --write NAME.toml`."""
     with reported(debug):
-        _describe(files, output, name, force=force, ask=ask)
+        from tribolab.app.describing import describe  # late: starting stays quick
 
-
-def _describe(
-    files: Sequence[Path], target: Path | None, name: str | None, *, force: bool, ask: bool | None
-) -> None:
-    """Describe the unknown instrument of some files, asking in a terminal, and try that on them."""
-    # late: starting stays quick
-    from tribolab.app.asking import ask_about
-    from tribolab.app.dialect import try_on
-    from tribolab.app.terminal import console
-    from tribolab.reading.unknown.proposal.draft import (
-        as_profile,
-        check_target,
-        draft_dialect,
-        holds_heights,
-        save_draft,
-    )
-    from tribolab.reading.unknown.proposal.show import print_draft, print_next, print_signals
-
-    draft = draft_dialect(files[0], name)
-    target = target or Path(f"{draft.name}.toml")
-    asking = ask or (ask is None and sys.stdin.isatty() and sys.stdout.isatty())
-    print_draft(draft, console(), rows=not asking)
-    if draft.dialect is not None:
-        check_target(target, force=force)
-    if asking:
-        draft = ask_about(draft, _prompt, say)
-        print_signals(draft, console())
-    if holds_heights(draft) and draft.dialect is None:
-        check_target(target, force=force)
-        draft = as_profile(draft)
-    if draft.dialect is None:
-        why = draft.answer or "the units of its columns are not stated; answer in a terminal"
-        fail(f"{files[0]}: no dialect is written: {why}", UNREADABLE, debug=False)
-    written = save_draft(draft, target, force=force)
-    for line in try_on(files, written, draft.kind):
-        say(line)
-    print_next(draft, written, console())
-
-
-def _prompt(question: str, default: str) -> str:
-    return str(typer.prompt(question, default=default))
+        describe(files, output, name, force=force, ask=ask)
 
 
 def _pool(

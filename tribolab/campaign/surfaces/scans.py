@@ -15,7 +15,7 @@ from tribolab.qc.scan.sets import check_scan_set
 from tribolab.reading.scan_files import read_traces
 from tribolab.reading.scans.read_scan import stacked
 from tribolab.records.parts import Finding, Row
-from tribolab.records.roughness_words import DOUBTFUL_FORM
+from tribolab.records.roughness_words import FORM
 from tribolab.surface.areal_roughness import areal_roughness
 from tribolab.surface.extrapolation import extrapolate
 from tribolab.surface.form import fill_dropouts, remove_form
@@ -210,7 +210,7 @@ def spectra_of_scans(
         form = "polynomial" if is_map else "circle"
     flat = scans if form == "none" else remove_form(scans, form)
     if form == "circle" and (doubt := _doubtful_circle(scans, flat)):
-        findings.append(Finding("note", doubt))
+        findings.append(Finding("note", doubt, FORM))
     cut = options.get("lambda_c", "auto")
     iso = roughness_parameters(flat, lambda_c=cut).assign(Pq=primary_roughness(flat))
     if is_map:
@@ -332,7 +332,7 @@ def _doubtful_circle(scans: xr.Dataset, flat: xr.Dataset) -> str:
         return ""
     radius = flat.attrs["form_radius_m"]
     return (
-        f"{DOUBTFUL_FORM} R = {number(radius)} m was taken off, which may be of the part or of its "
+        f"a circle of R = {number(radius)} m was taken off, which may be of the part or of its "
         f"waviness: Pq is {number(1e6 * without)} um without it and {number(1e6 * with_it)} um "
         'with the tilt alone taken off (form = "tilt" in [roughness], for a flat part)'
     )

@@ -11,7 +11,7 @@ from tribolab.core.limit import Limit
 from tribolab.errors import AnalysisError
 from tribolab.qc.register import Check, Result
 from tribolab.qc.scan.subject import ScanSubject
-from tribolab.reading.scans.extent import doubt_about_heights
+from tribolab.reading.scans.extent import doubt_about_heights, impossible_heights
 from tribolab.surface.roughness import roughness_parameters
 
 _COMPARED = ("Ra", "Rq")
@@ -92,6 +92,8 @@ def _implausible(subject: ScanSubject, limits: Mapping[str, float]) -> Result | 
     if length > largest:
         text = f"the scan is {length:.4g} m long by its units"
         return Result("suspect", "length", text, length, "m")
+    if impossible := impossible_heights(subject.scans):
+        return Result("suspect", "height", impossible)
     _, profiles = subject.form
     if not profiles or subject.level:
         return None

@@ -15,7 +15,7 @@ from tribolab.errors import ConfigError, ReadError, TribolabError, brief, neares
 from tribolab.reading import cures
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.raw.readers import installed_readers, is_reader
-from tribolab.reading.raw.source import check_regular
+from tribolab.reading.raw.source import Identity, check_regular, identity_of
 from tribolab.reading.schema_folder import schema_folder
 from tribolab.reading.text.first_bytes import File, peek, results_error
 from tribolab.untyped import Json
@@ -114,12 +114,11 @@ def recognise(path: str | Path) -> Dialect:
         If no dialect fits, or more than one; the message names the candidates and how to say
         which.
     """
-    # late: starting stays quick
-    from tribolab.reading.dialect.recognise import mismatch
-
     file = peek(path)
     named = file._replace(path=Path(path))  # what was unpacked lies elsewhere
-    fitting = [dialect for dialect in every_dialect() if mismatch(file, dialect) is None]
+    state = identity_of(file.path)
+    find = _fitting.__wrapped__ if state is None else _fitting
+    fitting = find(file, state, tuple(known_dialects().values()))
     if not fitting and installed_readers():
         # late: few have any
         from tribolab.reading.dialect.python_reader import recognised_by
@@ -137,6 +136,15 @@ def recognise(path: str | Path) -> Dialect:
     if error := results_error(file.head, named.path):
         raise error
     raise unknown(named, cures.RUN)
+
+
+@functools.lru_cache(maxsize=4)  # one reading asks several times
+def _fitting(file: File, _: Identity | None, known: tuple[Path, ...]) -> list[Dialect]:
+    """Return the dialects that a file fits."""
+    # late: starting stays quick
+    from tribolab.reading.dialect.recognise import mismatch
+
+    return [dialect for dialect in map(_load, known) if mismatch(file, dialect) is None]
 
 
 def unknown(file: File, table: str) -> UnknownFileError:

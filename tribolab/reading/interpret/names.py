@@ -218,7 +218,8 @@ def is_stroke_frequency(name: str, unit: str | None) -> bool:
     (True, False)
     """
     plain = normalise_label(without_role(name))
-    return bool(unit and converts(unit, "Hz") and key_pattern("frequency").search(plain))
+    # the name first: what a rare unit measures is found out with a library that loads slowly
+    return bool(unit and key_pattern("frequency").search(plain) and converts(unit, "Hz"))
 
 
 def is_date(name: str) -> bool:

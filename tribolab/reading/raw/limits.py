@@ -32,6 +32,10 @@ AT_REST = Limit(
     600.0, "s", "age from which on size and times alone show whether a file is written to: FAT "
     "notes times to 2 s, network file systems some 60 s late, and clocks of servers differ",
 )  # fmt: skip
+SURELY_OLD = Limit(
+    3.0, "s", "age from which size and times show whether a file is the one that was looked at",
+    "FAT notes times to 2 s",
+)  # fmt: skip
 READINGS = Limit(3.0, "1", "readings of a file that changes while it is read, before it is refused")
 HDF5_OBJECTS = Limit(
     5000.0, "1", "groups and datasets in an HDF5 file: 10 000 take half a "

@@ -41,6 +41,25 @@ def check_regular(path: Path) -> None:
         )
 
 
+class Identity(NamedTuple):
+    """What tells one state of a file at rest from another: its size, times [ns] and place."""
+
+    size: int
+    written: int
+    changed: int
+    inode: int
+
+
+def identity_of(path: Path) -> Identity | None:
+    """Return the identity of a file; None if it may be written to, or is none."""
+    with contextlib.suppress(OSError, ValueError):
+        now = path.stat()
+        age = time.time() - max(now.st_mtime, now.st_ctime)
+        if stat.S_ISREG(now.st_mode) and age > limits.SURELY_OLD.value:
+            return Identity(now.st_size, now.st_mtime_ns, now.st_ctime_ns, now.st_ino)
+    return None
+
+
 class _State(NamedTuple):
     """What shows that a file was written to: its size, times [ns], place and checksum."""
 

@@ -9,14 +9,24 @@ import xarray as xr
 
 from tribolab.errors import ReadError
 from tribolab.provenance import history_line
+from tribolab.reading.scans.limits import (
+    DOUBTFUL_REACH,
+    DOUBTFUL_SLOPE,
+    FINEST_LONG_REACH,
+    FINEST_PITCH,
+    LARGEST_MAP,
+    LARGEST_REACH,
+    LONGEST_PROBE_SCAN,
+    MIN_HEIGHTS_OF_LINE,
+)
 from tribolab.words import Count
 
-_LARGEST_MAP = 10.0  # m; gantries with optical gauges reach one
-_FINEST = 1e-13  # m, a tenth of the finest steps of a tunnelling microscope
+_LINES = 16  # along x and along y, by which a map is judged
+_USUAL = (0.5, 99.5)  # percentiles: spikes and marks of missing heights are no surface
 
-_REACH = 0.05  # of a profile's length, from which on its heights are doubted
-_STEEP = 1.0  # rms slope: 45 deg all over
-_FEWEST = 16  # heights of a profile that is doubted
+
+class RefusedScanError(ReadError):
+    """A file holds a scan for certain, and what is wrong with it is said."""
 
 
 def measured_part(scan: xr.Dataset) -> xr.Dataset:
@@ -59,35 +69,35 @@ def refuse_impossible(path: Path, scan: xr.Dataset) -> None:
 
     Raises
     ------
-    ReadError
+    RefusedScanError
         If it is.
     """
-    for dim in ("x", "y") if "y" in scan.height.dims else ("x",):
+    for dim in _axes(scan):
         values = scan[dim].values
         if values.size < 2:
             continue
         length = float(values[-1] - values[0])
         pitch = length / (values.size - 1)
-        if "y" in scan.height.dims and length > _LARGEST_MAP:
-            raise ReadError(
+        if "y" in scan.height.dims and length > LARGEST_MAP.value:
+            raise RefusedScanError(
                 f"{path}: by its units the map is {length:.4g} m long along {dim}, which no "
                 "instrument measures; the unit of its positions is wrong: export it with another "
                 "one, or as text, whose unit a dialect can say"
             )
-        if not pitch >= _FINEST:
-            raise ReadError(
+        if not pitch >= FINEST_PITCH.value:
+            raise RefusedScanError(
                 f"{path}: by its units the points are {pitch:.3g} m apart along {dim}, less than "
                 "atoms are; the unit of its positions is wrong: export it with another one"
             )
 
 
 def doubt_about_heights(scan: xr.Dataset) -> str:
-    """Say that a profile's heights are large for its length, as they are in a wrong unit; else "".
+    """Say that heights are large for the length of a scan, as they are in a wrong unit; else "".
 
     Parameters
     ----------
     scan
-        ``height`` [m] (..., x); of a map nothing is said.
+        ``height`` [m] (..., x) of profiles, (y, x) of a map.
 
     Examples
     --------
@@ -99,24 +109,76 @@ right?'
     >>> doubt_about_heights(rough.assign(height=rough.height / 1000))
     ''
     """
-    if "y" in scan.height.dims or scan.sizes["x"] < _FEWEST:
-        return ""
-    x = scan.x.values
-    length = float(x[-1] - x[0])
     reach, slope = 0.0, 0.0
-    for row in scan.height.transpose(..., "x").values.reshape(-1, x.size):
-        present = np.isfinite(row)
-        if present.sum() < _FEWEST:
-            continue
-        bowed = np.polynomial.Polynomial.fit(x[present], row[present], 2)
-        rest = row[present] - bowed(x[present])
-        low, high = np.percentile(rest, [0.5, 99.5])  # spikes are no surface
-        steps = np.diff(rest) / np.diff(x[present])
-        reach = max(reach, float(high - low) / length)
-        slope = max(slope, float(np.sqrt(np.mean(steps**2))))
-    if reach < _REACH and slope < _STEEP:
+    if impossible := impossible_heights(scan):
+        return impossible
+    for dim in _axes(scan):
+        x = scan[dim].values
+        rows = scan.height.transpose(..., dim).values.reshape(-1, x.size)
+        if "y" in scan.height.dims:
+            rows = rows[:: -(-len(rows) // _LINES)]
+        for row in rows:
+            present = np.isfinite(row)
+            if present.sum() < MIN_HEIGHTS_OF_LINE.value:
+                continue
+            own_reach, own_slope = _reach_and_slope(x[present], row[present])
+            reach, slope = max(reach, own_reach), max(slope, own_slope)
+    if reach < DOUBTFUL_REACH.value and slope < DOUBTFUL_SLOPE.value:
         return ""
     return (
         f"heights reach over {100 * reach:.2g} % of the length, with an rms slope of {slope:.2g}: "
         "is their unit, or that of x, right?"
     )
+
+
+def impossible_heights(scan: xr.Dataset) -> str:
+    """Say that heights are far too large for the size of a scan; else ""."""
+    length = max(float(np.ptp(scan[dim].values)) for dim in _axes(scan))
+    known = scan.height.values[np.isfinite(scan.height.values)]
+    span = float(np.ptp(np.percentile(known, _USUAL))) if known.size else 0.0
+    if span <= LARGEST_REACH.value * length:
+        return ""
+    return (
+        f"the heights span {span:.3g} m on a length of {length:.3g} m, which no instrument "
+        "measures: the unit of the heights, or that of x, is wrong"
+    )
+
+
+def _axes(scan: xr.Dataset) -> tuple[str, ...]:
+    return ("x", "y") if "y" in scan.height.dims else ("x",)
+
+
+def _reach_and_slope(x: np.ndarray, height: np.ndarray) -> tuple[float, float]:
+    """Range of heights over the length of a line, its bow taken off, and their rms slope."""
+    rest = height - np.polynomial.Polynomial.fit(x, height, 2)(x)
+    reach = float(np.ptp(np.percentile(rest, _USUAL))) / float(x[-1] - x[0])
+    return reach, float(np.sqrt(np.mean((np.diff(rest) / np.diff(x)) ** 2)))
+
+
+def likely_height_unit(numbers: np.ndarray, pitch: float) -> str:
+    """Return the only unit in which heights are those of a surface; "" if several may be.
+
+    Parameters
+    ----------
+    numbers
+        Heights of a profile as the file writes them (x).
+    pitch
+        Distance of neighbouring heights [m].
+
+    Examples
+    --------
+    >>> heights = 0.4 * np.sin(np.arange(8000) / 40)
+    >>> likely_height_unit(heights, 0.5e-6), likely_height_unit(heights, 0.5e-9)
+    ('um', '')
+    """
+    height = numbers[np.isfinite(numbers)]
+    if height.size < MIN_HEIGHTS_OF_LINE.value:
+        return ""
+    x = pitch * np.arange(height.size)
+    fitting = []
+    for unit, metres in (("nm", 1e-9), ("um", 1e-6), ("mm", 1e-3), ("m", 1.0)):
+        reach, slope = _reach_and_slope(x, metres * height)
+        steep = slope >= DOUBTFUL_SLOPE.value or reach >= DOUBTFUL_REACH.value
+        fine = x[-1] > LONGEST_PROBE_SCAN.value and reach * x[-1] < FINEST_LONG_REACH.value
+        fitting += [] if steep or fine else [unit]
+    return fitting[0] if len(fitting) == 1 else ""

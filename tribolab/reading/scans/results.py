@@ -1,4 +1,4 @@
-"""Results of a roughness tester without the profile: RES files of a Surftest SJ-410."""
+"""Results of roughness testers without the profile: RES files of a Surftest, `Ra = 0.523 um`."""
 
 from __future__ import annotations
 
@@ -8,18 +8,28 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError, UnitError
+from tribolab.errors import ReadError, UnitError, shown
 from tribolab.provenance import provenance
 from tribolab.quantities import QUANTITIES
 from tribolab.reading.raw.source import read_unchanged
 from tribolab.reading.scans.formats.profilometers import result
-from tribolab.reading.scans.named_results import read_named_results
-from tribolab.reading.text.first_bytes import is_surftest_results, named_values, peek, results_error
+from tribolab.reading.text.first_bytes import (
+    File,
+    is_surftest_results,
+    named_values,
+    peek,
+    results_error,
+)
 from tribolab.stamping import stamp
 from tribolab.units import conversion
 
 _SETTINGS = {"Lc": "lambda_c", "Ls": "lambda_s", "Pitch": "pitch", "M-Speed": "measuring_speed"}
-_NAMES = {"RDq": "Rdq"}
+_NAMES = {"rdq": "Rdq", "rδq": "Rdq"}
+_CUTOFFS = (
+    (re.compile(r"(?i)^(λ|l|lambda)_? ?c$|^cut-? ?off"), "lambda_c_m"),
+    (re.compile(r"(?i)^(λ|l|lambda)_? ?s$"), "lambda_s_m"),
+)
+_WITHOUT_UNIT = ("1", "%")
 
 
 def read_tester_results(path: str | Path) -> xr.Dataset:
@@ -29,7 +39,7 @@ def read_tester_results(path: str | Path) -> xr.Dataset:
     ----------
     path
         A RES file: ``name;value;unit;condition`` with a decimal comma; or lines of a name and a
-        value with its unit, see `tribolab.reading.scans.named_results`.
+        value with its unit in UTF-8 or Latin-1, with decimal point or comma.
 
     Returns
     -------
@@ -37,8 +47,8 @@ def read_tester_results(path: str | Path) -> xr.Dataset:
         Without dims: ``Ra``, ``Rq``, ``Rz`` [m], ``Rsk``, ``Rku``, ``Rdq`` [1] where given. Other
         parameters and the measuring conditions are attributes, with their unit in the name; a
         parameter given twice has its condition in the name. What the instrument could not compute
-        is NaN and named in ``instrument_errors``. The date stays as it is written: 11/01 can be
-        two days.
+        (an error code, ``*.***um``) is NaN and named in ``instrument_errors``. The date stays as
+        it is written: 11/01 can be two days.
 
     Raises
     ------
@@ -58,20 +68,75 @@ def read_tester_results(path: str | Path) -> xr.Dataset:
     return read_unchanged([Path(path)], lambda: _results(path))
 
 
+class _Results:
+    """Parameters by name [m] or [1], what else a file says, and what was not computed."""
+
+    def __init__(self, instrument: str) -> None:
+        self.attrs: dict[str, str | float] = {"instrument": instrument}
+        self.values: dict[str, float] = {}
+        self.errors: list[str] = []
+
+    def add(self, name: str, text: str, unit: str, where: str, condition: str = "") -> None:
+        """Add a parameter; one that is given twice has its condition in its name."""
+        name = _NAMES.get(name.lower(), name)
+        failed = "*" in text or text.startswith("Err")
+        value = np.nan if failed else _number(text, where)
+        if failed:
+            self.errors.append(f"{name}: {text}{unit if '*' in text else ''}")
+        if not unit and name in QUANTITIES and QUANTITIES[name].unit not in _WITHOUT_UNIT:
+            raise ReadError(f"{where}: the value has no unit; write it behind the number, e.g. um")
+        if name in QUANTITIES:
+            self.values[name] = next(iter(_result(name, value, unit, where).values()))
+        self.attrs |= _result(f"{name} {condition}" if condition else name, value, unit, where)
+
+    def add_length(self, key: str, text: str, unit: str, wanted: str, where: str) -> None:
+        """Add a cut-off, a pitch or a speed."""
+        try:
+            scale = conversion(unit, wanted)[0]
+        except UnitError as error:
+            raise ReadError(f"{where}: {error}; is the line damaged?") from error
+        value = np.nan if "*" in text else _number(text, where)
+        self.attrs[key] = float(f"{value * scale:.15g}")
+
+    def dataset(self, path: Path) -> xr.Dataset:
+        """Return them; a file without any is refused."""
+        if not self.values:
+            raise ReadError(f"{path}: no roughness parameter (Ra, Rq, Rz ...) stands in the file")
+        self.attrs["instrument_errors"] = "; ".join(self.errors) or "none"
+        data = xr.Dataset({name: ((), value) for name, value in self.values.items()})
+        return stamp(data, **provenance([path], "read roughness results"), **self.attrs)
+
+
 def _results(path: str | Path) -> xr.Dataset:
     file = peek(path)
-    if not is_surftest_results(file.head):
-        if named_values(file.head):
-            return read_named_results(file)
-        if error := results_error(file.head, file.path):
-            raise error
-        raise ReadError(
-            f"{file.path}: these are no results of a roughness tester (neither 'Mode;RES' nor "
-            "lines such as 'Ra = 0.5 um')"
-        )
-    attrs: dict[str, str | float] = {"instrument": "surftest_res"}
-    values: dict[str, float] = {}
-    errors, section = [], ""
+    if is_surftest_results(file.head):
+        return _of_surftest(file).dataset(file.path)
+    if named_values(file.head):
+        return _by_name(file).dataset(file.path)
+    if error := results_error(file.head, file.path):
+        raise error
+    raise ReadError(
+        f"{file.path}: these are no results of a roughness tester (neither 'Mode;RES' nor "
+        "lines such as 'Ra = 0.5 um')"
+    )
+
+
+def _by_name(file: File) -> _Results:
+    """Return what stands in lines of a name, a value and its unit."""
+    found = _Results("results by name")
+    for line, (name, number, unit) in named_values(file.head):
+        where = f"{file.path}: line {line}, '{shown(name, 40)}'"
+        cutoff = next((key for pattern, key in _CUTOFFS if pattern.search(name)), "")
+        if cutoff:
+            found.add_length(cutoff, number, unit, "m", where)
+        else:
+            found.add(name, number, unit, where)
+    return found
+
+
+def _of_surftest(file: File) -> _Results:
+    """Return what stands in a RES file, by sections."""
+    found, section = _Results("surftest_res"), ""
     lines = file.head.decode("latin-1").splitlines()
     names = [line.split(";")[0].strip() for line in lines]
     for number, line in enumerate(lines, start=1):
@@ -80,47 +145,27 @@ def _results(path: str | Path) -> xr.Dataset:
             continue
         cells = [cell.strip() for cell in line.split(";")] + ["", "", ""]
         name, value, unit, condition = cells[:4]
+        where = f"{file.path}: line {number}, '{name[:40]}'"
         if not name:
             continue
-        where = f"{file.path}: line {number}, '{name[:40]}'"
         if section == "CalcResult":
-            twice = names.count(name) > 1
-            name = _NAMES.get(name, name)
-            numeric = np.nan if value.startswith("Err") else _number(value, where)
-            if value.startswith("Err"):
-                errors.append(f"{name}: {value}")
-            attribute = _result(name, numeric, unit, where)
-            if name in QUANTITIES:
-                values[name] = next(iter(attribute.values()))
-            elif twice:
-                attribute = _result(f"{name} {condition}", numeric, unit, where)
-            attrs.update(attribute)
+            twice = names.count(name) > 1 and name not in QUANTITIES
+            found.add(name, value, unit, where, condition if twice else "")
         elif name in _SETTINGS:
             wanted = "m/s" if unit.endswith("/s") else "m"
             key = f"{_SETTINGS[name]}_{wanted.replace('/', '_')}"
-            attrs[key] = float(f"{_number(value, where) * _scale(unit, wanted, where):.15g}")
+            found.add_length(key, value, unit, wanted, where)
         elif section == "Header" and name == "Date":
-            attrs["recorded_at_as_written"] = " ".join(filter(None, [value, unit]))
+            found.attrs["recorded_at_as_written"] = " ".join(filter(None, [value, unit]))
         elif section:
             key = "setting_" + re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_").lower()
-            attrs[key] = " ".join(filter(None, [value, unit]))
-    if not values:
-        raise ReadError(f"{file.path}: the section '// CalcResult' holds no roughness parameter")
-    attrs["instrument_errors"] = "; ".join(errors) if errors else "none"
-    data = xr.Dataset({name: ((), value) for name, value in values.items()})
-    return stamp(data, **provenance([file.path], "read roughness results"), **attrs)
+            found.attrs[key] = " ".join(filter(None, [value, unit]))
+    return found
 
 
 def _result(name: str, value: float, unit: str, where: str) -> dict[str, float]:
     try:
         return result(name, value, unit)
-    except UnitError as error:
-        raise ReadError(f"{where}: {error}; is the line damaged?") from error
-
-
-def _scale(unit: str, wanted: str, where: str) -> float:
-    try:
-        return conversion(unit, wanted)[0]
     except UnitError as error:
         raise ReadError(f"{where}: {error}; is the line damaged?") from error
 

@@ -16,7 +16,7 @@ from tribolab.reading.raw.containers.xml_workbook import is_xml_workbook
 from tribolab.reading.raw.hdf5_safety import check_self_contained
 from tribolab.reading.raw.opening import MissingLibraryError, RefusedError
 from tribolab.reading.raw.readers import answers, installed_readers
-from tribolab.reading.raw.source import check_regular
+from tribolab.reading.raw.source import Identity, check_regular, identity_of
 from tribolab.reading.raw.unpacked import ZIP, holds_arrays, is_workbook, unpacked
 from tribolab.reading.results_table import find_other_test, find_results_table
 
@@ -83,6 +83,11 @@ def peek(path: str | Path, *, binary: bool = False) -> File:
         If there is no such file, it is no file, is empty, or is of a format that cannot be read.
     """
     path = Path(path)
+    known = identity_of(path)
+    return _seen(path, binary, None) if known is None else _seen_at_rest(path, binary, known)
+
+
+def _seen(path: Path, binary: bool, _: Identity | None) -> File:
     try:
         if path.exists():
             check_regular(path)
@@ -95,7 +100,7 @@ def peek(path: str | Path, *, binary: bool = False) -> File:
         raise ReadError(f"{path}: the file cannot be opened: {error}") from error
     inner = unpacked(path, head)
     if inner != path:
-        return peek(inner)
+        return _seen(inner, False, None)
     wide = bool(wide_encoding(head))
     if not head.strip(b"\xef\xbb\xbf \t\r\n" + b"\xff\xfe\0" * wide):
         raise ReadError(f"{path}: the file is empty")
@@ -108,6 +113,9 @@ def peek(path: str | Path, *, binary: bool = False) -> File:
         except ReadError:  # damaged: its reader says more
             pass
     return found
+
+
+_seen_at_rest = functools.lru_cache(maxsize=4)(_seen)  # one reading looks at a file several times
 
 
 def wide_encoding(head: bytes) -> str:

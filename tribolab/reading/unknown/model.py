@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from enum import Enum
 from typing import Literal, NamedTuple
 
 import numpy as np
 
-UNKNOWN_NAME = "the name is not known"
-NO_NUMBERS = "not a number: "  # what stands in a column of text is told behind it
 
-WHICH_FORCE = "whether '{}' is the friction force or the normal force"
+class Reason(Enum):
+    """Why a column is not read as it is, in words for its note."""
+
+    TEXT = "not a number: '{}'"
+    UNKNOWN_NAME = "the name is not known"
+    ADDS = "one of several loads that add up"
+    EITHER_FORCE = "whether '{}' is the friction force or the normal force"
+
 
 Kind = Literal["run", "scan", "table"]
 
@@ -22,7 +28,8 @@ class DraftColumn(NamedTuple):
     `group` is that of a TDMS channel. A converter's counts are `counted`: what one is worth is to
     be said.
     One of its numbers is `scale` units, and `zero` says from where its zero is read; `said` is what
-    a person called it that is no quantity: a torque, or an angle.
+    a person called it that is no quantity: a torque, or an angle. `note` says in words why it is
+    not used; `reason` is what other rules may ask of that.
     `options` is what it may be instead, where something is guessed; `form` that of its dates;
     `epoch` the moment that a column of time counts from; `zero` where its zero is read.
     """
@@ -40,6 +47,7 @@ class DraftColumn(NamedTuple):
     guessed: tuple[str, ...] = ()
     options: tuple[str, ...] = ()
     note: str = ""
+    reason: Reason | None = None
     fill_in: str = ""
     form: str = ""
     epoch: str = ""

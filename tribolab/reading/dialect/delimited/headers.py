@@ -132,8 +132,8 @@ def line_at(
 def endless(line: int) -> str:
     """Say that a line is longer than any row of a table."""
     return (
-        f"line {line} is longer than {LONGEST_LINE >> 20} MB, as no row of a table is; was the "
-        "file written without line ends, or is it damaged?"
+        f"line {line} is longer than {LONGEST_LINE >> 20} MB, as no row of a table is; "
+        "export the file with line ends"
     )
 
 

@@ -8,32 +8,16 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from tribolab.errors import shown
+from tribolab.reading.lexicon.lexicon import keys_of, words_of
 from tribolab.reading.scans.formats.named_arrays import HeldArray
+from tribolab.reading.scans.unit_words import axes_of, is_about_heights, stated_units
+from tribolab.unit_names import unit_of_length
 
-# units as files write them, and as we do
-LENGTHS = {
-    **{unit: unit for unit in ("m", "mm", "um", "nm", "pm", "cm", "angstrom", "inch", "mil")},
-    **dict.fromkeys(("µm", "μm", "micron", "microns", "micrometer", "micrometre"), "um"),
-    **dict.fromkeys(("meter", "metre", "meters", "metres"), "m"),
-    **dict.fromkeys(("millimeter", "millimetre", "MM"), "mm"),
-    **dict.fromkeys(("nanometer", "nanometre", "nanometers", "nanometres"), "nm"),
-    **{"Å": "angstrom", "UM": "um", "NM": "nm"},
-}
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[^\W\d_A-Z]+")
-_AXES = {
-    "x": frozenset("x xy lateral horizontal position pos".split()),
-    "y": frozenset("y xy lateral horizontal position pos".split()),
-    "z": frozenset("z height heights vertical topography depth value values data".split()),
-}
-UNITS = frozenset(
-    "unit units einheit einheiten unité unités unidad unidades unità eenheid enhet enhed jednotka "
-    "jednostka".split()
-)
-_JOINED = re.compile(r"(?i)^(?P<axis>xy|x|y|z)_?units?$|^units?_?(?P<after>xy|x|y|z)$")
-_IN_WORDS = re.compile(
-    r"(?i)(?<![^\W_])(?P<what>x\s?[,/&+]?\s?y|xy|x|y|z|heights?)\s*(?:in|are in|is in|[:=\[(/])?\s*"
-    r"(?P<unit>[npuµμ]m|mm|cm|m|Å|microns?)(?![^\W_])"
-)
+_LATERAL = frozenset("lateral horizontal position pos".split())
+_VALUES = frozenset("depth topography value values data".split())
+UNITS = frozenset(keys_of("unit"))
+_JOINED = re.compile(r"(?i)^(xy|[xyz])(units?)$|^(units?)(xy|[xyz])$")  # "xunits"
 _SCALE = re.compile(
     r"(?i)^(?:(?:z|height)_?)?(?:scale(?:_?factor)?|scaling|gain|factor|multiplier|increment|lsb|slope"
     r"|calibration|resolution)(?:_(?P<unit>[npuµμ]m|mm|m))?$"
@@ -63,32 +47,30 @@ def stated_unit(texts: Mapping[str, str], axis: str) -> str | None:
     >>> stated_unit({"comment": "x and y in um, z in nm"}, "z")
     'nm'
     """
-    own, any_axis = set(), set()
+    own, of_any = set(), set()
     for key, text in texts.items():
-        parts = re.split(r"[./]", key)[-2:]
-        words = {word for part in parts for word in tokens(part)}
-        joined = _JOINED.match(parts[-1])
-        unit = LENGTHS.get(text.strip().strip("[]()"))
-        if joined is not None:
-            words = {"unit", (joined["axis"] or joined["after"]).lower()}
-        if unit is not None and words & UNITS:
-            others = frozenset().union(*(w for name, w in _AXES.items() if name != axis))
-            if words & _AXES[axis]:
-                own.add(unit)
-            elif not words & others:
-                any_axis.add(unit)
-        if unit is None:
-            own |= {
-                LENGTHS[said["unit"].replace("Um", "um")]
-                for said in _IN_WORDS.finditer(text)
-                if said["unit"] in LENGTHS and axis in _axes_of(said["what"].lower())
-            }
-    units = own or any_axis
+        if not (unit := unit_of_length(text)):
+            own |= {stated.unit for stated in stated_units(text) if axis in _axes(stated.words)}
+            continue
+        parts = (_JOINED.sub(r"\1\4 \2\3", part) for part in re.split(r"[./]", key)[-2:])
+        words = " ".join(parts)
+        if not UNITS & set(words_of(words)):
+            continue
+        named = _axes(words)
+        if axis in named:
+            own.add(unit)
+        elif not named:
+            of_any.add(unit)
+    units = own or of_any
     return units.pop() if len(units) == 1 else None
 
 
-def _axes_of(what: str) -> str:
-    return "z" if what.startswith(("z", "h")) else what
+def _axes(words: str) -> set[str]:
+    """Return the axes that words name: by letter, or as what lies along or across the surface."""
+    said = set(words_of(words))
+    axes = axes_of(words) | ({"x", "y"} if said & _LATERAL else set())
+    up = not axes and (is_about_heights(words) or said & _VALUES)
+    return axes | {"z"} if up else axes
 
 
 def scaled(
@@ -123,7 +105,7 @@ def scaled(
     for key, value in said.items():
         if (scale := _SCALE.match(key)) is not None and value:
             z *= value
-            unit = LENGTHS[scale["unit"]] if scale["unit"] else unit
+            unit = unit_of_length(scale["unit"]) if scale["unit"] else unit
             break
     for key, value in said.items():
         if _OFFSET.match(key):
@@ -139,7 +121,7 @@ def unit_of_scale(attrs: Mapping[str, object]) -> str | None:
     'nm'
     """
     scales = [scale for key in attrs if (scale := _SCALE.match(key)) and scale["unit"]]
-    return LENGTHS[scales[0]["unit"]] if len(scales) == 1 else None
+    return unit_of_length(scales[0]["unit"]) if len(scales) == 1 else None
 
 
 def _is_number(value: object) -> bool:

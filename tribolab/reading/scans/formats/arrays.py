@@ -12,7 +12,6 @@ import xarray as xr
 from tribolab.errors import ReadError, shown
 from tribolab.reading.raw.missing_marks import measurable, take_marks
 from tribolab.reading.scans.formats.array_units import (
-    LENGTHS,
     UNITS,
     scaled,
     stated_unit,
@@ -25,6 +24,7 @@ from tribolab.reading.scans.formats.profilometers import NotSaidError
 from tribolab.reading.scans.grid import even
 from tribolab.reading.scans.header import map_header
 from tribolab.reading.text.cells import split_name
+from tribolab.unit_names import unit_of_length
 from tribolab.units import conversion
 from tribolab.untyped import Json
 
@@ -241,8 +241,8 @@ def _own_unit(array: HeldArray) -> str | None:
     name, bracket = split_name(array.name)
     last = re.split(r"[\W_]+", name)[-1]
     for unit in (said, bracket, last if len(re.split(r"[\W_]+", name)) > 1 else None):
-        if isinstance(unit, str) and unit.strip() in LENGTHS:
-            return LENGTHS[unit.strip()]
+        if isinstance(unit, str) and (length := unit_of_length(unit)):
+            return length
     return unit_of_scale(array.attrs)
 
 
@@ -275,7 +275,7 @@ def _bare(name: str) -> str:
     ('pixel size', 'dx')
     """
     words = re.split(r"[_\s]+", re.split(r"[./]", split_name(name)[0])[-1])
-    return " ".join(words[:-1] if len(words) > 1 and words[-1] in LENGTHS else words)
+    return " ".join(words[:-1] if len(words) > 1 and unit_of_length(words[-1]) else words)
 
 
 def _without_invalid(arrays: Iterable[HeldArray], heights: HeldArray, z: np.ndarray) -> list[str]:

@@ -5,14 +5,17 @@ So export force microscopes their images as text.
 
 from __future__ import annotations
 
+import functools
 import re
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError, shown
+from tribolab.errors import shown
+from tribolab.reading.lexicon.lexicon import plain_text, text_pattern
 from tribolab.reading.raw.missing_marks import measurable, take_marks
+from tribolab.reading.scans.extent import RefusedScanError
 from tribolab.reading.scans.formats.matrix import texts_of, value_of
 from tribolab.reading.scans.header import MapHeader, map_header
 
@@ -20,34 +23,28 @@ _HEAD = 1 << 16  # bytes in which a column begins
 _HEAD_LINES = 500  # above it
 _FEWEST = 8  # rows, and heights of each
 _ROWS = 20  # numbers that tell a column
-_LINE = (
-    r"(?:columns?|kolom(?:men)?|spalten?|colonn\w+|column\w+|colun\w+|sloup\w+|kolumn\w*|sarak\w+"
-    r"|oszlop\w*|столб\w+|列)"
-)
-_ROW = (
-    r"(?:rows?|rij(?:en)?|zeilen?|lignes?|filas?|righ[ei]|linhas?|rader?|rækk\w+|wiersz\w*|řád\w*"
-    r"|rivi\w*|sor\w*|строк\w*|行)"
-)
-_BY = r"\W{1,3}(?:by|after|voor|na|für|nach|par|por|per|za|po|till|för|kerrallaan|за|逐)?\W{0,3}"
-_FAST = (
-    r"\W.{0,30}(?:fast|snel|schnell|vite|rápid|rapid|veloc|szybc|rychl|hurt|nope|gyors|быстр|快|速)"
-)
-_BY_COLUMNS = re.compile(
-    rf"{_LINE}{_BY}{_LINE}|column[\s-]?major|fortran|spaltenweise|逐列|(?<![^\W\d_])y{_FAST}", re.I
-)
-_BY_ROWS = re.compile(
-    rf"{_ROW}{_BY}{_ROW}|row[\s-]?major|zeilenweise|逐行|(?<![^\W\d_])x{_FAST}", re.I
-)
-_ORDER = re.compile(  # an order that is stated in other words
-    r"(?<![^\W_])(?:order|volgorde|reihenfolge|ordre|orden|ordine|ordem|ordning|rækkefølge|rekkefølge"
-    r"|kolejność|pořadí|järjestys|sorrend|sıra\w*|порядок|顺序|順序?)(?![^\W_])"
-    rf".*(?:{_LINE}|{_ROW}|(?<![^\W\d_])[xy](?![^\W\d_]))|meander|serpentin|boustro",
-    re.IGNORECASE,
-)
+_FAST = r"(?:\S+ ){{0,4}}?{fastest}"
 
 
-class UnclearOrderError(ReadError):
-    """The heights of a map stand in an order that is stated in words that are not known."""
+@functools.cache
+def _order_pattern(what: str) -> re.Pattern[str]:
+    """Return a pattern for what `plain_text` gives of lines that state an order of heights."""
+    column, row, each, fastest, order = (
+        f"(?:{text_pattern(name).pattern})"
+        for name in ("map_column", "map_row", "one_by_one", "fastest", "stated_order")
+    )
+    of_columns = rf"{column}\w* ?(?:{each} ?)?{column}|\by {_FAST.format(fastest=fastest)}"
+    of_rows = rf"{row}\w* ?(?:{each} ?)?{row}|\bx {_FAST.format(fastest=fastest)}"
+    forms = {
+        "by_columns": of_columns,
+        "by_rows": of_rows,
+        "to_and_fro": rf"{order}.*(?:{column}|{row}|\b[xy]\b)",
+    }
+    return re.compile(f"{forms[what]}|{text_pattern(what).pattern}")
+
+
+def _states(line: str, what: str) -> bool:
+    return _order_pattern(what).search(plain_text(line)) is not None
 
 
 def read_column_map(path: Path) -> xr.Dataset | None:
@@ -66,7 +63,7 @@ def read_column_map(path: Path) -> xr.Dataset | None:
 
     Raises
     ------
-    UnclearOrderError
+    RefusedScanError
         If the text states an order that is not known.
     """
     with path.open("rb") as file:
@@ -93,11 +90,11 @@ def read_column_map(path: Path) -> xr.Dataset | None:
 
 def _goes_by_columns(path: Path, above: list[str]) -> bool:
     """Whether the heights stand column after column; a stated order that is not known is none."""
-    if any(_BY_COLUMNS.search(line) for line in above):
+    if any(_states(line, "by_columns") for line in above):
         return True
-    said = [line for line in above if _ORDER.search(line)]
-    if said and not any(_BY_ROWS.search(line) for line in above):
-        raise UnclearOrderError(
+    said = [line for line in above if _states(line, "to_and_fro")]
+    if said and not any(_states(line, "by_rows") for line in above):
+        raise RefusedScanError(
             f"the order of the heights is not understood: '{shown(said[0].strip(), 80)}'",
             where=path,
             cure="save it as a matrix, or say 'row by row' or 'column by column'",

@@ -10,6 +10,7 @@ import numpy as np
 
 from tribolab.errors import ReadError, brief
 from tribolab.reading.raw.containers.mat import read_variables
+from tribolab.reading.raw.containers.settings import plain
 from tribolab.reading.raw.opening import isolated
 from tribolab.reading.scans.formats.profilometer_safety import DAMAGE
 from tribolab.untyped import Json
@@ -113,9 +114,9 @@ def _of_netcdf(path: Path) -> HeldArrays:
 
     held = HeldArrays([], {})
     with netcdf_file(path, "r", mmap=False, maskandscale=False) as file:
-        _tell(held, "", {k: _plain(v) for k, v in vars(file)["_attributes"].items()})
+        _tell(held, "", {k: plain(v) for k, v in vars(file)["_attributes"].items()})
         for name, variable in file.variables.items():
-            attrs = {k: _plain(v) for k, v in vars(variable)["_attributes"].items()}
+            attrs = {k: plain(v) for k, v in vars(variable)["_attributes"].items()}
             _take(held, name, np.array(variable.data), attrs)
     return held
 
@@ -128,7 +129,7 @@ def _of_hdf5(path: Path) -> HeldArrays:
     held = HeldArrays([], {})
 
     def visit(name: str, item: object) -> None:
-        attrs = {str(k): _plain(v) for k, v in getattr(item, "attrs", {}).items()}
+        attrs = {str(k): plain(v) for k, v in getattr(item, "attrs", {}).items()}
         if not isinstance(item, h5py.Dataset):
             _tell(held, name, attrs)
             return
@@ -138,7 +139,7 @@ def _of_hdf5(path: Path) -> HeldArrays:
             held.texts[name] = "".join(map(chr, np.ravel(item[()])[:_LONGEST].tolist()))
         elif item.dtype.kind in "OSU":
             if item.size == 1:
-                held.texts[name] = str(_plain(item[()]))[:_LONGEST]
+                held.texts[name] = str(plain(item[()]))[:_LONGEST]
         else:
             values = np.asarray(item[()])
             if "MATLAB_class" in attrs:  # whose columns are HDF5's rows
@@ -154,7 +155,7 @@ def _of_hdf5(path: Path) -> HeldArrays:
 
 def _take(held: HeldArrays, name: str, values: np.ndarray, attrs: Json) -> None:
     if values.dtype.kind in "SU" and values.size == 1:
-        held.texts[name] = str(_plain(values))[:_LONGEST]
+        held.texts[name] = str(plain(values))[:_LONGEST]
     elif values.dtype.kind in "fiub" and values.size:
         own = np.squeeze(values) if values.ndim > 2 or values.size == 1 else values
         held.arrays.append(HeldArray(name, own, attrs))
@@ -171,10 +172,3 @@ def _tell(held: HeldArrays, name: str, attrs: Json) -> None:
             held.texts[full] = value[:_LONGEST]
         elif isinstance(value, int | float):
             held.arrays.append(HeldArray(full, np.asarray(value, dtype=float), {}))
-
-
-def _plain(value: object) -> object:
-    """Return a single value as a number or text."""
-    if isinstance(value, np.ndarray | np.generic) and np.size(value) == 1:
-        value = np.asarray(value).item()
-    return value.decode("utf-8", "replace") if isinstance(value, bytes) else value

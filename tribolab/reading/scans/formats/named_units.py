@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tribolab.errors import Cure
+from tribolab.unit_names import unit_of_length
 
-_UNITS = {"µm": "um", "μm": "um", "micron": "um", "microns": "um"}
 _SAID = re.compile(
     r"(?i)(?<![^\W_])(?P<what>xyz|xy|x|y|z|heights?|h(?:ö|oe)hen?)[-_ =]?(?:in[-_ ])?"
     r"(?P<unit>[npuµμ]m|mm|cm|microns?|(?<=in[-_ ])m)(?![^\W_])"
@@ -30,8 +30,7 @@ def units_in_name(path: Path) -> NamedUnits:
     """
     along, up = set(), set()
     for said in _SAID.finditer(path.stem):
-        what, unit = said["what"].lower(), said["unit"].lower()
-        unit = _UNITS.get(unit, unit)
+        what, unit = said["what"].lower(), unit_of_length(said["unit"])
         if "x" in what or "y" in what:
             along.add(unit)
         if "z" in what or what.startswith("h"):

@@ -80,7 +80,7 @@ def _text_formats(path: Path) -> list[str]:
         if len(lines[number]) > _LONG:
             raise ReadError(
                 f"{path}: line {number + 1} has {len(lines[number])} characters that are not all "
-                "numbers; a profile's text has short lines of words. Is the file damaged?"
+                "numbers; a profile's text has short lines of words; export it again"
             )
     last = words[-1] if words else -1
     widths = {_width(line) for line in lines[last + 1 :] if line.strip()}
@@ -102,7 +102,7 @@ def _no_endless_lines(path: Path, content: bytes) -> None:
     if longest > _LONGEST_ROW:
         raise ReadError(
             f"{path}: a line of {longest} characters is longer than any row of a map "
-            f"({_LONGEST_ROW}); is the file damaged?"
+            f"({_LONGEST_ROW}); export it with line ends"
         )
 
 

@@ -22,6 +22,8 @@ from tribolab.reading.text.first_bytes import peek
 from tribolab.units import conversion, to_si
 from tribolab.untyped import Arguments, Json
 
+_OF_PROGRAM = (LookupError, TypeError, AttributeError, AssertionError)  # no words about a file
+
 
 class NotSaidError(ReadError):
     """A scan could be read, if its file said what is lacking."""
@@ -81,8 +83,8 @@ def read_foreign(
         attrs = _instrument(channel.info or {})
     except (TribolabError, KeyError, TypeError, ValueError) as error:
         raise ReadError(
-            f"{path}: what the file says of units and instrument cannot be understood: {error}; is "
-            "it damaged?"
+            f"{path}: what the file says of units and instrument cannot be understood: {error}; "
+            "export the profile as text (csv)"
         ) from error
     attrs["instrument"] = f"{_name(reader)} (SurfaceTopography)"
     vertical = lateral if vertical is None else vertical
@@ -139,11 +141,12 @@ def _opened(path: Path, formats: list[str], open_topography: Any) -> Iterator[An
         except Exception as error:  # a format that does not fit says so in its own way
             refused = error
     if reader is None:
-        told = f" ({formats[0]}: {brief(refused)})" if len(formats) == 1 else ""
+        said = "" if isinstance(refused, _OF_PROGRAM) else f": {brief(refused)}"
+        told = f" ({formats[0]}{said})" if len(formats) == 1 else ""
         if not _is_text(path):
             raise ReadError(
-                f"{path}: neither text nor a format that SurfaceTopography reads{told}; is it "
-                "damaged? Else export the profile as text"
+                f"{path}: neither text nor a format that SurfaceTopography reads{told}; "
+                "export the profile as text (csv)"
             )
         raise ReadError(
             f"neither a known dialect nor a format that SurfaceTopography reads{told}",

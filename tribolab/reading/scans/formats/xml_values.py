@@ -15,42 +15,25 @@ from tribolab.errors import ReadError, UnitError, shown
 from tribolab.reading import cures
 from tribolab.reading.raw.missing_marks import measurable
 from tribolab.reading.raw.xml_safety import parsed
+from tribolab.reading.scans.formats.array_units import stated_unit
 from tribolab.reading.scans.formats.profilometers import NotSaidError
 from tribolab.reading.scans.grid import even
+from tribolab.reading.scans.header import map_header
 from tribolab.units import conversion
 
 _FEWEST = 16  # numbers of a list that may be a profile
+_LONGEST = 100  # letters of a text that says something
 _PLACE = re.compile(r"(?i)^(x|pos(ition)?s?|abscissa|lateral|distance)")
-_STEP = re.compile(
-    r"(?i)^(dx|delta_?x|pitch|step(size)?|spacing_?x?|x?_?(spacing|increment|scale|step|pitch)"
-    r"|(sampl\w*|point)_?(distance|interval|spacing|step|pitch)"
-    r"|(punkt|mess\w*|abtast)_?(abstand|schritt(weite)?)|schrittweite|pas|paso|passo|krok|increment)$"
-)
-_UNIT = re.compile(r"(?i)unit|einheit|unidad|jednostka|jednotka")
-_X_UNIT = re.compile(r"(?i)^(d?x|lateral|length|pitch|spacing|step|punktabstand)")
 # decimal commas: none parts two numbers, for between those stands a blank or a semicolon
 _COMMAS = re.compile(r"(?:[-+]?\d+,\d+(?:[eE][-+]?\d+)?(?:[\s;]+|$)){4}|(?:[-+]?\d+,\d+;)+")
-_NUMBER = re.compile(r"\s*([-+]?\d[\d.,]*(?:[eE][-+]?\d+)?)\s*(\S*)\s*$")
-
-
-_ANY_UNIT = ("unit", "units", "einheit", "einheiten", "unidad", "unité", "unita")
 
 
 class _List(NamedTuple):
-    """Numbers, and the units that stand beside them: of what lies across, and of heights."""
+    """Numbers, and what the attributes beside them say."""
 
     name: str
     values: np.ndarray
-    across: str = ""
-    unit: str = ""
-
-
-class _Leaf(NamedTuple):
-    """A name with what stands there: an element's text, or an attribute of it; its x unit."""
-
-    name: str
-    text: str
-    unit: str
+    attrs: dict[str, str]
 
 
 def is_xml(head: bytes) -> bool:
@@ -87,14 +70,24 @@ def read_xml_values(
     longest = [some for some in lists if some.values.size == lists[0].values.size]
     places = [some for some in longest if _PLACE.match(some.name)]
     heights = next((some for some in longest if some not in places), longest[0])
-    leaves = list(_leaves(root))
-    z_scale = _scale(path, height_unit, heights.unit or _unit(leaves, lateral=False))
+    texts = {f"{number}/{name}": text for number, (name, text, _) in enumerate(_leaves(root))}
+    usual = {axis: stated_unit(texts, axis) for axis in "xz"}
+    z_scale = _scale(path, height_unit, stated_unit(heights.attrs, "z") or usual["z"])
     if places and places[0] is not heights:
-        x: np.ndarray = places[0].values * _scale(
-            path, x_unit, places[0].across or _unit(leaves, lateral=True)
-        )
+        own = stated_unit(places[0].attrs, "x") or usual["x"]
+        x: np.ndarray = places[0].values * _scale(path, x_unit, own)
     else:
-        x = _pitch(path, leaves, x_unit) * np.arange(heights.values.size)
+        lines = [f"{name}: {text} {unit or ''}" for name, text, unit in _leaves(root)]
+        shape = 1, heights.values.size
+        header = map_header(lines, shape, ".", x_unit=usual["x"] or x_unit or "")
+        if header.without_unit:
+            _scale(path, x_unit, usual["x"])
+        if header.dx is None:
+            raise ReadError(
+                f"{path}: the XML holds a list of heights, but neither positions nor the distance "
+                "between its points (pitch, spacing, increment); export the profile as text (csv)"
+            )
+        x = header.dx * np.arange(heights.values.size)
     pitch, values, evened = even(str(path), x, measurable(heights.values * z_scale))
     return xr.Dataset(
         {"height": ("x", values)},
@@ -108,7 +101,7 @@ def _lists(root: ElementTree.Element) -> Iterator[_List]:
     for element in root.iter():
         values = _numbers(element.text or "")
         if values.size >= _FEWEST:
-            yield _List(element.tag, values, *_units_of(element))
+            yield _List(element.tag, values, dict(element.attrib))
         children: dict[str, list[ElementTree.Element]] = {}
         for child in element:
             children.setdefault(str(child.tag), []).append(child)
@@ -119,7 +112,7 @@ def _lists(root: ElementTree.Element) -> Iterator[_List]:
             values = _numbers(" ".join((child.text or "nan").strip() or "nan" for child in some))
             if values.size == len(some):
                 label = element.tag if name.lower() in ("v", "value", "datum") else name
-                yield _List(label, values, *_units_of(some[0], element))
+                yield _List(label, values, {**element.attrib, **some[0].attrib})
 
 
 def _of_points(above: ElementTree.Element, points: list[ElementTree.Element]) -> Iterator[_List]:
@@ -133,11 +126,12 @@ def _of_points(above: ElementTree.Element, points: list[ElementTree.Element]) ->
 
 
 def _list_of(
-    name: str, texts: list[str | None], said: tuple[ElementTree.Element, ...]
+    name: str, texts: list[str | None], said: tuple[ElementTree.Element, ElementTree.Element]
 ) -> Iterator[_List]:
     values = _numbers(" ".join((text or "").strip() or "nan" for text in texts))
     if values.size == len(texts):
-        yield _List(name, values, *_units_of(*said))
+        first, above = said
+        yield _List(name, values, {**above.attrib, **first.attrib})
 
 
 def _numbers(text: str) -> np.ndarray:
@@ -154,50 +148,17 @@ def _numbers(text: str) -> np.ndarray:
         return np.empty(0)
 
 
-def _units_of(*elements: ElementTree.Element) -> tuple[str, str]:
-    """Units across and of heights that attributes say, of the first element that says them."""
-    said = [
-        (name, text.strip())
-        for element in elements
-        for name, text in element.attrib.items()
-        if _UNIT.search(name)
-    ]
-    across = [text for name, text in said if _X_UNIT.match(name)]
-    heights = [text for name, text in said if not _X_UNIT.match(name)]
-    bare = [text for name, text in said if name.lower() in _ANY_UNIT]
-    return next(iter([*across, *bare]), ""), next(iter(heights), "")
-
-
-def _leaves(root: ElementTree.Element) -> Iterator[_Leaf]:
+def _leaves(root: ElementTree.Element) -> Iterator[tuple[str, str, str | None]]:
+    """Give names with what they say, an element's text or an attribute of it, and its x unit."""
     for element in root.iter():
-        if len(element) == 0 and element.text and len(element.text) < 100:
-            yield _Leaf(element.tag, element.text.strip(), _units_of(element)[0])
+        unit = stated_unit(element.attrib, "x")
+        if len(element) == 0 and element.text and len(element.text) < _LONGEST:
+            yield element.tag, element.text.strip(), unit
         for name, text in element.attrib.items():
-            yield _Leaf(name.rpartition("}")[2], text.strip(), _units_of(element)[0])
+            yield name.rpartition("}")[2], text.strip(), unit
 
 
-def _unit(leaves: list[_Leaf], *, lateral: bool) -> str:
-    """Return the unit that stands in an element of its own."""
-    said = [leaf for leaf in leaves if _UNIT.search(leaf.name)]
-    mine = [leaf.text for leaf in said if bool(_X_UNIT.match(leaf.name)) == lateral]
-    if not mine:  # one for both
-        mine = [leaf.text for leaf in said if leaf.name.lower() in _ANY_UNIT]
-    return mine[0] if len(set(mine)) == 1 else ""
-
-
-def _pitch(path: Path, leaves: list[_Leaf], x_unit: str | None) -> float:
-    for leaf in leaves:
-        told = _NUMBER.match(leaf.text) if _STEP.match(leaf.name) else None
-        if told:
-            said = told[2] or leaf.unit or _unit(leaves, lateral=True)
-            return float(told[1].replace(",", ".")) * _scale(path, x_unit, said)
-    raise ReadError(
-        f"{path}: the XML holds a list of heights, but neither positions nor the distance between "
-        "its points (pitch, spacing, increment); export the profile as text (csv)"
-    )
-
-
-def _scale(path: Path, given: str | None, said: str) -> float:
+def _scale(path: Path, given: str | None, said: str | None) -> float:
     unit = said or given
     if not unit:
         raise NotSaidError("the XML states no units", where=path, cure=cures.MEND_UNITS)

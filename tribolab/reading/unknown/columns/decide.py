@@ -22,7 +22,7 @@ from tribolab.reading.unknown.columns.evidence import (
     is_contested,
 )
 from tribolab.reading.unknown.columns.unit_and_sign import FORCES, filled_in
-from tribolab.reading.unknown.model import UNKNOWN_NAME, WHICH_FORCE, DraftColumn
+from tribolab.reading.unknown.model import DraftColumn, Reason
 
 SIGNALS = {
     "friction_force",
@@ -167,7 +167,11 @@ def _described(decided: _Assignment, place: int) -> DraftColumn:
         options = [BOTH_FORCES[name == BOTH_FORCES[0]], "not used"]
     result = result._replace(options=tuple(options), guessed=(*result.guessed, *doubts))
     if option.score < KNOWN_WORD and facts.is_either_force(place) and not result.fill_in:
-        return result._replace(used=False, fill_in=WHICH_FORCE.format(shown(column.label)))
+        return result._replace(
+            used=False,
+            fill_in=Reason.EITHER_FORCE.value.format(shown(column.label)),
+            reason=Reason.EITHER_FORCE,
+        )
     return result
 
 
@@ -189,7 +193,9 @@ def _unused(decided: _Assignment, place: int) -> DraftColumn:
     why = next((one.why for one in about if one.weight <= RULED_OUT and one.why), "")
     k = int(np.argmax(score[place])) if names else 0
     if not names or score[place, k] < _NOTHING or k not in decided.chosen:
-        return column._replace(note=why or _hint(facts, place))
+        hint = why or _hint(facts, place)
+        unknown = Reason.UNKNOWN_NAME if hint == "" else None
+        return column._replace(note=hint or Reason.UNKNOWN_NAME.value, reason=unknown)
     taken = decided.chosen.index(k)
     if decided.has_spares(taken):
         note = f"nothing but zeros here; column {taken + 1} is filled"
@@ -199,11 +205,11 @@ def _unused(decided: _Assignment, place: int) -> DraftColumn:
 
 
 def _hint(facts: Facts, place: int) -> str:
-    """Return what a unit says of a column whose name is not known."""
+    """Return what a unit says of a column whose name is not known; "" if it says nothing."""
     unit = facts.bare[place][1]
     if unit is None:
-        return UNKNOWN_NAME
+        return ""
     fits = [q for q in SIGNALS if quantity(q).unit != "1" and converts(unit, quantity(q).unit)]
     if fits:
         return f"its unit fits {' or '.join(sorted(fits))}"
-    return _TORQUE if converts(unit, "N m") else UNKNOWN_NAME
+    return _TORQUE if converts(unit, "N m") else ""

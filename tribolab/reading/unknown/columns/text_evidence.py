@@ -27,7 +27,7 @@ from tribolab.reading.unknown.header.lengths import find_arm
 from tribolab.reading.unknown.header.load import find_load, stated_number
 from tribolab.reading.unknown.header.settings import numeric_settings
 from tribolab.reading.unknown.layout.text_layout import Layout
-from tribolab.reading.unknown.model import NO_NUMBERS, DraftColumn
+from tribolab.reading.unknown.model import DraftColumn, Reason
 
 _LONGEST_LINE = 300  # characters of a line that are looked at
 _AXIS = re.compile(r"(?:f|force|kraft|sila|forza)?(?:[xyz]|[1-3])")  # names of a sensor's axes
@@ -227,7 +227,7 @@ def unused_force_columns(
         short = normalise_label(name)
         if column.used or column.place in used or len(short) < _LETTERS_OF_NAME:
             continue
-        if unit is None or not converts(unit, "N") or column.note.startswith(NO_NUMBERS):
+        if unit is None or not converts(unit, "N") or column.reason is Reason.TEXT:
             continue
         line = next((line for line in lines if short in normalise_label(line)), "")
         if line:

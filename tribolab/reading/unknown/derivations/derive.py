@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import functools
+import operator
+from typing import NamedTuple
+
 import numpy as np
 
 from tribolab.quantities import unit_conversion
@@ -28,8 +32,25 @@ def what_follows(layout: Layout, understood: Understood) -> Follows:
     -----
     The rules are those of physics.toml; only what is stated with its unit is used.
     """
-    if understood.kind != "run":
-        return Follows()
+    return _derived(_Same(layout, understood)) if understood.kind == "run" else Follows()
+
+
+class _Same(NamedTuple):
+    """What was found out about a file, which equals nothing but itself."""
+
+    layout: Layout
+    understood: Understood
+
+    def __hash__(self) -> int:
+        return hash((id(self.layout), id(self.understood)))
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and all(map(operator.is_, self, other))
+
+
+@functools.lru_cache(maxsize=2)  # it is asked for by questions, remarks and the dialect
+def _derived(found: _Same) -> Follows:
+    layout, understood = found
     known = find_known(layout, understood)
     result = Follows(zero_in_doubt=known.zero_in_doubt, given=known.given, facts=known.facts)
     turning = derive("rotation_speed", known.given)

@@ -48,7 +48,7 @@ from tribolab.reading.unknown.header.sampling import find_pace, find_sampling
 from tribolab.reading.unknown.header.slip import as_entrainment_speed
 from tribolab.reading.unknown.header.zero import load_zeros_in_doubt, unloaded_start_in_doubt
 from tribolab.reading.unknown.layout.text_layout import Layout
-from tribolab.reading.unknown.model import NO_NUMBERS, DraftColumn, Kind, Understood
+from tribolab.reading.unknown.model import DraftColumn, Kind, Reason, Understood
 
 _REACH = 0.05  # of a scan's length; heights that reach farther are in a smaller unit
 
@@ -156,7 +156,8 @@ def _without_words(columns: list[DraftColumn], cells: Cells) -> list[DraftColumn
             used=False,
             guessed=(),
             fill_in="",
-            note=f"{NO_NUMBERS}'{shown(cells.text[column.place - 1])}'",
+            note=Reason.TEXT.value.format(shown(cells.text[column.place - 1])),
+            reason=Reason.TEXT,
         )
         if cells.text[column.place - 1] and not column.form
         else column

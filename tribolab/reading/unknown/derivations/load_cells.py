@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from tribolab.reading.unknown.columns.labels import bare_name
-from tribolab.reading.unknown.model import DraftColumn
-
-ADDS = "one of several loads that add up"
+from tribolab.reading.unknown.model import DraftColumn, Reason
 
 
 def loads_that_add(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
@@ -15,6 +13,6 @@ def loads_that_add(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
     return [
         c._replace(unit=unit if say else None)
         for c in columns
-        if not c.used and c.note == ADDS
+        if not c.used and c.reason is Reason.ADDS
         for _, unit, say in [bare_name(c)]
     ]

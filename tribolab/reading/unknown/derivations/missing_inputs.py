@@ -17,7 +17,7 @@ from tribolab.reading.unknown.columns.rotating_parts import (
 from tribolab.reading.unknown.derivations.derive import held_quantities
 from tribolab.reading.unknown.derivations.gains import column_in_volts
 from tribolab.reading.unknown.derivations.model import CRANK, SAYS_FRICTION, Follows
-from tribolab.reading.unknown.model import NO_NUMBERS, WHICH_FORCE, DraftColumn, Understood
+from tribolab.reading.unknown.model import DraftColumn, Reason, Understood
 from tribolab.reversals import reversals
 
 
@@ -50,7 +50,7 @@ def lacking(understood: Understood, follows: Follows) -> list[MissingInput | Unc
     at_arm = "arm_force" in known
     names = held_quantities(understood) - ({"friction_force"} if at_arm else set())
     names |= {formula.quantity for formula in follows.formulas}
-    if any(c.fill_in == WHICH_FORCE.format(shown(c.label)) for c in columns):
+    if any(c.fill_in and c.reason is Reason.EITHER_FORCE for c in columns):
         names |= {"friction_force", "normal_force"}  # it is asked which of both
     if follows.speed is not None and follows.speed.source != "none":
         names.add("sliding_velocity")
@@ -84,6 +84,6 @@ def unknown_of(columns: Sequence[DraftColumn]) -> list[DraftColumn]:
         unscaled_torque_of(columns),
     )
     places = {column.place for column in turning if column is not None}
-    noted = (c for c in columns if c.note and not c.note.startswith(NO_NUMBERS))
+    noted = (c for c in columns if c.note and c.reason is not Reason.TEXT)
     unknown = (c for c in noted if not c.quantity and c.label)
     return [column for column in unknown if column.place not in places]

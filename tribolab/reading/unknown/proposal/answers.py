@@ -82,6 +82,7 @@ def corrected(
                     unit=None,
                     sign=1,
                     note=note,
+                    reason=None,
                     said="",
                 )
             )

@@ -25,7 +25,7 @@ from tribolab.reading.unknown.derivations.interpret_columns import first_cells_o
 from tribolab.reading.unknown.layout.text_layout import Layout, find_layout
 from tribolab.reading.unknown.model import Understood
 from tribolab.reading.unknown.proposal.model import SHOWN, Drafted
-from tribolab.reading.unknown.proposal.questions import COUNTED, unsaid_distance
+from tribolab.reading.unknown.proposal.questions import unsaid_of_heights
 from tribolab.reading.unknown.proposal.show import draft_html
 
 
@@ -90,12 +90,10 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
         cells=tuple(map(tuple, first_cells_of(layout, SHOWN))),
         known=_known(file),
     )
-    if draft.dialect is None and holds_counts(draft):
-        return replace(
-            draft, answer=f"{COUNTED} ('tribolab info FILE --write my.toml' asks for it)"
-        )
-    if draft.dialect is None and holds_heights(draft):
-        return replace(draft, answer=unsaid_distance(draft))
+    if draft.kind == "table" and _is_heights(draft):
+        counts = understood.columns[0].counted and understood.columns[0].unit is None
+        draft = replace(draft, unsaid="count" if counts else "pitch")
+        return replace(draft, answer=unsaid_of_heights(draft))
     return draft
 
 
@@ -182,18 +180,8 @@ def _known(file: File) -> str:
         return ""
 
 
-def holds_heights(draft: Drafted) -> bool:
-    """Whether a table is one column that is named as heights are, without positions."""
-    return _is_heights(draft) and not holds_counts(draft)
-
-
-def holds_counts(draft: Drafted) -> bool:
-    """Whether heights alone are counts of a converter, of which it is not known what one is."""
-    columns = draft.understood.columns if draft.understood else ()
-    return _is_heights(draft) and columns[0].counted and columns[0].unit is None
-
-
 def _is_heights(draft: Drafted) -> bool:
+    """Whether a table is one column that is named as heights are, without positions."""
     columns = draft.understood.columns if draft.understood else ()
     if len(columns) != 1 or not columns[0].label:
         return False
@@ -210,7 +198,7 @@ def as_profile(draft: Draft, pitch: str = "", unit: str | None = None) -> Draft:
     Parameters
     ----------
     draft
-        One of which `holds_heights`.
+        One that is `unsaid`.
     pitch
         The distance of neighbouring heights, with its unit.
     unit
@@ -227,7 +215,7 @@ def as_profile(draft: Draft, pitch: str = "", unit: str | None = None) -> Draft:
         fill_in="",
     )
     whole = understood._replace(kind="scan", columns=(heights,), pitch=pitch)
-    return replace(draft.with_understood(whole), answer="")
+    return replace(draft.with_understood(whole), answer="", unsaid="")
 
 
 def _answer(file: File, understood: Understood) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Self
+from typing import Literal, Self
 
 import numpy as np
 
@@ -43,6 +43,8 @@ class Drafted:
         The first rows as they stand in the file.
     known
         The known instrument that reads the file already; empty if there is none.
+    unsaid
+        What a file of heights alone does not say: their distance, or what a count is worth.
     """
 
     path: Path
@@ -53,6 +55,7 @@ class Drafted:
     answer: str = ""
     cells: tuple[tuple[str, ...], ...] = ()
     known: str = ""
+    unsaid: Literal["", "pitch", "count"] = ""
 
     @cached_property
     def _described(self) -> Described | None:
@@ -84,6 +87,12 @@ class Drafted:
     def with_understood(self, understood: Understood) -> Self:
         """Return the draft of a file that is understood otherwise."""
         return replace(self, kind=understood.kind, understood=understood)
+
+    @property
+    def labels(self) -> list[str]:
+        """The names of its columns, as the file has them."""
+        columns = self.understood.columns if self.understood else ()
+        return [column.label for column in columns if column.label]
 
     @property
     def named(self) -> bool:

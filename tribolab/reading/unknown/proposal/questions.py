@@ -24,14 +24,13 @@ from tribolab.reading.unknown.header.calibration_lines import calibration_lines
 from tribolab.reading.unknown.header.settings import lines_without_unit
 from tribolab.reading.unknown.header.zero import STILL
 from tribolab.reading.unknown.layout.text_layout import Layout
-from tribolab.reading.unknown.model import NO_NUMBERS, DraftColumn, Understood
+from tribolab.reading.unknown.model import DraftColumn, Reason, Understood
 from tribolab.reading.unknown.proposal.model import Drafted
 
-COUNTED = "heights in counts, of which the file does not say how much one is"
-HEIGHTS = (
-    "heights without positions, of which the file does not say how far they lie apart: that is to "
-    'be filled in, pitch = "(a length)"'
-)
+_UNSAID = {
+    "count": "how much one count of the heights is",
+    "pitch": 'the distance of neighbouring heights, pitch = "(a length)"',
+}
 _OF_FRICTION = {"friction_force", "friction_coefficient", "shear_stress"}
 _WANTED = {*_OF_FRICTION, "normal_force", "normal_stress", "sliding_velocity", "position", "time"}
 _LIKE_NUMBER = re.compile(r"[<>~]?\s*[+-]?\d[\d.,' ]*(?:[eE][+-]?\d+)?\s*[A-Za-z%µ°/]{0,6}")
@@ -96,7 +95,7 @@ def _of_texts(understood: Understood) -> list[Question]:
     asked = []
     held = {column.quantity for column in understood.columns if column.used}
     for column in understood.columns:
-        if column.note.startswith(NO_NUMBERS) and column.quantity in _WANTED - held:
+        if column.reason is Reason.TEXT and column.quantity in _WANTED - held:
             about = f"column {column.place} '{shown(column.label, 30)}'"
             asked.append(Question(about, f"left out, {column.note}"))
     if understood.kind == "run":
@@ -173,11 +172,17 @@ def _unused(draft: Drafted, lacks: Sequence[object]) -> list[str]:
     return [shown(line, 40) for line in lines]
 
 
-def unsaid_distance(draft: Drafted) -> str:
-    """Return what heights without positions leave open, with the line that says too little."""
+def unsaid_of_heights(draft: Drafted) -> str:
+    """Return what heights alone leave open, with the lines that say too little of it.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.reading.unknown.proposal.draft.draft_dialect`, one that is `unsaid`.
+    """
     lines = lines_without_unit(draft.layout, bare=True) if draft.layout else []
-    said = ", ".join(f"'{shown(line, 40)}'" for line in lines)
-    return f"{HEIGHTS}; of {said} the unit is not said" if lines else HEIGHTS
+    said = ", ".join(f"'{shown(line, 40)}'" for line in lines if draft.unsaid == "pitch")
+    return _UNSAID[draft.unsaid] + (f"; {said} has no unit" if said else "")
 
 
 class GuessedError(ReadError):

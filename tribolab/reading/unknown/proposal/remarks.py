@@ -10,7 +10,7 @@ from tribolab.quantities import quantity
 from tribolab.reading.dialect.write import FILL_IN, Remarks, comment, commented, table_lines
 from tribolab.reading.unknown.columns.rotating_parts import torque_of
 from tribolab.reading.unknown.derivations.model import SAYS_FRICTION
-from tribolab.reading.unknown.model import UNKNOWN_NAME, DraftColumn
+from tribolab.reading.unknown.model import DraftColumn, Reason
 from tribolab.reading.unknown.proposal.dialect import (
     Described,
     column_content,
@@ -136,7 +136,7 @@ def _columns_not_read(described: Described) -> list[str]:
     rest = [c for c in understood.columns if not (c.used or c.fill_in or c.place in taken)]
     filled = np.isfinite(numbers).any(axis=0)
     empty = [c for c in rest if not (c.label or filled[c.place - 1] or c.note)]
-    unknown = [c for c in rest if c.label and not c.quantity and c.note == UNKNOWN_NAME]
+    unknown = [c for c in rest if c.label and not c.quantity and c.reason is Reason.UNKNOWN_NAME]
     others = [c for c in rest if c not in empty and c not in unknown]
     if others:
         parts.append("# Not used. To use a column remove the '#' before it and put in what is '?'.")
