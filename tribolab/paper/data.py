@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-    from tribolab.figures.slip import Trace
+    from tribolab.figures.subjects.slip import Trace
     from tribolab.records.parts import CurveOutcome, RunOutcome
 
 # Several figures show the same data, and none of them changes it.

@@ -9,89 +9,84 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tribolab.figures.comparison import (
-        control,
-        differences,
-        forest,
-        precision,
-        runs_needed,
-        uncertainty_budget,
-    )
-    from tribolab.figures.contact import (
-        adhesive_area,
-        contact_area,
-        contact_separation,
-        effective_work,
-        gaps,
-        line_pressure,
-    )
-    from tribolab.figures.curves import friction_spread, half_loop, stribeck
     from tribolab.figures.envelope import envelope
-    from tribolab.figures.film import film_profiles, lubrication_factors
-    from tribolab.figures.fits import joint_fit, model_sensitivity
     from tribolab.figures.look.draw import draw
     from tribolab.figures.look.knobs import knobs
     from tribolab.figures.look.style import figure_data, paper_style, save, svg
-    from tribolab.figures.master import master_curve
-    from tribolab.figures.mixed import (
+    from tribolab.figures.subjects.adhesion import adhesive_area, effective_work
+    from tribolab.figures.subjects.comparison import control, differences, forest
+    from tribolab.figures.subjects.contact import (
+        contact_area,
+        contact_separation,
+        gaps,
+        line_pressure,
+    )
+    from tribolab.figures.subjects.curves import stribeck
+    from tribolab.figures.subjects.film import film_profiles, lubrication_factors
+    from tribolab.figures.subjects.fits import joint_fit, model_sensitivity
+    from tribolab.figures.subjects.master import master_curve
+    from tribolab.figures.subjects.mixed import (
         friction_factor_effect,
         mixed_curve,
         shear_stress,
         shear_stress_over_speed,
     )
-    from tribolab.figures.slip import Trace, slip_events, slip_traces, waveform_map
-    from tribolab.figures.slip_spectra import slip_spectra, slip_spectrogram
-    from tribolab.figures.starts import cycles, static_friction
-    from tribolab.figures.surfaces import modulus, profiles, spectra, viscoelastic
-    from tribolab.figures.trace import strokes, trace
+    from tribolab.figures.subjects.precision import precision, runs_needed, uncertainty_budget
+    from tribolab.figures.subjects.slip import Trace, slip_events, slip_traces, waveform_map
+    from tribolab.figures.subjects.slip_spectra import slip_spectra, slip_spectrogram
+    from tribolab.figures.subjects.spread import friction_spread, half_loop
+    from tribolab.figures.subjects.starts import cycles, static_friction
+    from tribolab.figures.subjects.strokes import strokes
+    from tribolab.figures.subjects.surfaces import modulus, profiles, spectra, viscoelastic
+    from tribolab.figures.subjects.trace import trace
 
 # Loaded when first used: whoever wants a label waits for no matplotlib.
 _HOMES = {
-    "control": "tribolab.figures.comparison",
-    "differences": "tribolab.figures.comparison",
-    "forest": "tribolab.figures.comparison",
-    "precision": "tribolab.figures.comparison",
-    "runs_needed": "tribolab.figures.comparison",
-    "uncertainty_budget": "tribolab.figures.comparison",
-    "adhesive_area": "tribolab.figures.contact",
-    "contact_area": "tribolab.figures.contact",
-    "contact_separation": "tribolab.figures.contact",
-    "effective_work": "tribolab.figures.contact",
-    "gaps": "tribolab.figures.contact",
-    "line_pressure": "tribolab.figures.contact",
-    "friction_spread": "tribolab.figures.curves",
-    "half_loop": "tribolab.figures.curves",
-    "stribeck": "tribolab.figures.curves",
     "envelope": "tribolab.figures.envelope",
-    "film_profiles": "tribolab.figures.film",
-    "lubrication_factors": "tribolab.figures.film",
-    "joint_fit": "tribolab.figures.fits",
-    "model_sensitivity": "tribolab.figures.fits",
     "draw": "tribolab.figures.look.draw",
     "knobs": "tribolab.figures.look.knobs",
     "figure_data": "tribolab.figures.look.style",
     "paper_style": "tribolab.figures.look.style",
     "save": "tribolab.figures.look.style",
     "svg": "tribolab.figures.look.style",
-    "master_curve": "tribolab.figures.master",
-    "friction_factor_effect": "tribolab.figures.mixed",
-    "mixed_curve": "tribolab.figures.mixed",
-    "shear_stress": "tribolab.figures.mixed",
-    "shear_stress_over_speed": "tribolab.figures.mixed",
-    "Trace": "tribolab.figures.slip",
-    "slip_events": "tribolab.figures.slip",
-    "slip_traces": "tribolab.figures.slip",
-    "waveform_map": "tribolab.figures.slip",
-    "slip_spectra": "tribolab.figures.slip_spectra",
-    "slip_spectrogram": "tribolab.figures.slip_spectra",
-    "cycles": "tribolab.figures.starts",
-    "static_friction": "tribolab.figures.starts",
-    "modulus": "tribolab.figures.surfaces",
-    "profiles": "tribolab.figures.surfaces",
-    "spectra": "tribolab.figures.surfaces",
-    "viscoelastic": "tribolab.figures.surfaces",
-    "strokes": "tribolab.figures.trace",
-    "trace": "tribolab.figures.trace",
+    "adhesive_area": "tribolab.figures.subjects.adhesion",
+    "effective_work": "tribolab.figures.subjects.adhesion",
+    "control": "tribolab.figures.subjects.comparison",
+    "differences": "tribolab.figures.subjects.comparison",
+    "forest": "tribolab.figures.subjects.comparison",
+    "contact_area": "tribolab.figures.subjects.contact",
+    "contact_separation": "tribolab.figures.subjects.contact",
+    "gaps": "tribolab.figures.subjects.contact",
+    "line_pressure": "tribolab.figures.subjects.contact",
+    "stribeck": "tribolab.figures.subjects.curves",
+    "film_profiles": "tribolab.figures.subjects.film",
+    "lubrication_factors": "tribolab.figures.subjects.film",
+    "joint_fit": "tribolab.figures.subjects.fits",
+    "model_sensitivity": "tribolab.figures.subjects.fits",
+    "master_curve": "tribolab.figures.subjects.master",
+    "friction_factor_effect": "tribolab.figures.subjects.mixed",
+    "mixed_curve": "tribolab.figures.subjects.mixed",
+    "shear_stress": "tribolab.figures.subjects.mixed",
+    "shear_stress_over_speed": "tribolab.figures.subjects.mixed",
+    "precision": "tribolab.figures.subjects.precision",
+    "runs_needed": "tribolab.figures.subjects.precision",
+    "uncertainty_budget": "tribolab.figures.subjects.precision",
+    "Trace": "tribolab.figures.subjects.slip",
+    "slip_events": "tribolab.figures.subjects.slip",
+    "slip_traces": "tribolab.figures.subjects.slip",
+    "waveform_map": "tribolab.figures.subjects.slip",
+    "slip_spectra": "tribolab.figures.subjects.slip_spectra",
+    "slip_spectrogram": "tribolab.figures.subjects.slip_spectra",
+    "friction_spread": "tribolab.figures.subjects.spread",
+    "half_loop": "tribolab.figures.subjects.spread",
+    "cycles": "tribolab.figures.subjects.starts",
+    "static_friction": "tribolab.figures.subjects.starts",
+    "strokes": "tribolab.figures.subjects.strokes",
+    "modulus": "tribolab.figures.subjects.surfaces",
+    "profiles": "tribolab.figures.subjects.surfaces",
+    "spectra": "tribolab.figures.subjects.surfaces",
+    "viscoelastic": "tribolab.figures.subjects.surfaces",
+    "trace": "tribolab.figures.subjects.trace",
 }
 
 __all__ = [
@@ -116,9 +111,9 @@ __all__ = [
     "knobs",
     "line_pressure",
     "lubrication_factors",
+    "master_curve",
     "mixed_curve",
     "model_sensitivity",
-    "master_curve",
     "modulus",
     "paper_style",
     "precision",

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.store.catalogue import Store
 from tribolab.figures.spec import FigureSpec, Series, legend, safe
-from tribolab.figures.surfaces import shaded_loads
+from tribolab.figures.subjects.surfaces import shaded_loads
 from tribolab.provenance import sha256_of
 from tribolab.records.part_records import FigureRecord
 from tribolab.records.parts import Notice

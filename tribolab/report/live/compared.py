@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from tribolab.figures.colours import surface_colours
-from tribolab.figures.curves import FRICTION_AXIS, SPEED_AXIS
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, SeriesLabels, places
+from tribolab.figures.subjects.curves import FRICTION_AXIS, SPEED_AXIS
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import number_of
 from tribolab.records.wording import with_error

@@ -11,8 +11,8 @@ import xarray as xr
 
 from tribolab.figures.axes import comparable
 from tribolab.figures.colours import GREY
-from tribolab.figures.curves import stribeck
 from tribolab.figures.spec import FigureSpec, Panel, Series, SeriesLabels
+from tribolab.figures.subjects.curves import stribeck
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome, number_of
 from tribolab.records.wording import with_error

@@ -11,9 +11,9 @@ import pandas as pd
 
 from tribolab.campaign.store.data_files import read_data
 from tribolab.figures.colours import surface_colours
-from tribolab.figures.film import film_profiles, lubrication_factors
-from tribolab.figures.mixed import mixed_curve, shear_stress
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, SeriesLabels, safe
+from tribolab.figures.subjects.film import film_profiles, lubrication_factors
+from tribolab.figures.subjects.mixed import mixed_curve, shear_stress
 from tribolab.records.model_words import shear_stress_u95, stress_interval
 from tribolab.records.parts import number_of
 from tribolab.records.wording import with_error

@@ -11,11 +11,8 @@ import numpy as np
 import xarray as xr
 
 from tribolab.figures.colours import surface_colours
-from tribolab.figures.curves import SPEED_AXIS
 from tribolab.figures.envelope import envelope_index
 from tribolab.figures.signals import LOOKED_AT, main_signal
-from tribolab.figures.slip import cumulative, waveform_map
-from tribolab.figures.slip_spectra import power_levels
 from tribolab.figures.spec import (
     Axis,
     FigureSpec,
@@ -26,6 +23,9 @@ from tribolab.figures.spec import (
     Values,
     places,
 )
+from tribolab.figures.subjects.curves import SPEED_AXIS
+from tribolab.figures.subjects.slip import cumulative, waveform_map
+from tribolab.figures.subjects.slip_spectra import power_levels
 from tribolab.records.mode_record import ModeRecord
 from tribolab.records.parts import CurveOutcome
 from tribolab.report.live.curves import labels_of, system_name, told_apart

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.store.data_files import read_data
-from tribolab.figures import contact as contacts
-from tribolab.figures import surfaces as rough
 from tribolab.figures.spec import FigureSpec
+from tribolab.figures.subjects import adhesion
+from tribolab.figures.subjects import contact as contacts
+from tribolab.figures.subjects import surfaces as rough
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -105,7 +106,7 @@ def _modulus(opened: _Opened) -> FigureSpec | None:
 
 def _areas(opened: _Opened) -> FigureSpec:
     dry, adhesive = opened.read("contact"), opened.read("adhesion")
-    return contacts.adhesive_area.spec(dry, adhesive, opened.loads(), surfaces=opened.order)
+    return adhesion.adhesive_area.spec(dry, adhesive, opened.loads(), surfaces=opened.order)
 
 
 def _works(opened: _Opened) -> FigureSpec:
@@ -115,7 +116,7 @@ def _works(opened: _Opened) -> FigureSpec:
         for name, data in loaded.items()
         if "effective_work_of_adhesion" in data and data.sizes.get("load", 1)
     }
-    return contacts.effective_work.spec(known, surfaces=opened.order)
+    return adhesion.effective_work.spec(known, surfaces=opened.order)
 
 
 def _each(describe: Callable[..., FigureSpec], group: str, opened: _Opened) -> FigureSpec | None:

@@ -11,12 +11,12 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.figures.colours import BLACK, GREY, PURPLE, SKY, shade_of, surface_colours
-from tribolab.figures.curves import SPEED_AXIS
 from tribolab.figures.envelope import envelope
 from tribolab.figures.labelled import OneOrSeveral, RunLabel, by_label, parts
 from tribolab.figures.plotted import plotted
 from tribolab.figures.signals import main_signal
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series
+from tribolab.figures.subjects.curves import SPEED_AXIS
 from tribolab.friction.oscillation.slip_curve import one_curve
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR
 from tribolab.untyped import Arguments

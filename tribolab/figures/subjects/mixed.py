@@ -10,11 +10,11 @@ import pandas as pd
 import xarray as xr
 
 from tribolab.figures.colours import BLACK, GREEN, surface_colours
-from tribolab.figures.curves import FRICTION_AXIS, SPEED_AXIS
 from tribolab.figures.error_bars import COVERAGE, ErrorBars, error_bar
 from tribolab.figures.labelled import SurfaceOrSeveral, by_surface
 from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Key, Mark, Panel, Series, Style, axis_of
+from tribolab.figures.subjects.curves import FRICTION_AXIS, SPEED_AXIS
 from tribolab.untyped import Arguments
 from tribolab.words import is_dry
 

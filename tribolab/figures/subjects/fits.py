@@ -9,10 +9,10 @@ import numpy as np
 import xarray as xr
 
 from tribolab.figures.colours import BLUE, ORANGE, shade_of, surface_colours
-from tribolab.figures.curves import SPEED_AXIS
 from tribolab.figures.error_bars import COVERAGE
 from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, axis_of
+from tribolab.figures.subjects.curves import SPEED_AXIS
 from tribolab.untyped import Arguments
 
 

@@ -9,10 +9,10 @@ import xarray as xr
 
 from tribolab.errors import AnalysisError
 from tribolab.figures.colours import BLACK, ORANGE, PURPLE, SKY
-from tribolab.figures.curves import SPEED_AXIS
 from tribolab.figures.labelled import RunLabel, by_label
 from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, Style
+from tribolab.figures.subjects.curves import SPEED_AXIS
 
 _LOUDEST, _QUIETEST = 3.0, 0.3  # log10 of power over noise: below, a map shows nothing
 Slips = Mapping[str, tuple[xr.Dataset, int]] | xr.Dataset | Sequence[xr.Dataset]
