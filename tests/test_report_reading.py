@@ -209,8 +209,9 @@ def test_printed_at_once_the_page_has_its_figures_and_tables(browser, results, t
     assert first.count("frictioncoefficientµ") == 2, "a figure on each card"
     assert [sheet for sheet in sheets if len(sheet.text) < 40] == [], "none is blank"
     text = "".join(sheet.text for sheet in sheets)
-    titles = [figure["title"].replace(" ", "") for figure in figures_of(results).values()]
-    assert all(title in text for title in titles if not title.endswith("overslidingspeed"))
+    figures = figures_of(results).values()
+    shown = [one for one in figures if one["section"] not in ("view-load", "view-time")]
+    assert len(shown) > 2 and all(one["title"].replace(" ", "") in text for one in shown)
     assert all(name in text for name in ("a1", "a2", "b1", "c1", "c2")), "the table of runs"
     assert "velocity(m/s)" not in text
     everything = printed(browser, f"{address}?print=all", tmp_path)
