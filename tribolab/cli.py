@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from tribolab.app.commands.across import compare, history, plan, repeatability
-from tribolab.app.commands.campaign import demo, figures, reproduce, run, simulate
+from tribolab.app.commands.campaign import demo, figures, new, reproduce, run, simulate
 from tribolab.app.commands.files import check, dialect, info
 from tribolab.app.commands.packing import pack, verify
 from tribolab.app.reported import renamed
@@ -53,7 +53,7 @@ lab = typer.Typer(
     help="How well coefficients repeat, how instruments change over months, how much to measure.",
 )
 _LAB = (repeatability, history, plan)
-_DAILY = (demo, run, check, info, compare, figures, pack, verify)
+_DAILY = (demo, new, run, check, info, compare, figures, pack, verify)
 for _in_lab in _LAB:
     lab.command()(_in_lab)
     _name = _in_lab.__name__

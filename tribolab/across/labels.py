@@ -62,7 +62,8 @@ def labels_of_runs(folder: Folder, campaign: Campaign | None) -> pd.DataFrame:
     rows = {}
     for run in folder.done:
         entry = _entry_of(campaign, run) if campaign is not None else None
-        own = _of_entry(entry, run["files"][0]) if entry is not None else {}
+        named = campaign.campaign.files_named if campaign is not None else None
+        own = _of_entry(entry, run["files"][0], named) if entry is not None else {}
         rows[run["name"]] = {"day": str(run["recorded_at"])[:10]} | own
     table = pd.DataFrame.from_dict(rows, orient="index")
     return table.replace("", None).dropna(axis="columns", how="all")
@@ -75,10 +76,13 @@ def _entry_of(campaign: Campaign, run: Mapping[str, Any]) -> RunEntry | None:
     return None
 
 
-def _of_entry(entry: RunEntry, file: str) -> dict[str, str]:
+def _of_entry(entry: RunEntry, file: str, files_named: str | None) -> dict[str, str]:
     stated = {key: getattr(entry, key) for key in _KEYS}
     named = {}
+    if files_named is not None:
+        pattern = NamePattern(files_named, whole_words=True)
+        named = pattern.labels(PurePosixPath(file).stem)
     if entry.labels_in_name is not None:
-        named = NamePattern(entry.labels_in_name).labels(PurePosixPath(file).stem)
+        named |= NamePattern(entry.labels_in_name).labels(PurePosixPath(file).stem)
     known = {key: value for key, value in stated.items() if value is not None}
     return {**entry.labels, **named, **known}

@@ -8,37 +8,51 @@ import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 
+from tribolab.app.raw_folder import (
+    as_pattern,
+    files_in,
+    is_results_folder,
+    may_hold_data,
+    sorted_by_content,
+)
+from tribolab.app.stated import Stated, describe_with
 from tribolab.campaign.settings.files import scan_files
+from tribolab.campaign.settings.files_named import pattern_of_names
 from tribolab.campaign.settings.load import load_and_plan
-from tribolab.campaign.settings.run_names import safe_name
+from tribolab.campaign.settings.run_names import common_name, safe_name
 from tribolab.campaign.store.ledger import Ledger
 from tribolab.errors import ConfigError, TribolabError
-from tribolab.reading.kinds import kind_of
-from tribolab.reading.moduli import holds_modulus
+from tribolab.reading.kinds import repeats_by_name
 from tribolab.reading.runs.logs import group_files
 
 NAME, RESULTS = "campaign.toml", "results"
 _ABOUT = (
-    "# Written for these files by `tribolab run`. Say what was measured (surface, medium,\n"
-    "# normal_force, instrument ...) and run it again; README and CAMPAIGN.md list every key.\n"
+    "# Written by `tribolab run`. Correct it, add what you know (surface, medium, normal_force,\n"
+    "# [contact]) and run again. CAMPAIGN.md lists every key.\n"
 )
 
 
 def campaign_file(
-    paths: Sequence[Path], folder: Path, instrument: str | None = None
+    paths: Sequence[Path],
+    folder: Path,
+    instrument: str | None = None,
+    stated: Stated | None = None,
 ) -> tuple[Path, bool]:
     """Return the campaign file that is meant; of raw files, one that is written for them.
 
     Parameters
     ----------
     paths
-        A campaign file, the folder that holds it, or raw files: runs and scans, in any folders.
+        A campaign file; a folder that holds one, or raw files; or raw files: runs and scans, in
+        any folders. Without any, the folder where the command was given.
     folder
-        Where a new one is written; one there that says the same is taken as it is, one that was
-        written for the same files without their instrument is written anew. Beside one of other
-        files it is named by its first file, as are its results.
+        Where a new one is written, unless a folder is named; one there that says the same is taken
+        as it is, one that was written for the same files without their instrument is replaced.
+        Next to one of other files it is named by its first file, as are its results.
     instrument
         What the raw files are from: a name, or the file of a dialect.
+    stated
+        What the command line states of the raw files.
 
     Returns
     -------
@@ -48,36 +62,34 @@ def campaign_file(
     Raises
     ------
     ConfigError
-        If another campaign file of that name stands there, or several are named, or there is no
-        such instrument.
+        If another campaign file of that name exists, or several are named, or there is no
+        such instrument, or a folder has no raw files.
     """
-    if len(paths) == 1 and (not paths[0].is_file() or _is_campaign(paths[0])):
-        if instrument is not None:
+    stated = stated or Stated()
+    paths = paths or [Path()]
+    paths, folder, known = _raw_files(paths, folder)
+    if known is not None:
+        if instrument is not None or not stated.is_empty:
+            option = "--instrument is" if instrument is not None else "--load and the like are"
             raise ConfigError(
-                "--instrument is for raw files",
-                cure="in a campaign file it is said in a [[run]] or [[surface]]: instrument = ...",
+                f"{option} for raw files",
+                cure="in a campaign file state it in a [[run]]: instrument, normal_force, "
+                "sliding_speed",
             )
-        return paths[0], False
-    for path in paths:
-        if not path.is_file() or _is_campaign(path):
-            what = "there is no such file" if not path.exists() else "it is no raw file"
-            raise ConfigError(
-                f"{path}: {what}", cure="name one campaign file or folder, or raw files alone"
-            )
-        if instrument is None and _holds_modulus(path):
-            raise ConfigError(
-                f"{path}: it holds a modulus over frequency, no run and no scan",
-                cure=f'name it as modulus_file = "{path.name}" in [contact] of a campaign file; '
-                f"`tribolab info {path.name}` shows how it is read",
-            )
+        return known, False
+    described = instrument is None
+    instrument = instrument or describe_with(stated, paths, folder)
+    described = described and instrument is not None
     whole = [path.resolve() for path in paths]
     file = folder / NAME
     if file.exists() and not _names(file, whole):  # it is of other files
         file = folder / f"campaign_{safe_name(paths[0].stem)}.toml"
     results = results_of(file)
-    text = _campaign_of(whole, folder.resolve(), results, instrument)
+    lines = stated.run_lines(described=described)
+    text = campaign_text(whole, folder.resolve(), results, instrument, lines)
     try:
-        if instrument is not None and _says(file, _campaign_of(whole, folder.resolve(), results)):
+        before = campaign_text(whole, folder.resolve(), results)
+        if (instrument is not None or lines) and _says(file, before):
             file.unlink()  # ours, of a try before; nobody has completed it
         with file.open("x", encoding="utf-8") as new:
             new.write(text)
@@ -92,6 +104,45 @@ def campaign_file(
     except OSError as error:
         raise ConfigError(f"{file}: the campaign file cannot be written: {error}") from error
     return file, True
+
+
+def _raw_files(paths: Sequence[Path], folder: Path) -> tuple[list[Path], Path, Path | None]:
+    """Return the raw files that are meant, where their campaign file lies, and it if it exists."""
+    if len(paths) == 1 and paths[0].is_dir() and not (paths[0] / NAME).exists():
+        found = files_in(paths[0])
+        if not found:
+            raise ConfigError(
+                f"{paths[0]}: no raw file and no {NAME} in this folder",
+                cure="name a folder of raw files, or see `tribolab demo`",
+            )
+        return found, paths[0], None
+    if len(paths) == 1 and (not paths[0].is_file() or _is_campaign(paths[0])):
+        return [], folder, paths[0]
+    left = [path for path in paths if not (path.is_dir() and is_results_folder(path))]
+    ours = [path for path in left if _is_campaign(path)]
+    raw = [path for path in left if path not in ours]
+    whole = [path.resolve() for path in raw if may_hold_data(path)]
+    own = [path for path in ours if path.suffix != ".toml" or _names_all(path, whole)]
+    if raw and len(own) == 1 and ours:  # `run *.*` again
+        return [], folder, own[0]
+    for path in left:
+        if not path.is_file() or path in ours:
+            what = "there is no such file" if not path.exists() else "it is no raw file"
+            raise ConfigError(
+                f"{path}: {what}", cure="name one campaign file or folder, or raw files alone"
+            )
+    return raw, folder, None
+
+
+def _names_all(file: Path, paths: Sequence[Path]) -> bool:
+    """Whether a campaign file names all of these files."""
+    try:
+        campaign, runs = load_and_plan(file)
+    except TribolabError:
+        return False
+    named = {path.resolve() for run in runs for path in run.files}
+    named |= {path.resolve() for path in scan_files(campaign)}
+    return bool(paths) and named.issuperset(paths)
 
 
 def results_of(file: Path) -> str:
@@ -162,26 +213,67 @@ def _is_campaign(path: Path) -> bool:
     return bool({"campaign", "run", "surface"} & told.keys())
 
 
-def _campaign_of(
-    paths: Sequence[Path], folder: Path, results: str, instrument: str | None = None
+def campaign_text(
+    paths: Sequence[Path],
+    folder: Path,
+    results: str,
+    instrument: str | None = None,
+    stated: Sequence[str] = (),
 ) -> str:
+    """Return the text of a campaign file for raw files.
+
+    Parameters
+    ----------
+    paths
+        Raw files, absolute.
+    folder
+        Where the campaign file lies, absolute.
+    results
+        Its results folder, relative to it.
+    instrument, stated
+        What the raw files are from, and further lines of their [[run]].
+    """
     from tribolab.reading.dialect.write import quoted  # late: starting stays quick
 
     raw = Path(os.path.commonpath([path.parent for path in paths]))
     where = os.path.relpath(raw, folder) if raw.is_relative_to(folder) else str(raw)
     name = paths[0].stem if len(paths) == 1 else raw.name
-    groups = [[Path(path) for path in group] for group in group_files(paths)]
-    runs = [group for group in groups if len(group) > 1 or _holds_run(group[0], instrument)]
+    runs, kinds = sorted_by_content(group_files(paths), instrument)
+    if kinds.moduli and not (kinds.runs or kinds.scans):
+        raise ConfigError(
+            f"{kinds.moduli[0]}: it holds a modulus over frequency, no run and no scan",
+            cure=f'name it as modulus_file = "{kinds.moduli[0].name}" in [contact] of a campaign '
+            f"file; `tribolab info {kinds.moduli[0].name}` shows how it is read",
+        )
     lines = [_ABOUT, "[campaign]", f"name = {quoted(name)}", f"raw = {quoted(where)}"]
     lines += [f"output = {quoted(results)}"] if results != RESULTS else []
+    pattern = pattern_of_names([common_name(files) for files in runs])
+    if pattern and (len(runs) > 1 or pattern != "{surface}_{repeat}"):
+        lines += [f"files_named = {quoted(pattern)}"]
+    if len(kinds.moduli) == 1:
+        modulus = kinds.moduli[0].relative_to(raw).as_posix()
+        lines += ["", "[contact]", f"modulus_file = {quoted(modulus)}"]
     if runs:
-        files = ",\n    ".join(quoted(str(path.relative_to(raw))) for run in runs for path in run)
-        lines += ["", "[[run]]", f"files = [\n    {files},\n]", *_said(instrument, folder)]
-    for (path,) in (group for group in groups if group not in runs):
-        scans = quoted(str(path.relative_to(raw)))
-        lines += ["", "[[surface]]", f"name = {quoted(path.stem)}", f"scans = {scans}"]
+        named = as_pattern(kinds.runs, [path for path in paths if path not in kinds.runs], raw)
+        files = ",\n    ".join(map(quoted, named))
+        lines += ["", "[[run]]", f"files = [\n    {files},\n]", *stated]
+        lines += _said(instrument, folder)
+    for group in repeats_by_name(kinds.scans):
+        scans = [quoted(path.relative_to(raw).as_posix()) for path in group]
+        shown = scans[0] if len(scans) == 1 else f"[{', '.join(scans)}]"
+        title = surface_name(group)
+        lines += ["", "[[surface]]", f"name = {quoted(title)}", f"scans = {shown}"]
         lines += _said(instrument, folder)
     return "\n".join(lines) + "\n"
+
+
+def surface_name(scans: Sequence[Path]) -> str:
+    """Return the name of a surface after its scans: without the number of the scan.
+
+    >>> surface_name([Path("sb-r_1.csv"), Path("sb-r_2.csv")]), surface_name([Path("roller.txt")])
+    ('sb-r', 'roller')
+    """
+    return common_name(scans) if len(scans) > 1 else scans[0].stem
 
 
 def _said(instrument: str | None, folder: Path) -> list[str]:
@@ -196,22 +288,3 @@ def _said(instrument: str | None, folder: Path) -> list[str]:
         inside = whole.is_relative_to(folder)
         instrument = (whole.relative_to(folder) if inside else whole).as_posix()
     return [f"instrument = {quoted(instrument)}"]
-
-
-def _holds_modulus(path: Path) -> bool:
-    try:
-        return kind_of(path) == "unknown" and holds_modulus(path)
-    except TribolabError:
-        return False  # the run says what is wrong with it
-
-
-def _holds_run(path: Path, instrument: str | None) -> bool:
-    if instrument is not None:
-        return kind_of(path, instrument) == "run"
-    from tribolab.reading.unknown_run import holds_run  # late: starting stays quick
-
-    try:
-        kind = kind_of(path)
-        return kind == "run" or (kind == "unknown" and holds_run(path, by_name=False))
-    except TribolabError:
-        return True  # the run says what is wrong with it

@@ -162,6 +162,7 @@ def left_open(draft: Draft) -> ReadError | None:
     from tribolab.reading.unknown.proposal.questions import (
         GuessedError,
         lacks_friction,
+        missing_options,
         missing_words,
         questions,
         understood_columns,
@@ -177,7 +178,8 @@ def left_open(draft: Draft) -> ReadError | None:
     if unsaid := lacks_distance(draft):
         return GuessedError(draft.path, asked, cures.SURFACE, unsaid, known)
     if asked or lacks_friction(draft):
-        return GuessedError(draft.path, asked, cures.RUN, missing_words(draft), known)
+        lacks, options = missing_words(draft), missing_options(draft)
+        return GuessedError(draft.path, asked, cures.RUN, lacks, known, options)
     return None
 
 

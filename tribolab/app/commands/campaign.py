@@ -18,6 +18,7 @@ from tribolab.app.reported import (
     leaving,
     reported,
 )
+from tribolab.app.stated import LoadOption, RadiusOption, RateOption, SpeedOption, Stated
 from tribolab.app.streams import say
 
 if TYPE_CHECKING:
@@ -86,12 +87,17 @@ def reproduce(
 
 def run(
     campaign: Annotated[
-        list[Path],
+        list[Path] | None,
         typer.Argument(
-            help="The campaign file (TOML), the folder with campaign.toml, or raw files."
+            help="A folder of raw files or with campaign.toml, a campaign file, or raw files.",
+            show_default="this folder",
         ),
-    ],
+    ] = None,
     instrument: InstrumentOption = None,
+    load: LoadOption = None,
+    radius: RadiusOption = None,
+    speed: SpeedOption = None,
+    rate: RateOption = None,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -144,12 +150,13 @@ def run(
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
-    """Analyse a campaign: friction of every run, measured curves, report.
+    """Analyse a folder or a campaign: friction of every run, measured curves, report.
 
-    Raw files are only read. Results appear whole or not at all, and what did not change since
-    the last time is not done again. Of raw files alone a campaign.toml is written here first, to
-    be completed with what is known of them; beside one of other files it is called by the first
-    file, as are its results.
+    Raw files are only read. Results appear whole or not at all, and only what changed is done
+    again. For raw files a campaign.toml is written first: runs are told from scans, repeats are
+    grouped by file name. Complete it with what you know of the measurement.
+
+        tribolab run my_folder/
 
         tribolab run campaign.toml
 
@@ -171,9 +178,11 @@ def run(
         from tribolab.app.run import run_campaign, run_here_if_lost
 
         run_it = partial(run_here_if_lost, say=partial(say, to_stderr=True))
+        campaign = campaign or [Path()]
         if instrument is None and (described := describe_by_questions(campaign, keep=True)):
             instrument = str(described)
-        file, written = campaign_file(campaign, Path(), instrument)
+        stated = Stated.of(load, radius, speed, rate)
+        file, written = campaign_file(campaign, Path(), instrument, stated)
         place = output or file.parent / results_of(file)
         new_folder = written and not place.exists()
         try:
@@ -208,6 +217,21 @@ def run(
             say(f"tribolab: {line}", to_stderr=True)
         code = show_outcome(outcome, debug)
     raise typer.Exit(code)
+
+
+def new(
+    folder: Annotated[Path, typer.Argument(help="Folder of the raw files.")] = Path(),
+    debug: Debug = False,
+) -> None:
+    """Write a commented campaign.toml for the raw files of a folder, without running it.
+
+    tribolab new my_folder/
+    """
+    with reported(debug):
+        # late: starting stays quick
+        from tribolab.app.new_campaign import write_new_campaign
+
+        say(f"{write_new_campaign(folder)} is written: complete it, then tribolab run {folder}")
 
 
 def figures(

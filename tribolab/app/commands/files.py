@@ -20,6 +20,14 @@ from tribolab.app.reported import (
     leaving,
     reported,
 )
+from tribolab.app.stated import (
+    LoadOption,
+    RadiusOption,
+    RateOption,
+    SpeedOption,
+    Stated,
+    describe_with,
+)
 from tribolab.app.streams import say
 
 if TYPE_CHECKING:
@@ -37,6 +45,10 @@ def check(
         str, typer.Option(help="Exit with 1 from which status on: suspect, fail or never.")
     ] = "fail",
     instrument: InstrumentOption = None,
+    load: LoadOption = None,
+    radius: RadiusOption = None,
+    speed: SpeedOption = None,
+    rate: RateOption = None,
     verbose: Annotated[
         bool, typer.Option("--verbose", "-v", help="Show notes, and what passed, too.")
     ] = False,
@@ -67,6 +79,8 @@ def check(
             # late: starting stays quick
             from tribolab.app import checks
 
+        stated = Stated.of(load, radius, speed, rate)
+        instrument = instrument or describe_with(stated, files)
         code = checks.code_of([], fail_on)  # a wrong level is told before the work
         with progress_bars(quiet) as progress, _pool(jobs, files) as pool:
             checked = checks.check_files(
@@ -83,6 +97,10 @@ def check(
 def info(
     files: Annotated[list[Path], typer.Argument(help="Raw files.")],
     instrument: InstrumentOption = None,
+    load: LoadOption = None,
+    radius: RadiusOption = None,
+    speed: SpeedOption = None,
+    rate: RateOption = None,
     write: Annotated[
         Path | None,
         typer.Option(
@@ -123,6 +141,8 @@ def info(
 
             describe(files, write, write.stem, force=force, ask=ask)
             return
+        stated = Stated.of(load, radius, speed, rate)
+        instrument = instrument or describe_with(stated, files)
         # late: starting stays quick
         from tribolab.app.quick import importing
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from pydantic import PrivateAttr
 
 from tribolab.campaign.settings.analysed import Friction, Qc, Roughness, Segments
-from tribolab.campaign.settings.fields import SomeText
+from tribolab.campaign.settings.fields import LabelPattern, SomeText
 from tribolab.campaign.settings.measured import (
     CalibrationTable,
     Contact,
@@ -39,6 +39,10 @@ class About(Table):
     """Folder of the raw files, relative to this file."""
     output: SomeText = "results"
     """Folder of the results, relative to this file."""
+    files_named: LabelPattern | None = None
+    """What the names of the runs' files say, without their endings:
+    "{surface}_{medium}_{normal_force}_{repeat}"; also {sliding_speed}, {mount}, {specimen},
+    {operator}, {day} and your own. What a [[run]] states goes first."""
     note: SomeText | None = None
     """What every reader of the report should know first; it stands at its top."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from tribolab.campaign.settings.config import Campaign
+from tribolab.campaign.settings.files_named import with_named_parts
 from tribolab.campaign.settings.names import of_names
 from tribolab.campaign.settings.plan import PlannedRun, plan_runs
 from tribolab.campaign.settings.toml_file import open_settings, settings_path
@@ -53,7 +54,8 @@ def load_and_plan(path: str | Path) -> tuple[Campaign, tuple[PlannedRun, ...]]:
     # names first: no file is looked at with an instrument that nobody knows
     if wrong := of_names(file.content):
         raise file.error(wrong)
-    runs, wrong = plan_runs(file.content)
+    campaign = with_named_parts(file.content)
+    runs, wrong = plan_runs(campaign)
     if wrong:
         raise file.error(wrong)
-    return file.content, runs
+    return campaign, runs

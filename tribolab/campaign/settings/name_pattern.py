@@ -19,6 +19,8 @@ class NamePattern:
     ----------
     text
         ``{label}`` stands for letters and digits, ``*`` for anything, all else for itself.
+    whole_words
+        Whether labels reach to the next ``_``, and the first one over it if need be.
 
     Raises
     ------
@@ -33,7 +35,7 @@ class NamePattern:
     {}
     """
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, *, whole_words: bool = False) -> None:
         names = [name for name, star in _FIELD.findall(text) if not star]
         if not names:
             raise ValueError("no label is named; write e.g. '*_{mount}_*'")
@@ -47,9 +49,11 @@ class NamePattern:
         if text.count("*") > _MOST_STARS:
             raise ValueError(f"more than {_MOST_STARS} * are too many")
         parts, end = [], 0
+        first, other = (".+", "[^_]+") if whole_words else (_LABEL, _LABEL)
         for gap in _FIELD.finditer(text):
             parts.append(re.escape(text[end : gap.start()]))
-            parts.append(".*" if gap[2] else f"(?P<{gap[1]}>{_LABEL})")
+            label = first if gap[1] == names[0] else other
+            parts.append(".*" if gap[2] else f"(?P<{gap[1]}>{label})")
             end = gap.end()
         self._compiled = regex.compile("".join([*parts, re.escape(text[end:])]))
 

@@ -13,6 +13,7 @@ from tribolab.campaign.settings.files import (
     resolve_patterns,
     sha256_of_dialect,
 )
+from tribolab.campaign.settings.files_named import named_by_files
 from tribolab.campaign.settings.name_pattern import NamePattern
 from tribolab.campaign.settings.problems import SettingsProblem, message
 from tribolab.campaign.settings.review import review_beside
@@ -140,14 +141,17 @@ def plan_runs(campaign: Campaign) -> Plan:
     runs = tuple(
         _decided(
             _weighed(
-                PlannedRun(
-                    name=name,
-                    files=tuple(files),
-                    labels=tuple(label_of(campaign, file) for file in files),
-                    mount=_label(entry, files[0], "mount"),
-                    specimen=_label(entry, files[0], "specimen"),
-                    zero_uncertainty_at=places[id(entry)],
-                    **settings[id(entry)],
+                _named(
+                    PlannedRun(
+                        name=name,
+                        files=tuple(files),
+                        labels=tuple(label_of(campaign, file) for file in files),
+                        mount=_label(entry, files[0], "mount"),
+                        specimen=_label(entry, files[0], "specimen"),
+                        zero_uncertainty_at=places[id(entry)],
+                        **settings[id(entry)],
+                    ),
+                    campaign,
                 ),
                 campaign,
                 weighed,
@@ -175,6 +179,15 @@ def _label(entry: RunEntry, file: Path, key: Literal["mount", "specimen"]) -> st
     if stated is not None or entry.labels_in_name is None:
         return stated or ""
     return NamePattern(entry.labels_in_name).labels(file.stem).get(key, "")
+
+
+def _named(run: PlannedRun, campaign: Campaign) -> PlannedRun:
+    """Return a run with what the names of its files say and nothing else states."""
+    named = named_by_files(campaign.campaign.files_named, run.files)._asdict()
+    said = {key: value for key, value in named.items() if value and not getattr(run, key)}
+    if not said:
+        return run
+    return replace(run, **said, config_sha256=sha256_of([run.config_sha256, said]))
 
 
 def _weighed(run: PlannedRun, campaign: Campaign, weighed: set[Path]) -> PlannedRun:

@@ -6,7 +6,7 @@ import os
 import re
 import unicodedata
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 _LONGEST_NAME = 100
@@ -21,7 +21,7 @@ def unique_names(groups: Iterable[Iterable[Path]]) -> list[str]:
     ['a_x_1', 'b_x_1']
     """
     members = [list(group) for group in groups]
-    names = [safe_name(_common(files)) for files in members]
+    names = [safe_name(common_name(files)) for files in members]
     taken = Counter(name.casefold() for name in names)
     names = [
         safe_name(f"{files[0].parent.name}_{name}") if taken[name.casefold()] > 1 else name
@@ -49,7 +49,8 @@ def distinct(names: Iterable[str]) -> list[str]:
     return result
 
 
-def _common(files: list[Path]) -> str:
+def common_name(files: Sequence[Path]) -> str:
+    """Return what the names of a run's files have in common, without their endings."""
     stems = [file.stem for file in files]
     if len(stems) == 1:
         return stems[0]

@@ -161,6 +161,25 @@ def without_unit_and_missed(draft: Drafted) -> list[str]:
     return _unused(draft, _lacks(draft))
 
 
+_OPTIONS = {
+    "normal_force": "--load 20N",
+    "track_radius": "--radius 15mm",
+    "sliding_velocity": "--speed 10mm/s",
+}
+
+
+def missing_options(draft: Drafted) -> list[str]:
+    """Return the options of the command line that state what a file lacks, with an example.
+
+    Parameters
+    ----------
+    draft
+        From `tribolab.reading.unknown.proposal.draft.draft_dialect`.
+    """
+    members = {lack.member for lack in _lacks(draft)}
+    return [option for member, option in _OPTIONS.items() if member in members]
+
+
 def _lacks(draft: Drafted) -> list[MissingInput | Uncalibrated]:
     if draft.layout is None or draft.understood is None or draft.kind != "run":
         return []
@@ -198,12 +217,14 @@ class GuessedError(ReadError):
         table: str = cures.RUN,
         lacks: Sequence[str] = (),
         understood: Sequence[str] = (),
+        options: Sequence[str] = (),
     ) -> None:
         super().__init__(_UNKNOWN, where=path, cure=cures.unknown_instrument(path, table))
-        self.args = (path, tuple(asked), table, tuple(lacks), tuple(understood))
+        self.args = (path, tuple(asked), table, tuple(lacks), tuple(understood), tuple(options))
         self.asked = tuple(asked)
         self.lacks = tuple(lacks)
         self.understood = tuple(understood)
+        self.options = tuple(options)
 
     def told(self, audience: str) -> str:
         """Return the message for an audience."""
@@ -218,6 +239,8 @@ class GuessedError(ReadError):
             said += [f"missing: {'; '.join(self.lacks)}"] if self.lacks else []
             return "; ".join([f"{self.where}: {self.what}", *said, cure])
         kept = [f"--instrument {name} is a description of it" for name in _drafts_of(self.where)]
+        if self.options and audience == "terminal":
+            cure = f"State {' '.join(self.options)}, or {cure}"
         first = unclear[: max(_LINES - len(missing), _LINES - 1)]
         lines = [*first, *missing[: _LINES - len(first)]]
         more = " ".join(_and_more(len(unclear) + len(missing) - len(lines)))

@@ -1,0 +1,124 @@
+"""The raw files of a folder: which hold runs, scans, moduli or results of a roughness tester."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from tribolab.campaign.store.ledger import Ledger
+from tribolab.errors import TribolabError
+from tribolab.reading.kinds import kind_of
+from tribolab.reading.moduli import holds_modulus
+from tribolab.reading.unknown_run import holds_run
+
+_NO_DATA = (
+    *(".toml", ".py", ".ipynb", ".md", ".rst", ".pdf", ".doc", ".docx", ".ppt", ".pptx", ".html"),
+    *(".png", ".jpg", ".jpeg", ".tif", ".tiff", ".svg", ".gif", ".mp4", ".avi", ".zip", ".sqlite"),
+)
+_MOST_FILES = 5000  # of a folder: a disk is no campaign
+
+
+class RawFiles(NamedTuple):
+    """Raw files by what they hold."""
+
+    runs: list[Path]
+    scans: list[Path]
+    moduli: list[Path]
+    results: list[Path]
+
+
+def files_in(folder: Path) -> list[Path]:
+    """Return the files of a folder and those below it that may hold data, in order of name.
+
+    Hidden files, results of `tribolab run`, and kinds of files that hold no measurement are left
+    out.
+    """
+    found: list[Path] = []
+    for path in sorted(folder.iterdir()):
+        if path.name.startswith(".") or len(found) >= _MOST_FILES:
+            continue
+        if path.is_dir():
+            found += [] if is_results_folder(path) else files_in(path)
+        elif path.is_file() and may_hold_data(path):
+            found.append(path)
+    return found
+
+
+def may_hold_data(path: Path) -> bool:
+    """Whether files with such an ending hold measurements."""
+    return path.suffix.lower() not in _NO_DATA
+
+
+def is_results_folder(path: Path) -> bool:
+    """Whether a folder is what `tribolab run` left."""
+    return (path / "report.json").is_file() or bool(Ledger.read(path).files)
+
+
+def sorted_by_content(
+    groups: Sequence[Sequence[Path]], instrument: str | None = None
+) -> tuple[list[list[Path]], RawFiles]:
+    """Return the runs as groups of their logs, and all files by what they hold.
+
+    Parameters
+    ----------
+    groups
+        Files that make one run each, if they are runs.
+    instrument
+        What the raw files are from: a name, or the file of a dialect.
+    """
+    kinds = RawFiles([], [], [], [])
+    runs: list[list[Path]] = []
+    for group in groups:
+        if len(group) > 1:
+            kind = "run"
+        else:
+            kind = _kind(group[0], instrument)
+        if kind == "run":
+            runs.append(list(group))
+            kinds.runs.extend(group)
+        else:
+            {"scan": kinds.scans, "modulus": kinds.moduli, "results": kinds.results}[kind].append(
+                group[0]
+            )
+    return runs, kinds
+
+
+def _kind(path: Path, instrument: str | None) -> str:
+    """Return "run", "scan", "modulus" or "results"."""
+    try:
+        kind = kind_of(path, instrument)
+        if kind != "unknown":
+            return kind
+        if holds_modulus(path):
+            return "modulus"
+        return "run" if holds_run(path, by_name=False) else "scan"
+    except TribolabError:
+        if instrument is not None:
+            raise
+        return "run"  # the run says what is wrong with it
+
+
+def as_pattern(files: Sequence[Path], others: Iterable[Path], raw: Path) -> list[str]:
+    """Return patterns that stand for these files and no others, relative to a folder.
+
+    Examples
+    --------
+    >>> raw = Path("a")
+    >>> as_pattern([raw / "x_1.csv", raw / "x_2.csv"], [raw / "y.csv"], raw)
+    ['x_*.csv']
+    >>> as_pattern([raw / "x_1.csv", raw / "z.csv"], [raw / "y.csv"], raw)
+    ['x_1.csv', 'z.csv']
+    """
+    wanted, patterns = set(files), list[str]()
+    everything = wanted | set(others)
+    for name in ("*", *sorted({f"{file.stem.rstrip('0123456789')}*" for file in files})):
+        for suffix in sorted({file.suffix for file in files}):
+            for parent in sorted({file.parent for file in files}):
+                where = parent.relative_to(raw).as_posix()
+                pattern = f"{name}{suffix}" if where == "." else f"{where}/{name}{suffix}"
+                own = {f for f in everything if f.parent == parent and f.match(f"{name}{suffix}")}
+                if len(own & wanted) > 1 and own <= set(files) and not own.isdisjoint(wanted):
+                    patterns.append(pattern)
+                    wanted -= own
+    return patterns + [file.relative_to(raw).as_posix() for file in files if file in wanted]
