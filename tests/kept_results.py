@@ -71,8 +71,7 @@ def main(target: Path) -> None:
             file = raw_campaign(Path(temporary) / kind, kind)
             run_campaign(file, jobs=1, figures="none")
             results = file.parent / "results"
-            for left_out in (results / PAGE, *results.glob("tables/*.parquet")):
-                left_out.unlink()
+            (results / PAGE).unlink()
             archive.add(results, kind)
 
 

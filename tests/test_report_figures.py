@@ -1,6 +1,7 @@
 """Figures when asked for, taken over where nothing changed; tables twice; all from the records."""
 
 import json
+import shutil
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -20,9 +21,11 @@ from tribolab.records.parts import CurveOutcome
 from tribolab.records.run_record import RunRecord
 from tribolab.report.figures.choice import wanted
 from tribolab.report.live.curves import FrictionOverSpeed, card_figures
+from tribolab.report.other_tables import write_other_tables
 from tribolab.report.results import write_report
 from tribolab.report.slowest import slow_segments
-from tribolab.report.tables import read_csv, write, write_rows
+from tribolab.report.table_format import table_format
+from tribolab.report.tables import read_csv, write_csv, write_rows
 
 RUNS = [
     ("sb-r_1", "Sb-R", "glycerol", 31.0, 0.8),
@@ -145,20 +148,28 @@ def test_nothing_is_read_back_to_be_shown(made, tmp_path, monkeypatch):
     assert not [f for f in here["findings"] if f["severity"] == "error"]
 
 
-def test_every_table_is_parquet_beside_csv_with_the_same_values(made):
-    files = sorted((made.folder / "tables").glob("*.csv"))
+@pytest.mark.parametrize("form", ["parquet", "xlsx"])
+def test_tables_in_other_formats_have_the_same_values(made, tmp_path, form):
     names = {"friction", "stribeck", "stick_slip", "static_friction", "checks", "findings"}
-    assert {file.stem for file in files} >= names
-    for file in files:
-        columnar = pd.read_parquet(file.with_suffix(".parquet"))
-        assert list(columnar.columns) == list(read_csv(file).columns)
-        for name, column in read_csv(file).items():
-            there = columnar[name]
-            if pd.api.types.is_numeric_dtype(there) or pd.api.types.is_bool_dtype(there):
-                np.testing.assert_array_equal(column.to_numpy(float), there.to_numpy(float))
-            else:
-                mine, other = (c.astype(object).where(c.notna(), "") for c in (column, there))
-                assert mine.astype(str).tolist() == other.astype(str).tolist()
+    assert {file.stem for file in (made.folder / "tables").glob("*.csv")} >= names
+    assert not list((made.folder / "tables").glob("*.parquet"))
+    for name in names:
+        shutil.copy(made.folder / "tables" / f"{name}.csv", tmp_path)
+    write_other_tables(tmp_path, form)
+    for name in names:
+        table = read_csv(tmp_path / f"{name}.csv")
+        if form == "parquet":
+            other = pd.read_parquet(tmp_path / f"{name}.parquet")
+        else:
+            sheet = pd.read_excel(tmp_path / "tables.xlsx", name)
+            units, other = sheet.iloc[0], sheet.iloc[1:].reset_index(drop=True)
+            assert name != "friction" or units["normal_force_N"] == "N"
+        assert list(other.columns) == list(table.columns)
+        for column in table.select_dtypes(float):
+            values = pd.to_numeric(other[column]).to_numpy(float)
+            np.testing.assert_allclose(values, table[column].to_numpy(float), rtol=1e-14)
+    with pytest.raises(ConfigError, match="xlsx"):
+        table_format("xls")
 
 
 def test_a_long_table_is_the_same_whole_as_in_pieces(tmp_path, monkeypatch):
@@ -167,16 +178,13 @@ def test_a_long_table_is_the_same_whole_as_in_pieces(tmp_path, monkeypatch):
         | ({"late": "text"} if n > 6 else {})
         for n in range(23)
     ]
-    write(pd.DataFrame(rows), tmp_path / "whole.csv")
+    write_csv(pd.DataFrame(rows), tmp_path / "whole.csv")
     monkeypatch.setattr("tribolab.report.tables._CHUNK", 4)
     write_rows(lambda: iter(rows), tmp_path / "pieces.csv", ["run"])
     assert (tmp_path / "whole.csv").read_text() == (tmp_path / "pieces.csv").read_text()
-    frames = [pd.read_parquet(tmp_path / f"{name}.parquet") for name in ("whole", "pieces")]
-    pd.testing.assert_frame_equal(*frames)
-    assert frames[0]["run"][0] == "=r0"  # no spreadsheet computes it: as it was
+    assert read_csv(tmp_path / "pieces.csv")["run"][0] == "=r0"  # as it was
     write_rows(lambda: iter(()), tmp_path / "none.csv", ["run", "x"])
     assert (tmp_path / "none.csv").read_text() == "run,x\n"
-    assert list(pd.read_parquet(tmp_path / "none.parquet").columns) == ["run", "x"]
 
 
 def test_results_open_by_name_with_every_digit(made):

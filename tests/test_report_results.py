@@ -99,11 +99,10 @@ def test_friction_table_is_the_data_files_to_the_last_digit(outcome):
             "friction_coefficient_std": "friction_coefficient_std",
             "friction_coefficient_sem": "friction_coefficient_sem",
             "sliding_speed_m_s": "sliding_speed",
-            "start_s": "start",
+            "trimmed_start_s": "trimmed_start",
             "trimmed_stop_s": "trimmed_stop",
             "normal_force_N": "normal_force",
-            "trend_1_s": "trend",
-            "half_loop_N": "half_loop",
+            "trend_change": "trend_change",
             "friction_force_offset_N": "friction_force_offset",
             "direction": "direction",
         }.items():

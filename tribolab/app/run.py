@@ -25,6 +25,7 @@ from tribolab.campaign.store.unchanged import note, unchanged
 from tribolab.errors import ConfigError, Cure, shown
 from tribolab.report.code import code_of_page
 from tribolab.report.figures.choice import wanted
+from tribolab.report.table_format import table_format
 
 
 def run_campaign(
@@ -38,6 +39,7 @@ def run_campaign(
     finish: Callable[[Outcome], None] | None = None,
     figures: str = "curves",
     pdf: bool = False,
+    tables: str = "csv",
     verify: bool = False,
     outside: bool = False,
     trust: bool = False,
@@ -69,6 +71,8 @@ def run_campaign(
         Which are drawn for publication: ``"curves"`` (measured curves), ``"all"`` or ``"none"``.
     pdf
         Whether figures are written as PDF, too.
+    tables
+        Format of the tables next to CSV: ``"xlsx"`` (one workbook) or ``"parquet"``.
     verify
         Whether raw files and results are recognised by their checksums only, each read anew; by
         default raw files and large results by size, time and inode first.
@@ -103,7 +107,7 @@ def run_campaign(
     >>> made, [(run.name, run.segments, run.quality) for run in outcome.runs]
     (True, [('sb-s_dry_31N_01', 4, 'pass')])
     """
-    which = wanted(figures)
+    which, form = wanted(figures), table_format(tables)
     if isinstance(path_or_campaign, Campaign):
         campaign, runs = path_or_campaign, planned_runs(path_or_campaign)
     else:
@@ -116,7 +120,7 @@ def run_campaign(
     _keep_apart(campaign, place)
     if executor is not None and (jobs is not None or scheduler is not None):
         raise ConfigError("give either an executor, or jobs, or scheduler")
-    options = {"figures": which, "pdf": pdf, "code": code_of_page()}
+    options = {"figures": which, "pdf": pdf, "tables": form, "code": code_of_page()}
     ledger = Ledger.read(place)
     intact = ledger.intact(whole=verify)
     damaged = ledger.damaged(intact)
@@ -130,6 +134,7 @@ def run_campaign(
                 pool.prepare()
             # only now: where nothing has changed, nobody waits for it
             from tribolab.campaign.pipeline import process
+            from tribolab.report.other_tables import write_other_tables
             from tribolab.report.results import write_report
 
             outcome = process(
@@ -143,6 +148,7 @@ def run_campaign(
                 intact=intact,
             )
             write_report(outcome, executor=pool, progress=progress, figures=which, pdf=pdf)
+            write_other_tables(Path(outcome.folder) / "tables", form)
         if finish is not None:
             finish(outcome)
         note(outcome, runs, options)

@@ -65,6 +65,39 @@ TABLES = {
 }
 
 
+# Of a segment, what the run's data file has and no reader of tables needs: parts of the error that
+# U95 includes, a second pair of ends, and numbers that follow from others.
+_NOT_IN_FRICTION = frozenset(
+    (
+        *("friction_coefficient_u", "friction_coefficient_dof", "friction_coefficient_beyond_dof"),
+        *("friction_coefficient_beyond_sem", "friction_coefficient_level", "pair", "samples"),
+        *("friction_force_std_N", "friction_force_sem_N", "normal_force_std_N"),
+        *("normal_force_sem_N", "start_s", "stop_s", "sliding_distance_m"),
+        *("trend_p_value", "trend_1_s"),
+    )
+)
+_SLIP = (
+    *("segment", "sliding_speed_m_s", "waveform", "class_probability", "dominant_frequency_Hz"),
+    *("dominant_wavelength_m", "drop", "stick_duration_s", "slip_duration_s"),
+    *("recurrence_distance_m", "events", "mains_frequency_Hz", "mains_amplitude"),
+    *("loading_stiffness_N_m", "sample_noise", "remark"),
+)
+
+
+def friction_row(row: Row) -> Row:
+    """Return what `friction.csv` has of a segment; the half loop only if there is no coefficient.
+
+    Parameters
+    ----------
+    row
+        Of report.json.
+    """
+    left = _NOT_IN_FRICTION
+    if row.get("friction_coefficient") is not None:
+        left = left | {"half_loop_N"}
+    return {name: value for name, value in row.items() if name not in left}
+
+
 class _Long(NamedTuple):
     """A table that is never in memory as a whole.
 
@@ -131,12 +164,12 @@ def write_tables(
         short["joint_fit"] = pd.DataFrame(parameter_table_rows(joints))
         short["model_comparison"] = pd.DataFrame(comparison_table_rows(joints))
     for name, made in short.items():
-        tables.write(made, folder / f"{name}.csv")
+        tables.write_csv(made, folder / f"{name}.csv")
 
 
 def write_findings(findings: Iterable[Notice], folder: Path) -> None:
     """Write the table of findings of a results folder, the gravest first."""
-    tables.write(tables.findings_table(findings), folder / "tables" / "findings.csv")
+    tables.write_csv(tables.findings_table(findings), folder / "tables" / "findings.csv")
 
 
 def _saying(says: str, rows: Iterable[Row]) -> Iterator[Row]:
@@ -170,10 +203,11 @@ def _long_tables(outcome: Outcome, curves: Sequence[CurveRecord]) -> Iterator[_L
                 yield {"run": entry.record.outcome.name} | {k: getattr(row, k) for k in _CHECK}
 
     def slip(record: RunRecord) -> Iterable[Row]:
-        return record.slip if record.outcome.name in in_curves else ()
+        shown = record.slip if record.outcome.name in in_curves else ()
+        return ({name: row[name] for name in _SLIP if name in row} for row in shown)
 
     def segments(record: RunRecord) -> Iterable[Row]:
-        return _saying(record.facts.uncertainty_says, record.facts.segments)
+        return (friction_row(row) for row in record.facts.segments)
 
     def points(record: CurveRecord) -> Iterable[Row]:
         return _saying(record.uncertainty_says, record.points)

@@ -10,20 +10,12 @@ from pathlib import Path
 from typing import IO, Any
 
 import pandas as pd
-import pyarrow as pa
-from pyarrow import parquet
 
 from tribolab.errors import ReadError, brief
 from tribolab.provenance import without_controls
 from tribolab.records.parts import Notice, Row
 
 _CHUNK = 4_000  # rows that are in memory at once
-_ARROW = {
-    "float64": pa.float64(),
-    "int64": pa.int64(),
-    "bool": pa.bool_(),
-    "object": pa.string(),
-}
 SEVERITIES = ("fail", "error", "suspect", "note")
 
 CURVE_LABELS = ["surface", "medium", "nominal_normal_force_N"]
@@ -68,14 +60,6 @@ def as_it_was(cell: Any) -> Any:
     return cell[1:] if isinstance(cell, str) and cell.startswith(_SIGN) else cell
 
 
-def write(table: pd.DataFrame, path: Path) -> None:
-    """Write a table as CSV, and as Parquet beside it."""
-    write_csv(table, path)
-    rows = table.astype(dict.fromkeys(table.columns[table.isna().all()], "float64"))
-    with path.with_suffix(".parquet").open("wb") as packed:
-        parquet.write_table(pa.Table.from_pandas(rows, preserve_index=False), packed)
-
-
 def write_csv(table: pd.DataFrame, path: Path, digits: int | None = None) -> None:
     """Write a table as CSV: UTF-8, LF, every float with all its digits or with so many.
 
@@ -87,7 +71,7 @@ def write_csv(table: pd.DataFrame, path: Path, digits: int | None = None) -> Non
 
 
 def write_rows(rows: Callable[[], Iterable[Row]], path: Path, columns: Sequence[str]) -> None:
-    """Write a long table, which is never in memory as a whole, as CSV and as Parquet.
+    """Write a long table, which is never in memory as a whole, as CSV.
 
     Parameters
     ----------
@@ -101,21 +85,13 @@ def write_rows(rows: Callable[[], Iterable[Row]], path: Path, columns: Sequence[
     types = _types(rows()) or dict.fromkeys(columns, "object")
     if not types:
         return
-    schema = pa.schema([(name, _ARROW[dtype]) for name, dtype in types.items()])
-    with (
-        path.open("w", encoding="utf-8", newline="") as file,
-        # an open file: arrow takes no path that is not UTF-8
-        path.with_suffix(".parquet").open("wb") as packed,
-        parquet.ParquetWriter(packed, schema) as columnar,
-    ):
+    with path.open("w", encoding="utf-8", newline="") as file:
         lines = csv.writer(file, lineterminator="\n")
         lines.writerow(map(uncomputed, types))
         for part in _batches(rows(), _CHUNK):
             values = {name: [row.get(name) for row in part] for name in types}
             texts = [_texts(values[name], dtype) for name, dtype in types.items()]
             lines.writerows(zip(*texts, strict=True))
-            arrays = [pa.array(values[f.name], f.type, from_pandas=True) for f in schema]
-            columnar.write_table(pa.Table.from_arrays(arrays, schema=schema))
 
 
 def _texts(values: Sequence[Any], dtype: str) -> list[Any]:
@@ -167,7 +143,7 @@ def _append(
 
 
 def read_csv(path: Path) -> pd.DataFrame:
-    """Read a table that `write` wrote.
+    """Read a table that `write_csv` or `write_rows` wrote.
 
     Raises
     ------

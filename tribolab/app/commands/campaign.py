@@ -129,6 +129,9 @@ def run(
         ),
     ] = "curves",
     pdf: Annotated[bool, typer.Option("--pdf", help="Write figures as PDF, too.")] = False,
+    tables: Annotated[
+        str, typer.Option(help="Tables next to CSV: xlsx (one workbook with units) or parquet.")
+    ] = "csv",
     i_know: Annotated[
         bool,
         typer.Option(
@@ -195,6 +198,7 @@ def run(
                     progress=progress,
                     figures=figures,
                     pdf=pdf,
+                    tables=tables,
                     verify=verify,
                     outside=i_know,
                     trust=trust or written,  # then it was named on the command line

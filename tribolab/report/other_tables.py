@@ -1,0 +1,63 @@
+"""The tables of a results folder in other formats, on request: one workbook, or Parquet."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+import pandas as pd
+
+from tribolab.errors import OutputError
+from tribolab.figures.labels import column
+from tribolab.quantities import QUANTITIES
+from tribolab.report.tables import read_csv
+
+WORKBOOK = "tables.xlsx"
+_MOST_ROWS = 1_048_574  # of a sheet, below names and units
+_ENDINGS = {column(name)[len(name) + 1 :]: known.unit for name, known in QUANTITIES.items()}
+_ENDINGS = {ending: unit for ending, unit in _ENDINGS.items() if ending}
+
+
+def unit_of(name: str) -> str:
+    """Return the unit of a table's column; "" if it has none.
+
+    Examples
+    --------
+    >>> unit_of("friction_force_N"), unit_of("sliding_speed_m_s"), unit_of("surface")
+    ('N', 'm/s', '')
+    """
+    endings = [ending for ending in _ENDINGS if name.endswith(f"_{ending}")]
+    return _ENDINGS[max(endings, key=len)] if endings else ""
+
+
+def write_other_tables(folder: Path, form: str) -> None:
+    """Write the CSV tables of a folder in another format next to them.
+
+    Parameters
+    ----------
+    folder
+        With the CSV tables.
+    form
+        ``"xlsx"`` (``tables.xlsx``: a sheet per table, the second row are units), ``"parquet"``
+        (a file per table), or ``"csv"``: nothing is written.
+
+    Raises
+    ------
+    OutputError
+        If what writes such files is not installed.
+    """
+    if form == "csv":
+        return
+    made = {file.stem: read_csv(file) for file in sorted(folder.glob("*.csv"))}
+    if form == "parquet":
+        for name, table in made.items():
+            empty = dict.fromkeys(table.columns[table.isna().all()], "float64")
+            table.astype(empty).to_parquet(folder / f"{name}.parquet", index=False)
+        return
+    if importlib.util.find_spec("openpyxl") is None:
+        raise OutputError("--tables xlsx needs openpyxl: python -m pip install 'tribolab[formats]'")
+    with pd.ExcelWriter(folder / WORKBOOK, engine="openpyxl") as book:
+        for name, table in made.items():
+            units = pd.DataFrame([[unit_of(str(each)) for each in table]], columns=table.columns)
+            sheet = pd.concat([units, table.head(_MOST_ROWS).astype(object)], ignore_index=True)
+            sheet.to_excel(book, sheet_name=name[:31], index=False)
