@@ -22,6 +22,7 @@ from tribolab.records.part_records import CurveRecord, SurfaceRecord
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome, SurfaceOutcome
 from tribolab.records.roughness_words import FORM, roughness_in_words
 from tribolab.records.run_record import RunRecord
+from tribolab.records.verdict import verdict_of
 from tribolab.words import LOAD_MEASURED, LOAD_VARIES, Count, load_text
 
 if TYPE_CHECKING:
@@ -60,6 +61,12 @@ class _Cleaned:
         for segment in out.render(self.inner, options):
             text = segment.text if segment.control else harmless(segment.text)
             yield Segment(text, segment.style, segment.control)
+
+
+def verdict_line(outcome: Outcome) -> str:
+    """Return the verdict in one word, and how many runs and scans can be used."""
+    word, counts = verdict_of(outcome.runs, outcome.surfaces)
+    return f"{word:7s} {counts}"
 
 
 def outcome_table(outcome: Outcome) -> Table:

@@ -311,6 +311,7 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
     from tribolab.app import terminal
     from tribolab.qc.findings import exit_code
 
+    say(terminal.verdict_line(outcome))
     table = terminal.outcome_table(outcome)
     if table.row_count:
         terminal.console().print(table)

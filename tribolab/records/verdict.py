@@ -1,0 +1,58 @@
+"""The verdict on a campaign in one word and its counts, as terminal and page show it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
+
+from tribolab.words import many
+
+if TYPE_CHECKING:
+    from tribolab.records.parts import RunOutcome, SurfaceOutcome
+
+OK, SUSPECT, CHECK, FAIL = "OK", "SUSPECT", "CHECK", "FAIL"
+_BAD = ("fail", "error", "rejected")
+
+
+class Verdict(NamedTuple):
+    """One of OK, SUSPECT, CHECK (some cannot be used) and FAIL (none can), and the counts."""
+
+    word: str
+    counts: str
+
+
+def is_usable(run: RunOutcome) -> bool:
+    """Whether a run is in the curves: it was read, slides, and no check or person rejects it."""
+    return run.done and bool(run.segments) and run.quality not in _BAD
+
+
+def verdict_of(runs: Sequence[RunOutcome], surfaces: Sequence[SurfaceOutcome]) -> Verdict:
+    """Return the verdict on a campaign.
+
+    Parameters
+    ----------
+    runs, surfaces
+        What came of them.
+    """
+    scanned = [surface for surface in surfaces if surface.files]
+    usable = [run for run in runs if is_usable(run)]
+    computed = [surface for surface in scanned if surface.done]
+    counts = []
+    if runs:
+        counts.append(f"{len(usable)} of {many(len(runs), 'run')} usable")
+    if scanned:
+        scans = many(sum(len(surface.files) for surface in scanned), "scan")
+        counts.append(f"{scans} of {many(len(scanned), 'surface')}")
+    bad = len(usable) < len(runs) or len(computed) < len(scanned)
+    bad = bad or any({"fail", "error"} & set(surface.objections) for surface in scanned)
+    if not usable and not computed:
+        word = FAIL
+    elif bad:
+        word = CHECK
+    elif any(run.quality == "suspect" for run in runs) or any(
+        "suspect" in surface.objections for surface in scanned
+    ):
+        word = SUSPECT
+    else:
+        word = OK
+    return Verdict(word, ", ".join(counts))
