@@ -90,13 +90,14 @@ def test_help_needs_none_of_the_heavy_libraries():
 def test_a_run_says_in_few_lines_what_came_out(analysed):
     campaign, done = analysed
     assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("OK      2 of 2 runs usable\n")
     assert re.search(r"2 of 2 runs, \d+ segments\n", done.stdout)
     row = r"Sb-R +glycerol +31 N +1 +\d+ +\S+ to \S+ m/s +\S+ to \S+ +at most \S+ within the run\n"
     assert re.search(row, done.stdout)
     assert "\ncalibration not stated: every uncertainty is statistical only" in done.stdout
     assert "([uncertainty] in the campaign file)\n" in done.stdout
     assert done.stdout.endswith("results/report.html\n")
-    assert len(done.stdout.splitlines()) < 8
+    assert len(done.stdout.splitlines()) < 9
     results = campaign.parent / "results"
     assert {path.name for path in results.iterdir()} >= {
         *("report.html", "report.json", "tables", "figures", "data")

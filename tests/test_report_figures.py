@@ -161,7 +161,7 @@ def test_tables_in_other_formats_have_the_same_values(made, tmp_path, form):
         if form == "parquet":
             other = pd.read_parquet(tmp_path / f"{name}.parquet")
         else:
-            sheet = pd.read_excel(tmp_path / "tables.xlsx", name)
+            sheet = pd.read_excel(tmp_path / "tables.xlsx", name, engine="openpyxl")
             units, other = sheet.iloc[0], sheet.iloc[1:].reset_index(drop=True)
             assert name != "friction" or units["normal_force_N"] == "N"
         assert list(other.columns) == list(table.columns)

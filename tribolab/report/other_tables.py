@@ -58,6 +58,8 @@ def write_other_tables(folder: Path, form: str) -> None:
         raise OutputError("--tables xlsx needs openpyxl: python -m pip install 'tribolab[formats]'")
     with pd.ExcelWriter(folder / WORKBOOK, engine="openpyxl") as book:
         for name, table in made.items():
-            units = pd.DataFrame([[unit_of(str(each)) for each in table]], columns=table.columns)
+            row = [unit_of(str(each)) for each in table]
+            row[0] = row[0] or "unit"  # no sheet begins with an empty row
+            units = pd.DataFrame([row], columns=table.columns)
             sheet = pd.concat([units, table.head(_MOST_ROWS).astype(object)], ignore_index=True)
             sheet.to_excel(book, sheet_name=name[:31], index=False)
