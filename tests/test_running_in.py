@@ -8,13 +8,13 @@ import xarray as xr
 from scipy.signal import lfilter
 
 import tribolab as tl
+from tribolab.campaign.runs.running_in import running_in_of
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.mean_error.level import levels_of
 from tribolab.friction.running_in.settling import blocks_of, settling_of
 from tribolab.friction.running_in.steady_part import steady_segments, without_start
 from tribolab.friction.segments.find import find_segments
 from tribolab.records.notices import notices_of
-from tribolab.records.running_in_record import running_in_of
 
 RATE, STROKES = 250.0, 120
 

@@ -101,6 +101,11 @@ class Interface:
     slide_roll
         Slide-roll ratio SRR = (u2 - u1)/U [1] of two moving bodies, U = (u1 + u2)/2; None if one
         body is at rest, which is SRR = 2.
+
+    Examples
+    --------
+    >>> Interface("1.2 MPa").shear_stress
+    1200000.0
     """
 
     shear_stress: float = 0.0
@@ -148,6 +153,11 @@ class Solver:
         Of a ball: ``"full"`` theory on rings and sectors, ``"strips"`` (reduced, within some 6 %
         where the film is thinner than 0.025 a^2/R), or ``"auto"``: strips within that limit and
         the full theory beyond, as fits and bands use.
+
+    Examples
+    --------
+    >>> Solver(cells=240).cells
+    240
     """
 
     cells: int = 160

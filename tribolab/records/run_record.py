@@ -195,7 +195,7 @@ class RunRecord:
     starts
         Its static friction, a row per start of sliding.
     course
-        Friction along it, as `tribolab.records.running_in_record.running_in_of` returns it.
+        Friction along it, as `tribolab.campaign.runs.running_in.running_in_of` returns it.
     """
 
     outcome: RunOutcome

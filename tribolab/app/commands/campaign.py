@@ -182,9 +182,10 @@ def run(
 
         run_it = partial(run_here_if_lost, say=partial(say, to_stderr=True))
         campaign = campaign or [Path()]
-        if instrument is None and (described := describe_by_questions(campaign, keep=True)):
-            instrument = str(described)
         stated = Stated.of(load, radius, speed, rate)
+        asks = instrument is None and not any(stated)
+        if asks and (described := describe_by_questions(campaign, keep=True)):
+            instrument = str(described)
         file, written = campaign_file(campaign, Path(), instrument, stated)
         place = output or file.parent / results_of(file)
         new_folder = written and not place.exists()

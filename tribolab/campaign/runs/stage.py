@@ -200,11 +200,11 @@ def process_run(task: RunTask) -> RunAnswer:
         If the results cannot be written: that is no fault of the run.
     """
     # late: starting stays quick
+    from tribolab.campaign.runs.running_in import running_in_of
     from tribolab.records.decision_rows import not_applied
     from tribolab.records.frames import plain_rows, stick_slip_columns
     from tribolab.records.notices import notices_of
     from tribolab.records.run_facts import facts_of
-    from tribolab.records.running_in_record import running_in_of
 
     began = time.monotonic()
     run = task.run

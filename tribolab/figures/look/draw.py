@@ -53,6 +53,13 @@ def draw(
     ------
     AnalysisError
         If there is nothing to draw, or the number of axes is not that of the panels.
+
+    Examples
+    --------
+    >>> from tribolab.figures.spec import Axis, FigureSpec, Panel, Series
+    >>> line = Series("line", x=[0, 1], y=[0, 2])
+    >>> len(draw(FigureSpec(panels=(Panel(Axis("x"), Axis("y")),), series=(line,))).axes)
+    1
     """
     spec = replace(spec, series=tuple(plain_values(series) for series in spec.series))
     if ax is None:

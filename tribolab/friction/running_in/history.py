@@ -16,6 +16,7 @@ from tribolab.friction.mean_error.level import levels_of
 from tribolab.friction.points import limits as of_points
 from tribolab.friction.points.strokes import Observations, grouped_by_speed, observations_of
 from tribolab.friction.running_in import limits
+from tribolab.friction.running_in.kinds import CYCLES, STRETCHES, STROKES
 from tribolab.friction.running_in.settling import Settling, blocks_of, settling_of
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.segments.stretches import name_of
@@ -24,7 +25,6 @@ from tribolab.friction.time_weights import on_grid
 from tribolab.several import of_runs
 from tribolab.stamping import stamp
 
-CYCLES, STROKES, STRETCHES = "cycles", "strokes", "stretches"
 _READ = (
     "start",
     "stop",

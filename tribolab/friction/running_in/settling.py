@@ -29,8 +29,8 @@ from tribolab.friction.mean_error.autoregression import sieve_of
 from tribolab.friction.mean_error.level import levels_of
 from tribolab.friction.mean_error.lines import lines_of, waves_of
 from tribolab.friction.running_in import limits
+from tribolab.friction.running_in.kinds import NONE, NOT_FINISHED, RUN_IN, STEP
 
-NONE, RUN_IN, STEP, NOT_FINISHED = "none", "running-in", "step", "not finished"
 _TIMES = np.geomspace(0.004, 1.0, 24)  # of the sequence
 _BESIDE = (0.03, 0.15)  # exponentials that are no oscillation
 _ROUNDS, _GOLDEN = 20, 0.382
