@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from tribolab.figures.colours import BLACK
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, places
-from tribolab.friction.running_in.history import STRETCHES
+from tribolab.friction.running_in.kinds import STRETCHES
 from tribolab.records.parts import BAD, number_of
 from tribolab.records.run_record import RunRecord
 from tribolab.records.running_in_record import RunningIn
