@@ -171,7 +171,7 @@ def test_the_report_has_the_model_in_tables_json_page_and_words(outcome):
     names = {"joint-sb-s_glycerol", "shear_stress", "factors", "sensitivity", "sb-s_glycerol"}
     assert {f"figures/model_{name}.svg" for name in names} <= files
     page = html.unescape((folder / "report.html").read_text("utf-8"))
-    assert "Model beside measurement" in page
+    assert "Agreement of model and measurement" in page
     said = record["fit"]["judgement"].split(";")[0]
     assert f"{said[:1].upper()}{said[1:]}" in page
     assert not [f for f in report["findings"] if f["severity"] == "error"]

@@ -200,12 +200,12 @@ def test_report_json_fits_its_schema_and_the_page_shows_the_section(outcome, tmp
     assert 'id="surfaces"' in page and "Contact with adhesion" in page
     row = report["surfaces"][0]["roughness"]  # the stand-in's exponent is 1.19
     assert row["hurst_exponent"] - 2 * row["hurst_exponent_standard_error"] > 1
-    verdict = page[page.index("What the Hurst exponents say") :].partition("</ul>")[0]
+    verdict = page[page.index("<h3>Hurst exponents</h3>") :].partition("</ul>")[0]
     assert "Sb-R" in verdict and "not a self-affine fractal" in verdict
     (tmp_path / "figures").symlink_to(outcome.folder / "figures")
     bare = report | {"surfaces": [], "surface_figures": []}
     page = write_page(bare, tmp_path, lambda: iter(report["runs"]), outcome.store).read_text()
-    assert "names no <code>[[surface]]</code>" in page
+    assert "the campaign file has no <code>[[surface]]</code>" in page
 
 
 @pytest.mark.slow

@@ -130,7 +130,7 @@ def test_the_chosen_theory_of_the_area_is_in_every_table(results):
     compared = table(results, "model_comparison")
     assert (compared["model"] == "Persson's area").sum() == 3
     page = (results / "report.html").read_text("utf-8")
-    assert "corrected for the energy that partial contact saves" in page
+    assert "corrected for the energy of partial contact" in page
 
 
 @pytest.mark.slow

@@ -17,7 +17,7 @@ from tribolab.campaign.store.unchanged import note, unchanged
 from tribolab.records.parts import CurveOutcome, RunOutcome
 from tribolab.report import code
 
-OPTIONS = {"figures": "none", "pdf": False, "code": code.code_of_page()}
+OPTIONS = {"figures": "none", "pdf": False, "tables": "csv", "code": code.code_of_page()}
 
 
 @pytest.fixture
@@ -85,7 +85,7 @@ def test_another_code_of_the_report_makes_the_page_anew_and_nothing_else(
     first = run(campaign)
     before = fingerprint(first.folder)
     package = tmp_path / "tribolab"
-    for room in ("report", "plot", "records"):
+    for room in ("report", "plot", "figures", "records"):
         shutil.copytree(code._PACKAGE / room, package / room)
     monkeypatch.setattr(code, "_PACKAGE", package)
     made = code.code_of_page.__wrapped__(), code.code_of_figures.__wrapped__()

@@ -9,6 +9,7 @@ from tribolab.errors import ReadError
 from tribolab.qc.run.checks import check_run
 from tribolab.reading.clocks.faults import find_faults, rows_at_fault
 from tribolab.reading.unknown.proposal.draft import draft_dialect
+from tribolab.reading.unknown.proposal.questions import questions
 
 HEAD = "Time [s],Friction force [N],Normal force [N],Position [mm]"
 TOML = """
@@ -221,8 +222,6 @@ def test_rows_below_the_end_of_a_table_are_missed(tmp_path):
 MARKS = {
     "restart": None,
     "blank lines": lambda k: [""] if k else [],
-    "marks": lambda k: [f"Step {k + 1}"],
-    "comments": lambda k: [f"# stroke {k + 1} begins", "# at 2 mm/s"],
     "headers": lambda k: [f"Step {k + 1}", HEAD],
     "bare headers": lambda k: [HEAD],
 }
@@ -238,6 +237,18 @@ def test_a_draft_reads_every_row_of_every_part(tmp_path, kind):
     np.testing.assert_allclose(run["time"], time, atol=1e-9)
     np.testing.assert_allclose(run["friction_force"], signals[:, 0], rtol=1e-5)
     assert status(run)["status"] == "pass" and np.unique(run["step"]).size == STROKES
+
+
+@pytest.mark.parametrize("line", ["Step 2", "# stroke 2 begins"])
+def test_rows_below_a_line_of_text_are_asked_about(tmp_path, line):
+    time, signals, stroke = record()
+    marks = {1: [line]}
+    clock = time - stroke * ROWS * STEP
+    file, _ = write(tmp_path, clock, signals, between=lambda k: marks.get(k, []), head=HEAD)
+    (asked,) = questions(draft_dialect(file))
+    assert (
+        asked.guess == f"the table ends at '{line}': {len(time) - ROWS} rows below it are not read"
+    )
 
 
 @pytest.mark.parametrize("kind", ["wrap", "coarse", "jitter", "astray"])

@@ -165,6 +165,9 @@ def drawings():
             1,
             "sawtooth stick-slip",
         ),
+        "master_curve": (
+            lambda **k: plot.master_curve([model], [1.0], names=["glycerol"], **k), 1, "glycerol",
+        ),
         "mixed_curve": (lambda **k: plot.mixed_curve(fit, model, **k), 2, "viscous part"),
         "joint_fit": (lambda **k: plot.joint_fit(jointly, **k), 2, "310 N/m"),
         "lubrication_factors": (

@@ -252,8 +252,8 @@ def test_the_first_screen_has_its_figures_before_any_script_is_done(browser, res
     with browser.page(results / "report.html", before="delete window.DecompressionStream") as page:
         page.wait("document.querySelector('#card-1').textContent.includes('too old')")
         pictures = page.run(
-            "Array.from(document.querySelectorAll('.cards .still'), one => [one.querySelectorAll("
-            "'.full, .open').length, one.getBoundingClientRect().height])"
+            "Array.from(document.querySelectorAll('.view:not([hidden]) .still'), one => ["
+            "one.querySelectorAll('.full, .open').length, one.getBoundingClientRect().height])"
         )
         assert len(pictures) == len(SYSTEMS)
         assert all(marks > 0 and height > 150 for marks, height in pictures)

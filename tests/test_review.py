@@ -70,7 +70,7 @@ def test_a_notebook_gives_the_numbers_of_the_campaign(reviewed):
         segments = decide(find_segments(run), decisions.get(name, ()), run)
         friction = frictions[name] = friction_coefficient(run, segments)
         rows = rows_of(outcome.folder, name)
-        for column in ("friction_coefficient", "friction_coefficient_sem", "start_s"):
+        for column in ("friction_coefficient", "friction_coefficient_sem", "trimmed_start_s"):
             values = friction[column.removesuffix("_s")].values
             np.testing.assert_array_equal(rows[column].values, values)
     table = read_results(outcome.folder)["stribeck"]
@@ -162,8 +162,8 @@ def test_the_report_shows_and_counts_what_a_person_decided(reviewed):
 def test_flags_say_which_samples_a_person_decided_on(reviewed):
     results = read_results(reviewed[1].folder)
     run, rows = results.data(SLIPPED, "run"), rows_of(reviewed[1].folder, SLIPPED)
-    inside = run.time.values >= rows.start_s.iloc[SLIP]
-    inside &= run.time.values <= rows.stop_s.iloc[SLIP]
+    inside = run.time.values >= rows.trimmed_start_s.iloc[SLIP]
+    inside &= run.time.values <= rows.trimmed_stop_s.iloc[SLIP]
     tests = run.friction_force_qc_tests
     words = tests.attrs["flag_meanings"].split()
     assert tests.attrs["flag_masks"][words.index("manual")] == 1 << BIT

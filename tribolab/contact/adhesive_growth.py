@@ -48,8 +48,9 @@ class AdhesiveGrowth(NamedTuple):
         where a contact binds at no pressure at all it goes to 0 with p_cont all the same. Outside
         the nominal contact, where p is under 1e-3 of its maximum, nothing is added.
         """
-        with np.errstate(divide="ignore"):
-            growth = np.exp(np.interp(np.log(whole), self.log_pressure, self.log_growth))
+        with np.errstate(divide="ignore"):  # a flooded outlet has tension, outside the contact
+            pressure = np.log(np.maximum(whole, 0.0))
+            growth = np.exp(np.interp(pressure, self.log_pressure, self.log_growth))
         nominal = whole > WIDTH_LEVEL * whole.max(axis=-1, keepdims=True)
         return np.where(nominal & (solid > 0), np.minimum(area * growth, 1.0), area)
 

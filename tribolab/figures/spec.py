@@ -269,7 +269,7 @@ def written_labels(figure: FigureSpec, labels: Collection[str]) -> int:
 
 
 def legend(series: Iterable[Series]) -> dict[str, Series]:
-    """Return the series that represents each label: a full line or points, a band only if alone."""
+    """Return the series of each label: a full line or points; a band only if alone, and last."""
     named: dict[str, Series] = {}
     ranks = {"line": 0, "points": 0, "bars": 0, "heat": 0, "band": 2}
     for curve in series:
@@ -278,7 +278,7 @@ def legend(series: Iterable[Series]) -> dict[str, Series]:
             continue
         if known is None or ranks.get(curve.style, 1) < ranks.get(known.style, 1):
             named[curve.label] = curve
-    return named
+    return dict(sorted(named.items(), key=lambda item: item[1].style == "band"))
 
 
 def plain_data(value: Any) -> Any:

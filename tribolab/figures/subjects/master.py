@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from tribolab.figures.error_bars import error_bar
 from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, axis_of
 from tribolab.fit.master_curve import Collapse
@@ -56,8 +57,7 @@ def master_curve(
     series = []
     for number, (name, curve, eta) in enumerate(zip(labels, curves, viscosity, strict=True)):
         at, mu = _reduced(curve, eta)
-        sem = curve.get("friction_coefficient_sem")
-        error = () if sem is None else sem.values[_speed(curve) > 0]
+        error = error_bar(curve, "friction_coefficient")[_speed(curve) > 0]
         series.append(Series(name, at, mu, "points", number, error=error))
     if collapse is not None:
         text = f"one curve (p = {collapse.p_value:.2g})"
