@@ -142,7 +142,6 @@ def test_a_bad_file_gives_exit_code_3_and_results_of_the_others(campaign, tmp_pa
     ("words", "code", "said"),
     [
         (["run", "none.toml"], 2, "none.toml: there is no such file"),
-        (["run"], 2, "no raw file and no campaign.toml in this folder"),
         (["rum"], 2, "No such command"),
         (["run", "{campaign}", "--jobs", "0"], 2, "--jobs"),
         (["run", "{campaign}", "--output", "{folder}"], 2, "--output"),

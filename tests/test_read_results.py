@@ -33,7 +33,7 @@ HOSTILE = ["=1+1", "+cmd|'/c calc'!A0", "-x", "@SUM(A1)", "\t=1", "'quoted", "''
 def test_no_cell_begins_like_a_formula_and_all_come_back(tmp_path):
     table = pd.DataFrame({"run": HOSTILE, "=mu": [-0.5, 1, 2, 3, 4, 5, 6, 7], "text": "sb-r"})
     (tmp_path / "tables").mkdir()
-    tables.write(table, tmp_path / "tables" / "runs.csv")
+    tables.write_csv(table, tmp_path / "tables" / "runs.csv")
     with (tmp_path / "tables" / "runs.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.reader(file))
     assert not any(cell.startswith(("=", "+", "@", "\t", "＝")) for row in rows for cell in row)

@@ -162,8 +162,8 @@ def test_the_report_shows_and_counts_what_a_person_decided(reviewed):
 def test_flags_say_which_samples_a_person_decided_on(reviewed):
     results = read_results(reviewed[1].folder)
     run, rows = results.data(SLIPPED, "run"), rows_of(reviewed[1].folder, SLIPPED)
-    inside = run.time.values >= rows.trimmed_start_s.iloc[SLIP]
-    inside &= run.time.values <= rows.trimmed_stop_s.iloc[SLIP]
+    inside = run.time.values >= rows.start_s.iloc[SLIP]
+    inside &= run.time.values <= rows.stop_s.iloc[SLIP]
     tests = run.friction_force_qc_tests
     words = tests.attrs["flag_meanings"].split()
     assert tests.attrs["flag_masks"][words.index("manual")] == 1 << BIT

@@ -285,7 +285,7 @@ def test_a_file_that_cannot_be_opened_costs_one_message(tmp_path, monkeypatch):
     path = tmp_path / "sweep.txt"
     path.write_text("f,E',E''\nHz,MPa,MPa\n1,2,3\n2,3,4\n", "utf-8")
 
-    def closed(self, *_):
+    def closed(self, *_, **__):
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr("pathlib.Path.open", closed)
@@ -305,7 +305,7 @@ def test_a_missing_file_is_named(tmp_path):
         read_modulus(tmp_path / "nowhere.csv")
 
 
-LAYOUTS = {  # of HAAKE RheoWin, TA Q800 and RepTate, after files in public repositories
+EXPORTS = {  # of HAAKE RheoWin, TA Q800 and RepTate, after files in public repositories
     "rheowin.csv": (
         ',t in s,f in Hz,G\' in Pa,"G"" in Pa",T in °C\n',
         "1|{n},{n}00,{hz},17130,1299,37\n",
@@ -326,10 +326,10 @@ LAYOUTS = {  # of HAAKE RheoWin, TA Q800 and RepTate, after files in public repo
 }
 
 
-@pytest.mark.parametrize("name", LAYOUTS)
+@pytest.mark.parametrize("name", EXPORTS)
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
 def test_names_that_stand_elsewhere_or_twice_are_found(name, encoding, tmp_path):
-    above, row, (scale, storage, celsius) = LAYOUTS[name]
+    above, row, (scale, storage, celsius) = EXPORTS[name]
     rows = "".join(row.format(n=n, hz=2**n) for n in range(1, 9))
     (tmp_path / name).write_text(above + rows, encoding=encoding)
     read = read_modulus_table(tmp_path / name)

@@ -108,13 +108,12 @@ def test_a_part_of_another_frequency_does_not_pass_for_rest(tmp_path):
     assert not velocity_of_strokes(time, still, 6e-3, 1.0, "crank").unlike
 
 
-def test_strokes_that_a_files_name_states(tmp_path):
+def test_strokes_in_a_files_name_give_no_speed(tmp_path):
     time, _, force = _strokes((2.0,), lasts=20.0)
     rows = "\n".join(f"{t:.3f},{f:.4f},25" for t, f in zip(time, force, strict=True))
     text = f"Time [s],Friction force [N],Load [N]\n{rows}\n"
     (tmp_path / "pin_stroke6mm_2Hz_sine.csv").write_text(text)
-    run = tl.read(tmp_path / "pin_stroke6mm_2Hz_sine.csv")
-    assert float(run.sliding_velocity.max()) == pytest.approx(np.pi * 2 * 6e-3, rel=1e-3)
+    assert "sliding_velocity" not in tl.read(tmp_path / "pin_stroke6mm_2Hz_sine.csv")
     (tmp_path / "pin_100Hz.csv").write_text(text)  # how often samples were taken, perhaps
     with pytest.raises(tl.TribolabError, match="nothing tells the sliding speed"):
         tl.find_segments(tl.read(tmp_path / "pin_100Hz.csv"))

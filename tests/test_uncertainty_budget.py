@@ -385,6 +385,7 @@ def test_the_figure_says_where_an_uncertainty_is_statistical_only():
     def told(stated):
         friction = one_segment(0.1, 50.0, friction_coefficient_sem=1e-3)
         figure = tl.plot.uncertainty_budget(tl.uncertainty_budget(friction, stated))
-        return figure.axes[0].get_yticklabels()[-1].get_text()
+        return [text.get_text() for text in figure.axes[0].get_yticklabels()]
 
-    assert told(None) == "combined\nstatistical only" and told(gain()) == "combined"
+    assert any("statistical" in label for label in told(None))
+    assert "combined" in told(gain()) and not any("statistical" in label for label in told(gain()))

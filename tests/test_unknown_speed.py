@@ -124,7 +124,7 @@ def test_a_force_that_turns_to_and_fro_without_a_direction_is_no_friction():
     sine = np.tanh(8 * np.sin(2 * np.pi * 2.0 * np.arange(8000) / 200))
     rows = check_of(sine + 0.1 + noise)
     told = rows["segment_speed", "fail"]
-    assert "changes its sign" in told["message"] and "to and fro" in told["message"]
+    assert "changes its sign" in told["message"] and "reciprocating" in told["message"]
     assert "stroke and frequency" in told["cure"]
     assert ("resonance", "pass") in rows  # the strokes themselves are no line of the rig
     # a force of one sign, or that turns once, is friction as before

@@ -47,6 +47,7 @@ def hertz_half_width(load: str | ArrayLike, contact: Contact) -> np.ndarray | fl
 
     Examples
     --------
+    >>> from tribolab.contact.geometry import LineContact
     >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     >>> f"{2e3 * hertz_half_width('310 N/m', contact):.2f} mm"
     '7.43 mm'
@@ -68,6 +69,7 @@ def hertz_mean_pressure(load: str | ArrayLike, contact: Contact) -> np.ndarray |
 
     Examples
     --------
+    >>> from tribolab.contact.geometry import LineContact
     >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     >>> hertz_mean_pressure([310.0, 2110.0], contact).round(-2)
     array([ 41700., 108800.])
@@ -148,6 +150,7 @@ def jkr_smallest_load(contact: Contact, work_of_adhesion: str | float) -> float:
 
     Examples
     --------
+    >>> from tribolab.contact.geometry import LineContact
     >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     >>> f"{jkr_smallest_load(contact, '64 mJ/m^2'):.2f} N/m"
     '-14.49 N/m'
@@ -198,6 +201,7 @@ def jkr_half_width(
 
     Examples
     --------
+    >>> from tribolab.contact.geometry import LineContact
     >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     >>> f"{1e3 * jkr_half_width('310 N/m', contact, '64 mJ/m^2'):.2f} mm"
     '4.04 mm'

@@ -27,11 +27,15 @@ def across_the_middle(profile: xr.Dataset) -> xr.Dataset:
 
     It has ``contact_width`` [m], the diameter where pressure is 1e-3 of its maximum.
     """
-    radius = profile["radius"].values
+    radius = profile["radial_distance"].values
     x = np.concatenate([-radius[::-1], radius])
-    both = [profile.isel(radius=slice(None, None, -1)), profile]
-    joined = xr.concat(both, "radius", data_vars="minimal", coords="minimal", compat="override")
-    joined = joined.rename(radius="x").assign_coords(x=x).drop_vars("friction_per_shear_stress")
+    both = [profile.isel(radial_distance=slice(None, None, -1)), profile]
+    joined = xr.concat(
+        both, "radial_distance", data_vars="minimal", coords="minimal", compat="override"
+    )
+    joined = (
+        joined.rename(radial_distance="x").assign_coords(x=x).drop_vars("friction_per_shear_stress")
+    )
     joined["contact_width"] = contact_width(x, joined["pressure"].values)
     return stamp(joined.assign_attrs(profile.attrs))
 
@@ -86,7 +90,7 @@ def rough_point_contact(
     >>> ball = PointContact("9.5 mm", "1 MPa", 0.5)
     >>> rough = rough_point_contact("3 N", ball, xu2026.psd("Sb-S", points=301))
     >>> f"{rough.max_pressure / 1e3:.0f} kPa"
-    '217 kPa'
+    '225 kPa'
     """
     force = positive(load, "N", "load")
     table = separation_table(psd, contact.effective_modulus, gamma)
@@ -101,14 +105,14 @@ def rough_point_contact(
     ratio = contact_area_ratio(profile.pressure, psd, stiff, area)
     data = xr.Dataset(
         {
-            "pressure": ("radius", profile.pressure),
-            "separation": ("radius", profile.separation),
-            "contact_area_ratio": ("radius", ratio),
+            "pressure": ("radial_distance", profile.pressure),
+            "separation": ("radial_distance", profile.separation),
+            "contact_area_ratio": ("radial_distance", ratio),
             "max_pressure": profile.pressure.max(),
             "central_separation": profile.separation[0],
             "friction_per_shear_stress": ratio @ profile.area / force,
         },
-        coords={"radius": profile.radius, "load": force},
+        coords={"radial_distance": profile.radius, "load": force},
     )
     data["load"].attrs["units"] = contact.load_unit
     return stamp(

@@ -118,6 +118,7 @@ def fit_shear_stresses(
     >>> q, c = np.array([423.0, 9e4, 3e9]), np.array([1.63e-22, 1.63e-22, 4e-42])
     >>> psd = xr.Dataset({"psd_2d": (("surface", "wavenumber"), [c, 9 * c])},
     ...                  {"wavenumber": q, "surface": ["fine", "coarse"]})
+    >>> from tribolab.contact.geometry import LineContact
     >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     >>> speed = np.geomspace(1e-6, 1e-2, 5)
     >>> measured = stribeck_curve(contact, psd, 1.4, 310.0, "0.84 MPa", speed, cells=60)

@@ -133,6 +133,7 @@ def with_shear_stress(curve: xr.Dataset, shear_stress: float | xr.DataArray) -> 
 
     Examples
     --------
+    >>> import numpy as np
     >>> from tribolab.contact.geometry import LineContact
     >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     >>> q = np.array([423.0, 9.05e4, 3.14e9])

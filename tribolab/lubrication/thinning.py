@@ -34,7 +34,7 @@ class ShearThinning:
     --------
     >>> xanthan = carreau_yasuda("10 s", 0.4, rest=0.002)
     >>> xanthan(np.array([1e-3, 1e3])).round(4)
-    array([0.9999, 0.006 ])
+    array([1.   , 0.006])
     """
 
     model: str

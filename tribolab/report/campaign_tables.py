@@ -66,13 +66,13 @@ TABLES = {
 
 
 # Of a segment, what the run's data file has and no reader of tables needs: parts of the error that
-# U95 includes, a second pair of ends, and numbers that follow from others.
+# U95 includes, and numbers that follow from others.
 _NOT_IN_FRICTION = frozenset(
     (
         *("friction_coefficient_u", "friction_coefficient_dof", "friction_coefficient_beyond_dof"),
         *("friction_coefficient_beyond_sem", "friction_coefficient_level", "pair", "samples"),
         *("friction_force_std_N", "friction_force_sem_N", "normal_force_std_N"),
-        *("normal_force_sem_N", "start_s", "stop_s", "sliding_distance_m"),
+        *("normal_force_sem_N", "sliding_distance_m"),
         *("trend_p_value", "trend_1_s"),
     )
 )

@@ -62,8 +62,10 @@ def differences(points: pd.DataFrame) -> FigureSpec:
         numbers |= {"low": low / scale, "high": high / scale}
         differs = rows["verdict"].isin(["different", "changed by the analysis"]).to_numpy()
         for part, open_ in ((~differs, True), (differs, False)):
+            if not part.any():
+                continue
             look: Arguments = {"colour": number, "open": open_, "columns": {}}
-            if not any(one.label == str(condition) for one in series) and part.any():
+            if not any(one.label == str(condition) for one in series):
                 look["columns"] = numbers
             series.append(
                 Series(
@@ -72,7 +74,6 @@ def differences(points: pd.DataFrame) -> FigureSpec:
                     error_below=np.nan_to_num((100 * (value - low) / scale)[part]), **look,
                 )
             )  # fmt: skip
-    series = [one for one in series if len(one.x)]
     reach = max(np.abs(np.asarray(one.y, float)).max() for one in series)
     y = Axis("relative difference", "%", linear_below=10.0 if reach > _MANIFOLD else None)
     return FigureSpec(

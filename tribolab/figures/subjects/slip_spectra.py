@@ -122,7 +122,7 @@ def slip_spectrogram(slips: Mapping[str, xr.Dataset]) -> FigureSpec:
     shown = {label: level for label, level in levels.items() if level is not None}
     if not shown:
         raise AnalysisError("no segment has a spectrum to draw")
-    y = Axis("frequency f", "Hz", log=True)
+    y = Axis("frequency f", "Hz", log=True, column="frequency_Hz")
     series = []
     for panel, (label, (speed, frequency, level)) in enumerate(shown.items()):
         series.append(Series(label, speed, frequency, "heat", BLACK, panel, high=level))

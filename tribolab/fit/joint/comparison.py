@@ -144,6 +144,7 @@ def compare_shear_stress_models(
     >>> from tribolab.lubrication.stribeck import stribeck_curve
     >>> q, c = np.array([423.0, 9e4, 3e9]), np.array([1.63e-22, 1.63e-22, 4e-42])
     >>> psd = xr.Dataset({"psd_2d": ("wavenumber", c)}, {"wavenumber": q})
+    >>> from tribolab.contact.geometry import LineContact
     >>> contact, speed = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5), np.geomspace(1e-7, 1e-1, 19)
     >>> curves = stribeck_curve(contact, psd, 1.4, [310.0, 910.0], 1e6, speed, cells=60)
     >>> measured = curves[["friction_coefficient"]].sel(sliding_speed=slice(9e-7, 1.1e-2))

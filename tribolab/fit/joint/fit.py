@@ -102,6 +102,7 @@ def fit_shear_stress_jointly(
     >>> from tribolab.lubrication.stribeck import stribeck_curve
     >>> q, c = np.array([423.0, 9e4, 3e9]), np.array([1.63e-22, 1.63e-22, 4e-42])
     >>> psd = xr.Dataset({"psd_2d": ("wavenumber", c)}, {"wavenumber": q})
+    >>> from tribolab.contact.geometry import LineContact
     >>> contact = LineContact("7 cm", "10 cm", "1.5 MPa", 0.5)
     >>> load = xr.DataArray([310.0, 910.0], {"normal_force": [31.0, 91.0]})
     >>> speed = np.geomspace(1e-6, 1e-2, 7)

@@ -169,7 +169,7 @@ def likely_height_unit(numbers: np.ndarray, pitch: float) -> str:
     --------
     >>> heights = 0.4 * np.sin(np.arange(8000) / 40)
     >>> likely_height_unit(heights, 0.5e-6), likely_height_unit(heights, 0.5e-9)
-    ('um', '')
+    ('um', 'nm')
     """
     height = numbers[np.isfinite(numbers)]
     if height.size < MIN_HEIGHTS_OF_LINE.value:

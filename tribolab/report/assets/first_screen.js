@@ -28,6 +28,7 @@
     show();
     await report.unfold(details);
     report.charts?.watch(details);
+    if (!details.contains(document.activeElement)) details.querySelector("summary").focus({ preventScroll: true });
     if (matchMedia("(min-width: 68.76rem)").matches) scrollTo(0, 0);
     else place.scrollIntoView();
   };

@@ -64,7 +64,8 @@ report.reviewing = (() => {
   const decided = (name) => book.own.some((one) => one.run === name && one.state === "pending" && one.start_s === null && one.action !== "note");
   // The next run that checks object to and nobody has decided on.
   async function doubtful(by) {
-    const every = Array.from(document.querySelectorAll("details.run:not([hidden])"));
+    const place = (one) => Number(one.id.slice("run-".length)); // an opened run is moved to the front
+    const every = Array.from(document.querySelectorAll("details.run:not([hidden])")).sort((a, b) => place(a) - place(b));
     const from = current ? every.indexOf(current) : by > 0 ? -1 : every.length;
     const next = every.map((_, k) => every[(from + by * (k + 1) + 2 * every.length) % every.length])
       .find((one) => DOUBT.includes(one.dataset.status) && !decided(one.dataset.run));
