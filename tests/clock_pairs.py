@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 STEP = 2e-4  # s, of the time on which a pair is made
 

@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from layouts.kinds import WrittenRun
 from scipy.stats import norm
 
 import tribolab as tl
-from tribolab.errors import TribolabError
-from tribolab.rig.layouts.kinds import WrittenRun
+from tribolab.core.errors import TribolabError
 
 AT_ONCE, DRAFTED, DESCRIBED, NOT = "at once", "after a draft", "with a description", "not"
 CHANCE = 0.00135  # of a number beyond 3 standard errors on one side

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 SPEEDS = np.geomspace(1e-6, 1e-2, 13)
 

@@ -13,14 +13,14 @@ from tribolab.campaign.store.outcome import Outcome
 from tribolab.friction.oscillation.slip_curve import stick_slip_curve
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.records.frames import curve_table, plain_rows, stick_slip_columns
-from tribolab.records.notices import notices_of
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome, RunOutcome
-from tribolab.records.run_facts import facts_of
-from tribolab.records.run_record import RunRecord
-from tribolab.records.traces import page_trace, trace_size
+from tribolab.records.runs.notices import notices_of
+from tribolab.records.runs.run_facts import facts_of
+from tribolab.records.runs.run_record import RunRecord
+from tribolab.records.runs.traces import page_trace, trace_size
 from tribolab.records.wording import plain_value
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 SPEEDS = (1e-6, 4.64e-5, 1e-2)
 

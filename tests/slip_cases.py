@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.friction.oscillation.stick_slip import stick_slip
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 
 def a_run(values, spacing=0.1, speed=1e-6, time=None):

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy.special import erf
 
 from tribolab.contact.first_passage import survival
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 
 properties = settings(deadline=None, derandomize=True, max_examples=30)
 

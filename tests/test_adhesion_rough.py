@@ -15,7 +15,7 @@ from scipy.integrate import quad
 from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
 from tribolab.contact.adhesion_balance import rough_interface
 from tribolab.contact.persson import contact_area_ratio
-from tribolab.errors import AnalysisError, TribolabError, UnitError
+from tribolab.core.errors import AnalysisError, TribolabError, UnitError
 from tribolab.studies import xu2026
 
 properties = settings(deadline=None, derandomize=True, max_examples=5)

@@ -14,7 +14,7 @@ from tribolab.contact.work_of_adhesion import (
     SurfaceEnergies,
     sample_work_of_adhesion,
 )
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 
 PRESSURE = np.array([0.0417e6, 0.1e6])
 

@@ -16,7 +16,7 @@ from tribolab.contact.work_of_adhesion import (
     wet_work_of_adhesion,
     work_of_adhesion_spread,
 )
-from tribolab.errors import AnalysisError, UnitError
+from tribolab.core.errors import AnalysisError, UnitError
 
 properties = settings(deadline=None, derandomize=True, max_examples=30)
 

@@ -11,10 +11,10 @@ from typer.testing import CliRunner
 
 from tribolab import cli
 from tribolab.app.new_campaign import COMMENTED
-from tribolab.app.stated import Stated
+from tribolab.app.questions.stated import Stated
 from tribolab.campaign.settings.config import Campaign
 from tribolab.campaign.settings.load import load_and_plan
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 
 
 def command(*arguments):

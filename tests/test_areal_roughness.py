@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tribolab.app.file_info import file_lines
-from tribolab.errors import AnalysisError
+from tribolab.app.info.file_info import file_lines
+from tribolab.core.errors import AnalysisError
 from tribolab.surface.areal_roughness import areal_roughness
 from tribolab.surface.form import fill_dropouts, remove_form
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
 
 RNG = np.random.default_rng(12)

@@ -13,7 +13,7 @@ from tribolab.contact.hertz import (
 )
 from tribolab.contact.point import rough_point_contact
 from tribolab.contact.polar import polar_mesh
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.film import film_profile
 from tribolab.lubrication.parameters import Interface, Liquid, Solver
 from tribolab.lubrication.point import sweep

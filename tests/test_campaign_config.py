@@ -10,7 +10,7 @@ from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.settings.page import CAMPAIGN_PAGE, campaign_page
 from tribolab.campaign.settings.plan import plan_runs
 from tribolab.campaign.settings.toml_lines import line_of
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 from tribolab.reading.dialect.find import known_dialects, load_dialect
 from tribolab.reading.schema_folder import schema_folder
 

@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from tribolab.campaign.engine.stage import Stage, begun, perform
-from tribolab.errors import OutputError
+from tribolab.core.errors import OutputError
 
 
 class Squares(Stage):

@@ -15,7 +15,7 @@ import pytest
 from tribolab.app import needed
 from tribolab.campaign.engine.executor import completed, workers
 from tribolab.campaign.engine.pool import LastingPool, WorkerDied
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 
 
 def square(number):

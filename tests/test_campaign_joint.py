@@ -13,10 +13,10 @@ import tribolab
 from tribolab.campaign.joint.stage import JointFits
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.lubrication.viscosity import liquid_viscosity
 from tribolab.reading.netcdf.netcdf import read_netcdf
-from tribolab.records.joint_record import JointRecord
+from tribolab.records.models.joint_record import JointRecord
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.report.live.joint import joint_specs
 from tribolab.report.results import write_report

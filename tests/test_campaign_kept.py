@@ -19,7 +19,7 @@ from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.store.catalogue import Store
 from tribolab.cli import app
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 from tribolab.records.part_records import ModelRecord, ModelRows
 from tribolab.records.parts import ModelOutcome
 

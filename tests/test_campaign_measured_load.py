@@ -7,11 +7,11 @@ from dialects import dialect_of
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.runs.loads import RunLoad, load_of
 from tribolab.campaign.settings.load import load_campaign
+from tribolab.core.wording import force_text, load_text
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.segments.find import find_segments
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.reading.unknown_run import read_run
-from tribolab.words import force_text, load_text
 
 DIALECT = dialect_of("plain", time="t", friction_force="F", normal_force="N", sliding_velocity="v")
 CAMPAIGN = """

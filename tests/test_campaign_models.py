@@ -20,12 +20,12 @@ from tribolab.app.truth.shear_stress import compare_shear_stress
 from tribolab.campaign.models.analysis import beside
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.errors import AnalysisError, ConfigError
+from tribolab.core.errors import AnalysisError, ConfigError
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.fit.spectrum_error import shear_stress_shift
 from tribolab.friction.coefficient.repeatability import pooled_repeatability
 from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
-from tribolab.records.model_words import is_described, judgement, stress_interval
+from tribolab.records.models.model_words import is_described, judgement, stress_interval
 from tribolab.records.part_records import ModelRecord
 from tribolab.records.parts import ModelOutcome
 from tribolab.report.document.models import ModelRow

@@ -17,7 +17,7 @@ from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.surfaces.plan import PlannedSurface
 from tribolab.campaign.surfaces.stage import SurfaceTask, process_surface
 from tribolab.cli import app
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 from tribolab.qc.run.checks import RUN_CHECKS
 from tribolab.qc.scan import checks as scan_checks
 from tribolab.qc.scan.checks import SCAN_CHECKS

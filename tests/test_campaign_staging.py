@@ -15,7 +15,7 @@ import pytest
 from tribolab.campaign.store import staging
 from tribolab.campaign.store.ledger import MARKER, Ledger
 from tribolab.campaign.store.staging import staged
-from tribolab.errors import ConfigError, OutputError
+from tribolab.core.errors import ConfigError, OutputError
 
 
 def write(output, text):

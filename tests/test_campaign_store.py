@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tribolab.campaign.store.catalogue import CATALOGUE, Catalogue, Store
-from tribolab.provenance import sha256_of_file
-from tribolab.records.mode_record import EvidenceRow, ModeRecord
+from tribolab.core.provenance import sha256_of_file
+from tribolab.records.models.mode_record import EvidenceRow, ModeRecord
 from tribolab.records.part_records import (
     CurveRecord,
     FigureRecord,
@@ -29,7 +29,14 @@ from tribolab.records.parts import (
     RunZero,
     SurfaceOutcome,
 )
-from tribolab.records.run_record import CheckRow, Highlight, LeftOut, RunFacts, RunRecord, Waveform
+from tribolab.records.runs.run_record import (
+    CheckRow,
+    Highlight,
+    LeftOut,
+    RunFacts,
+    RunRecord,
+    Waveform,
+)
 
 ROW = {"segment": 1, "sliding_speed_m_s": 1 / 3, "steady": "yes", "pair": None, "fine": True}
 SYSTEM = {"surface": "S", "medium": "wet"}

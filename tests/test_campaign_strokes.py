@@ -8,9 +8,9 @@ from dialects import dialect_of
 
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 from tribolab.reading.netcdf.netcdf import read_netcdf
-from tribolab.records.run_facts import ends_of_strokes
+from tribolab.records.runs.run_facts import ends_of_strokes
 
 DIALECT = dialect_of("crank", time="t", position="x", friction_force="F", normal_force="N")
 MU, LOAD, OFFSET = 0.25, 10.0, 0.8

@@ -25,10 +25,10 @@ from tribolab.cli import app
 from tribolab.contact.adhesion import macroscopic_work_of_adhesion
 from tribolab.contact.hertz import hertz_mean_pressure, jkr_half_width
 from tribolab.contact.persson import contact_area_ratio
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.records.parts import RunOutcome
-from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
+from tribolab.records.surfaces.surface_rows import ADHESION, CONTACT, ROUGHNESS
 from tribolab.report.page.page import write_page
 from tribolab.rig.files import scan_file
 from tribolab.studies import xu2026

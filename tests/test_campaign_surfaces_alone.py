@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from tribolab import rig
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.cli import app
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 from tribolab.surface.self_affine import SelfAffine
 from tribolab.surface.synthesis import synthesise_map
 

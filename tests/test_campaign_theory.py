@@ -12,7 +12,7 @@ import pytest
 import tribolab as tl
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.report.results import write_report
 from tribolab.rig import Protocol, Rig, simulate_campaign

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.raw import limits, source
 from tribolab.reading.runs import gather
 

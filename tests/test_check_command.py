@@ -11,7 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 from tribolab import cli, rig
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.qc.register import Check
 from tribolab.qc.run import checks as run_checks
 from tribolab.qc.scan import checks as scan_checks

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab.cli import app
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.qc.run.checks import check_run
 from tribolab.reading.clocks.basis import Play
 from tribolab.reading.clocks.merge import merge

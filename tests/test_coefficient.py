@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from made_runs import strokes, with_friction
 from real_runs import actuator, paper, reciprocating, rock
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.coefficient.half_loops import half_loops
 from tribolab.friction.coefficient.steadiness import IS_NOT_STEADY, IS_STEADY, NOT_DECIDED, judged

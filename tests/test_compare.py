@@ -11,11 +11,11 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
-from tribolab.across.calibration_terms import calibration_terms
-from tribolab.across.compare import CHANGED, UNCHANGED
-from tribolab.across.folder import Folder
-from tribolab.across.run_values import Matched
 from tribolab.app.run import run_campaign
+from tribolab.comparison.calibration_terms import calibration_terms
+from tribolab.comparison.compare import CHANGED, UNCHANGED
+from tribolab.comparison.folder import Folder
+from tribolab.comparison.run_values import Matched
 from tribolab.metrology.differences import (
     DIFFERENT,
     EQUIVALENT,
@@ -255,8 +255,8 @@ def test_a_changed_trim_is_named_and_not_taken_for_another_measurement(original,
 
 
 def test_what_changed_in_code_data_and_decisions_is_told(original, reviewed, tmp_path):
-    from tribolab.across.changes import changes_between
-    from tribolab.across.folder import open_folder
+    from tribolab.comparison.changes import changes_between
+    from tribolab.comparison.folder import open_folder
 
     first = open_folder(original.parent)
     copy = shutil.copytree(original.parent / "results", tmp_path / "copy") / "report.json"

@@ -9,7 +9,7 @@ from scipy.special import erf
 from tribolab.contact.area import area_of
 from tribolab.contact.line import rough_line_contact
 from tribolab.contact.persson import apparent_contact_area_ratio, contact_area_ratio
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.film import film_profile
 from tribolab.lubrication.stribeck import stribeck_curve
 

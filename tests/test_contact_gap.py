@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from tribolab.contact.gap import gap_averages, gap_distribution
 from tribolab.contact.persson import contact_area_ratio, mean_separation
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.surface.moments import rms_roughness, rms_slope
 
 VARIANTS = ("flow", "plain")

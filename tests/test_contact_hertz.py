@@ -15,7 +15,7 @@ from tribolab.contact.hertz import (
     jkr_half_width,
     jkr_smallest_load,
 )
-from tribolab.errors import AnalysisError, UnitError
+from tribolab.core.errors import AnalysisError, UnitError
 
 
 @pytest.mark.parametrize("load", [310, 910, 1510, 2110])

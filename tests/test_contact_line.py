@@ -13,7 +13,7 @@ from scipy.integrate import quad
 from tribolab.contact.hertz import hertz_half_width, hertz_max_pressure, hertz_pressure
 from tribolab.contact.line import contact_width, line_kernel, rough_line_contact
 from tribolab.contact.separation import separation_table
-from tribolab.errors import AnalysisError, UnitError
+from tribolab.core.errors import AnalysisError, UnitError
 
 
 @functools.cache

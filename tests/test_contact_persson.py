@@ -23,7 +23,7 @@ from tribolab.contact.persson import (
     contact_area_ratio,
     mean_separation,
 )
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.surface.moments import band
 
 NOMINAL = hertz_mean_pressure(310.0, CONTACT)

@@ -12,7 +12,7 @@ from scipy.integrate import quad
 
 from tribolab.contact.persson import mean_separation
 from tribolab.contact.separation import separation_table
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.surface.moments import at_wavenumber, cumulative_at, spectrum_arrays
 
 TABLES = {name: separation_table(reference_psd(name), E_STAR) for name in SURFACES}

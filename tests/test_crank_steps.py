@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import tribolab as tl
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.unknown.proposal.draft import save_draft
 
 LOAD = 5.0  # N

@@ -8,8 +8,8 @@ from scipy.integrate import solve_ivp
 from tribolab.friction.oscillation.critical_stiffness import critical_stiffness
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.friction.segments.find import find_segments
-from tribolab.records.notices import distance_to_critical
-from tribolab.stamping import stamp
+from tribolab.records.runs.notices import distance_to_critical
+from tribolab.units.stamping import stamp
 
 A, MEMORY, SPEED, LOAD, DAMPING = 0.01, 1e-6, 1e-5, 10.0, 100.0
 

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import tribolab as tl
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.friction.segments.turns import turns_of
 
 MU, LOAD, HALF, FREQUENCY = 0.3, 10.0, 5e-3, 1.3

@@ -5,9 +5,9 @@ import pytest
 import xarray as xr
 
 import tribolab as tl
-from tribolab.across.watched import GAIN, observations_of
 from tribolab.app.run import run_campaign
-from tribolab.errors import AnalysisError
+from tribolab.comparison.watched import GAIN, observations_of
+from tribolab.core.errors import AnalysisError
 
 WEIGHT, TRUE = 19.62, 1.013
 CAMPAIGN = """

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from made_runs import strokes, with_friction
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.coefficient.half_loops import half_loops
 from tribolab.friction.decisions.bounds import LEFT

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from drafts import drafted
 
-from tribolab.errors import OutputError, ReadError
+from tribolab.core.errors import OutputError, ReadError
 from tribolab.reading.read import read
 from tribolab.reading.scan_files import read_scans
 from tribolab.reading.scans.results import read_tester_results

@@ -10,10 +10,10 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
-from tribolab.errors import ReadError, UnitError
+from tribolab.core.errors import ReadError, UnitError
 from tribolab.reading.unknown.proposal.answers import corrected
 from tribolab.reading.unknown.proposal.draft import dialect_name, draft_dialect
-from tribolab.units import to_si
+from tribolab.units.conversion import to_si
 
 
 def log(n=400, force=6.0, load=-30.0):

@@ -6,7 +6,7 @@ from drafts import drafted
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.unknown.proposal.draft import draft_dialect
 
 NAMES = {

@@ -9,9 +9,9 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
-from tribolab.app import describing
-from tribolab.app.file_info import run_lines
-from tribolab.errors import ConfigError
+from tribolab.app.info import describing
+from tribolab.app.info.file_info import run_lines
+from tribolab.core.errors import ConfigError
 from tribolab.reading.dialect.find import load_dialect
 from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
 

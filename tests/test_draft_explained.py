@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.unknown.proposal.draft import draft_dialect
 
 TIME = 0.05 * np.arange(600)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.app.file_info import file_lines
-from tribolab.errors import TribolabError
+from tribolab.app.info.file_info import file_lines
+from tribolab.core.errors import TribolabError
 from tribolab.reading.unknown.proposal.questions import GuessedError
 
 TIME = np.arange(600) / 10

@@ -12,10 +12,10 @@ import pyarrow.parquet as pq
 import pytest
 
 import tribolab as tl
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.segments.find import find_segments
-from tribolab.records.notices import notices_of
+from tribolab.records.runs.notices import notices_of
 
 TIME = np.round(0.05 * np.arange(800), 2)
 FRICTION = 4.0 + 0.02 * np.sin(TIME)

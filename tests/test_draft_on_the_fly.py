@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.unknown.proposal.draft import draft_dialect
 from tribolab.reading.unknown.proposal.questions import GuessedError
 

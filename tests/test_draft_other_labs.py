@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.unknown.proposal.draft import draft_dialect
 
 ROWS = 400

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tribolab.errors import TribolabError
+from tribolab.core.errors import TribolabError
 from tribolab.reading.unknown.header.sampling import sample_rate_unit
 from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
 from tribolab.reading.unknown_run import read_run

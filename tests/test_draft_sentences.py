@@ -6,7 +6,7 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
-from tribolab.errors import TribolabError
+from tribolab.core.errors import TribolabError
 
 T = np.arange(0, 30, 0.1)
 RNG = np.random.default_rng(3)

@@ -6,13 +6,13 @@ import numpy as np
 import pandas as pd
 import pytest
 from file_kinds import AT_ONCE, DESCRIBED, DRAFTED, judge, read_in_some_way
+from layouts import KINDS, write_kind
 from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
-from tribolab.errors import AnalysisError, ReadError
+from tribolab.core.errors import AnalysisError, ReadError
 from tribolab.reading.runs.stroke_speed import velocity_of_strokes
-from tribolab.rig.layouts import KINDS, write_kind
 
 WAYS = {
     "rotary_steps": AT_ONCE,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 
 DIALECT = """
 name = "crank"

@@ -13,7 +13,7 @@ from mutations import MADE
 from typer.testing import CliRunner
 
 from tribolab.cli import app
-from tribolab.errors import TribolabError
+from tribolab.core.errors import TribolabError
 from tribolab.reading.read import read
 from tribolab.reading.scan_files import read_scans
 from tribolab.reading.unknown.proposal.draft import draft_dialect

@@ -9,7 +9,7 @@ import pytest
 from hostile.outside import SECRET, WAYS, foreign_filter, secret, write
 
 import tribolab as tl
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.reading.raw.hdf5_safety import check_self_contained
 

@@ -7,15 +7,15 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
+from layouts.motion import Leg, carried_out, crank
+from layouts.record import Sensors, recorded
 
 import tribolab as tl
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.errors import AnalysisError, ReadError
+from tribolab.core.errors import AnalysisError, ReadError
 from tribolab.reading.runs.inertia import acceleration
-from tribolab.records.traces import decimated_trace
+from tribolab.records.runs.traces import decimated_trace
 from tribolab.rig import DryLaw
-from tribolab.rig.layouts.motion import Leg, carried_out, crank
-from tribolab.rig.layouts.record import Sensors, recorded
 
 LOAD = 20.0
 

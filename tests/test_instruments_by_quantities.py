@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 from file_kinds import AT_ONCE, judge, read_in_some_way
+from layouts import write_kind
 
 import tribolab as tl
-from tribolab.errors import ConfigError, ReadError
+from tribolab.core.errors import ConfigError, ReadError
 from tribolab.qc.run.checks import check_run
 from tribolab.reading.dialect.find import known_dialects, load_dialect, recognise
-from tribolab.rig.layouts import write_kind
 
 SECONDS = np.arange(120.0)
 HFRR = ("Time (s)", "Friction coefficient", "Film (%)", "Temperature (°C)")

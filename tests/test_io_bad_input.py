@@ -6,7 +6,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import tribolab as tl
-from tribolab.errors import ReadError, TribolabError, UnitError
+from tribolab.core.errors import ReadError, TribolabError, UnitError
 
 HEAD = "# Linear slider, force log\n# date: 2026-03-02T09:12:31\n"
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.app.file_info import file_lines
-from tribolab.errors import ReadError
+from tribolab.app.info.file_info import file_lines
+from tribolab.core.errors import ReadError
 from tribolab.qc.run.checks import check_run
 from tribolab.reading.clocks.faults import find_faults, rows_at_fault
 from tribolab.reading.unknown.proposal.draft import draft_dialect

@@ -7,7 +7,7 @@ import pytest
 from pydantic import ValidationError
 
 import tribolab as tl
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.dialect.time_rule import Time
 
 N = 300

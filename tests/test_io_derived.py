@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tribolab as tl
-from tribolab.errors import ConfigError, ReadError, UnitError
+from tribolab.core.errors import ConfigError, ReadError, UnitError
 from tribolab.reading.dialect.formula import evaluate, in_base_units, parse_formula
 
 DISC = """

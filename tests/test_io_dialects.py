@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import tribolab as tl
-from tribolab.errors import ConfigError, ReadError
+from tribolab.core.errors import ConfigError, ReadError
 from tribolab.reading.dialect.find import json_schema, known_dialects, load_dialect, recognise
 from tribolab.reading.dialect.recognise import mismatch
 from tribolab.reading.dialect.write import dialect_toml

@@ -13,7 +13,7 @@ import pytest
 from pyarrow import feather
 
 import tribolab as tl
-from tribolab.errors import ConfigError, ReadError
+from tribolab.core.errors import ConfigError, ReadError
 
 N = 200
 RNG = np.random.default_rng(5)

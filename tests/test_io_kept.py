@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.netcdf import cache as kept
 from tribolab.reading.netcdf.cache import SHORT, read_kept
 from tribolab.reading.netcdf.netcdf import read_netcdf, write_groups

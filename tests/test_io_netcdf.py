@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import tribolab as tl
-from tribolab.errors import ReadError, TribolabError
+from tribolab.core.errors import ReadError, TribolabError
 from tribolab.reading.netcdf.attributes import encoded
 from tribolab.reading.netcdf.netcdf import read_groups, read_netcdf, write_groups, write_netcdf
 from tribolab.reading.netcdf.seal import seal, unseal

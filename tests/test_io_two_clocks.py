@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.clocks.shift import estimate_clock_shift
 from tribolab.reading.runs.companion import describe_companion
 from tribolab.reading.runs.logs import group_files

@@ -7,7 +7,7 @@ import pytest
 from dialects import dialect_of
 
 import tribolab as tl
-from tribolab.errors import ConfigError, ReadError, UnitError
+from tribolab.core.errors import ConfigError, ReadError, UnitError
 
 DIALECT = dialect_of("cell", time="t", sliding_velocity="v", friction_force="F", normal_force="L")
 MU, LOAD, ZERO = 0.3, 10.0, 1.7

@@ -9,7 +9,7 @@ from contact_cases import CONTACT, reference_psd
 from scipy import special, stats
 
 import tribolab as tl
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.fit.joint.comparison import compared
 from tribolab.fit.joint.load_curve import LoadCurve, points_of
 from tribolab.fit.joint.loads import fit_loads

@@ -1,6 +1,7 @@
 """The house: imports point down only, nothing runs in circles, and importing tribolab is cheap."""
 
 import ast
+import importlib
 import re
 import subprocess
 import sys
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import tribolab
+from tribolab.core.moved import MOVED
 
 PROJECT = Path(tribolab.__file__).resolve().parents[1]
 ROOMS = sorted(
@@ -107,6 +109,28 @@ def test_import_is_lazy():
 def test_every_public_name_resolves():
     for name in tribolab.__all__:
         assert getattr(tribolab, name) is not None
+
+
+def test_no_public_name_is_hidden_by_a_module_beside_it():
+    modules = {file.stem for file in (PROJECT / "tribolab").iterdir()}
+    functions = {name for name in tribolab.__all__ if callable(getattr(tribolab, name))}
+    assert modules & functions == set()
+
+
+def test_the_path_of_a_module_that_has_moved_leads_to_it_with_a_warning():
+    code = (
+        "from tribolab.across.compare import compare as old; "
+        "import tribolab as tl; assert old is tl.compare"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "tribolab.across.compare is now tribolab.comparison.compare" in done.stderr
+    for path in MOVED.values():
+        importlib.import_module(path)
+
+
+def test_a_folder_holds_twenty_files_at_most():
+    folders = [f for f in (PROJECT / "tribolab").rglob("*") if (f / "__init__.py").is_file()]
+    assert {f.name: n for f in folders if (n := len(list(f.glob("*.py")))) > 20} == {}
 
 
 @pytest.mark.parametrize(

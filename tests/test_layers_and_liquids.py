@@ -11,7 +11,7 @@ from tribolab.contact.hertz import hertz_half_width, hertz_max_pressure
 from tribolab.contact.layer import layer_compliance
 from tribolab.contact.line import rough_line_contact
 from tribolab.contact.point import rough_point_contact
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.parameters import Interface, Liquid, parameters_of
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.lubrication.thinning import (

@@ -6,8 +6,8 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tribolab.friction.oscillation import noise
-from tribolab.pieces import pieces
+from tribolab.arrays.chunks import pieces
+from tribolab.friction.oscillation.spectrum import noise
 from tribolab.qc import signals
 from tribolab.qc.flags import (
     FAIL,
@@ -76,7 +76,7 @@ def test_where_a_record_is_cut_does_not_show(monkeypatch, seed, size):
 
     whole = found()
     for piece in (1, 64, 1000):
-        monkeypatch.setattr("tribolab.pieces.PIECE", piece)
+        monkeypatch.setattr("tribolab.arrays.chunks.PIECE", piece)
         assert found() == whole
 
 

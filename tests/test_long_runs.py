@@ -12,12 +12,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from reviews import entry
 
-from tribolab import pieces, room
+from tribolab.arrays import chunks as pieces
+from tribolab.arrays import scratch as room
 from tribolab.campaign.runs import stage
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.settings.plan import PlannedRun, planned_runs
 from tribolab.campaign.settings.review import REVIEW_FILE
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.friction.segments.plateaus import running_median
 from tribolab.friction.segments.slopes import block_slopes, position_noise, without_resets
 from tribolab.reading.netcdf.netcdf import read_groups
@@ -38,8 +39,8 @@ def cut_up(monkeypatch):
     """Makes every record a long one, which is worked on in pieces of so many samples."""
 
     def cut(samples):
-        monkeypatch.setattr("tribolab.room.LONG", min(5000, 10 * samples))
-        monkeypatch.setattr("tribolab.pieces.PIECE", samples)
+        monkeypatch.setattr("tribolab.arrays.scratch.LONG", min(5000, 10 * samples))
+        monkeypatch.setattr("tribolab.arrays.chunks.PIECE", samples)
 
     return cut
 

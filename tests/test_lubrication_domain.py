@@ -6,7 +6,7 @@ from contact_cases import CONTACT, RandomContact, reference_psd
 from scipy.integrate import quad
 
 from tribolab.contact.geometry import LineContact
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.domain import _tail, film_estimate
 from tribolab.lubrication.film import film_profile
 from tribolab.lubrication.parabolas import lowest

@@ -12,7 +12,7 @@ from scipy.special import erfinv
 
 from tribolab.contact.gap import gap_distribution
 from tribolab.contact.persson import mean_separation
-from tribolab.errors import AnalysisError, UnitError
+from tribolab.core.errors import AnalysisError, UnitError
 from tribolab.lubrication.factors import FACTORS, FlowFactors, flow_factors, smooth_factors
 from tribolab.lubrication.patir_cheng import patir_cheng
 from tribolab.surface.moments import rms_roughness, rms_slope

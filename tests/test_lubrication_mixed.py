@@ -15,7 +15,7 @@ from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import hertz_half_width
 from tribolab.contact.line import rough_line_contact
 from tribolab.contact.separation import separation_table
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.domain import lubrication_problem
 from tribolab.lubrication.factors import flow_factors
 from tribolab.lubrication.film import film_profile

@@ -10,8 +10,8 @@ from hostile.bombs import BOMBS
 import tribolab as tl
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.store import catalogue
-from tribolab.errors import ConfigError, ReadError
-from tribolab.records.run_record import RunRecord
+from tribolab.core.errors import ConfigError, ReadError
+from tribolab.records.runs.run_record import RunRecord
 
 
 @pytest.mark.parametrize("deep", [False, True])

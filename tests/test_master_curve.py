@@ -7,7 +7,7 @@ import xarray as xr
 import tribolab as tl
 from tribolab.contact.geometry import LineContact, PointContact
 from tribolab.contact.rolling import rolling_friction
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.fit.master_curve import collapse_test
 
 VISCOSITIES = [0.02, 0.2, 1.4]

@@ -9,14 +9,14 @@ from made_runs import strokes, with_friction
 from scipy import stats
 from scipy.signal import lfilter
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.segments.find import find_segments
 from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.reading.read import read
 from tribolab.reading.runs.logs import group_files
 from tribolab.records.frames import friction_columns, rows_of
-from tribolab.records.run_facts import friction_facts
+from tribolab.records.runs.run_facts import friction_facts
 from tribolab.report.live.points import run_points
 from tribolab.rig.campaign import simulate_campaign
 from tribolab.rig.truth import read_truth

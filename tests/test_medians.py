@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tribolab import medians
-from tribolab.medians import (
+from tribolab.arrays import medians
+from tribolab.arrays.medians import (
     median,
     median_in_pieces,
     median_of_known,

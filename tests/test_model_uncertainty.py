@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from contact_cases import CONTACT, reference_psd
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.fit.model_uncertainty import model_uncertainty
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from tribolab.app.file_info import file_lines
-from tribolab.errors import ReadError
+from tribolab.app.info.file_info import file_lines
+from tribolab.core.errors import ReadError
 from tribolab.reading.kinds import kind_of
 from tribolab.reading.read import read
 from tribolab.reading.results_table import find_results_table

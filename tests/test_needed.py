@@ -9,11 +9,11 @@ from importlib.util import find_spec
 import pandas as pd
 import pytest
 
-from tribolab.app.file_info import file_lines
+from tribolab.app.info.file_info import file_lines
 from tribolab.app.needed import ANALYSIS, FILES, SIMULATION
 from tribolab.campaign.engine.cluster import dask_executor
 from tribolab.campaign.engine.pool import LastingPool
-from tribolab.errors import ConfigError, TribolabError
+from tribolab.core.errors import ConfigError, TribolabError
 
 _WORKER = """
 import importlib, sys

@@ -6,11 +6,11 @@ import xarray as xr
 
 import tribolab as tl
 from tribolab.campaign.settings.media import contradicting_viscosity
-from tribolab.friction.oscillation.mains import find_mains
-from tribolab.friction.oscillation.spectra import EvenRecord
+from tribolab.friction.oscillation.spectrum.mains import find_mains
+from tribolab.friction.oscillation.spectrum.spectra import EvenRecord
 from tribolab.qc.signals import saturation
 from tribolab.reading.read import read
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 RATE = 20.0
 

@@ -135,7 +135,7 @@ def test_units_stand_beside_the_variables_in_what_jupyter_shows_first(tmp_path):
         "import tribolab, sys\n"
         "assert 'xarray' not in sys.modules\n"
         "import xarray as xr\n"
-        "from tribolab.stamping import stamp\n"
+        "from tribolab.units.stamping import stamp\n"
         "data = {'friction_force': ('time', [1.0]), 'note': ('time', ['a'])}\n"
         "run = stamp(xr.Dataset(data, {'time': ('time', [0.0])}))\n"
         "run.time.attrs['units'] = '<s>'\n"

@@ -18,7 +18,7 @@ from typer.testing import CliRunner
 
 import tribolab
 from tribolab.cli import app
-from tribolab.errors import OutputError, ReadError, TribolabError
+from tribolab.core.errors import OutputError, ReadError, TribolabError
 from tribolab.reading.netcdf.table_schema import load_schema
 from tribolab.reading.raw import limits, server
 from tribolab.reading.raw.opening import CrashedError, MissingLibraryError

@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 
 from tribolab.app.run import run_campaign
 from tribolab.cli import app
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 
 FORCE = "# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n" + "".join(
     f"{n / 10},0.5,31.0\n" for n in range(300)

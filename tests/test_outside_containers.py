@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.errors import ConfigError, ReadError
+from tribolab.core.errors import ConfigError, ReadError
 from tribolab.reading.dialect.find import load_dialect
 
 FORCE = "# Linear slider, force log\nTime [s],Fx [N],Fz [N]\n" + "".join(

@@ -15,8 +15,8 @@ from typer.testing import CliRunner
 import tribolab as tl
 from tribolab import cli
 from tribolab.app.run import run_campaign
-from tribolab.deposit.pack import problems_of
-from tribolab.provenance import sha256_of_file
+from tribolab.archive.pack import problems_of
+from tribolab.core.provenance import sha256_of_file
 
 NUMBERS = ("friction", "stribeck", "stick_slip", "static_friction", "sources")
 

@@ -4,8 +4,8 @@ import zipfile
 
 import pytest
 
-from tribolab.deposit import pack
-from tribolab.errors import ReadError
+from tribolab.archive import pack
+from tribolab.core.errors import ReadError
 
 
 def test_a_bomb_is_not_unpacked_to_be_verified(tmp_path, monkeypatch):

@@ -17,7 +17,7 @@ from tribolab.campaign.engine.cluster import ClusterGone
 from tribolab.campaign.engine.executor import workers
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 
 distributed = pytest.importorskip("distributed")
 

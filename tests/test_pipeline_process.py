@@ -25,9 +25,9 @@ from tribolab.campaign.pipeline import process
 from tribolab.campaign.runs import stage
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.settings.plan import planned_runs
-from tribolab.errors import ConfigError, OutputError
+from tribolab.core.errors import ConfigError, OutputError
 from tribolab.reading.netcdf.netcdf import read_netcdf
-from tribolab.records.traces import trace_size
+from tribolab.records.runs.traces import trace_size
 from tribolab.report.page.reviewing import review_data
 from tribolab.rig import read_truth
 

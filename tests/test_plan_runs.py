@@ -9,8 +9,8 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
-from tribolab.across.planning import plan_text
-from tribolab.across.planning_page import write_plan
+from tribolab.comparison.planning import plan_text
+from tribolab.comparison.planning_page import write_plan
 from tribolab.metrology.planning import (
     Pilot,
     cheapest_sliding_time,

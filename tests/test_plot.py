@@ -15,11 +15,11 @@ from reporting import SPEEDS, made_curve, made_run
 
 import tribolab as tl
 from tribolab import plot
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.figures.colours import surface_colours
 from tribolab.figures.look.style import DOUBLE_MM, SINGLE_MM
 from tribolab.figures.signals import main_signal
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 
 @pytest.fixture(scope="module")

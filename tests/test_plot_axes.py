@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 import tribolab as tl
 from tribolab import plot
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.rig.parameters import Protocol, Rig
 from tribolab.studies import xu2026
 

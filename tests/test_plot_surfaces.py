@@ -7,9 +7,9 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex
 
 from tribolab import plot
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.figures.colours import PALETTE, surface_colours
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 NAMES = ("Smooth", "Sb-S", "Sb-R")
 COLOURS = {name: PALETTE[place] for name, place in surface_colours(NAMES).items()}

@@ -8,12 +8,12 @@ import xarray as xr
 from scipy.interpolate import CubicSpline
 
 import tribolab as tl
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.fit.model_inputs import model_inputs, moved_friction
 from tribolab.fit.point_covariance import PointErrors
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.lubrication.stribeck import stribeck_curve, with_shear_stress
-from tribolab.mode.misfit import is_sufficient, misfit_numbers
+from tribolab.regime.misfit import is_sufficient, misfit_numbers
 from tribolab.studies import xu2026
 
 SPEED = np.geomspace(1e-6, 1e-2, 9)

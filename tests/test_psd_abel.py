@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import erf, gamma
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.surface import self_affine
-from tribolab.surface.abel import PowerLaws, invert, through_nodes
+from tribolab.surface.spectra.abel import PowerLaws, invert, through_nodes
 
 NOMINAL, MODULUS = 0.0417e6, 2e6  # Pa
 

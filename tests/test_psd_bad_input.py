@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.studies import xu2026
 from tribolab.surface import self_affine
-from tribolab.surface.abel import Annuli
-from tribolab.surface.annuli import join
 from tribolab.surface.extrapolation import extrapolate
 from tribolab.surface.form import remove_form
-from tribolab.surface.psd import psd_1d, psd_2d
 from tribolab.surface.roughness import roughness_parameters
+from tribolab.surface.spectra.abel import Annuli
+from tribolab.surface.spectra.annuli import join
+from tribolab.surface.spectra.psd import psd_1d, psd_2d
 from tribolab.surface.synthesis import synthesise_profiles
 
 PITCH = 0.5e-6

@@ -8,12 +8,12 @@ import pytest
 import xarray as xr
 
 from tribolab.campaign.surfaces import scans as of_scans
-from tribolab.errors import AnalysisError
-from tribolab.surface.annuli import confidence_band
-from tribolab.surface.areal import psd_2d_of_map
+from tribolab.core.errors import AnalysisError
 from tribolab.surface.form import fill_dropouts
 from tribolab.surface.self_affine import SelfAffine, psd_1d
-from tribolab.surface.smooth_law import fitted_law
+from tribolab.surface.spectra.annuli import confidence_band
+from tribolab.surface.spectra.areal import psd_2d_of_map
+from tribolab.surface.spectra.smooth_law import fitted_law
 
 POINTS = 200
 LINE = np.arange(POINTS)

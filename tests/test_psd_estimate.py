@@ -5,14 +5,14 @@ import pytest
 import xarray as xr
 from scipy.special import erf
 
-from tribolab.rig.profiles import scans as rig_scans
+from tribolab.rig.scans.profiles import scans as rig_scans
 from tribolab.studies import xu2026
 from tribolab.surface import self_affine
 from tribolab.surface.extrapolation import extrapolate
 from tribolab.surface.form import remove_form
 from tribolab.surface.moments import band, rms_roughness, rms_slope, spectral_moment
-from tribolab.surface.psd import psd_1d, psd_2d
-from tribolab.surface.reliability import TIP_SHARE
+from tribolab.surface.spectra.psd import psd_1d, psd_2d
+from tribolab.surface.spectra.reliability import TIP_SHARE
 from tribolab.surface.synthesis import synthesise_map, synthesise_profiles
 
 PITCH, POINTS = 0.5e-6, 50_001

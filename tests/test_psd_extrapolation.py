@@ -6,7 +6,7 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.studies import xu2026
 from tribolab.surface import self_affine
 from tribolab.surface.extrapolation import extrapolate

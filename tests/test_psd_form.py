@@ -6,7 +6,7 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.surface.form import fill_dropouts, remove_form
 
 X = np.linspace(0, 25e-3, 1001)

@@ -5,10 +5,10 @@ import pytest
 import xarray as xr
 
 from tribolab.surface import self_affine
-from tribolab.surface.psd import psd_1d, psd_2d
-from tribolab.surface.reliability import trusted_band
 from tribolab.surface.self_affine import SelfAffine
-from tribolab.surface.smooth_law import fitted_law
+from tribolab.surface.spectra.psd import psd_1d, psd_2d
+from tribolab.surface.spectra.reliability import trusted_band
+from tribolab.surface.spectra.smooth_law import fitted_law
 from tribolab.surface.synthesis import synthesise_map, synthesise_profiles
 
 POINTS, PITCH = 4001, 2e-6

@@ -18,7 +18,7 @@ from tribolab.qc.flags import (
 )
 from tribolab.qc.run.checks import check_run
 from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 SEVERITIES = [NOT_EVALUATED, GOOD, SUSPECT, FAIL, MISSING]  # from what yields to what prevails
 same_length = st.integers(1, 20).flatmap(

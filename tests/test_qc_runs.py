@@ -15,7 +15,7 @@ from tribolab.qc.run.checks import RUN_CHECKS, check_run
 from tribolab.reading.read import read
 from tribolab.rig import Protocol, Rig, simulate_campaign, simulate_run
 from tribolab.rig.files import force_file, motion_file, write_run
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 SHORT = Rig(Protocol(speeds=(4.64e-6, 2.15e-5, 1e-4, 4.64e-4, 2.15e-3)))
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tribolab.friction.oscillation.lines import find_lines, mains_harmonic
-from tribolab.friction.oscillation.noise import noise_level
+from tribolab.friction.oscillation.spectrum.lines import find_lines, mains_harmonic
+from tribolab.friction.oscillation.spectrum.noise import noise_level
 from tribolab.qc import signals
 from tribolab.qc.flags import FAIL, GOOD, MISSING, NOT_EVALUATED, SUSPECT
 from tribolab.qc.run import schema, timing

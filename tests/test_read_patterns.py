@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.rig.parameters import Protocol, Rig
 from tribolab.rig.runs import simulate_run
 

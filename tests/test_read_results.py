@@ -12,9 +12,9 @@ from report_pages import RUNS
 from reporting import made_outcome
 
 import tribolab as tl
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
+from tribolab.core.provenance import without_controls
 from tribolab.friction.joined import joined_curves
-from tribolab.provenance import without_controls
 from tribolab.report import tables
 from tribolab.report.results import write_report
 

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
-from tribolab.errors import ConfigError, ReadError
+from tribolab.core.errors import ConfigError, ReadError
 
 T = np.arange(600) / 100
 LOAD, SPEED = 20.0, np.where(T < 3, 1e-3, -1e-3)

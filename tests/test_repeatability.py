@@ -8,8 +8,8 @@ from typer.testing import CliRunner
 
 import tribolab as tl
 from tribolab import cli
-from tribolab.across.labels import labelled_segments
 from tribolab.campaign.settings.name_pattern import NamePattern
+from tribolab.comparison.labels import labelled_segments
 from tribolab.metrology.gauge_study import average_and_range, gauge_study
 from tribolab.metrology.precision import mandel, mandel_limits
 from tribolab.metrology.reml import variance_components
@@ -178,7 +178,7 @@ def test_labels_come_from_the_campaign_file_as_it_is_now(original, tmp_path):
 
 def test_the_command_writes_a_page_and_its_tables(tmp_path, monkeypatch):
     table = measured(np.random.default_rng(7))
-    monkeypatch.setattr("tribolab.across.repeatability.labelled_segments", lambda place: table)
+    monkeypatch.setattr("tribolab.comparison.repeatability.labelled_segments", lambda place: table)
     done = CliRunner().invoke(cli.app, ["lab", "repeatability", "x", "-o", str(tmp_path / "out")])
     assert done.exit_code == 0, done.stderr
     assert "between levels of mount" in done.stdout

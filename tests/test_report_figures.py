@@ -15,10 +15,10 @@ from reporting import made_outcome
 import tribolab as tl
 from tribolab.app.run import run_campaign
 from tribolab.campaign.store.catalogue import Store
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome
-from tribolab.records.run_record import RunRecord
+from tribolab.records.runs.run_record import RunRecord
 from tribolab.report.figures.choice import wanted
 from tribolab.report.live.curves import FrictionOverSpeed, card_figures
 from tribolab.report.other_tables import write_other_tables

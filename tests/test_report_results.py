@@ -22,9 +22,9 @@ from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.records.packed import clock_of, packed_points
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome
-from tribolab.records.run_facts import stick_slip_of
-from tribolab.records.run_record import RunRecord, Waveform
-from tribolab.records.traces import decimated_trace, finer_trace, flagged_spans, script_json
+from tribolab.records.runs.run_facts import stick_slip_of
+from tribolab.records.runs.run_record import RunRecord, Waveform
+from tribolab.records.runs.traces import decimated_trace, finer_trace, flagged_spans, script_json
 from tribolab.records.wording import plain_value, with_error
 from tribolab.report.campaign_tables import TABLES
 from tribolab.report.results import shown_curves, write_report

@@ -3,7 +3,7 @@
 import json
 
 from tribolab.reading.schema_folder import schema_folder
-from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
+from tribolab.records.surfaces.surface_rows import ADHESION, CONTACT, ROUGHNESS
 from tribolab.report.document.models import SHEAR_STRESS
 from tribolab.report.document.schema import REPORT_SCHEMA_FILE, report_schema
 

@@ -14,10 +14,10 @@ from typer.testing import CliRunner
 import tribolab
 from tribolab import cli
 from tribolab.app.reported import USAGE
+from tribolab.core.provenance import sha256_of_file
 from tribolab.paper.figures import COMPUTED, FIGURES, SIMULATED
 from tribolab.paper.laboratory import Laboratory
 from tribolab.paper.reproduce import reproduce
-from tribolab.provenance import sha256_of_file
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.studies import xu2026
 from tribolab.studies.tally import STUDY_STATUSES

@@ -16,7 +16,7 @@ from tribolab.app.run import run_campaign
 from tribolab.app.verifying import mend, problems, recomputed
 from tribolab.campaign.store import ledger as ledgers
 from tribolab.campaign.store.ledger import MARKER, Ledger
-from tribolab.errors import ConfigError, TribolabError
+from tribolab.core.errors import ConfigError, TribolabError
 
 RUN = "data/sb-r_dry_31N_01.nc"
 

@@ -26,7 +26,7 @@ from tribolab.campaign.settings.review import (
     review_schema,
 )
 from tribolab.cli import app
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.decisions.decide import decide
 from tribolab.friction.decisions.decision import Decision
@@ -37,7 +37,7 @@ from tribolab.qc.manual import BIT
 from tribolab.qc.run.checks import check_run
 from tribolab.reading.runs.read_run import read_run
 from tribolab.reading.schema_folder import schema_folder
-from tribolab.records.decision_rows import decision_rows
+from tribolab.records.runs.decision_rows import decision_rows
 from tribolab.report.read_results import read_results
 
 SCHEMA = Path(tribolab.__file__).parents[1] / "raw_data_schema/report.schema.json"

@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 
 from tribolab.app.checks import check_files
-from tribolab.errors import ConfigError, ReadError
+from tribolab.core.errors import ConfigError, ReadError
 from tribolab.qc.register import STATUSES
 from tribolab.qc.run.checks import RUN_CHECKS, check_run
 from tribolab.reading.read import read
@@ -23,8 +23,8 @@ from tribolab.rig import (
     simulate_run,
 )
 from tribolab.rig.faults import known_fault
-from tribolab.rig.faulty_scans import SCAN_FAULTS_BY_NAME, write_faulty_scans
 from tribolab.rig.files import fixed_table, force_file, motion_file
+from tribolab.rig.scans.faulty import SCAN_FAULTS_BY_NAME, write_faulty_scans
 
 SHORT = Rig(Protocol(speeds=(4.64e-6, 2.15e-5, 1e-4, 4.64e-4, 2.15e-3)))
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from tribolab import rig
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.errors import ConfigError, ReadError
+from tribolab.core.errors import ConfigError, ReadError
 from tribolab.rig.files import fixed_table, force_file, motion_file
 
 TINY = {"small": True, "surfaces": ["Smooth"], "n_repeats": 1}

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tribolab import rig
-from tribolab.rig.profiles import touch
+from tribolab.rig.scans.profiles import touch
 from tribolab.studies import xu2026
 
 SCANS = 8

@@ -5,7 +5,7 @@ import pytest
 from scipy.stats import skew
 
 from tribolab import rig
-from tribolab.errors import AnalysisError, UnitError
+from tribolab.core.errors import AnalysisError, UnitError
 from tribolab.studies import xu2026
 
 QUIET = rig.Scatter(repeat=0.0, fluctuation=0.0, load_control=0.0)

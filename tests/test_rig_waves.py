@@ -10,8 +10,8 @@ from scipy.signal import lfilter
 import tribolab as tl
 from tribolab.friction.oscillation.rig_waves import rig_wave
 from tribolab.friction.oscillation.slip_curve import stick_slip_curve
-from tribolab.mode.model import NO_STICK_SLIP, UNEXPLAINED
-from tribolab.mode.verdict import sliding_mode
+from tribolab.regime.model import NO_STICK_SLIP, UNEXPLAINED
+from tribolab.regime.verdict import sliding_mode
 
 RADIUS, RATE, SPEEDS = 0.018, 200.0, (0.04, 0.08, 0.16)
 

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 from mutations import mat_inside, mutate
 
 import tribolab as tl
-from tribolab.errors import ReadError, TribolabError
+from tribolab.core.errors import ReadError, TribolabError
 from tribolab.reading.content.repeated_rows import times_over
 from tribolab.reading.dialect.delimited.tables import find_tables
 from tribolab.reading.dialect.model import Dialect

@@ -5,8 +5,8 @@ import pytest
 import xarray as xr
 from real_runs import mitutoyo as workbook
 
-from tribolab.app.file_info import file_lines
-from tribolab.errors import AnalysisError, UnitError
+from tribolab.app.info.file_info import file_lines
+from tribolab.core.errors import AnalysisError, UnitError
 from tribolab.studies import xu2026
 from tribolab.surface.filters import gaussian_filter, transmission
 from tribolab.surface.roughness import roughness_parameters, spectral_roughness

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tribolab.contact.persson import contact_area_ratio
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.rubber.friction import viscoelastic_friction
 from tribolab.rubber.modulus import PDMS_STAND_IN, FractionalZener, TabulatedModulus, read_modulus
 from tribolab.surface.moments import spectral_moment

@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from typer.testing import CliRunner
 
 from tribolab import cli
-from tribolab.errors import AnalysisError, ReadError
+from tribolab.core.errors import AnalysisError, ReadError
 from tribolab.reading.moduli import holds_modulus, read_modulus_table
 from tribolab.rubber.modulus import (
     PDMS_STAND_IN,

@@ -5,7 +5,7 @@ import pytest
 from contact_cases import E_STAR, reference_psd
 
 from tribolab.contact.adhesion import adhesion
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.rubber.friction import viscoelastic_friction
 from tribolab.rubber.modulus import PDMS_STAND_IN, FractionalZener, TabulatedModulus
 from tribolab.rubber.prony import PronySeries

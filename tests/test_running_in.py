@@ -14,7 +14,7 @@ from tribolab.friction.mean_error.level import levels_of
 from tribolab.friction.running_in.settling import blocks_of, settling_of
 from tribolab.friction.running_in.steady_part import steady_segments, without_start
 from tribolab.friction.segments.find import find_segments
-from tribolab.records.notices import notices_of
+from tribolab.records.runs.notices import notices_of
 
 RATE, STROKES = 250.0, 120
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from tribolab.app.file_info import file_lines
-from tribolab.errors import ReadError
+from tribolab.app.info.file_info import file_lines
+from tribolab.core.errors import ReadError
 from tribolab.reading.kinds import kind_of
 from tribolab.reading.scan_files import read_scans
 

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.qc.scan.checks import check_scans
 from tribolab.qc.scan.profiles import steps
 from tribolab.surface.character import dominant_wave, slope_ratio, why_not_self_affine
 from tribolab.surface.extrapolation import extrapolate
-from tribolab.surface.psd import psd_1d, psd_2d
 from tribolab.surface.self_affine import SelfAffine
+from tribolab.surface.spectra.psd import psd_1d, psd_2d
 from tribolab.surface.synthesis import synthesise_map, synthesise_profiles
 
 ROUGH = SelfAffine(hurst=0.9, rolloff=2e4, plateau=2e-23, low=1e3, high=4e6)

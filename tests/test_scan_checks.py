@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from real_runs import mitutoyo
 
 from tribolab import rig
-from tribolab.errors import AnalysisError, ConfigError, UnitError
+from tribolab.core.errors import AnalysisError, ConfigError, UnitError
 from tribolab.qc.flags import SUSPECT
 from tribolab.qc.register import STATUSES
 from tribolab.qc.scan import profiles
@@ -16,7 +16,7 @@ from tribolab.qc.scan.checks import SCAN_CHECKS, check_scans
 from tribolab.reading.scan_files import read_scans
 from tribolab.reading.scans.extent import doubt_about_heights, impossible_heights
 from tribolab.reading.scans.results import read_tester_results
-from tribolab.rig.scan_faults import SCAN_FAULTS, exported, strike
+from tribolab.rig.scans.faults import SCAN_FAULTS, exported, strike
 
 LENGTH = 6e-3
 

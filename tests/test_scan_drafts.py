@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from tribolab.app.checks import check_files
-from tribolab.app.file_info import file_lines
-from tribolab.errors import ReadError, TribolabError
+from tribolab.app.info.file_info import file_lines
+from tribolab.core.errors import ReadError, TribolabError
 from tribolab.qc.scan.checks import check_scans
 from tribolab.reading.dialect.find import load_dialect
 from tribolab.reading.scan_files import read_scans

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from tribolab.campaign.surfaces import scans as of_scans
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.reading.scan_files import read_scans
 from tribolab.surface.form import fill_dropouts
 from tribolab.surface.self_affine import SelfAffine

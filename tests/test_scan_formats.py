@@ -8,8 +8,8 @@ import zlib
 import numpy as np
 import pytest
 
-from tribolab.app.file_info import read_scan
-from tribolab.errors import ReadError
+from tribolab.app.info.file_info import read_scan
+from tribolab.core.errors import ReadError
 from tribolab.reading.scan_files import read_scans
 
 HEIGHTS = np.random.default_rng(5).normal(0, 1e-6, (7, 12))

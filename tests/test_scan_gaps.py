@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tribolab.errors import AnalysisError
-from tribolab.surface.binning import log_bins
+from tribolab.core.errors import AnalysisError
 from tribolab.surface.form import fill_dropouts
 from tribolab.surface.gaps import bridged, gaps_in, without_ends
-from tribolab.surface.parts import Transform, long_gaps, parts_spectrum
-from tribolab.surface.psd import psd_1d, psd_2d
 from tribolab.surface.roughness import roughness_parameters
 from tribolab.surface.self_affine import SelfAffine
+from tribolab.surface.spectra.binning import log_bins
+from tribolab.surface.spectra.parts import Transform, long_gaps, parts_spectrum
+from tribolab.surface.spectra.psd import psd_1d, psd_2d
+from tribolab.surface.spectra.tails import long_holes, tails
 from tribolab.surface.synthesis import synthesise_map, synthesise_profiles
-from tribolab.surface.tails import long_holes, tails
 
 ROUGH = SelfAffine(hurst=0.8, rolloff=2e5, plateau=1e-25, low=1e4, high=1e8)
 MAP = synthesise_map(ROUGH, points=128, pitch=1e-6, rng=7)

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.lexicon.lexicon import known_words
 from tribolab.reading.scan_files import read_scans
 from tribolab.reading.scans.header import map_header

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from real_runs import mitutoyo
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.netcdf.netcdf import read_netcdf, write_netcdf
 from tribolab.reading.scan_files import read_scans
 from tribolab.reading.scans.grid import even

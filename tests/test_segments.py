@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from made_runs import SPEEDS, matches, reasons, strokes, velocity_run
 from real_runs import actuator, paper, rock
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.friction.segments.find import find_segments
 
 

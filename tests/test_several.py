@@ -6,7 +6,7 @@ import scipy.signal
 import xarray as xr
 
 import tribolab as tl
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.studies import xu2026
 
 NAMES = ["Sb-S", "Sb-R"]

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 import tribolab as tl
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.studies import xu2026
 
 SPEEDS = np.geomspace(1e-6, 1e-2, 6)

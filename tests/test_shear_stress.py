@@ -7,7 +7,7 @@ import xarray as xr
 from contact_cases import CONTACT, reference_psd, target
 from scipy import stats
 
-from tribolab.errors import AnalysisError, UnitError
+from tribolab.core.errors import AnalysisError, UnitError
 from tribolab.fit.residual_error import residual_error
 from tribolab.fit.shear_stress import fit_shear_stress, runs_p_value
 from tribolab.friction.stribeck import measured_stribeck_curve

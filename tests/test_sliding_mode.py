@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.friction.oscillation.slip_curve import frequency_scaling, one_curve, stick_slip_curve
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.friction.segments.find import find_segments
-from tribolab.mode.model import LOCAL, NO_STICK_SLIP, SUSPECTED, UNEXPLAINED, UNKNOWN, Mode
-from tribolab.mode.regimes import end_of_boundary, measured_regimes, model_regimes
-from tribolab.mode.verdict import sliding_mode
+from tribolab.regime.model import LOCAL, NO_STICK_SLIP, SUSPECTED, UNEXPLAINED, UNKNOWN, Mode
+from tribolab.regime.regimes import end_of_boundary, measured_regimes, model_regimes
+from tribolab.regime.verdict import sliding_mode
 from tribolab.rig import simulate_trace
 
 SPEEDS = np.geomspace(1e-6, 1e-2, 13)

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import tribolab as tl
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 
 SLIDING, LOAD, SPEED, RATE = 0.4, 20.0, 2e-3, 200.0
 

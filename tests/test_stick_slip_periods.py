@@ -5,7 +5,7 @@ import pytest
 from slip_cases import noisy, saw, seen
 
 from tribolab.friction.oscillation.oscillation import gather
-from tribolab.friction.oscillation.spectra import Spectrum
+from tribolab.friction.oscillation.spectrum.spectra import Spectrum
 
 
 @pytest.mark.parametrize("periods", [2.5, 2.7, 3.0, 3.2, 3.6, 4.1, 4.2, 4.6, 5.3])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tribolab as tl
-from tribolab.app.file_info import file_lines
+from tribolab.app.info.file_info import file_lines
 from tribolab.qc.run.checks import check_run
 from tribolab.reading.runs.speed import level_of_each
 from tribolab.reading.runs.stroke_speed import velocity_of_strokes

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.surface.self_affine import SelfAffine, psd_1d, psd_2d, rms_slope
 from tribolab.surface.synthesis import synthesise_map, synthesise_profiles
 

@@ -9,13 +9,13 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tribolab.errors import ConfigError
-from tribolab.quantities import QUANTITIES
+from tribolab.core.errors import ConfigError
 from tribolab.reading.netcdf.table_schema import load_schema, validate
 from tribolab.reading.read import read
 from tribolab.reading.scan_files import read_scans
 from tribolab.reading.schema_folder import schema_folder
-from tribolab.stamping import stamp
+from tribolab.units.quantities import QUANTITIES
+from tribolab.units.stamping import stamp
 
 ONTOLOGY = "https://www.iam.kit.edu/cms/download/TriboDataFAIR_Ontology.owl#"
 # classes of the TriboDataFAIR ontology, as they stand in its OWL file

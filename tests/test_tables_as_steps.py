@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 import tribolab as tl
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 
 RATE, N, ZERO = 20.0, 300, 0.5
 STEPS = {1.0: 0.30, 2.0: 0.28, 5.0: 0.25}  # mm/s: coefficient

@@ -5,13 +5,13 @@ import pytest
 from dialects import dialect_of
 
 import tribolab as tl
-from tribolab.errors import ConfigError, ReadError, TribolabError, UnitError
-from tribolab.quantities import QUANTITIES, dictionary, quantity, unit_conversion
+from tribolab.core.errors import ConfigError, ReadError, TribolabError, UnitError
 from tribolab.reading.interpret.unit_texts import is_unit
 from tribolab.rubber.modulus import read_modulus
-from tribolab.stamping import labelled
-from tribolab.turns import reciprocal
-from tribolab.units import conversion, to_si
+from tribolab.units.conversion import conversion, to_si
+from tribolab.units.quantities import QUANTITIES, dictionary, quantity, unit_conversion
+from tribolab.units.reciprocals import reciprocal
+from tribolab.units.stamping import labelled
 
 PER_MINUTE = (
     "1/min /min min-1 min^-1 min⁻¹ min−1 min**-1 rev/min rev./min r/min U/min Umdr./min tr/min "

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import tribolab as tl
-from tribolab.errors import AnalysisError, TribolabError
+from tribolab.core.errors import AnalysisError, TribolabError
 from tribolab.metrology.budget_parts import (
     BETWEEN,
     ScatterPart,
@@ -18,7 +18,7 @@ from tribolab.metrology.budget_parts import (
 from tribolab.metrology.sensitivity import contributions, readings_of
 from tribolab.reading.dialect.uncertainty import Known, StatedUncertainty, Uncertainty
 from tribolab.rig import Calibration
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 
 def reciprocating(mu, loads, *, calibration=None, zero=0.0, rests=False, stated=None):

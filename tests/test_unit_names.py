@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from tribolab.quantities import unit_conversion
 from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
 from tribolab.reading.unknown_run import read_run
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
+from tribolab.units.quantities import unit_conversion
 
 LBF = 4.4482216152605
 SPELT = {

@@ -8,12 +8,12 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tribolab import units
-from tribolab.errors import TribolabError, UnitError
-from tribolab.quantities import QUANTITIES, quantity
-from tribolab.stamping import labelled, stamp
-from tribolab.unit_text import parse_unit
-from tribolab.units import conversion, positive, registry, to_si
+from tribolab.core.errors import TribolabError, UnitError
+from tribolab.units import conversion as units
+from tribolab.units.conversion import conversion, positive, registry, to_si
+from tribolab.units.grammar import parse_unit
+from tribolab.units.quantities import QUANTITIES, quantity
+from tribolab.units.stamping import labelled, stamp
 
 
 @pytest.mark.parametrize(

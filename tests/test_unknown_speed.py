@@ -17,7 +17,7 @@ from tribolab.campaign.settings.load import load_campaign
 from tribolab.qc.run.checks import check_run
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.records.part_records import CurveRecord
-from tribolab.records.run_facts import friction_facts
+from tribolab.records.runs.run_facts import friction_facts
 from tribolab.report import results
 
 TEXT = """

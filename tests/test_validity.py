@@ -15,7 +15,8 @@ from tribolab.contact.limits import line_limits
 from tribolab.contact.line import rough_line_contact
 from tribolab.contact.persson import contact_area_ratio, mean_separation
 from tribolab.contact.separation import separation_table
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
+from tribolab.core.validity import LIMITS, examine
 from tribolab.fit.model_uncertainty import model_uncertainty
 from tribolab.lubrication.factors import flow_factors, smooth_factors
 from tribolab.lubrication.film import film_profile
@@ -27,7 +28,6 @@ from tribolab.rubber.friction import viscoelastic_friction
 from tribolab.rubber.modulus import PDMS_STAND_IN, TabulatedModulus
 from tribolab.studies import xu2026
 from tribolab.surface.moments import rms_slope
-from tribolab.validity import LIMITS, examine
 
 SOFT = replace(CONTACT, radius=7e-3, youngs_modulus=0.1e6)
 PRESSURE = xr.DataArray([2e4, 4e4], dims="place")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tribolab.errors import TribolabError
+from tribolab.core.errors import TribolabError
 from tribolab.lubrication.viscosity import liquid_viscosity
 
 

@@ -13,7 +13,8 @@ import pytest
 from typer.testing import CliRunner
 
 import tribolab as tl
-from tribolab import cli, errors
+from tribolab import cli
+from tribolab.core import errors
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.qc.run.checks import check_run
 from tribolab.reading.dialect.find import load_dialect
@@ -70,8 +71,8 @@ def sentences(path):
 def words_of_the_field():
     """Names that are quantities, keys of a campaign or dialect: everyone may read them."""
     from tribolab.campaign.settings.config import Campaign
-    from tribolab.quantities import QUANTITIES
     from tribolab.reading.dialect.find import json_schema
+    from tribolab.units.quantities import QUANTITIES
 
     schemas = json.dumps([Campaign.model_json_schema(), json_schema()])
     keys = set(re.findall(r'"(\w+)"', schemas))

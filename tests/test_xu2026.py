@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.studies import xu2026
 from tribolab.surface import self_affine
 from tribolab.surface.self_affine import SelfAffine

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tribolab.errors import AnalysisError, ReadError
+from tribolab.core.errors import AnalysisError, ReadError
 from tribolab.studies import xu2026
 from tribolab.studies.comparison import compare_with_paper
 from tribolab.studies.published import Published, find_published, read_published

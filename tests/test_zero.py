@@ -7,7 +7,7 @@ from made_runs import strokes, with_friction
 from real_runs import actuator, rock
 from zero_cases import BOTH, LOAD, MU, SPEED, analysed, doubts, off, programme
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.coefficient.half_loops import half_loops
 from tribolab.friction.segments.find import find_segments

@@ -7,7 +7,7 @@ from zero_cases import BOTH, SPEED, off, programme
 
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.reading.read import read
 

@@ -16,13 +16,14 @@ import importlib
 import sys
 from typing import TYPE_CHECKING, Any
 
+from tribolab.core.moved import accept_old_paths
 from tribolab.version import __version__
 
 # Public name -> the module it lives in; "" for a module itself. Loaded when first used, so that
 # `import tribolab` costs nothing.
 _PUBLIC = {
     "read": "tribolab.reading.read",
-    "variables": "tribolab.variables",
+    "variables": "tribolab.units.variables",
     "draft_dialect": "tribolab.reading.unknown.proposal.draft",
     "read_netcdf": "tribolab.reading.netcdf.netcdf",
     "write_netcdf": "tribolab.reading.netcdf.netcdf",
@@ -50,8 +51,8 @@ _PUBLIC = {
     "read_results": "tribolab.report.read_results",
     "remove_form": "tribolab.surface.form",
     "fill_dropouts": "tribolab.surface.form",
-    "psd_1d": "tribolab.surface.psd",
-    "psd_2d": "tribolab.surface.psd",
+    "psd_1d": "tribolab.surface.spectra.psd",
+    "psd_2d": "tribolab.surface.spectra.psd",
     "self_affine_psd": "tribolab.surface.self_affine",
     "synthesise_map": "tribolab.surface.synthesis",
     "extrapolate": "tribolab.surface.extrapolation",
@@ -87,9 +88,9 @@ _PUBLIC = {
     "JointPriors": "tribolab.fit.joint.priors",
     "DryFriction": "tribolab.fit.joint.inputs",
     "compare_shear_stress_models": "tribolab.fit.joint.comparison",
-    "sliding_mode": "tribolab.mode.verdict",
-    "sliding_modes": "tribolab.mode.several",
-    "Mode": "tribolab.mode.model",
+    "sliding_mode": "tribolab.regime.verdict",
+    "sliding_modes": "tribolab.regime.several",
+    "Mode": "tribolab.regime.model",
     "dead_weight_gain": "tribolab.metrology.dead_weight",
     "model_inputs": "tribolab.fit.model_inputs",
     "model_uncertainty": "tribolab.fit.model_uncertainty",
@@ -102,12 +103,12 @@ _PUBLIC = {
     "load_campaign": "tribolab.campaign.settings.load",
     "load_review": "tribolab.campaign.settings.review",
     "run_campaign": "tribolab.app.run",
-    "compare": "tribolab.across.compare",
-    "repeatability": "tribolab.across.repeatability",
-    "history": "tribolab.across.history",
-    "measuring_plan": "tribolab.across.planning",
-    "pack": "tribolab.deposit.pack",
-    "TribolabError": "tribolab.errors",
+    "compare": "tribolab.comparison.compare",
+    "repeatability": "tribolab.comparison.repeatability",
+    "history": "tribolab.comparison.history",
+    "measuring_plan": "tribolab.comparison.planning",
+    "pack": "tribolab.archive.pack",
+    "TribolabError": "tribolab.core.errors",
     "plot": "",
     "rig": "",
     "studies": "",
@@ -209,13 +210,14 @@ __all__ = [
 
 if TYPE_CHECKING:
     from tribolab import plot, rig, studies
-    from tribolab.across.compare import compare
-    from tribolab.across.history import history
-    from tribolab.across.planning import measuring_plan
-    from tribolab.across.repeatability import repeatability
     from tribolab.app.run import run_campaign
+    from tribolab.archive.pack import pack
     from tribolab.campaign.settings.load import load_campaign
     from tribolab.campaign.settings.review import load_review
+    from tribolab.comparison.compare import compare
+    from tribolab.comparison.history import history
+    from tribolab.comparison.planning import measuring_plan
+    from tribolab.comparison.repeatability import repeatability
     from tribolab.contact.adhesion import adhesion, macroscopic_work_of_adhesion
     from tribolab.contact.adhesion_uncertainty import adhesion_uncertainty
     from tribolab.contact.gap import gap_distribution
@@ -226,8 +228,7 @@ if TYPE_CHECKING:
     from tribolab.contact.rolling import rolling_friction
     from tribolab.contact.separation import separation_table
     from tribolab.contact.work_of_adhesion import SurfaceEnergies, work_of_adhesion_spread
-    from tribolab.deposit.pack import pack
-    from tribolab.errors import TribolabError
+    from tribolab.core.errors import TribolabError
     from tribolab.fit.joint.comparison import compare_shear_stress_models
     from tribolab.fit.joint.fit import fit_shear_stress_jointly
     from tribolab.fit.joint.inputs import DryFriction
@@ -258,9 +259,6 @@ if TYPE_CHECKING:
     from tribolab.lubrication.viscosity import liquid_viscosity
     from tribolab.metrology.budget import uncertainty_budget
     from tribolab.metrology.dead_weight import dead_weight_gain
-    from tribolab.mode.model import Mode
-    from tribolab.mode.several import sliding_modes
-    from tribolab.mode.verdict import sliding_mode
     from tribolab.qc.objections import objections
     from tribolab.qc.run.checks import RUN_CHECKS, check
     from tribolab.qc.scan.checks import check_scans
@@ -269,6 +267,9 @@ if TYPE_CHECKING:
     from tribolab.reading.read import read
     from tribolab.reading.scan_files import read_scans
     from tribolab.reading.unknown.proposal.draft import draft_dialect
+    from tribolab.regime.model import Mode
+    from tribolab.regime.several import sliding_modes
+    from tribolab.regime.verdict import sliding_mode
     from tribolab.report.read_results import read_results
     from tribolab.rubber.friction import viscoelastic_friction
     from tribolab.rubber.modulus import read_modulus
@@ -276,17 +277,20 @@ if TYPE_CHECKING:
     from tribolab.rubber.temperature import WilliamsLandelFerry, flash_temperature, modulus_at
     from tribolab.surface.extrapolation import extrapolate
     from tribolab.surface.form import fill_dropouts, remove_form
-    from tribolab.surface.psd import psd_1d, psd_2d
     from tribolab.surface.roughness import roughness_parameters, spectral_roughness
     from tribolab.surface.self_affine import self_affine_psd
+    from tribolab.surface.spectra.psd import psd_1d, psd_2d
     from tribolab.surface.synthesis import synthesise_map
-    from tribolab.variables import variables
+    from tribolab.units.variables import variables
 
 
 if "IPython" in sys.modules:
-    from tribolab.unit_display import show_units
+    from tribolab.units.display import show_units
 
     show_units()
+
+
+accept_old_paths()
 
 
 def __getattr__(name: str) -> Any:

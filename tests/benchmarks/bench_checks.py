@@ -16,7 +16,7 @@ import pandas as pd
 import xarray as xr
 
 from tribolab.qc.run.checks import check_run
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 ROWS = 1_000_000
 

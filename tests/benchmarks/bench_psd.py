@@ -17,8 +17,8 @@ import scipy.fft
 import xarray as xr
 
 from tribolab.studies import xu2026
-from tribolab.surface.fourier import fast_length
-from tribolab.surface.psd import psd_1d, psd_2d
+from tribolab.surface.spectra.fourier import fast_length
+from tribolab.surface.spectra.psd import psd_1d, psd_2d
 from tribolab.surface.synthesis import synthesise_profiles
 
 POINTS, PITCH, ROUNDS, FEW = 50_001, 0.5e-6, 3, 20

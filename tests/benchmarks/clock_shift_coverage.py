@@ -28,7 +28,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.clocks.merge import merge
 from tribolab.reading.read import read
 from tribolab.reading.signals import signals_of

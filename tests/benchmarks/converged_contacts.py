@@ -17,7 +17,7 @@ import numpy as np
 from contact_cases import random_contacts
 
 from tribolab.contact.geometry import LineContact
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.domain import film_estimate
 
 SPEEDS = np.geomspace(1e-9, 1.0, 19)

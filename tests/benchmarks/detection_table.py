@@ -18,7 +18,7 @@ import tempfile
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.qc.register import STATUSES
 from tribolab.qc.run.checks import check_run
 from tribolab.reading.read import read

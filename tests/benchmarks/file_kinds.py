@@ -2,7 +2,7 @@
 
     python tests/benchmarks/file_kinds.py --seeds 100:103 --write docs/file_kinds.md
 
-Over the rig's files in all its layouts (`tribolab.rig.layouts`), whose truth is known; over
+Over the rig's files in all its layouts (`layouts`), whose truth is known; over
 measured files with reference numbers that were computed independently; and over sample files that
 ship with a public package. Wrong is a coefficient more than 3 standard errors from the truth (in a
 run of several numbers: beyond the bound that is passed by chance as rarely), a speed 1 % off, a
@@ -24,10 +24,10 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 from file_kinds import AT_ONCE, DESCRIBED, DRAFTED, NOT, judge, read_in_some_way  # noqa: E402
+from layouts import KINDS, write_kind  # noqa: E402
 
 import tribolab as tl  # noqa: E402
-from tribolab.errors import TribolabError  # noqa: E402
-from tribolab.rig.layouts import KINDS, write_kind  # noqa: E402
+from tribolab.core.errors import TribolabError  # noqa: E402
 
 SHARED = Path(__file__).parents[3] / "shared" / "data"
 WAYS = (AT_ONCE, DRAFTED, DESCRIBED, NOT)

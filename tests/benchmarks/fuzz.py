@@ -39,7 +39,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import numpy as np
 from mutations import MADE, mutate
 
-from tribolab.errors import TribolabError
+from tribolab.core.errors import TribolabError
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.reading.read import read
 from tribolab.reading.scan_files import read_scans

@@ -19,9 +19,9 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
-from tribolab.surface.psd import psd_1d, psd_2d
 from tribolab.surface.roughness import roughness_parameters
 from tribolab.surface.self_affine import SelfAffine
+from tribolab.surface.spectra.psd import psd_1d, psd_2d
 from tribolab.surface.synthesis import synthesise_map, synthesise_profiles
 
 SHARES = (0.01, 0.05, 0.2)

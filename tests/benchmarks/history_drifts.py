@@ -19,8 +19,8 @@ from pathlib import Path
 import numpy as np
 
 import tribolab as tl
-from tribolab.across.history import history_of
-from tribolab.across.watched import Observation
+from tribolab.comparison.history import history_of
+from tribolab.comparison.watched import Observation
 from tribolab.metrology.run_length import average_run_length, signal_probability
 
 BASELINE, SCATTER, WEEK = 20, 0.01, 7 / 30.4

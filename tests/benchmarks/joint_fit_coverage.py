@@ -44,8 +44,8 @@ from tribolab.fit.joint.result import JointFit
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.rig.files import write_run, write_scans
-from tribolab.rig.profiles import scans
 from tribolab.rig.runs import run_name, simulate_run
+from tribolab.rig.scans.profiles import scans
 from tribolab.studies import xu2026
 
 SURFACE = "Sb-S"

@@ -17,8 +17,8 @@ import numpy as np
 import xarray as xr
 
 from tribolab.surface import self_affine
-from tribolab.surface.psd import psd_1d, psd_2d
 from tribolab.surface.self_affine import SelfAffine
+from tribolab.surface.spectra.psd import psd_1d, psd_2d
 from tribolab.surface.synthesis import synthesise_map, synthesise_profiles
 
 POINTS, PITCH, SCANS = 8001, 2e-6, 3

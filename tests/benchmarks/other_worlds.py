@@ -40,14 +40,14 @@ from tribolab.app.run import run_campaign
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import hertz_half_width, hertz_mean_pressure
 from tribolab.contact.persson import contact_area_ratio
-from tribolab.errors import TribolabError
+from tribolab.core.errors import TribolabError
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.rig.calibration import Calibration
 from tribolab.rig.files import write_run, write_scans
 from tribolab.rig.laws import StickSlip
 from tribolab.rig.parameters import ForceCell, Protocol, Rig
-from tribolab.rig.profiles import touch
 from tribolab.rig.runs import run_name, simulate_run
+from tribolab.rig.scans.profiles import touch
 from tribolab.surface.self_affine import SelfAffine, rms_roughness, rms_slope, tabulate
 from tribolab.surface.synthesis import synthesise_profiles
 

@@ -14,7 +14,7 @@ from collections import Counter
 import numpy as np
 from contact_cases import RandomContact, random_contacts
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 
 
 def fate(case: RandomContact) -> tuple[str, str]:

@@ -13,7 +13,7 @@ import collections
 from tribolab import rig
 from tribolab.qc.register import STATUSES
 from tribolab.qc.scan.checks import SCAN_CHECKS, check_scans
-from tribolab.rig.scan_faults import SCAN_FAULTS, exported, strike
+from tribolab.rig.scans.faults import SCAN_FAULTS, exported, strike
 from tribolab.studies import xu2026
 
 LENGTH = 12.5e-3  # m, half of the paper's: the checks scale with nothing but points

@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 import tribolab as tl
-from tribolab.errors import TribolabError
+from tribolab.core.errors import TribolabError
 
 SHARED = Path(__file__).parents[3] / "shared" / "data"
 AT_ONCE, DRAFTED, DESCRIBED, REFUSED = "at once", "by its header", "named or described", "refused"

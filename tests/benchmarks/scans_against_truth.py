@@ -20,7 +20,7 @@ from tribolab.studies import xu2026
 from tribolab.surface import self_affine
 from tribolab.surface.extrapolation import extrapolate
 from tribolab.surface.moments import rms_roughness, rms_slope
-from tribolab.surface.psd import psd_1d, psd_2d
+from tribolab.surface.spectra.psd import psd_1d, psd_2d
 
 LIMITS = {"h_rms": 0.05, "slope": 0.10, "A/A0": 0.10}
 

@@ -49,7 +49,7 @@ from tribolab.rig import (
     simulate_run,
     write_run,
 )
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 LOAD, REPEATS, SPEEDS = 31.0, (1, 2, 5), (3e-5, 3e-4, 3e-3)
 ZERO, DRIFT, STEP = 0.04, 0.02, 0.002  # N

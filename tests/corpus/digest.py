@@ -18,7 +18,7 @@ import numpy as np
 import xarray as xr
 
 from corpus.store import Case, Read, contents_of, write_case
-from tribolab.errors import TribolabError
+from tribolab.core.errors import TribolabError
 from tribolab.reading.dialect.find import Dialect
 from tribolab.reading.read import read as read_run
 from tribolab.reading.scan_files import read_scans

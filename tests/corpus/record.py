@@ -22,7 +22,7 @@ from types import FunctionType
 from typing import Any
 
 from corpus.store import checksum
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 
 LARGEST = 4_000_000  # bytes of a file that is kept while recording
 _WATCHED = (
@@ -34,7 +34,7 @@ _WATCHED = (
     ("tribolab.reading.scan_files", "read_scans", "scan"),
     ("tribolab.reading.scans.read_scan", "read_known_scans", "scan"),
     ("tribolab.reading.unknown.proposal.draft", "draft_dialect", "draft"),
-    ("tribolab.app.file_info", "file_lines", "draft"),
+    ("tribolab.app.info.file_info", "file_lines", "draft"),
     ("tribolab.reading.scans.results", "read_tester_results", "results"),
     ("tribolab.rubber.modulus", "read_modulus", "modulus"),
     ("tribolab.reading.text.first_bytes", "peek", "peek"),

@@ -9,8 +9,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from layouts import KINDS
+
 from corpus.store import RIG, SHARED, Case, checksum
-from tribolab.rig.layouts import KINDS
 
 LARGEST = 500_000  # bytes of a file that is packed
 LARGEST_PACKED = 40_000  # bytes that it packs to

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tribolab.rig.layouts import write_kind
+from layouts import write_kind
 
 HERE = Path(__file__).parent
 SHARED = HERE.parents[2] / "shared" / "data"

@@ -49,7 +49,7 @@ def wrong(campaign: Path, name: str, tables: dict[str, bytes]) -> str:
 
     from tribolab.app.verifying import problems
     from tribolab.cli import app
-    from tribolab.errors import TribolabError
+    from tribolab.core.errors import TribolabError
 
     def answer(*words: str) -> tuple[int, str]:
         done = CliRunner().invoke(app, list(words))

@@ -99,7 +99,7 @@ def _mended(folder: Path) -> str:
     if not (results / MARKER).is_file():
         return ""  # refused, with its repair
     from tribolab.app.verifying import problems
-    from tribolab.errors import TribolabError
+    from tribolab.core.errors import TribolabError
 
     try:
         left = problems(results)

@@ -13,18 +13,18 @@ from typing import TYPE_CHECKING, Any
 from rich.markup import escape
 from rich.table import Table
 
-from tribolab.app.file_info import read_scan
+from tribolab.app.info.file_info import read_scan
 from tribolab.app.streams import say
 from tribolab.campaign.engine.stage import Progress, Stage, perform
-from tribolab.errors import ConfigError, TribolabError, told
+from tribolab.core.errors import ConfigError, TribolabError, told
+from tribolab.core.untyped import Json
+from tribolab.core.wording import explain
 from tribolab.qc.findings import FindingRow, Findings, exit_code, told_of
 from tribolab.qc.run.checks import check_run
 from tribolab.reading.kinds import kind_of, repeats_by_name
 from tribolab.reading.runs.logs import group_files
 from tribolab.reading.scans.results import read_tester_results
 from tribolab.reading.unknown_run import holds_run, read_run
-from tribolab.untyped import Json
-from tribolab.words import explain
 
 if TYPE_CHECKING:
     import xarray as xr

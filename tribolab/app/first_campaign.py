@@ -8,6 +8,7 @@ import tomllib
 from collections.abc import Sequence
 from pathlib import Path
 
+from tribolab.app.questions.stated import Stated, describe_with
 from tribolab.app.raw_folder import (
     as_pattern,
     files_in,
@@ -15,13 +16,12 @@ from tribolab.app.raw_folder import (
     may_hold_data,
     sorted_by_content,
 )
-from tribolab.app.stated import Stated, describe_with
 from tribolab.campaign.settings.files import scan_files
-from tribolab.campaign.settings.files_named import pattern_of_names
 from tribolab.campaign.settings.load import load_and_plan
-from tribolab.campaign.settings.run_names import common_name, safe_name
+from tribolab.campaign.settings.naming.files_named import pattern_of_names
+from tribolab.campaign.settings.naming.run_names import common_name, safe_name
 from tribolab.campaign.store.ledger import Ledger
-from tribolab.errors import ConfigError, TribolabError
+from tribolab.core.errors import ConfigError, TribolabError
 from tribolab.reading.kinds import repeats_by_name
 from tribolab.reading.runs.logs import group_files
 
@@ -188,7 +188,7 @@ def why_unread(paths: Sequence[Path], instrument: str | None = None) -> list[str
         As for `campaign_file`.
     """
     # late: starting stays quick
-    from tribolab.app.file_info import file_lines
+    from tribolab.app.info.file_info import file_lines
 
     said = []
     for path in paths:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from tribolab.app.first_campaign import NAME, RESULTS, campaign_text
 from tribolab.app.raw_folder import files_in
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 
 _EMPTY = '[campaign]\nname = "my campaign"\nraw = "raw"\n\n[[run]]\nfiles = "*.csv"\n'
 COMMENTED = """

@@ -7,7 +7,7 @@ import gc
 import sys
 from collections.abc import Iterator
 
-from tribolab.untyped import Arguments
+from tribolab.core.untyped import Arguments
 
 _OTHER_ARRAYS = ("dask", "dask.array", "pint", "cupy", "sparse")
 

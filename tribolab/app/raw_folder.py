@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tribolab.campaign.store.ledger import Ledger
-from tribolab.errors import TribolabError
+from tribolab.core.errors import TribolabError
 from tribolab.reading.kinds import kind_of
 from tribolab.reading.moduli import holds_modulus
 from tribolab.reading.unknown_run import holds_run

@@ -10,7 +10,7 @@ from typing import Annotated, Any, NoReturn, TypeVar
 import typer
 
 from tribolab.app.streams import Terminated, say
-from tribolab.errors import ConfigError, TribolabError, UnitError
+from tribolab.core.errors import ConfigError, TribolabError, UnitError
 
 USAGE, UNREADABLE, _INTERRUPTED = 2, 3, 130
 
@@ -88,7 +88,7 @@ def reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
         fail("stopped at a question without an answer: nothing is written", _INTERRUPTED, debug)
     except Exception as error:  # a mistake of ours: said in one line, shown in full on demand
         # late: starting stays quick
-        from tribolab.words import explain
+        from tribolab.core.wording import explain
 
         fail(f"{explain(error)[0]} (--debug shows where)", UNREADABLE, debug)
 

@@ -22,7 +22,7 @@ from tribolab.campaign.store.ledger import Ledger
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.campaign.store.staging import resolved, staged
 from tribolab.campaign.store.unchanged import note, unchanged
-from tribolab.errors import ConfigError, Cure, shown
+from tribolab.core.errors import ConfigError, Cure, shown
 from tribolab.report.code import code_of_page
 from tribolab.report.figures.choice import wanted
 from tribolab.report.table_format import table_format

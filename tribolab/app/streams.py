@@ -15,7 +15,7 @@ from functools import partial
 from types import FrameType
 from typing import NoReturn
 
-from tribolab.errors import harmless
+from tribolab.core.errors import harmless
 
 _PLAIN = str.maketrans(
     {"–": "-", "−": "-", "±": "+-", "µ": "u", "μ": "u", "×": "x", "…": "...", "’": "'", "·": "*"}

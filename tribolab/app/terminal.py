@@ -15,15 +15,15 @@ from tribolab.app.ranges import range_of
 from tribolab.campaign.settings.config import Campaign
 from tribolab.campaign.settings.files import inputs_outside
 from tribolab.campaign.store.outcome import Outcome
-from tribolab.errors import harmless
-from tribolab.provenance import as_text
-from tribolab.records.notice_words import CHANGES, DOUBTFUL_COLUMNS, STICK_SLIP, STROKE_ENDS
+from tribolab.core.errors import harmless
+from tribolab.core.provenance import as_text
+from tribolab.core.wording import LOAD_MEASURED, LOAD_VARIES, Count, load_text
 from tribolab.records.part_records import CurveRecord, SurfaceRecord
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome, SurfaceOutcome
-from tribolab.records.roughness_words import FORM, roughness_in_words
-from tribolab.records.run_record import RunRecord
+from tribolab.records.runs.notice_words import CHANGES, DOUBTFUL_COLUMNS, STICK_SLIP, STROKE_ENDS
+from tribolab.records.runs.run_record import RunRecord
+from tribolab.records.surfaces.roughness_words import FORM, roughness_in_words
 from tribolab.records.verdict import verdict_of
-from tribolab.words import LOAD_MEASURED, LOAD_VARIES, Count, load_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -230,7 +230,7 @@ def _told_of_runs(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
 def _undecided(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
     """Return in a line how many segments may have a large trend or none."""
     # late: starting stays quick
-    from tribolab.records.trends import undecided_trends
+    from tribolab.records.runs.trends import undecided_trends
 
     entries = [(run.name, outcome.store.get("run", run.name, RunRecord)) for run in done]
     facts = [(name, entry.record.facts) for name, entry in entries if entry is not None]
@@ -341,7 +341,7 @@ def _handful(names: Sequence[str]) -> str:
 def failure_lines(outcome: Outcome) -> list[str]:
     """Say which runs, surfaces, scans and models failed and why, and what the file may say."""
     # late: starting stays quick
-    from tribolab.records.mode_record import condition
+    from tribolab.records.models.mode_record import condition
 
     failed = list(outcome.lost_decisions)
     failed += [f"{run.name} failed: {run.reason}" for run in outcome.failed]
@@ -400,7 +400,7 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
 def _not_described(results: Path) -> str:
     """Say in brackets how many curves of which surface the model does not describe."""
     # late: starting stays quick
-    from tribolab.records.model_words import is_described
+    from tribolab.records.models.model_words import is_described
     from tribolab.report import tables
 
     path = results / "tables" / "shear_stress.csv"

@@ -10,15 +10,15 @@ from pathlib import Path
 
 import xarray as xr
 
-from tribolab.across.folder import open_folder
 from tribolab.app.run import run_campaign
+from tribolab.archive.contents import campaign_of
+from tribolab.archive.pack import problems_of
 from tribolab.campaign.engine.stage import Progress
 from tribolab.campaign.store.catalogue import CATALOGUE
 from tribolab.campaign.store.data_files import digest
 from tribolab.campaign.store.ledger import Ledger, repair
-from tribolab.deposit.contents import campaign_of
-from tribolab.deposit.pack import problems_of
-from tribolab.errors import ConfigError, OutputError, ReadError, brief
+from tribolab.comparison.folder import open_folder
+from tribolab.core.errors import ConfigError, OutputError, ReadError, brief
 from tribolab.version import __version__
 
 # what says when and where it was made, not what came out

@@ -14,18 +14,18 @@ from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.runs.analysis import AS_FOUND
 from tribolab.campaign.runs.loads import at_level
 from tribolab.campaign.runs.stage import RunCame
-from tribolab.campaign.settings.run_names import distinct, safe_name
+from tribolab.campaign.settings.naming.run_names import distinct, safe_name
 from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.data_files import digest, write_data
-from tribolab.errors import TribolabError
+from tribolab.core.errors import TribolabError
+from tribolab.core.provenance import sha256_of
+from tribolab.core.wording import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES, explain, load_label
 from tribolab.friction.points.limits import SPEED_TOLERANCE
-from tribolab.provenance import sha256_of
 from tribolab.reading.dialect.uncertainty import MODEL_INPUTS
 from tribolab.records.part_records import CurveRecord, Origin
 from tribolab.records.parts import CurveOutcome, Row, RunOutcome
 from tribolab.records.wording import plain_value
-from tribolab.stamping import stamp
-from tribolab.words import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES, explain, load_label
+from tribolab.units.stamping import stamp
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -186,8 +186,8 @@ def process_curve(task: CurveTask) -> CurveRecord:
     from tribolab.friction.coefficient.repeatability import run_levels
     from tribolab.friction.oscillation.slip_curve import NEEDED, stick_slip_curve
     from tribolab.reading.netcdf.netcdf import read_groups
-    from tribolab.records.budget_rows import budget_rows
     from tribolab.records.frames import curve_table, plain_rows
+    from tribolab.records.models.budget_rows import budget_rows
 
     files = [task.folder / name for name in task.data_files]
     parts = [read_groups(file, ("friction", SLIP), only={SLIP: NEEDED}) for file in files]

@@ -13,13 +13,13 @@ from tribolab.campaign.curves import SLIP
 from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.data_files import optional_data, read_data
-from tribolab.mode.model import Mode
-from tribolab.provenance import sha256_of
-from tribolab.records.mode_record import EvidenceRow, ModeRecord, condition
+from tribolab.core.provenance import sha256_of
+from tribolab.core.wording import explain
+from tribolab.records.models.mode_record import EvidenceRow, ModeRecord, condition
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import CurveOutcome, Notice, Row, number_of
 from tribolab.records.wording import plain_value
-from tribolab.words import explain
+from tribolab.regime.model import Mode
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
@@ -132,7 +132,7 @@ def judge_mode(task: ModeTask) -> ModeRecord:
     """
     # late: starting stays quick
     from tribolab.friction.oscillation.waveform import oscillating
-    from tribolab.mode.verdict import sliding_mode
+    from tribolab.regime.verdict import sliding_mode
 
     curve = task.curve
     measured = read_data(task.folder / curve.data_file)

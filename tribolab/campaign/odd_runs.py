@@ -10,9 +10,9 @@ import numpy as np
 
 from tribolab.campaign.runs.stage import RunCame
 from tribolab.campaign.store.catalogue import Store
+from tribolab.core.wording import percent
 from tribolab.records.part_records import CurveRecord
-from tribolab.records.run_record import CheckRow, RunRecord
-from tribolab.words import percent
+from tribolab.records.runs.run_record import CheckRow, RunRecord
 
 REPEATS = "repeats"
 _VARIABLE = "friction_coefficient"

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 import numpy as np
 import xarray as xr
 
+from tribolab.arrays.broadcasting import as_stated, over_dims
 from tribolab.contact.adhesion_balance import (
     Balance,
     Interface,
@@ -17,11 +18,10 @@ from tribolab.contact.adhesion_balance import (
     work_value,
 )
 from tribolab.contact.area import AreaTheory
-from tribolab.errors import AnalysisError
-from tribolab.several import as_stated, over_dims
-from tribolab.stamping import labelled, stamp
+from tribolab.core.errors import AnalysisError
+from tribolab.core.validity import TINY, examine
 from tribolab.surface.moments import rms_slope
-from tribolab.validity import TINY, examine
+from tribolab.units.stamping import labelled, stamp
 
 _KAPPA, _C_A = 0.4, 1.0
 _NODES, _ITERATIONS = 200, 100

@@ -21,9 +21,9 @@ from scipy.special import erfcx
 from tribolab.contact.area import AreaTheory, area_of
 from tribolab.contact.first_passage import Diffusion
 from tribolab.contact.guided_root import guided_root
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.surface.moments import cumulative_at, spectrum_arrays
-from tribolab.units import positive, to_si
+from tribolab.units.conversion import positive, to_si
 
 # Share of the nodes that is spread evenly in ln q; the others follow the growth of the stress.
 _EVEN_SHARE = 0.2

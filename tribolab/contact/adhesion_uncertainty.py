@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
+from tribolab.arrays.broadcasting import over_dims
 from tribolab.contact.adhesion import AnyPressure, finite_pressures, pressure_coords
 from tribolab.contact.adhesion_balance import balance, parameters, rough_interface
 from tribolab.contact.work_of_adhesion import (
@@ -14,10 +15,9 @@ from tribolab.contact.work_of_adhesion import (
     sample_work_of_adhesion,
     work_of_adhesion_spread,
 )
-from tribolab.several import over_dims
-from tribolab.stamping import stamp
+from tribolab.core.validity import TINY, examine
 from tribolab.surface.moments import rms_slope
-from tribolab.validity import TINY, examine
+from tribolab.units.stamping import stamp
 
 
 @over_dims(psd=("wavenumber",))

@@ -9,7 +9,7 @@ import xarray as xr
 
 from tribolab.contact.adhesion import adhesion
 from tribolab.contact.line import WIDTH_LEVEL
-from tribolab.units import to_si
+from tribolab.units.conversion import to_si
 
 _POINTS = 21  # pressures of the table
 

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.special import erf
 
-from tribolab.errors import AnalysisError, nearest, shown
+from tribolab.core.errors import AnalysisError, nearest, shown
 
 AreaTheory = Literal["persson", "corrected", "numerics"]
 _GAMMA = 0.51  # S(0) of the corrected form

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import ndtr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.special import erf
 
+from tribolab.arrays.broadcasting import over_dims
 from tribolab.contact.persson import (
     ROOT_PI,
     coarse_tail,
@@ -17,12 +18,11 @@ from tribolab.contact.persson import (
     pressure_values,
     rough_band,
 )
-from tribolab.errors import AnalysisError, nearest, shown
-from tribolab.several import over_dims
-from tribolab.stamping import labelled, stamp
+from tribolab.core.errors import AnalysisError, nearest, shown
+from tribolab.core.validity import examine
 from tribolab.surface.moments import cumulative_at, rms_slope
-from tribolab.units import positive
-from tribolab.validity import examine
+from tribolab.units.conversion import positive
+from tribolab.units.stamping import labelled, stamp
 
 GapVariant = Literal["flow", "plain"]
 _PER_DECADE = 20  # magnifications

@@ -8,8 +8,8 @@ from typing import ClassVar
 import numpy as np
 
 from tribolab.contact.layer import Layer
-from tribolab.errors import AnalysisError
-from tribolab.units import positive, to_si
+from tribolab.core.errors import AnalysisError
+from tribolab.units.conversion import positive, to_si
 
 
 class Elasticity:

@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 
 from tribolab.contact.geometry import Contact
 from tribolab.contact.layer import layer_contact
-from tribolab.errors import AnalysisError
-from tribolab.units import to_si
-from tribolab.validity import examine
+from tribolab.core.errors import AnalysisError
+from tribolab.core.validity import examine
+from tribolab.units.conversion import to_si
 
 
 def hertz_half_width(load: str | ArrayLike, contact: Contact) -> np.ndarray | float:
@@ -32,7 +32,7 @@ def hertz_half_width(load: str | ArrayLike, contact: Contact) -> np.ndarray | fl
     Raises
     ------
     AnalysisError
-        If a load is negative, or the contact wider than its cylinder (`tribolab.validity`).
+        If a load is negative, or the contact wider than its cylinder (`tribolab.core.validity`).
 
     Notes
     -----

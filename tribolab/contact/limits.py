@@ -1,4 +1,4 @@
-"""How far a contact lies inside the limits of the theory, see `tribolab.validity`."""
+"""How far a contact lies inside the limits of the theory, see `tribolab.core.validity`."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike
 from tribolab.contact.geometry import Contact
 from tribolab.contact.hertz import hertz_half_width, hertz_max_pressure
 from tribolab.contact.separation import Separation
+from tribolab.core.validity import LIMITS, examine, together
 from tribolab.surface.moments import rms_slope
-from tribolab.validity import LIMITS, examine, together
 
 _OF_OILS = 2e-8  # 1/Pa: viscosity over pressure, in its logarithm; of glycerol it is a third
 

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from scipy.linalg import lu_factor, lu_solve
 
+from tribolab.arrays.broadcasting import over_dims
 from tribolab.contact.area import AreaTheory
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import hertz_half_width, hertz_pressure
@@ -15,10 +16,9 @@ from tribolab.contact.layer import line_layer_kernel
 from tribolab.contact.limits import line_limits
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.contact.separation import Separation, separation_table
-from tribolab.errors import AnalysisError, Cure
-from tribolab.several import over_dims
-from tribolab.stamping import stamp
-from tribolab.units import positive
+from tribolab.core.errors import AnalysisError, Cure
+from tribolab.units.conversion import positive
+from tribolab.units.stamping import stamp
 
 # The paper does not say how it measured its widths; where pressure falls to this part of its
 # maximum, both of them come out.

@@ -14,11 +14,10 @@ import xarray as xr
 from scipy.interpolate import CubicHermiteSpline
 from scipy.special import erf, exp1
 
+from tribolab.arrays.broadcasting import over_dims
 from tribolab.contact.area import AreaTheory, area_of
-from tribolab.errors import AnalysisError
-from tribolab.quantities import si_values
-from tribolab.several import over_dims
-from tribolab.stamping import labelled, like, stamp_array
+from tribolab.core.errors import AnalysisError
+from tribolab.core.validity import examine
 from tribolab.surface.moments import (
     at_wavenumber,
     cumulative,
@@ -27,8 +26,9 @@ from tribolab.surface.moments import (
     rms_slope,
     spectrum_arrays,
 )
-from tribolab.units import positive
-from tribolab.validity import examine
+from tribolab.units.conversion import positive
+from tribolab.units.quantities import si_values
+from tribolab.units.stamping import labelled, like, stamp_array
 
 Pressure = TypeVar("Pressure", float, np.ndarray, xr.DataArray)
 ROOT_PI = np.sqrt(np.pi)
@@ -200,7 +200,7 @@ def mean_separation(
 
 
 def _with(result: Pressure, valid: dict[str, str]) -> Pressure:
-    """Add the attributes of `tribolab.validity` to a result that has attributes."""
+    """Add the attributes of `tribolab.core.validity` to a result that has attributes."""
     return result.assign_attrs(valid) if isinstance(result, xr.DataArray) else result
 
 

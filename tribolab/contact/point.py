@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from tribolab.arrays.broadcasting import over_dims
 from tribolab.contact.area import AreaTheory
 from tribolab.contact.geometry import PointContact
 from tribolab.contact.hertz import hertz_half_width, hertz_pressure
@@ -15,9 +16,8 @@ from tribolab.contact.line import contact_width, solve_dry
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.contact.polar import PolarMesh, polar_mesh
 from tribolab.contact.separation import Separation, separation_table
-from tribolab.several import over_dims
-from tribolab.stamping import stamp
-from tribolab.units import positive
+from tribolab.units.conversion import positive
+from tribolab.units.stamping import stamp
 
 _SECTORS = 12  # of a mesh whose pressure depends on the radius alone
 

@@ -18,11 +18,11 @@ from tribolab.contact.persson import (
     tail,
     tail_slope,
 )
-from tribolab.errors import AnalysisError
-from tribolab.quantities import si_values
-from tribolab.stamping import like
+from tribolab.core.errors import AnalysisError
 from tribolab.surface.moments import cumulative
-from tribolab.units import positive
+from tribolab.units.conversion import positive
+from tribolab.units.quantities import si_values
+from tribolab.units.stamping import like
 
 _MORE_THAN_EPS = 1e-14
 

@@ -10,9 +10,9 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
-from tribolab.stamping import stamp
-from tribolab.units import to_si
+from tribolab.core.errors import AnalysisError
+from tribolab.units.conversion import to_si
+from tribolab.units.stamping import stamp
 
 
 class BoundedValue(NamedTuple):

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from tribolab.core.wording import is_dry
 from tribolab.figures.spec import Style
-from tribolab.words import is_dry
 
 # Okabe and Ito's palette, which people with any common colour deficiency tell apart
 # (Color Universal Design, 2008); `assets/drawing.js` and `still.css` have the same, also for dark.

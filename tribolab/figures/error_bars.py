@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from scipy import special
 
-from tribolab.errors import AnalysisError, shown
+from tribolab.core.errors import AnalysisError, shown
 
 ErrorBars = Literal["U95", "std"]
 COVERAGE = float(special.ndtri(0.975))  # standard errors in a 95 % interval, many freedoms

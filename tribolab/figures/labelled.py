@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, shown
+from tribolab.core.errors import AnalysisError, shown
 
 RunLabel = str | float
 OneOrSeveral = Mapping[str, xr.Dataset] | xr.Dataset | Sequence[xr.Dataset]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import re
 
-from tribolab.quantities import quantity
+from tribolab.units.quantities import quantity
 
 _SUBSCRIPT = re.compile(r"_([A-Za-z0-9]{2,}|[A-Z0-9])")
 

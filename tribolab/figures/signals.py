@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tribolab.errors import AnalysisError
-from tribolab.medians import quantile_in_pieces
-from tribolab.pieces import lowered, pieces
-from tribolab.room import room
+from tribolab.arrays.chunks import lowered, pieces
+from tribolab.arrays.medians import quantile_in_pieces
+from tribolab.arrays.scratch import room
+from tribolab.core.errors import AnalysisError
 
 if TYPE_CHECKING:
     import xarray as xr

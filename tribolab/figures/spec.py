@@ -14,7 +14,7 @@ from typing import Any, Literal, TypedDict
 import numpy as np
 
 from tribolab.figures.labels import column, plain_symbol, plain_unit, symbol
-from tribolab.quantities import quantity
+from tribolab.units.quantities import quantity
 
 Style = Literal["points", "line", "dashed", "dotted", "dashdot", "longdash", "band", "bars", "heat"]
 Width = Literal["card", "half", "whole"]

@@ -9,7 +9,7 @@ import xarray as xr
 from scipy.interpolate import BSpline
 from scipy.stats import f as f_distribution
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 
 _COEFFICIENTS = 14  # of the spline; with seven the test is worthless
 

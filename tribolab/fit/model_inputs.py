@@ -11,11 +11,11 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from tribolab.contact.geometry import Contact
-from tribolab.errors import AnalysisError, nearest, shown
+from tribolab.core.errors import AnalysisError, nearest, shown
 from tribolab.lubrication.parameters import Liquid, parameters_of
 from tribolab.lubrication.solved_curve import SolvedCurve, solve_curve
-from tribolab.stamping import labelled, stamp
-from tribolab.units import positive
+from tribolab.units.conversion import positive
+from tribolab.units.stamping import labelled, stamp
 
 _INPUTS = ("load", "radius", "youngs_modulus")
 _STEP = 0.02  # of ln x, to both sides

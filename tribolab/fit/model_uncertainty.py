@@ -8,20 +8,20 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from tribolab.arrays.threads import one_thread
 from tribolab.contact.area import AreaTheory
 from tribolab.contact.geometry import Contact
 from tribolab.contact.persson import rough_band
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
+from tribolab.core.untyped import Arguments
+from tribolab.core.validity import reasons_of, together
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
 from tribolab.fit.variations import held_fixed, variations
 from tribolab.lubrication.factors import RoughBody
 from tribolab.lubrication.parameters import Outlet, parameters_of
 from tribolab.lubrication.solved_curve import SolvedCurve, solve_curve
-from tribolab.stamping import labelled, stamp
-from tribolab.threads import one_thread
-from tribolab.units import positive, to_si
-from tribolab.untyped import Arguments
-from tribolab.validity import reasons_of, together
+from tribolab.units.conversion import positive, to_si
+from tribolab.units.stamping import labelled, stamp
 
 _SPEEDS = tuple(np.geomspace(1e-9, 1e-1, 17).tolist())  # m/s
 _CELLS = 100  # a change needs no finer mesh than this: its error is in both curves

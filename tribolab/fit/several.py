@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from tribolab.conditions import ConditionLabels, Conditions, labels_along, labels_text
+from tribolab.arrays.conditions import ConditionLabels, Conditions, labels_along, labels_text
 from tribolab.contact.geometry import Contact
-from tribolab.errors import AnalysisError, Cure, shown
+from tribolab.core.errors import AnalysisError, Cure, shown
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.fit.shear_stress_fit import ShearStressFit
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-    from tribolab.untyped import Arguments
+    from tribolab.core.untyped import Arguments
 
 _OWN = ("sliding_speed", "segment", "wavenumber", "x", "point")  # dims of one curve or spectrum
 

@@ -12,7 +12,7 @@ from scipy import special
 from scipy.optimize import least_squares
 
 from tribolab.contact.geometry import Contact
-from tribolab.errors import AnalysisError, Cure, nearest, shown
+from tribolab.core.errors import AnalysisError, Cure, nearest, shown
 from tribolab.fit.model_inputs import moved_friction
 from tribolab.fit.point_covariance import PointErrors, shared_errors
 from tribolab.fit.residual_error import residual_error
@@ -21,8 +21,8 @@ from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.lubrication.parameters import parameters_of
 from tribolab.lubrication.solved_curve import solve_curve
 from tribolab.lubrication.stribeck import with_shear_stress
-from tribolab.stamping import stamp
-from tribolab.units import positive, to_si
+from tribolab.units.conversion import positive, to_si
+from tribolab.units.stamping import stamp
 
 _FREE = ("viscosity", "youngs_modulus")
 _LIKELY = 0.01  # probability of chi-square above which a range of speeds counts as described

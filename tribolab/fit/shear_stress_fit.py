@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 from scipy import special
 
-from tribolab.errors import AnalysisError, Cure
+from tribolab.core.errors import AnalysisError, Cure
 
 _UNITS = {"viscosity": "Pa s", "youngs_modulus": "Pa"}  # of what may be fitted besides
 

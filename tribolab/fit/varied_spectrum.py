@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
 from tribolab.surface.extrapolation import AS_MEASURED, TO_LARGE, TO_SMALL
 from tribolab.surface.moments import band, spectrum_arrays

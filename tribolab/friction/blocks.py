@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 
 _FEWEST = 12  # blocks of the longest, so that their scatter is known within a fifth
 _LENGTHS = 25

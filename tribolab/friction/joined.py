@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, shown
-from tribolab.quantities import QUANTITIES
-from tribolab.stamping import stamp
+from tribolab.core.errors import AnalysisError, shown
+from tribolab.units.quantities import QUANTITIES
+from tribolab.units.stamping import stamp
 
 Label = str | float
 _TOLERANCE = 0.1  # of speeds that belong together, as for `measured_stribeck_curve`

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.arrays.medians import median
+from tribolab.core.errors import AnalysisError
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.segments.strokes import find_strokes
-from tribolab.medians import median
 from tribolab.reading.runs.inertia import acceleration, take_inertia
-from tribolab.units import positive
+from tribolab.units.conversion import positive
 
 _FAST = 0.4  # of the highest speed: below it friction still turns over
 _EVEN = 0.3  # of the highest acceleration: its median is less where ramps alone accelerate

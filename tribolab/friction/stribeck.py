@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, shown
+from tribolab.core.errors import AnalysisError, shown
+from tribolab.core.provenance import joined_sources, made
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.joined import Label, grouped, joined_curves
 from tribolab.friction.points.mean_of_repeats import Mean, mean_of_repeats, pooled_between_runs
@@ -18,8 +19,7 @@ from tribolab.friction.points.strokes import (
     observations_of,
 )
 from tribolab.friction.statistics import with_freedom
-from tribolab.provenance import joined_sources, made
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 _COLUMNS = (
     "sliding_speed",

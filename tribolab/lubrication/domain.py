@@ -10,7 +10,7 @@ from scipy.special import hyp2f1
 from tribolab.contact.geometry import Contact, LineContact
 from tribolab.contact.hertz import hertz_half_width
 from tribolab.contact.separation import Separation
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.factors import FlowFactors
 from tribolab.lubrication.mesh import graded_mesh
 from tribolab.lubrication.mixed import Problem, Solution

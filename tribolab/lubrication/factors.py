@@ -16,11 +16,11 @@ from scipy.special import erfinv
 from tribolab.contact.gap import COMPLETE, gap_distributions
 from tribolab.contact.persson import rough_band
 from tribolab.contact.separation import Separation, separation_table
-from tribolab.errors import AnalysisError, Cure, nearest, shown
-from tribolab.stamping import labelled, stamp
+from tribolab.core.errors import AnalysisError, Cure, nearest, shown
+from tribolab.core.validity import examine, together
 from tribolab.surface.moments import cumulative, rms_roughness, rms_slope, spectrum_arrays
-from tribolab.units import positive
-from tribolab.validity import examine, together
+from tribolab.units.conversion import positive
+from tribolab.units.stamping import labelled, stamp
 
 PERCOLATION = 0.42  # relative contact area at which the last open channel closes
 CUTOFF = 1e-9  # m, gap under which <1/u> leaves out
@@ -68,7 +68,7 @@ class FlowFactors:
         Tables for a rough body at rest, of phi_p and (u + h_rms phi_s)/u; and of phi_f, phi_fs and,
         where reciprocity does not give it, phi_fp. None if smooth.
     limits
-        Attributes of `tribolab.validity`: whether the slopes are small enough for thin-film flow.
+        Attributes of `tribolab.core.validity`: whether the slopes suit thin-film flow.
     roughness_balance
         (h2^2 - h1^2)/(h1^2 + h2^2) [1] of two rough bodies, 2 being the faster; None follows
         `rough_body`.

@@ -8,8 +8,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from tribolab.arrays.broadcasting import over_dims
+from tribolab.arrays.threads import one_thread
 from tribolab.contact.geometry import Contact
 from tribolab.contact.limits import line_limits
+from tribolab.core.validity import together
 from tribolab.lubrication.parameters import (
     Interface,
     Liquid,
@@ -28,11 +31,8 @@ from tribolab.lubrication.system import (
     system_of,
     with_adhesion,
 )
-from tribolab.several import over_dims
-from tribolab.stamping import stamp
-from tribolab.threads import one_thread
-from tribolab.units import positive
-from tribolab.validity import together
+from tribolab.units.conversion import positive
+from tribolab.units.stamping import stamp
 
 
 @renamed(viscosity="liquid")

@@ -10,12 +10,12 @@ from typing import Any, Literal, NamedTuple, ParamSpec, TypeVar, get_args
 
 import numpy as np
 
+from tribolab.arrays.broadcasting import as_stated
 from tribolab.contact.area import AreaTheory, check_area
-from tribolab.errors import AnalysisError, nearest, shown
+from tribolab.core.errors import AnalysisError, nearest, shown
 from tribolab.lubrication.factors import FlowFactors, RoughBody
 from tribolab.lubrication.thinning import ShearThinning
-from tribolab.several import as_stated
-from tribolab.units import positive, to_si
+from tribolab.units.conversion import positive, to_si
 
 P = ParamSpec("P")
 R = TypeVar("R")

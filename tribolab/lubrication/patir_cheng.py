@@ -6,7 +6,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from tribolab.lubrication.factors import FactorTable, FlowFactors, RoughBody, check_rough_body
-from tribolab.units import positive
+from tribolab.units.conversion import positive
 
 _CONTACT = 1 / 300  # gap in h_rms under which there is no fluid to shear
 

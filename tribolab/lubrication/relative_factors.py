@@ -8,9 +8,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from tribolab.arrays.broadcasting import over_dims
 from tribolab.lubrication.factors import flow_factors
-from tribolab.several import over_dims
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 _OVER = "relative_separation"
 

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from tribolab.arrays.threads import one_thread
 from tribolab.contact.area import other_area
 from tribolab.contact.geometry import Contact
 from tribolab.contact.hertz import hertz_half_width
@@ -27,8 +28,7 @@ from tribolab.lubrication.system import (
     system_of,
     with_adhesion,
 )
-from tribolab.stamping import stamp
-from tribolab.threads import one_thread
+from tribolab.units.stamping import stamp
 
 
 class SolvedCurve(NamedTuple):

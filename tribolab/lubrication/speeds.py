@@ -13,7 +13,7 @@ import xarray as xr
 from tribolab.contact.adhesive_growth import AdhesiveGrowth
 from tribolab.contact.geometry import Contact, LineContact
 from tribolab.contact.separation import Separation
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.domain import lubrication_problem, thinned_film
 from tribolab.lubrication.factors import FlowFactors
 from tribolab.lubrication.mixed import NotConvergedError, Problem, Solution, State, solve_speed

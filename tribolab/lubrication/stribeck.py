@@ -7,6 +7,7 @@ from typing import Any
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from tribolab.arrays.broadcasting import over_dims
 from tribolab.contact.geometry import Contact
 from tribolab.lubrication.parameters import (
     Interface,
@@ -18,8 +19,7 @@ from tribolab.lubrication.parameters import (
     warn_of_old,
 )
 from tribolab.lubrication.solved_curve import solve_curve
-from tribolab.several import over_dims
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 
 @renamed(viscosity="liquid", shear_stress="interface")

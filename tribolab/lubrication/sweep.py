@@ -11,7 +11,7 @@ from tribolab.contact.geometry import LineContact
 from tribolab.contact.hertz import hertz_pressure
 from tribolab.contact.line import solve_line
 from tribolab.contact.separation import Separation
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.domain import thinned_film
 from tribolab.lubrication.mesh import Mesh
 from tribolab.lubrication.mixed import (

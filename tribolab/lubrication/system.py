@@ -14,11 +14,11 @@ from tribolab.contact.geometry import Contact
 from tribolab.contact.hertz import hertz_max_pressure
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.contact.separation import separation_table
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.factors import check_rough_body, flow_factors, smooth_factors
 from tribolab.lubrication.parameters import Parameters
 from tribolab.lubrication.speeds import System
-from tribolab.stamping import labelled
+from tribolab.units.stamping import labelled
 
 PROOF = ("residual", "load_balance", "flux_variation", "iterations")  # of every point
 _REFERENCE = (

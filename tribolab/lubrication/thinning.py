@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.factors import Factors, FlowFactors
-from tribolab.units import positive, to_si
+from tribolab.units.conversion import positive, to_si
 
 _STEP = 1e-4  # of ln(rate), for slopes
 

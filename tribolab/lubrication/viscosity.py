@@ -6,8 +6,8 @@ import math
 import re
 from typing import NamedTuple
 
-from tribolab.errors import AnalysisError, nearest, shown
-from tribolab.units import to_si
+from tribolab.core.errors import AnalysisError, nearest, shown
+from tribolab.units.conversion import to_si
 
 LIQUIDS = ("glycerol", "water", "silicone oil 100 cSt")
 _ALIKE = {"glycerine": "glycerol", "glycerin": "glycerol", "silicon oil": "silicone oil"}

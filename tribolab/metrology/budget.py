@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from pydantic import ValidationError
 
-from tribolab.errors import AnalysisError, Cure, nearest, shown
+from tribolab.core.errors import AnalysisError, Cure, nearest, shown
 from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.metrology.budget_curve import with_curve_uncertainty
 from tribolab.metrology.budget_parts import NOISE, ScatterPart, combined

@@ -10,7 +10,7 @@ import xarray as xr
 from scipy import special
 
 from tribolab.reading.dialect.uncertainty import Known
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 NOISE, BETWEEN = "noise and known zero of the run", "between runs"
 _NOT_STATED = "calibration not stated: statistical only"

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.metrology.budget_parts import coverage_factor, part_name, part_words
 from tribolab.reading.dialect.uncertainty import NAMES, Known
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import special
 
-from tribolab.aliases import Array
-from tribolab.errors import AnalysisError
+from tribolab.core.aliases import Array
+from tribolab.core.errors import AnalysisError
 
 Signalled = NDArray[np.bool_]
 

@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.friction.statistics import NORMAL, estimate_of
-from tribolab.units import positive
+from tribolab.units.conversion import positive
 
 _TRIM = 0.1  # of each part with and without the weight, at both ends
 _LEAST = 20  # samples of a part that counts

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
-from tribolab.aliases import Array
-from tribolab.errors import AnalysisError
+from tribolab.core.aliases import Array
+from tribolab.core.errors import AnalysisError
 from tribolab.metrology.resampling import (
     MOST_ROTATED,
     by_permutation,

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from tribolab.aliases import Array
-from tribolab.errors import AnalysisError
+from tribolab.core.aliases import Array
+from tribolab.core.errors import AnalysisError
 
 _POOLED_ABOVE = 0.25  # p value of the interaction, from which on it counts as repeatability
 _CATEGORIES = math.sqrt(2)  # ndc: widths of the 97 % interval of the gauge in that of the parts

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize, special
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 
 MOST_RUNS = 1000
 _RUNS = np.arange(2, MOST_RUNS + 1)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-from tribolab.aliases import Array
+from tribolab.core.aliases import Array
 
 LIMIT = 2.8  # standard deviations that two single results differ by with 95 %: 1.96 sqrt(2)
 

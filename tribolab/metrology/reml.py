@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import linalg, optimize
 
-from tribolab.aliases import Array
-from tribolab.errors import AnalysisError
+from tribolab.core.aliases import Array
+from tribolab.core.errors import AnalysisError
 
 _STARTS = (0.1, 2.0)  # of each ratio of variances: the likelihood may have more than one summit
 _LARGEST = 1e6

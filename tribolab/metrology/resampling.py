@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
-from tribolab.aliases import Array
+from tribolab.core.aliases import Array
 
 _FEWEST = 4  # runs in each group, from which on they are permuted
 MOST_ROTATED = 40  # runs of both groups together

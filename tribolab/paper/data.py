@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tribolab.campaign.store.data_files import read_data
+from tribolab.core.wording import speed_text
 from tribolab.paper.work import data_file
 from tribolab.plot import Trace
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.studies import xu2026
-from tribolab.words import speed_text
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import pandas as pd
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
+from tribolab.core.untyped import Json
 from tribolab.paper.figures import BY_NAME, FIGURES
 from tribolab.paper.hurst import steep_spectra
 from tribolab.paper.laboratory import Laboratory
@@ -30,7 +31,6 @@ from tribolab.studies.verdict import (
     WIDE,
     room_text,
 )
-from tribolab.untyped import Json
 
 _SCHEMA_VERSION = "1.1"
 

@@ -9,10 +9,10 @@ import numpy as np
 import xarray as xr
 
 from tribolab import plot
+from tribolab.core.wording import force_text, number, span, speed_text, speeds
 from tribolab.paper.data import ROUGH, SURFACES, PaperData
 from tribolab.studies.tables import MEDIA, modulus_table
 from tribolab.surface.moments import rms_roughness, rms_slope
-from tribolab.words import force_text, number, span, speed_text, speeds
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,12 +7,12 @@ from dataclasses import asdict, dataclass
 from functools import partial
 from typing import Any
 
+from tribolab.core.untyped import Json
 from tribolab.paper import drawing
 from tribolab.paper.data import PaperData
 from tribolab.paper.drawing import FigureAndText
 from tribolab.records.part_records import FigureRecord
 from tribolab.report.figures.stage import DRAWING, write_figure
-from tribolab.untyped import Json
 
 COMPUTED, SIMULATED = "computed here", "simulated"
 _STAND_IN = (

@@ -7,10 +7,10 @@ from dataclasses import asdict, dataclass, replace
 
 from scipy.optimize import brentq
 
-from tribolab.records.hurst_words import hurst_verdict
+from tribolab.core.untyped import Json
+from tribolab.records.surfaces.hurst_words import hurst_verdict
 from tribolab.studies import xu2026
 from tribolab.surface.self_affine import SelfAffine, moment
-from tribolab.untyped import Json
 
 _SLOPE = 3  # q^3 C: the integrand of the mean square slope
 _ENDLESS = 1e30  # 1/m

@@ -11,7 +11,7 @@ from tribolab.campaign.engine.stage import Progress
 from tribolab.campaign.pipeline import process
 from tribolab.campaign.settings.load import load_campaign
 from tribolab.campaign.surfaces.plan import plan_surfaces
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.rig import Protocol, Rig, simulate_campaign
 from tribolab.studies import xu2026
 

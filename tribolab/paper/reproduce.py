@@ -14,6 +14,7 @@ import pandas as pd
 from tribolab.campaign.engine.executor import completed, workers
 from tribolab.campaign.engine.stage import Progress, silent
 from tribolab.campaign.store.staging import staged
+from tribolab.core.untyped import Json
 from tribolab.paper import laboratory as lab
 from tribolab.paper.data import SURFACES, PaperData
 from tribolab.paper.document import context_of, paper_document, paper_sections
@@ -22,7 +23,6 @@ from tribolab.paper.work import PaperTask, compute
 from tribolab.records.parts import Row
 from tribolab.report import tables
 from tribolab.report.page.templating import framed
-from tribolab.untyped import Json
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome

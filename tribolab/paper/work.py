@@ -11,9 +11,9 @@ import xarray as xr
 from tribolab.campaign.store.data_files import write_data
 from tribolab.campaign.surfaces.scans import spectra_of_scans, usable_scans
 from tribolab.campaign.surfaces.stage import sources_of_surface
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
+from tribolab.core.provenance import made, named_sources, sha256_of
 from tribolab.fit.shear_stress import fit_shear_stress
-from tribolab.provenance import made, named_sources, sha256_of
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.records.frames import rows_of
 from tribolab.records.parts import Row

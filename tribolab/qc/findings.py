@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any, Never, NotRequired, TypedDict
 
 import numpy as np
 
-from tribolab.errors import ConfigError, nearest, shown
+from tribolab.core.errors import ConfigError, nearest, shown
+from tribolab.core.wording import Count
 from tribolab.qc.register import STATUSES, Check, Result
-from tribolab.words import Count
 
 if TYPE_CHECKING:
     import pandas as pd

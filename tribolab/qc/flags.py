@@ -23,8 +23,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribolab.pieces import anywhere, pieces
-from tribolab.room import filled, room
+from tribolab.arrays.chunks import anywhere, pieces
+from tribolab.arrays.scratch import filled, room
 
 if TYPE_CHECKING:
     import xarray as xr

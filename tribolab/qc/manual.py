@@ -15,14 +15,14 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from tribolab.arrays.chunks import pieces
+from tribolab.arrays.scratch import room
 from tribolab.friction.decisions.decide import DECISIONS
 from tribolab.friction.decisions.decision import ACCEPT, REJECT
 from tribolab.friction.decisions.rejected import rejected
-from tribolab.pieces import pieces
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import FAIL, GOOD, MISSING, SUSPECT
 from tribolab.qc.register import OBJECTIONS, Result
-from tribolab.room import room
 
 MANUAL, BIT = "manual", 26  # its name and bit in ``<variable>_qc_tests``, as of a check
 _ACCEPTED, _REJECTED = "accepted", "rejected"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from tribolab.errors import AnalysisError, shown
+from tribolab.core.errors import AnalysisError, shown
 from tribolab.qc.findings import Findings
 
 if TYPE_CHECKING:

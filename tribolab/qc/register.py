@@ -8,12 +8,12 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
+from tribolab.arrays.chunks import one_by_one, samples_where
+from tribolab.core.errors import ConfigError, nearest, shown
 from tribolab.core.limit import Limit
-from tribolab.errors import ConfigError, nearest, shown
-from tribolab.pieces import one_by_one, samples_where
+from tribolab.core.wording import Count
 from tribolab.qc.flags import FAIL, SUSPECT, is_uniform
-from tribolab.units import to_si
-from tribolab.words import Count
+from tribolab.units.conversion import to_si
 
 # From harmless to grave; the order decides what a summary shows.
 STATUSES = ("pass", "skipped", "suspect", "fail", "error")

@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.friction.oscillation.noise import quantisation_step
-from tribolab.medians import medians_of_rows
-from tribolab.pieces import anywhere, pieces
+from tribolab.arrays.chunks import anywhere, pieces
+from tribolab.arrays.medians import medians_of_rows
+from tribolab.arrays.scratch import filled
+from tribolab.friction.oscillation.spectrum.noise import quantisation_step
 from tribolab.qc.flags import GOOD, MISSING, NOT_EVALUATED, SUSPECT, uniform
-from tribolab.room import filled
 
 _BLOCK = 64  # samples whose noise is one: steps of a run may be as short
 _LOUDER = 1.6  # than the noise of a block, more than chance makes it of so few samples

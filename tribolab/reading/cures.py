@@ -5,7 +5,7 @@ from __future__ import annotations
 import shlex
 from pathlib import Path
 
-from tribolab.errors import Cure
+from tribolab.core.errors import Cure
 
 RUN, SURFACE = "[[run]]", "[[surface]]"
 

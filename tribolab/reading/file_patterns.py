@@ -5,7 +5,7 @@ from __future__ import annotations
 import glob
 from pathlib import Path
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 
 
 def is_pattern(path: str | Path) -> bool:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.dialect.find import is_scan, load_dialect, recognise
 from tribolab.reading.dialect.python_reader import PythonReader, with_columns
 from tribolab.reading.netcdf.seal import carries_seal

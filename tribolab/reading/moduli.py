@@ -9,12 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import Cure, ReadError, UnitError, shown
-from tribolab.quantities import unit_conversion
+from tribolab.core.errors import Cure, ReadError, UnitError, shown
 from tribolab.reading.modulus_tables import HEAD, Column, Table, find_table, numbers_of
 from tribolab.reading.raw.source import read_unchanged
-from tribolab.turns import reciprocal
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
+from tribolab.units.quantities import unit_conversion
+from tribolab.units.reciprocals import reciprocal
 
 SHEAR_TO_TENSILE = 3.0  # E = 2 (1 + nu) G of an incompressible solid
 _NO_UNIT = ("", "-", "1", "[]", "[-]", "[1]")

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError, shown
+from tribolab.core.errors import ReadError, shown
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import known_words, names, normalise_label
 from tribolab.reading.raw.opening import damage_told, isolated

@@ -7,8 +7,8 @@ from typing import Any, overload
 
 import xarray as xr
 
-from tribolab.aliases import PathLike
-from tribolab.errors import ReadError
+from tribolab.core.aliases import PathLike
+from tribolab.core.errors import ReadError
 from tribolab.reading.dialect.find import Instrument
 from tribolab.reading.file_patterns import is_pattern, matching
 from tribolab.reading.runs.logs import group_files

@@ -12,8 +12,8 @@ from typing import Literal, overload
 
 import xarray as xr
 
-from tribolab.aliases import PathLike
-from tribolab.errors import ReadError
+from tribolab.core.aliases import PathLike
+from tribolab.core.errors import ReadError
 from tribolab.reading import cures
 from tribolab.reading.dialect.find import Dialect, Instrument
 from tribolab.reading.raw.source import read_unchanged
@@ -37,7 +37,7 @@ from tribolab.reading.unknown_run import (
     left_open,
     measures_other_things,
 )
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 _TRACE = ", trace "
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 
 
 def schema_folder() -> Path:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tribolab.untyped import Json
+from tribolab.core.untyped import Json
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,7 +35,7 @@ def dataset_of(signals: Signals) -> xr.Dataset:
     from xarray.indexes import PandasIndex
 
     # late: it is about datasets
-    from tribolab.stamping import stamp
+    from tribolab.units.stamping import stamp
 
     return stamp(
         xr.Dataset(

@@ -11,8 +11,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar, Unpack
 
-from tribolab.aliases import PathLike
-from tribolab.errors import LacksError, ReadError, shown
+from tribolab.core.aliases import PathLike
+from tribolab.core.errors import LacksError, ReadError, shown
 from tribolab.reading import cures
 from tribolab.reading.dialect.find import Dialect, Instrument, UnknownFileError
 from tribolab.reading.interpret.unit_texts import converts, measures_something

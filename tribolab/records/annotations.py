@@ -10,7 +10,7 @@ from pydantic import Field, GetJsonSchemaHandler
 from pydantic.fields import FieldInfo
 from pydantic_core import CoreSchema
 
-from tribolab.untyped import Json
+from tribolab.core.untyped import Json
 
 Natural = Annotated[int, Field(ge=0)]
 _NUMBER = ["number", "null"]

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from tribolab.pieces import pieces
-from tribolab.untyped import Json
+from tribolab.arrays.chunks import pieces
+from tribolab.core.untyped import Json
 
 _TOP = 65534  # a value, as a share of its range; 65535 is "not a number"
 _WITHIN = 0.25  # of a sample's distance from its neighbours: how well a time is kept

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
+from tribolab.core.validity import reasons_of
 from tribolab.records.annotations import one_of
-from tribolab.validity import reasons_of
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from tribolab.words import many
+from tribolab.core.wording import many
 
 if TYPE_CHECKING:
     from tribolab.records.parts import RunOutcome, SurfaceOutcome

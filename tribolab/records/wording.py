@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
-from tribolab.validity import together
-from tribolab.words import MINUS, number
+from tribolab.core.validity import together
+from tribolab.core.wording import MINUS, number
 
 UNITS = {"friction_coefficient": "", "half_loop": " N", "friction_force": " N"}
 # whose standard deviation and error are those of the quantity
@@ -45,7 +45,7 @@ def validity_of(groups: Iterable[Any]) -> str:
     Parameters
     ----------
     groups
-        Datasets with the attribute ``validity_reasons``, see `tribolab.validity`.
+        Datasets with the attribute ``validity_reasons``, see `tribolab.core.validity`.
     """
     return together([data.attrs for data in groups])["validity_reasons"]
 

@@ -8,11 +8,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import pandas as pd
 
-from tribolab.records.joint_record import JointRecord, comparison_table_rows, parameter_table_rows
+from tribolab.records.models.joint_record import (
+    JointRecord,
+    comparison_table_rows,
+    parameter_table_rows,
+)
 from tribolab.records.part_records import CurveRecord, SurfaceRecord, SurfaceRows
 from tribolab.records.parts import Notice, Row
-from tribolab.records.run_record import RunRecord
-from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
+from tribolab.records.runs.run_record import RunRecord
+from tribolab.records.surfaces.surface_rows import ADHESION, CONTACT, ROUGHNESS
 from tribolab.records.wording import plain_value
 from tribolab.report import tables
 from tribolab.report.document.decisions import CURVES_AS_FOUND

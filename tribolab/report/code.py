@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-from tribolab.provenance import sha256_of, sha256_of_file
+from tribolab.core.provenance import sha256_of, sha256_of_file
 from tribolab.version import __version__
 
 _PACKAGE = Path(__file__).resolve().parents[1]

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pandas as pd
 
-from tribolab.errors import OutputError
+from tribolab.core.errors import OutputError
 from tribolab.figures.labels import column
-from tribolab.quantities import QUANTITIES
 from tribolab.report.tables import read_csv
+from tribolab.units.quantities import QUANTITIES
 
 WORKBOOK = "tables.xlsx"
 _MOST_ROWS = 1_048_574  # of a sheet, below names and units

@@ -8,9 +8,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tribolab.errors import ReadError, brief, nearest, shown
+from tribolab.core.errors import ReadError, brief, nearest, shown
+from tribolab.core.untyped import Json
 from tribolab.report import tables
-from tribolab.untyped import Json
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -11,10 +11,11 @@ from tribolab.campaign.engine.stage import Progress, begun, silent
 from tribolab.campaign.joint.stage import JointFits
 from tribolab.campaign.modes import Modes
 from tribolab.campaign.recorded import done_and_failed
+from tribolab.core.untyped import Json
 from tribolab.figures.spec import FigureSpec
 from tribolab.records.part_records import CurveRecord, FigureRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import Notice
-from tribolab.records.run_record import RunRecord
+from tribolab.records.runs.run_record import RunRecord
 from tribolab.report.campaign_tables import write_findings, write_tables
 from tribolab.report.document.decisions import curve_notices
 from tribolab.report.document.document import brief_run, report_document, report_head, write_json
@@ -47,7 +48,6 @@ from tribolab.report.live.starts import starts_of, static_figures
 from tribolab.report.page.page import prepare_page, write_page
 from tribolab.report.page.reviewing import review_data
 from tribolab.report.tables import SEVERITIES
-from tribolab.untyped import Json
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.catalogue import Store

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from tribolab.campaign.store.outcome import Outcome
 from tribolab.records.parts import CurveOutcome, number_of
-from tribolab.records.run_record import RunRecord
+from tribolab.records.runs.run_record import RunRecord
 
 _SLOWEST = 2  # speeds of each condition
 _APART = 1.2  # ratio of two speeds that are not one

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tribolab.errors import ConfigError, nearest, shown
+from tribolab.core.errors import ConfigError, nearest, shown
 
 FORMATS = ("csv", "xlsx", "parquet")
 

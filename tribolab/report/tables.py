@@ -11,8 +11,8 @@ from typing import IO, Any
 
 import pandas as pd
 
-from tribolab.errors import ReadError, brief
-from tribolab.provenance import without_controls
+from tribolab.core.errors import ReadError, brief
+from tribolab.core.provenance import without_controls
 from tribolab.records.parts import Notice, Row
 
 _CHUNK = 4_000  # rows that are in memory at once

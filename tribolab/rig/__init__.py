@@ -7,8 +7,8 @@ from tribolab.rig.files import write_run, write_scans
 from tribolab.rig.laws import DryLaw, StickSlip, StribeckLaw, friction_law, stick_slip
 from tribolab.rig.mixed_law import MixedLaw
 from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers, Protocol, Rig, Scatter
-from tribolab.rig.profiles import scans
 from tribolab.rig.runs import simulate_run
+from tribolab.rig.scans.profiles import scans
 from tribolab.rig.simulated import SimulatedRun, on_one_clock
 from tribolab.rig.traces import simulate_trace
 from tribolab.rig.truth import Truth, read_truth

@@ -17,17 +17,17 @@ from pathlib import Path
 import numpy as np
 
 from tribolab.contact.work_of_adhesion import PDMS_PMMA_GLYCEROL, work_of_adhesion_spread
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
+from tribolab.core.untyped import Json
 from tribolab.rig.faults import Fault
-from tribolab.rig.faulty_scans import fault_of_campaign, write_faulty_scans
 from tribolab.rig.files import FIRST_DAY, write_run, write_scans
 from tribolab.rig.laws import friction_law
 from tribolab.rig.parameters import Rig
-from tribolab.rig.profiles import scans
 from tribolab.rig.runs import run_name, simulate_run
-from tribolab.rig.scan_faults import ScanFault
+from tribolab.rig.scans.faults import ScanFault
+from tribolab.rig.scans.faulty import fault_of_campaign, write_faulty_scans
+from tribolab.rig.scans.profiles import scans
 from tribolab.studies import xu2026
-from tribolab.untyped import Json
 
 Law = Callable[[np.ndarray], np.ndarray]
 _NOTE = (
@@ -94,7 +94,7 @@ def simulate_campaign(
     faults
         Names of faults. Of runs (`tribolab.rig.faults.FAULTS`): each strikes one run, the first
         that it can happen in and that has none yet. Of scans
-        (`tribolab.rig.faulty_scans.SCAN_FAULTS_BY_NAME`): each strikes the scans of one surface, of
+        (`tribolab.rig.scans.faulty.SCAN_FAULTS_BY_NAME`): each strikes the scans of one surface, of
         which there are then as many as it takes to see it. The truth says which files carry it.
     progress
         Called as ``progress(stage, done, total)``.

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from tribolab.errors import ConfigError, nearest, shown
+from tribolab.arrays.broadcasting import of_lists
+from tribolab.core.errors import ConfigError, nearest, shown
 from tribolab.rig import strikes
 from tribolab.rig.simulated import SimulatedRun
-from tribolab.several import of_lists
 
 
 @dataclass(frozen=True)

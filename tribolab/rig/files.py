@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from tribolab.several import of_lists
+from tribolab.arrays.broadcasting import of_lists
 from tribolab.studies import xu2026
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribolab.errors import AnalysisError, nearest
+from tribolab.core.errors import AnalysisError, nearest
 from tribolab.rig.mixed_law import MixedLaw, mixed_law
 from tribolab.studies import xu2026
 

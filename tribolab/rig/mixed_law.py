@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
-from tribolab.errors import AnalysisError, Cure
+from tribolab.core.errors import AnalysisError, Cure
 from tribolab.studies import xu2026
 
 # The set speeds themselves, so that the truth there is the model's and not an interpolation's.

@@ -8,6 +8,8 @@ from dataclasses import asdict, is_dataclass
 import numpy as np
 import xarray as xr
 
+from tribolab.arrays.broadcasting import of_lists
+from tribolab.core.untyped import Json
 from tribolab.rig.calibration import Calibration
 from tribolab.rig.faults import inject
 from tribolab.rig.laws import StickSlip, friction_law, stick_slip
@@ -24,11 +26,9 @@ from tribolab.rig.sensors import (
 )
 from tribolab.rig.signals import make_signals
 from tribolab.rig.simulated import SimulatedRun
-from tribolab.several import of_lists
-from tribolab.stamping import stamp
 from tribolab.studies import xu2026
-from tribolab.units import to_si
-from tribolab.untyped import Json
+from tribolab.units.conversion import to_si
+from tribolab.units.stamping import stamp
 
 
 def run_name(surface: str, medium: str, normal_force: float, number: int) -> str:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import pandas as pd
 import xarray as xr
 
-from tribolab.several import of_lists
-from tribolab.untyped import Json
+from tribolab.arrays.broadcasting import of_lists
+from tribolab.core.untyped import Json
 
 
 @dataclass(frozen=True)

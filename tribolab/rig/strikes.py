@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
+from tribolab.core.untyped import Json
+from tribolab.core.wording import Count
 from tribolab.rig.simulated import SimulatedRun
-from tribolab.untyped import Json
-from tribolab.words import Count
 
 StrikeFacts = Json
 Struck = tuple[xr.Dataset, xr.Dataset, StrikeFacts]

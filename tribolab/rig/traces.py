@@ -7,11 +7,11 @@ from collections.abc import Callable
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, nearest
+from tribolab.arrays.broadcasting import of_lists
+from tribolab.core.errors import AnalysisError, nearest
 from tribolab.rig.noise import slow_noise
 from tribolab.rig.waves import JITTER, WAVES
-from tribolab.several import of_lists
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 _FINE = 400  # points in a period, for what the truth states
 

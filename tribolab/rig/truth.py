@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from tribolab.errors import ReadError
-from tribolab.untyped import Json
+from tribolab.core.errors import ReadError
+from tribolab.core.untyped import Json
 
 
 @dataclass(frozen=True)

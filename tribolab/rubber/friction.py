@@ -9,10 +9,10 @@ from scipy.special import erf
 
 from tribolab.contact.adhesion import adhesion
 from tribolab.contact.area import AreaTheory, area_of
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
+from tribolab.core.validity import LIMITS, examine, together
 from tribolab.rubber.modulus import Modulus, TabulatedModulus
 from tribolab.rubber.temperature import flash_temperature
-from tribolab.stamping import labelled, stamp
 from tribolab.surface.moments import (
     bin_integrals,
     cumulative,
@@ -20,8 +20,8 @@ from tribolab.surface.moments import (
     rms_slope,
     spectrum_arrays,
 )
-from tribolab.units import to_si
-from tribolab.validity import LIMITS, examine, together
+from tribolab.units.conversion import to_si
+from tribolab.units.stamping import labelled, stamp
 
 _PER_DECADE = 60  # wavenumbers, where the spectrum has no more nodes than that
 _ANGLES = 24  # Gauss-Legendre points on a quarter of a turn

@@ -9,9 +9,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.reading.moduli import read_modulus_table
-from tribolab.units import positive
+from tribolab.units.conversion import positive
 
 
 class Modulus(Protocol):

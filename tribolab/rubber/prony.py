@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribolab.errors import AnalysisError
-from tribolab.units import positive
+from tribolab.core.errors import AnalysisError
+from tribolab.units.conversion import positive
 
 
 @dataclass(frozen=True, eq=False)

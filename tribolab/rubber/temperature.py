@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from tribolab.errors import AnalysisError
-from tribolab.quantities import si_values
+from tribolab.core.errors import AnalysisError
 from tribolab.rubber.modulus import FractionalZener, TabulatedModulus
 from tribolab.rubber.prony import PronySeries
-from tribolab.units import positive
+from tribolab.units.conversion import positive
+from tribolab.units.quantities import si_values
 
 Shiftable = FractionalZener | TabulatedModulus | PronySeries
 _FARTHEST = 100.0  # K above the reference, up to where the constants are trusted

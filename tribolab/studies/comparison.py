@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 
 import pandas as pd
 
-from tribolab.errors import AnalysisError, nearest
+from tribolab.core.errors import AnalysisError, nearest
 from tribolab.studies import comparison_contact, comparison_lubrication, xu2026
 from tribolab.studies.published import Published
 from tribolab.studies.theory import Theory

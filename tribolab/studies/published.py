@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from tribolab.errors import AnalysisError, ReadError
+from tribolab.core.errors import AnalysisError, ReadError
 
 # What one printed unit is in SI; "h_rms" is a multiple of the roughness.
 _SI = {"1": 1.0, "m/s": 1.0, "h_rms": 1.0, "MPa": 1e6, "mm": 1e-3, "um": 1e-6, "mJ/m2": 1e-3}

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.stamping import labelled, stamp
 from tribolab.studies import xu2026
+from tribolab.units.stamping import labelled, stamp
 
 SurfaceGroups = dict[str, xr.Dataset]
 # Work of adhesion [J/m2] as the paper rounds it and goes on with.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pandas as pd
 
+from tribolab.core.wording import many
 from tribolab.studies.verdict import (
     BY_CONSTRUCTION,
     DIFFERS,
@@ -13,7 +14,6 @@ from tribolab.studies.verdict import (
     WIDE,
     room_text,
 )
-from tribolab.words import many
 
 # Each status, in the words that follow one number and those that follow several.
 _WORDS = {

@@ -18,7 +18,7 @@ from tribolab.contact.line import rough_line_contact
 from tribolab.contact.persson import contact_area_ratio
 from tribolab.contact.separation import separation_table
 from tribolab.contact.work_of_adhesion import PDMS_PMMA_GLYCEROL, work_of_adhesion_spread
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.factors import flow_factors
 from tribolab.lubrication.stribeck import stribeck_curve
 from tribolab.rubber.friction import viscoelastic_friction

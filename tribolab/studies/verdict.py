@@ -14,8 +14,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from tribolab.core.wording import number, percent
 from tribolab.studies.published import Published
-from tribolab.words import number, percent
 
 REPRODUCED = "reproduced"
 BY_CONSTRUCTION = "by construction"

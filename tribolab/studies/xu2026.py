@@ -20,10 +20,10 @@ import xarray as xr
 
 from tribolab.contact.geometry import LineContact
 from tribolab.contact.work_of_adhesion import PDMS_PMMA_GLYCEROL
-from tribolab.errors import AnalysisError, nearest
-from tribolab.stamping import stamp
+from tribolab.core.errors import AnalysisError, nearest
 from tribolab.studies.published import Published, read_published
 from tribolab.surface.self_affine import SelfAffine, psd_2d, tabulate
+from tribolab.units.stamping import stamp
 
 CITATION = (
     "R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, Adhesion-controlled sliding and the "

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
-from tribolab.stamping import stamp
+from tribolab.core.errors import AnalysisError
+from tribolab.units.stamping import stamp
 
 
 def areal_roughness(scans: xr.Dataset) -> xr.Dataset:

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, Cure
-from tribolab.provenance import history_line
-from tribolab.stamping import stamp
+from tribolab.core.errors import AnalysisError, Cure
+from tribolab.core.provenance import history_line
 from tribolab.surface.limits import MAX_FITTED_HURST, MAX_SURE_HURST, MIN_HURST
 from tribolab.surface.moments import at_wavenumber, spectrum_arrays
-from tribolab.units import to_si
+from tribolab.units.conversion import to_si
+from tribolab.units.stamping import stamp
 
 AS_MEASURED, TO_SMALL, TO_LARGE = 0, 1, 2
 _PER_DECADE = 20

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
-from tribolab.stamping import stamp
-from tribolab.units import to_si
+from tribolab.core.errors import AnalysisError
+from tribolab.units.conversion import to_si
+from tribolab.units.stamping import stamp
 
 # alpha = sqrt(ln 2 / pi): a wave as long as the cut-off keeps half of its amplitude
 _ALPHA = float(np.sqrt(np.log(2) / np.pi))

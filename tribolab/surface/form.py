@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, Cure, nearest, shown
-from tribolab.provenance import history_line
-from tribolab.stamping import stamp
+from tribolab.core.errors import AnalysisError, Cure, nearest, shown
+from tribolab.core.provenance import history_line
 from tribolab.surface.gaps import bridged
 from tribolab.surface.level import rounding_only
+from tribolab.units.stamping import stamp
 
 # Polynomial order that a form uses up: so many of the longest waves go with it.
 _FORMS = {"mean": 0, "tilt": 1, "circle": 2, "polynomial": None}

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 
 _TRIALS = 16  # places where the gaps are laid
 _MOST = 0.5  # share of missing heights from which on a scan says too little

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 
 # Share of the largest height below which a deviation is rounding: floats carry 16 digits, of
 # which a fit of the form spoils a few; the best gauges resolve 8 and are never meant.

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 
 
 def spectrum_arrays(psd: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:

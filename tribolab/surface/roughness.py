@@ -8,16 +8,16 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, Cure
-from tribolab.provenance import history_line
-from tribolab.several import over_dims
-from tribolab.stamping import stamp
+from tribolab.arrays.broadcasting import over_dims
+from tribolab.core.errors import AnalysisError, Cure
+from tribolab.core.provenance import history_line
 from tribolab.surface.filters import gaussian_filter
 from tribolab.surface.gaps import bridged, gap_effect, gaps_in, without_ends
 from tribolab.surface.level import level_rows, refuse_level, rounding_only
 from tribolab.surface.moments import cumulative, spectrum_arrays
-from tribolab.surface.tails import long_holes, tails
-from tribolab.units import positive, to_si
+from tribolab.surface.spectra.tails import long_holes, tails
+from tribolab.units.conversion import positive, to_si
+from tribolab.units.stamping import stamp
 
 STANDARD_CUTOFF = 0.8e-3  # m, the cut-off of most surfaces (ISO 21920-3)
 _LENGTHS = 5  # cut-offs that a shorter profile is long

@@ -8,9 +8,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from tribolab.errors import AnalysisError
-from tribolab.stamping import stamp
-from tribolab.units import positive
+from tribolab.core.errors import AnalysisError
+from tribolab.units.conversion import positive
+from tribolab.units.stamping import stamp
 
 
 @dataclass(frozen=True)

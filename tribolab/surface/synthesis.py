@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
-from tribolab.stamping import stamp
+from tribolab.core.errors import AnalysisError
 from tribolab.surface.moments import at_wavenumber, cumulative, spectrum_arrays
 from tribolab.surface.self_affine import SelfAffine, psd_1d, psd_2d, rms_roughness
+from tribolab.units.stamping import stamp
 
 
 def synthesise_profiles(

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 import tribolab as tl
-from tribolab.errors import TribolabError
+from tribolab.core.errors import TribolabError
 from tricky.files import Column, dialect, table
 from tricky.judge import Verdict, main_file, write_dialects
 from tricky.trial import Trial

@@ -20,7 +20,7 @@ import xarray as xr
 from scipy.stats import norm
 
 import tribolab as tl
-from tribolab.errors import TribolabError
+from tribolab.core.errors import TribolabError
 from tricky.trial import Trial
 
 CLEAR = ("pass", "skipped")

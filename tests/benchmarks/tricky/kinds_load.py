@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 from tricky.trial import Trial, Truth, sound, tricky
 
 Leg = tuple[float, int, float]  # duration [s], direction, share of the load

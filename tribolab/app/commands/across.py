@@ -9,7 +9,7 @@ import typer
 
 from tribolab.app.reported import Debug, leaving, reported
 from tribolab.app.streams import say
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 
 
 def compare(
@@ -47,8 +47,8 @@ def compare(
     """
     with reported(debug):
         # late: starting stays quick
-        from tribolab.across.compare import compare as compared_with
-        from tribolab.across.compare_page import comparison_verdict, write_comparisons
+        from tribolab.comparison.compare import compare as compared_with
+        from tribolab.comparison.compare_page import comparison_verdict, write_comparisons
 
         if len(folders) == 1 and not by:
             raise ConfigError("one folder is compared with nothing: name another, or say --by")
@@ -97,9 +97,9 @@ def repeatability(
     """
     with reported(debug, audience="campaign"):
         # late: starting stays quick
-        from tribolab.across.repeatability import repeatability as repeated
-        from tribolab.across.repeatability import repeatability_verdict
-        from tribolab.across.repeatability_page import write_repeatability
+        from tribolab.comparison.repeatability import repeatability as repeated
+        from tribolab.comparison.repeatability import repeatability_verdict
+        from tribolab.comparison.repeatability_page import write_repeatability
 
         told = repeated(campaign, by)
         name = campaign.resolve().parent.name if campaign.is_file() else campaign.resolve().name
@@ -129,9 +129,9 @@ def history(
     """
     with reported(debug):
         # late: starting stays quick
-        from tribolab.across.history import history as followed
-        from tribolab.across.history_page import history_verdict, write_history
-        from tribolab.across.watched import results_below
+        from tribolab.comparison.history import history as followed
+        from tribolab.comparison.history_page import history_verdict, write_history
+        from tribolab.comparison.watched import results_below
         from tribolab.metrology.control_charts import DEFAULT_RULES
 
         told = followed(
@@ -178,9 +178,9 @@ def plan(
     """
     with reported(debug):
         # late: starting stays quick
-        from tribolab.across.planning import measuring_plan, plan_text
-        from tribolab.across.planning_page import write_plan
-        from tribolab.units import to_si
+        from tribolab.comparison.planning import measuring_plan, plan_text
+        from tribolab.comparison.planning_page import write_plan
+        from tribolab.units.conversion import to_si
 
         if (standard_error is None) == (half_interval is None):
             raise ConfigError("state the precision to reach, e.g. --half-interval 0.005")

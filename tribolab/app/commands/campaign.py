@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tribolab.app.progress import progress_bars
+from tribolab.app.questions.stated import LoadOption, RadiusOption, RateOption, SpeedOption, Stated
 from tribolab.app.reported import (
     UNREADABLE,
     Debug,
@@ -18,7 +19,6 @@ from tribolab.app.reported import (
     leaving,
     reported,
 )
-from tribolab.app.stated import LoadOption, RadiusOption, RateOption, SpeedOption, Stated
 from tribolab.app.streams import say
 
 if TYPE_CHECKING:
@@ -171,13 +171,13 @@ def run(
     """
     with reported(debug, audience="campaign"):
         # late: starting stays quick
-        from tribolab.app.describing import describe_by_questions
         from tribolab.app.first_campaign import (
             campaign_file,
             results_of,
             why_unread,
             withdraw,
         )
+        from tribolab.app.info.describing import describe_by_questions
         from tribolab.app.run import run_campaign, run_here_if_lost
 
         run_it = partial(run_here_if_lost, say=partial(say, to_stderr=True))

@@ -11,6 +11,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from tribolab.app.progress import progress_bars
+from tribolab.app.questions.stated import (
+    LoadOption,
+    RadiusOption,
+    RateOption,
+    SpeedOption,
+    Stated,
+    describe_with,
+)
 from tribolab.app.reported import (
     UNREADABLE,
     Debug,
@@ -19,14 +27,6 @@ from tribolab.app.reported import (
     Quiet,
     leaving,
     reported,
-)
-from tribolab.app.stated import (
-    LoadOption,
-    RadiusOption,
-    RateOption,
-    SpeedOption,
-    Stated,
-    describe_with,
 )
 from tribolab.app.streams import say
 
@@ -137,7 +137,7 @@ def info(
     """
     with reported(debug):
         if write is not None:
-            from tribolab.app.describing import describe  # late: starting stays quick
+            from tribolab.app.info.describing import describe  # late: starting stays quick
 
             describe(files, write, write.stem, force=force, ask=ask)
             return
@@ -148,7 +148,7 @@ def info(
 
         with importing():
             # late: starting stays quick
-            from tribolab.app.file_info import Descriptions
+            from tribolab.app.info.file_info import Descriptions
             from tribolab.campaign.engine.stage import perform
             from tribolab.reading.moduli import holds_modulus
 
@@ -160,7 +160,7 @@ def info(
             else:
                 say("\n".join(description.lines))
         if instrument is None and all(description.error for description in described):
-            from tribolab.app.describing import describe_by_questions  # late: quick starts
+            from tribolab.app.info.describing import describe_by_questions  # late: quick starts
 
             if describe_by_questions(files, keep=False) is not None:
                 raise typer.Exit
@@ -182,7 +182,7 @@ def dialect(
 ) -> None:
     """Describe an unknown instrument: as `tribolab info FILE --write NAME.toml`."""
     with reported(debug):
-        from tribolab.app.describing import describe  # late: starting stays quick
+        from tribolab.app.info.describing import describe  # late: starting stays quick
 
         describe(files, output, name, force=force, ask=ask)
 

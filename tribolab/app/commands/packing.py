@@ -10,7 +10,7 @@ import typer
 from tribolab.app.progress import progress_bars
 from tribolab.app.reported import UNREADABLE, Debug, Jobs, Quiet, reported
 from tribolab.app.streams import say
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
 
 
 def pack(
@@ -42,7 +42,7 @@ def pack(
     """
     with reported(debug):
         # late: starting stays quick
-        from tribolab.deposit import pack as packing
+        from tribolab.archive import pack as packing
 
         if results.is_file():
             raise ConfigError(

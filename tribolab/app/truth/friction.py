@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from tribolab.campaign.store.outcome import Outcome
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.reading.netcdf.netcdf import read_groups
 from tribolab.rig import read_truth
 

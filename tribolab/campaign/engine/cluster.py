@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from typing import Any
 
-from tribolab.errors import ConfigError, OutputError
-from tribolab.threads import one_thread
+from tribolab.arrays.threads import one_thread
+from tribolab.core.errors import ConfigError, OutputError
 
 DASK_TIMEOUT = "20s"
 LOOK = 1.0  # s between two looks at a cluster

@@ -12,10 +12,10 @@ from concurrent.futures import (
 from queue import Empty, SimpleQueue
 from typing import Any
 
+from tribolab.arrays.threads import one_thread
 from tribolab.campaign.engine.cluster import LOOK, Cluster, ClusterGone, dask_executor, gone
 from tribolab.campaign.engine.pool import LastingPool, WorkerDied
-from tribolab.errors import ConfigError, brief
-from tribolab.threads import one_thread
+from tribolab.core.errors import ConfigError, brief
 
 
 def default_jobs() -> int:

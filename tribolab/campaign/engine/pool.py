@@ -14,7 +14,7 @@ from functools import partial
 from typing import Any
 
 from tribolab.campaign.engine.processes import MASKS, Fresh, begin_worker
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 
 if sys.platform == "linux":  # macOS can copy a process, but some of its libraries do not bear it
     from tribolab.campaign.engine.nursery import Copied, Nursery

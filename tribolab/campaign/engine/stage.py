@@ -13,7 +13,7 @@ from concurrent.futures import Executor, Future
 from typing import ClassVar, Generic, TypeVar
 
 from tribolab.campaign.engine.executor import completed
-from tribolab.errors import OutputError
+from tribolab.core.errors import OutputError
 
 Task = TypeVar("Task")
 Record = TypeVar("Record")

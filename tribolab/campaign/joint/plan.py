@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tribolab.core.untyped import Arguments
 from tribolab.records.parts import ModelOutcome
-from tribolab.untyped import Arguments
 
 if TYPE_CHECKING:
     from tribolab.contact.area import AreaTheory

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 from tribolab.campaign.joint.plan import JointDry, JointTask, Work
 from tribolab.campaign.recorded import Recorded
-from tribolab.campaign.settings.run_names import safe_name
+from tribolab.campaign.settings.naming.run_names import safe_name
 from tribolab.campaign.store.catalogue import Store, fingerprint_of
-from tribolab.provenance import sha256_of
-from tribolab.records.joint_record import JointRecord
+from tribolab.core.provenance import sha256_of
+from tribolab.core.wording import explain
+from tribolab.records.models.joint_record import JointRecord
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import ModelOutcome, number_of
-from tribolab.words import explain
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign

@@ -10,14 +10,14 @@ import numpy as np
 
 from tribolab.campaign.joint.plan import JointDry, JointTask, Work
 from tribolab.campaign.store.data_files import read_data, write_data
-from tribolab.records.joint_record import (
+from tribolab.core.untyped import Arguments
+from tribolab.core.wording import force_text
+from tribolab.records.models.joint_record import (
     JointRecord,
     correlation_rows,
     model_rows_of_comparison,
     parameter_rows,
 )
-from tribolab.untyped import Arguments
-from tribolab.words import force_text
 
 if TYPE_CHECKING:
     import xarray as xr

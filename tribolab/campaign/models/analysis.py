@@ -12,7 +12,9 @@ from tribolab.campaign.models.plan import PlannedModel
 from tribolab.campaign.store.data_files import optional_data, read_data
 from tribolab.contact.area import other_area
 from tribolab.contact.geometry import Contact, make_contact
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
+from tribolab.core.untyped import Arguments
+from tribolab.core.wording import explain
 from tribolab.fit.model_inputs import model_inputs, moved_friction
 from tribolab.fit.model_uncertainty import model_uncertainty
 from tribolab.fit.shear_stress import fit_shear_stress
@@ -22,9 +24,7 @@ from tribolab.lubrication.parameters import Interface, Liquid, Solver, parameter
 from tribolab.lubrication.solved_curve import solve_curve
 from tribolab.lubrication.stribeck import with_shear_stress
 from tribolab.records.parts import Finding, beyond_limits
-from tribolab.stamping import stamp
-from tribolab.untyped import Arguments
-from tribolab.words import explain
+from tribolab.units.stamping import stamp
 
 if TYPE_CHECKING:
     from tribolab.fit.shear_stress_fit import ShearStressFit

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribolab.provenance import joined_sources, named_sources, sha256_of
-from tribolab.untyped import Arguments
+from tribolab.core.provenance import joined_sources, named_sources, sha256_of
+from tribolab.core.untyped import Arguments
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign

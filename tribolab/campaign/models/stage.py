@@ -13,12 +13,12 @@ from tribolab.campaign.models.plan import PlannedModel, plan_models
 from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.store.catalogue import Store, fingerprint_of
 from tribolab.campaign.store.data_files import optional_data, write_data
-from tribolab.errors import OutputError
-from tribolab.provenance import made
+from tribolab.core.errors import OutputError
+from tribolab.core.provenance import made
+from tribolab.core.untyped import Json
+from tribolab.core.wording import explain
 from tribolab.records.part_records import CurveRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import Finding, ModelOutcome
-from tribolab.untyped import Json
-from tribolab.words import explain
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -108,7 +108,7 @@ def process_model(task: ModelTask) -> ModelRecord:
     """
     # late: starting stays quick
     from tribolab.campaign.models.analysis import analyse_model
-    from tribolab.records.model_rows import model_rows
+    from tribolab.records.models.model_rows import model_rows
 
     began = time.monotonic()
     model = task.model

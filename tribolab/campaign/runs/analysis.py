@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from tribolab.arrays.scratch import let_go
 from tribolab.campaign.runs.reading import Earlier, earlier_signals, note_reading
 from tribolab.campaign.runs.zeros import attributes
 from tribolab.campaign.settings.plan import PlannedRun
-from tribolab.errors import ConfigError
-from tribolab.room import let_go
-from tribolab.stamping import stamp
+from tribolab.core.errors import ConfigError
+from tribolab.units.stamping import stamp
 
 if TYPE_CHECKING:
     import xarray as xr

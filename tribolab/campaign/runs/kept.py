@@ -8,14 +8,14 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.runs.stage import RunCame, keep_earlier
-from tribolab.campaign.settings.named import is_named
+from tribolab.campaign.settings.naming.named import is_named
+from tribolab.campaign.settings.naming.run_names import safe_name
 from tribolab.campaign.settings.review import review_beside
-from tribolab.campaign.settings.run_names import safe_name
 from tribolab.campaign.store.kept import GONE, VERDICTS, kept_text
+from tribolab.core.wording import LOAD_STATED
 from tribolab.friction.decisions.decision import REJECT, Decision
 from tribolab.records.parts import RunOutcome
-from tribolab.records.run_record import DecisionRow, RunRecord
-from tribolab.words import LOAD_STATED
+from tribolab.records.runs.run_record import DecisionRow, RunRecord
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from tribolab.words import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES, load_label
+from tribolab.core.wording import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES, load_label
 
 if TYPE_CHECKING:
     import xarray as xr

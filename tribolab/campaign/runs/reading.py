@@ -14,16 +14,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from tribolab.campaign.runs.sources import sources_of_run
 from tribolab.campaign.store.catalogue import fingerprint_of
-from tribolab.errors import ReadError
-from tribolab.provenance import as_text, sha256_of
+from tribolab.core.errors import ReadError
+from tribolab.core.provenance import as_text, sha256_of
 from tribolab.reading.dialect.zero_reading import parse_zero
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from tribolab.campaign.settings.plan import PlannedRun
+    from tribolab.core.untyped import Json
     from tribolab.records.parts import Source
-    from tribolab.untyped import Json
 
 READING = "reading"  # attribute of a data file's run: its mark, and what the analysis changed
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.runs.loads import rounded_load
-from tribolab.records.run_record import RunRecord
-from tribolab.words import LOAD_STATED
+from tribolab.core.wording import LOAD_STATED
+from tribolab.records.runs.run_record import RunRecord
 
 if TYPE_CHECKING:
     from tribolab.campaign.runs.stage import RunCame

@@ -8,7 +8,7 @@ import xarray as xr
 from tribolab.friction.running_in.history import History, histories_of
 from tribolab.friction.running_in.settling import blocks_of
 from tribolab.records.parts import Row
-from tribolab.records.running_in_record import RunningIn
+from tribolab.records.runs.running_in_record import RunningIn
 from tribolab.records.wording import NORMAL, plain_value
 
 _MOST_POINTS = 384  # of friction along a run that figures draw

@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tribolab.provenance import as_text, sha256_of_file
+from tribolab.core.provenance import as_text, sha256_of_file
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.plan import PlannedRun
+    from tribolab.core.untyped import Json
     from tribolab.records.parts import Source
-    from tribolab.untyped import Json
 
 
 def sources_of_run(run: PlannedRun, attrs: Json) -> tuple[Source, ...]:

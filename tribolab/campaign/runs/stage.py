@@ -10,6 +10,7 @@ from typing import NamedTuple, Self
 
 import xarray as xr
 
+from tribolab.arrays.scratch import tidy_up
 from tribolab.campaign.engine.stage import Stage
 from tribolab.campaign.runs.analysis import QUALITY, analyse_run, run_labels
 from tribolab.campaign.runs.loads import load_of, rounded_load
@@ -19,15 +20,14 @@ from tribolab.campaign.runs.zeros import zero_of
 from tribolab.campaign.settings.plan import PlannedRun
 from tribolab.campaign.store.catalogue import Entry, Store, fingerprint_of
 from tribolab.campaign.store.data_files import write_data
-from tribolab.errors import AnalysisError, OutputError, told
+from tribolab.core.errors import AnalysisError, OutputError, told
+from tribolab.core.provenance import made
+from tribolab.core.untyped import Json
+from tribolab.core.wording import LOAD_STATED, explain
 from tribolab.friction.decisions.rejected import rejected
-from tribolab.provenance import made
 from tribolab.records.parts import Notice, PageTrace, Row, RunOutcome, RunZero, Source
-from tribolab.records.run_record import RunFacts, RunRecord
-from tribolab.records.traces import page_trace, trace_size
-from tribolab.room import tidy_up
-from tribolab.untyped import Json
-from tribolab.words import LOAD_STATED, explain
+from tribolab.records.runs.run_record import RunFacts, RunRecord
+from tribolab.records.runs.traces import page_trace, trace_size
 
 _KIND = "run"
 
@@ -201,10 +201,10 @@ def process_run(task: RunTask) -> RunAnswer:
     """
     # late: starting stays quick
     from tribolab.campaign.runs.running_in import running_in_of
-    from tribolab.records.decision_rows import not_applied
     from tribolab.records.frames import plain_rows, stick_slip_columns
-    from tribolab.records.notices import notices_of
-    from tribolab.records.run_facts import facts_of
+    from tribolab.records.runs.decision_rows import not_applied
+    from tribolab.records.runs.notices import notices_of
+    from tribolab.records.runs.run_facts import facts_of
 
     began = time.monotonic()
     run = task.run

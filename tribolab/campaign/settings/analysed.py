@@ -16,8 +16,8 @@ from tribolab.campaign.settings.fields import (
     SomeText,
 )
 from tribolab.campaign.settings.table import Table
-from tribolab.errors import ConfigError, TribolabError, nearest, shown
-from tribolab.untyped import Arguments
+from tribolab.core.errors import ConfigError, TribolabError, nearest, shown
+from tribolab.core.untyped import Arguments
 
 
 class Segments(Table):

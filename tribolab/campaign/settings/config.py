@@ -24,8 +24,8 @@ from tribolab.campaign.settings.media import (
 )
 from tribolab.campaign.settings.table import Table
 from tribolab.campaign.settings.theory import Joint, Model, Rubber
+from tribolab.core.untyped import Arguments, Json
 from tribolab.reading.dialect.uncertainty import Uncertainty
-from tribolab.untyped import Arguments, Json
 
 CAMPAIGN_SCHEMA_FILE = "campaign.schema.json"
 

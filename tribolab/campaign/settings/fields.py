@@ -17,11 +17,11 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import core_schema
 
 from tribolab.campaign.settings.name_pattern import NamePattern
-from tribolab.errors import UnitError, shown
+from tribolab.core.errors import UnitError, shown
+from tribolab.core.untyped import Json
 from tribolab.friction.running_in.amount import discard_amount
 from tribolab.reading.dialect.zero_reading import parse_zero
-from tribolab.units import to_si
-from tribolab.untyped import Json
+from tribolab.units.conversion import to_si
 
 _NUMBER_WITH_UNIT = r"^\s*[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[^\s\d].*$"
 

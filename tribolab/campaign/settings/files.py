@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 from tribolab.campaign.settings.problems import SettingsProblem
 from tribolab.campaign.settings.review import REVIEW_FILE
-from tribolab.errors import nearest, shown
-from tribolab.provenance import as_text, sha256_of_file
+from tribolab.core.errors import nearest, shown
+from tribolab.core.provenance import as_text, sha256_of_file
 from tribolab.reading.dialect.zero_reading import parse_zero
 
 if TYPE_CHECKING:

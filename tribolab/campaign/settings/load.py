@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from tribolab.campaign.settings.config import Campaign
-from tribolab.campaign.settings.files_named import with_named_parts
-from tribolab.campaign.settings.names import of_names
+from tribolab.campaign.settings.naming.files_named import with_named_parts
+from tribolab.campaign.settings.naming.names import of_names
 from tribolab.campaign.settings.plan import PlannedRun, plan_runs
 from tribolab.campaign.settings.toml_file import open_settings, settings_path
 

@@ -19,7 +19,7 @@ from tribolab.campaign.settings.fields import (
     ZeroPlace,
 )
 from tribolab.campaign.settings.table import Table
-from tribolab.untyped import Arguments
+from tribolab.core.untyped import Arguments
 
 if TYPE_CHECKING:
     from tribolab.contact.geometry import LineContact, PointContact

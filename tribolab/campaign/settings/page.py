@@ -8,9 +8,9 @@ from typing import Any
 
 from tribolab.campaign.settings.config import campaign_schema
 from tribolab.friction.segments.find import find_segments
-from tribolab.quantities import QUANTITIES, Quantity
 from tribolab.reading.dialect.uncertainty import NAMES
-from tribolab.turns import reciprocal
+from tribolab.units.quantities import QUANTITIES, Quantity
+from tribolab.units.reciprocals import reciprocal
 
 CAMPAIGN_PAGE = "CAMPAIGN.md"
 _HEAD = """# The campaign file

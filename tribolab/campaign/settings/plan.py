@@ -13,17 +13,17 @@ from tribolab.campaign.settings.files import (
     resolve_patterns,
     sha256_of_dialect,
 )
-from tribolab.campaign.settings.files_named import named_by_files
 from tribolab.campaign.settings.name_pattern import NamePattern
+from tribolab.campaign.settings.naming.files_named import named_by_files
+from tribolab.campaign.settings.naming.run_names import unique_names
 from tribolab.campaign.settings.problems import SettingsProblem, message
 from tribolab.campaign.settings.review import review_beside
-from tribolab.campaign.settings.run_names import unique_names
 from tribolab.campaign.settings.toml_lines import line_of
-from tribolab.errors import ConfigError
+from tribolab.core.errors import ConfigError
+from tribolab.core.provenance import sha256_of, sha256_of_file
+from tribolab.core.untyped import Arguments, Json
 from tribolab.friction.decisions.decision import Decision
-from tribolab.provenance import sha256_of, sha256_of_file
 from tribolab.reading.dialect.zero_reading import parse_zero
-from tribolab.untyped import Arguments, Json
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign

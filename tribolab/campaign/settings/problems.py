@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from pydantic import BaseModel, ValidationError
 
 from tribolab.campaign.settings.toml_lines import line_of
-from tribolab.errors import nearest, shown
+from tribolab.core.errors import nearest, shown
 
 if TYPE_CHECKING:
     pass

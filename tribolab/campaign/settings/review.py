@@ -12,10 +12,10 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from tribolab.campaign.settings.fields import Si, SomeText
 from tribolab.campaign.settings.problems import SettingsProblem, message
 from tribolab.campaign.settings.toml_file import Opened, open_settings, settings_path
-from tribolab.errors import TribolabError, nearest, shown
+from tribolab.core.errors import TribolabError, nearest, shown
+from tribolab.core.untyped import Json
 from tribolab.friction.decisions.decision import Decision
 from tribolab.reading.dialect.switches import NoSwitches
-from tribolab.untyped import Json
 
 REVIEW_FILE = "review.toml"
 REVIEW_SCHEMA_FILE = "review.schema.json"

@@ -10,9 +10,9 @@ from typing import Generic, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from tribolab.campaign.settings import problems
+from tribolab.core.errors import ConfigError, ReadError, shown
 from tribolab.core.limit import Limit
-from tribolab.errors import ConfigError, ReadError, shown
-from tribolab.provenance import without_controls
+from tribolab.core.provenance import without_controls
 from tribolab.reading.raw.source import check_regular
 
 MOST_TABLES = Limit(

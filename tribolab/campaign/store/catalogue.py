@@ -23,9 +23,9 @@ from typing import Any, Generic, NamedTuple, TypeVar
 from pydantic import TypeAdapter, ValidationError
 
 from tribolab.campaign.store.data_files import link
-from tribolab.provenance import sha256_of, sha256_of_file
+from tribolab.core.provenance import sha256_of, sha256_of_file
 from tribolab.records.parts import PageTrace, Source
-from tribolab.records.run_record import RunRecord
+from tribolab.records.runs.run_record import RunRecord
 
 CATALOGUE = "catalogue.sqlite"
 _FORMAT = "1"

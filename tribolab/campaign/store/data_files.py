@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribolab.errors import OutputError, ReadError, TribolabError, brief
+from tribolab.core.errors import OutputError, ReadError, TribolabError, brief
 
 if TYPE_CHECKING:
     import xarray as xr

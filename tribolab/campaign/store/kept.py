@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from tribolab.campaign.store.catalogue import Store
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.records.part_records import ModelRecord, SurfaceRecord
 from tribolab.records.parts import Finding
 

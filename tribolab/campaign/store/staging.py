@@ -25,7 +25,7 @@ from typing import IO
 from tribolab.campaign.store.catalogue import CATALOGUE
 from tribolab.campaign.store.data_files import CURES
 from tribolab.campaign.store.ledger import MARKER, Ledger, other_name
-from tribolab.errors import ConfigError, OutputError
+from tribolab.core.errors import ConfigError, OutputError
 
 _RENAME_EXCHANGE = 2
 _AT_FDCWD = -100

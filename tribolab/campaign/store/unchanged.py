@@ -14,7 +14,7 @@ from tribolab.campaign.settings.review import REVIEW_FILE, lost_decisions
 from tribolab.campaign.store.catalogue import CATALOGUE, Catalogue, Identity
 from tribolab.campaign.store.ledger import Ledger
 from tribolab.campaign.store.outcome import OpenOutcome, Outcome
-from tribolab.provenance import sha256_of, sha256_of_file
+from tribolab.core.provenance import sha256_of, sha256_of_file
 from tribolab.records.parts import (
     CurveOutcome,
     ModelOutcome,

@@ -23,11 +23,11 @@ from tribolab.contact.limits import line_limits
 from tribolab.contact.line import rough_line_contact
 from tribolab.contact.persson import contact_area_ratio, mean_separation
 from tribolab.contact.point import across_the_middle, rough_point_contact
-from tribolab.errors import ReadError, TribolabError
+from tribolab.core.errors import ReadError, TribolabError
+from tribolab.core.validity import together
+from tribolab.core.wording import explain
 from tribolab.records.parts import Finding, beyond_limits
-from tribolab.stamping import labelled, stamp
-from tribolab.validity import together
-from tribolab.words import explain
+from tribolab.units.stamping import labelled, stamp
 
 if TYPE_CHECKING:
     from tribolab.campaign.surfaces.plan import PlannedSurface

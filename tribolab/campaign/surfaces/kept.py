@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.settings.named import is_named
+from tribolab.campaign.settings.naming.named import is_named
 from tribolab.campaign.store.kept import GONE, VERDICTS, kept_record
 from tribolab.records.part_records import SurfaceRecord
 from tribolab.records.parts import Finding

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.settings.files import instrument_of, label_of, scans_of, sha256_of_dialect
-from tribolab.campaign.settings.run_names import distinct, safe_name
-from tribolab.provenance import sha256_of, sha256_of_file
-from tribolab.untyped import Arguments
+from tribolab.campaign.settings.naming.run_names import distinct, safe_name
+from tribolab.core.provenance import sha256_of, sha256_of_file
+from tribolab.core.untyped import Arguments
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign

@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import xarray as xr
 
+from tribolab.core.wording import number
 from tribolab.records.parts import Finding
 from tribolab.rubber.friction import viscoelastic_friction
 from tribolab.rubber.modulus import PDMS_STAND_IN, TabulatedModulus, read_modulus
 from tribolab.rubber.prony import PronySeries
 from tribolab.rubber.temperature import Shiftable, WilliamsLandelFerry, modulus_at
-from tribolab.stamping import stamp
-from tribolab.words import number
+from tribolab.units.stamping import stamp
 
 if TYPE_CHECKING:
     from tribolab.campaign.surfaces.plan import PlannedSurface
-    from tribolab.untyped import Arguments
+    from tribolab.core.untyped import Arguments
 
 _STIFFEST_RUBBER = 20e6  # Pa: beyond, the stand-in modulus of a rubber says nothing
 _SAME_RUBBER = 2.0  # between a modulus measured slowly and the contact's

@@ -9,28 +9,28 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tribolab.campaign.surfaces.contact import contact_of
-from tribolab.errors import AnalysisError, TribolabError
+from tribolab.core.errors import AnalysisError, TribolabError
+from tribolab.core.wording import number
 from tribolab.qc.register import STATUSES
 from tribolab.qc.scan.sets import check_scan_set
 from tribolab.reading.scan_files import read_traces
 from tribolab.reading.scans.read_scan import stacked
 from tribolab.records.parts import Finding, Row
-from tribolab.records.roughness_words import FORM
+from tribolab.records.surfaces.roughness_words import FORM
 from tribolab.surface.areal_roughness import areal_roughness
 from tribolab.surface.extrapolation import extrapolate
 from tribolab.surface.form import fill_dropouts, remove_form
 from tribolab.surface.limits import MAX_EXTRAPOLATED_SLOPE, MIN_SHARE_OF_HEIGHT
 from tribolab.surface.moments import band, rms_roughness, rms_slope
-from tribolab.surface.psd import psd_1d, psd_2d
 from tribolab.surface.roughness import primary_roughness, roughness_parameters, spectral_roughness
-from tribolab.words import number
+from tribolab.surface.spectra.psd import psd_1d, psd_2d
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from tribolab.campaign.surfaces.plan import PlannedSurface
+    from tribolab.core.untyped import Json
     from tribolab.qc.findings import FindingRow, Findings
-    from tribolab.untyped import Json
 
 _FAILED = ("fail", "error")
 # shares of the mean square slope that come from extrapolation, from which on that is said

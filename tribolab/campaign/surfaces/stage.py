@@ -14,12 +14,12 @@ from tribolab.campaign.store.catalogue import Store, fingerprint_of
 from tribolab.campaign.store.data_files import digest, write_data
 from tribolab.campaign.surfaces.kept import kept_surface
 from tribolab.campaign.surfaces.plan import PlannedSurface, plan_surfaces
-from tribolab.errors import OutputError
-from tribolab.provenance import made, named_sources
+from tribolab.core.errors import OutputError
+from tribolab.core.provenance import made, named_sources
+from tribolab.core.wording import explain
 from tribolab.records.part_records import SurfaceRecord
 from tribolab.records.parts import Finding, RunOutcome, Source, SurfaceOutcome
 from tribolab.records.wording import plain_value
-from tribolab.words import explain
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -113,7 +113,7 @@ def process_surface(task: SurfaceTask) -> SurfaceRecord:
         If the results cannot be written: that is no fault of the surface.
     """
     # late: starting stays quick
-    from tribolab.records.surface_rows import surface_rows
+    from tribolab.records.surfaces.surface_rows import surface_rows
 
     began = time.monotonic()
     surface = task.surface

@@ -13,7 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import AutoMinorLocator, FuncFormatter, MaxNLocator
 from matplotlib.typing import LineStyleType
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
+from tribolab.core.untyped import Arguments
 from tribolab.figures.axes import Scale, scales
 from tribolab.figures.colours import MARKERS, PALETTE
 from tribolab.figures.labels import plain
@@ -22,7 +23,6 @@ from tribolab.figures.look.guests import Panels, guests, name_all, whole_figure
 from tribolab.figures.look.sheet import Sheet, finish, new_sheet
 from tribolab.figures.look.style import keep, paper_style
 from tribolab.figures.spec import FigureSpec, Key, Mark, Series, legend
-from tribolab.untyped import Arguments
 
 _LINES: dict[str, LineStyleType] = {
     "line": "-", "dashed": "--", "dotted": (0, (1, 1.2)), "dashdot": "-.", "longdash": (0, (8, 2)),

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 from numpy.typing import NDArray
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 
 # Several axes, as `plt.subplots` returns them or as a list.
 Panels = Sequence[Axes] | NDArray[np.object_]

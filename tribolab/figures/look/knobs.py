@@ -10,8 +10,8 @@ from typing import Any, TypeVar
 
 from matplotlib.figure import Figure
 
+from tribolab.core.untyped import Arguments
 from tribolab.figures.look.style import PaperFigure
-from tribolab.untyped import Arguments
 
 Draw = TypeVar("Draw", bound=Callable[..., Figure])
 _FINE = 2  # pixels of the picture for one on the screen

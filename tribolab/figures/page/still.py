@@ -14,6 +14,7 @@ from typing import Any
 
 from markupsafe import escape
 
+from tribolab.core.wording import MINUS, number
 from tribolab.figures.axes import Scale, bar_lengths, scales, ticks
 from tribolab.figures.page import marks
 from tribolab.figures.page.marks import PlacedPoint, coordinate
@@ -29,7 +30,6 @@ from tribolab.figures.spec import (
     thinned,
     written_labels,
 )
-from tribolab.words import MINUS, number
 
 _WIDTHS: dict[Width, int] = {"card": 340, "half": 400, "whole": 680}  # [px], as on paper or so
 _HEIGHTS = (300, 430, 580)  # of figures of one, two and three panels

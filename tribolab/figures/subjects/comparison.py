@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pandas as pd
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
+from tribolab.core.untyped import Arguments
 from tribolab.figures.colours import BLUE, GREY, ORANGE, VERMILLION
 from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Key, Mark, Panel, Series, Style
 from tribolab.figures.subjects.curves import SPEED_AXIS
-from tribolab.untyped import Arguments
 
 _MANIFOLD = 300.0  # %: larger differences are drawn on a logarithmic scale
 _SPREAD = 0.06  # by which points of several conditions at one speed are set apart
@@ -29,7 +29,7 @@ def differences(points: pd.DataFrame) -> FigureSpec:
     Parameters
     ----------
     points
-        As in `tribolab.across.compare.Comparison`: ``condition``, ``sliding_speed_m_s``,
+        As in `tribolab.comparison.compare.Comparison`: ``condition``, ``sliding_speed_m_s``,
         ``first``, ``difference``, ``low``, ``high`` and ``verdict``.
 
     Raises
@@ -103,8 +103,8 @@ def forest(quantities: pd.DataFrame, *, names: Sequence[str] = ("first", "second
     Parameters
     ----------
     quantities
-        As in `tribolab.across.compare.Comparison`: ``quantity``, ``of``, ``first``, ``difference``,
-        ``low`` and ``high`` of 95 %, ``low_90`` and ``high_90``.
+        As in `tribolab.comparison.compare.Comparison`: ``quantity``, ``of``, ``first``,
+        ``difference``, ``low`` and ``high`` of 95 %, ``low_90`` and ``high_90``.
     names
         Of the two, for the axis.
 
@@ -174,7 +174,7 @@ def control(table: pd.DataFrame) -> FigureSpec:
     Parameters
     ----------
     table
-        Of one chart, as `tribolab.across.history.Watched` gives it: ``when``, ``value``,
+        Of one chart, as `tribolab.comparison.history.Watched` gives it: ``when``, ``value``,
         ``quantity``, ``unit``, ``baseline``, ``low``, ``high``, ``smoothed``, ``smoothed_low``,
         ``smoothed_high`` and ``signal``.
 

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from tribolab.core.untyped import Arguments
+from tribolab.core.wording import number
 from tribolab.figures.colours import BLACK, surface_colours
 from tribolab.figures.labelled import SurfaceOrSeveral, by_load, by_surface
 from tribolab.figures.plotted import plotted
@@ -21,8 +23,6 @@ from tribolab.figures.spec import (
     thinned,
 )
 from tribolab.figures.subjects.surfaces import shaded_loads
-from tribolab.untyped import Arguments
-from tribolab.words import number
 
 _MPA, _MM, _UM = 1e-6, 1e3, 1e6
 _MAX_NAMED_LOADS = 5

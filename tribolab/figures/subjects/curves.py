@@ -8,14 +8,14 @@ from typing import Literal, NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
+from tribolab.core.untyped import Arguments
+from tribolab.core.wording import force_text, is_dry
 from tribolab.figures.colours import shade_of, surface_colours
 from tribolab.figures.error_bars import ErrorBars, error_bar
 from tribolab.figures.labels import column
 from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, SeriesLabels, axis_of
-from tribolab.untyped import Arguments
-from tribolab.words import force_text, is_dry
 
 Scale = Literal["auto", "log", "linear"]
 MIN_RATIO_FOR_LOG = 5.0  # of the highest to the lowest µ: less shows its minimum on a linear axis

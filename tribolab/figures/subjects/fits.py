@@ -8,12 +8,12 @@ from typing import Protocol
 import numpy as np
 import xarray as xr
 
+from tribolab.core.untyped import Arguments
 from tribolab.figures.colours import BLUE, ORANGE, shade_of, surface_colours
 from tribolab.figures.error_bars import COVERAGE
 from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, axis_of
 from tribolab.figures.subjects.curves import SPEED_AXIS
-from tribolab.untyped import Arguments
 
 
 class FittedCurves(Protocol):

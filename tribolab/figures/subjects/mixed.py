@@ -9,14 +9,14 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from tribolab.core.untyped import Arguments
+from tribolab.core.wording import is_dry
 from tribolab.figures.colours import BLACK, GREEN, surface_colours
 from tribolab.figures.error_bars import COVERAGE, ErrorBars, error_bar
 from tribolab.figures.labelled import SurfaceOrSeveral, by_surface
 from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Key, Mark, Panel, Series, Style, axis_of
 from tribolab.figures.subjects.curves import FRICTION_AXIS, SPEED_AXIS
-from tribolab.untyped import Arguments
-from tribolab.words import is_dry
 
 _MPA = 1e-6
 _STRESS = Axis(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.figures.colours import BLUE, ORANGE
 from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Key, Panel, Series
@@ -75,7 +75,7 @@ def runs_needed(table: pd.DataFrame) -> FigureSpec:
     Parameters
     ----------
     table
-        As in `tribolab.across.planning.MeasuringPlan`: ``condition``, ``sliding_speed_m_s``,
+        As in `tribolab.comparison.planning.MeasuringPlan`: ``condition``, ``sliding_speed_m_s``,
         ``runs`` and ``cheapest_runs``; ``assured_runs`` and ``cheapest_assured_runs`` if known.
 
     Raises
@@ -127,7 +127,7 @@ def precision(table: pd.DataFrame) -> FigureSpec:
     Parameters
     ----------
     table
-        As in `tribolab.across.repeatability.Repeatability`: ``sliding_speed_m_s``, ``mean``,
+        As in `tribolab.comparison.repeatability.Repeatability`: ``sliding_speed_m_s``, ``mean``,
         ``repeatability_std``, ``between_..._std`` and ``reproducibility_std``; a row without a
         speed is omitted.
 

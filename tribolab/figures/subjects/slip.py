@@ -9,7 +9,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
+from tribolab.core.untyped import Arguments
+from tribolab.core.wording import number
 from tribolab.figures.colours import BLACK, GREY, PURPLE, SKY, shade_of, surface_colours
 from tribolab.figures.envelope import envelope
 from tribolab.figures.labelled import OneOrSeveral, RunLabel, by_label, parts
@@ -19,8 +21,6 @@ from tribolab.figures.spec import Axis, FigureSpec, Panel, Series
 from tribolab.figures.subjects.curves import SPEED_AXIS
 from tribolab.friction.oscillation.slip_curve import one_curve
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR
-from tribolab.untyped import Arguments
-from tribolab.words import number
 
 _COLUMNS = 500
 _GAP = 0.25  # between stacked traces, of the tallest one's height

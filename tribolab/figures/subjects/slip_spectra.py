@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.figures.colours import BLACK, ORANGE, PURPLE, SKY
 from tribolab.figures.labelled import RunLabel, by_label
 from tribolab.figures.plotted import plotted

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
+from tribolab.core.untyped import Arguments
 from tribolab.figures.colours import BLACK
 from tribolab.figures.error_bars import error_bar
 from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Key, Mark, Panel, Series, axis_of
 from tribolab.figures.subjects.curves import SPEED_AXIS, curve_looks
-from tribolab.untyped import Arguments
 
 
 @plotted()

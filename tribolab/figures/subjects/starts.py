@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.figures.colours import BLACK, GREY
 from tribolab.figures.labels import column
 from tribolab.figures.plotted import plotted

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.figures.colours import shade_of, surface_colours
 from tribolab.figures.envelope import envelope
 from tribolab.figures.labelled import SurfaceOrSeveral, by_load, by_surface

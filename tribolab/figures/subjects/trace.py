@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
+from tribolab.core.wording import speed_text
 from tribolab.figures.colours import BLACK, GREY, ORANGE, SKY, VERMILLION
 from tribolab.figures.envelope import envelope
 from tribolab.figures.labels import column
 from tribolab.figures.plotted import plotted
 from tribolab.figures.signals import Signal, Stroke, main_signal, strokes_of
 from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, axis_of
-from tribolab.words import speed_text
 
 _COLUMNS = 420  # pixel columns of a double-column panel: two to a typographic point
 _MOTION = {"sliding_velocity": "velocity", "set_speed": "set speed", "position": "position"}

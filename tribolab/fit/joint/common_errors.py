@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.fit.joint.load_curve import LoadCurve
 from tribolab.fit.joint.model import JointModel, Points, shared_by_points
 from tribolab.fit.joint.posterior import Posterior

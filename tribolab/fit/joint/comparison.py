@@ -11,12 +11,12 @@ import pandas as pd
 import xarray as xr
 
 from tribolab.contact.geometry import Contact
-from tribolab.errors import AnalysisError, shown
+from tribolab.core.errors import AnalysisError, shown
+from tribolab.core.untyped import Arguments
+from tribolab.core.wording import number
 from tribolab.fit.joint.fit import fit_shear_stress_jointly
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.result import JointFit
-from tribolab.untyped import Arguments
-from tribolab.words import number
 
 _BARE, _STRONG = 1.0, 3.0  # of ln of odds: not worth a mention below, strong from here
 POWER_LAW = "power law of speed and load"

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.contact.geometry import Contact
+from tribolab.core.untyped import Arguments
 from tribolab.fit.joint.inputs import (
     DryFriction,
     computed_curves,
@@ -19,8 +20,7 @@ from tribolab.fit.joint.load_curve import LoadCurve
 from tribolab.fit.joint.loads import fit_loads
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.result import JointFit
-from tribolab.units import positive, to_si
-from tribolab.untyped import Arguments
+from tribolab.units.conversion import positive, to_si
 
 
 def fit_shear_stress_jointly(

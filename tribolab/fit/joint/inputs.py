@@ -9,15 +9,15 @@ import numpy as np
 import xarray as xr
 
 from tribolab.contact.geometry import Contact
-from tribolab.errors import AnalysisError, Cure, shown
+from tribolab.core.errors import AnalysisError, Cure, shown
+from tribolab.core.untyped import Arguments
+from tribolab.core.wording import number
 from tribolab.fit.joint.load_curve import LoadCurve
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.response import Response, constant_response, response_of
 from tribolab.lubrication.parameters import parameters_of
 from tribolab.lubrication.solved_curve import solve_curve
-from tribolab.stamping import labelled
-from tribolab.untyped import Arguments
-from tribolab.words import number
+from tribolab.units.stamping import labelled
 
 _REACH = 4.0  # standard deviations of ln eta that the computed curves go beyond the speeds
 _PER_DECADE = 8

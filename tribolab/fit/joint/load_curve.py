@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from scipy.optimize import nnls
 
-from tribolab.errors import AnalysisError, Cure, shown
+from tribolab.core.errors import AnalysisError, Cure, shown
 from tribolab.fit.joint.model import Points
 from tribolab.fit.joint.response import Response
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.fit.joint.common_errors import calibration_covariance, model_covariance
 from tribolab.fit.joint.load_curve import LoadCurve, MeasuredPoints, points_of
 from tribolab.fit.joint.model import (
@@ -22,7 +22,7 @@ from tribolab.fit.joint.model import (
 from tribolab.fit.joint.posterior import Posterior, mixture_quantile, posterior_of
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.result import JointFit, Marginal
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 _ENDS = 0.025, 0.975
 _NORMAL = 1.959963984540054

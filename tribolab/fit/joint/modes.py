@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import lapack
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.fit.joint.model import JointModel, Shared
 
 _STEPS = 200

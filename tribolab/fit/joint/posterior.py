@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.fit.joint.model import JointModel, shared_by_points
 from tribolab.fit.joint.modes import modes_of
 from tribolab.fit.joint.priors import JointPriors

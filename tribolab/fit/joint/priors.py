@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import CubicSpline
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 
 _NEAR = 0.1  # of ln(eta v): of two computed points that lie closer one is enough
 _FEWEST = 5

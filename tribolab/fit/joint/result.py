@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from tribolab.words import many, number, percent
+from tribolab.core.wording import many, number, percent
 
 _UNTOLD, _LITTLE = 0.2, 0.5  # of the prior's standard deviation that the data take away
 _TOGETHER = 0.8  # correlation from which two parameters are hardly told apart

@@ -9,7 +9,11 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, Cure, nearest, shown
+from tribolab.arrays.broadcasting import of_runs, over_dims
+from tribolab.arrays.chunks import one_by_one
+from tribolab.arrays.medians import median
+from tribolab.core.errors import AnalysisError, Cure, nearest, shown
+from tribolab.core.untyped import Json
 from tribolab.friction.coefficient.reversal import reversal_of
 from tribolab.friction.coefficient.steadiness import judged
 from tribolab.friction.decisions.rejected import beside_rejected
@@ -29,11 +33,7 @@ from tribolab.friction.zero.parts import ZeroReference
 from tribolab.friction.zero.rests import light_rest, unloaded_rests
 from tribolab.friction.zero.without_sliding import of_loaded_and_idle, without_sliding
 from tribolab.friction.zero.words import of_light_rest, of_partial_contact
-from tribolab.medians import median
-from tribolab.pieces import one_by_one
-from tribolab.several import of_runs, over_dims
-from tribolab.stamping import stamp
-from tribolab.untyped import Json
+from tribolab.units.stamping import stamp
 
 _OFFSETS = ("auto", "half loop", "zero load", "none")
 _LOST = 0.05  # share of samples without contact that spoils a segment

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, Cure
+from tribolab.arrays.broadcasting import of_runs
+from tribolab.arrays.medians import median_of_known
+from tribolab.core.errors import AnalysisError, Cure
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.segments.strokes import Strokes, find_strokes
 from tribolab.friction.statistics import estimate_of
-from tribolab.medians import median_of_known
-from tribolab.several import of_runs
-from tribolab.stamping import stamp
-from tribolab.units import to_si
+from tribolab.units.conversion import to_si
+from tribolab.units.stamping import stamp
 
 _ONE_SIGN = 0.8  # share of the cycles whose strokes have one sign, from which the sign was lost
 _FEWEST = 3  # samples in the middle part of a stroke

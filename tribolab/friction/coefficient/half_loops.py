@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 
 def half_loops(friction: xr.Dataset) -> xr.Dataset:

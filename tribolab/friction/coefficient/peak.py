@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.medians import median
+from tribolab.arrays.medians import median
 
 _CLEAR = 3.0  # standard errors of the peak above sliding from which it is one
 FEWEST_OF_PEAK = 5  # readings that a parabola is fitted to

@@ -11,7 +11,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.arrays.broadcasting import of_runs
+from tribolab.arrays.medians import median_of_known
+from tribolab.core.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import (
     belong,
     friction_coefficient,
@@ -20,10 +22,8 @@ from tribolab.friction.coefficient.coefficient import (
 from tribolab.friction.coefficient.peak import FEWEST_OF_PEAK, noise_between, peak_of_start
 from tribolab.friction.segments.specimens import begins_of_specimens
 from tribolab.friction.segments.stretches import name_of
-from tribolab.medians import median_of_known
-from tribolab.several import of_runs
-from tribolab.stamping import stamp
-from tribolab.units import to_si
+from tribolab.units.conversion import to_si
+from tribolab.units.stamping import stamp
 
 _BEFORE = 0.5  # of the stroke before: how far back a rise may begin, at most
 _LATEST = 0.5  # of the segment: how far a rise may go on, at most

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, Cure
+from tribolab.core.errors import AnalysisError, Cure
 from tribolab.friction.decisions.decision import Decision
 from tribolab.friction.segments.find import measured
 from tribolab.friction.segments.stretches import Stretch

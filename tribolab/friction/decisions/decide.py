@@ -7,13 +7,13 @@ from collections.abc import Iterable
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, Cure
+from tribolab.core.errors import AnalysisError, Cure
+from tribolab.core.untyped import Json
 from tribolab.friction.decisions.bounds import with_bounds
 from tribolab.friction.decisions.decision import ACCEPT, NEW_BOUNDS, NOTE, REJECT, Decision
 from tribolab.friction.decisions.rejected import REJECTED, rejected
 from tribolab.friction.zero.of_run import PAIRED
-from tribolab.stamping import stamp
-from tribolab.untyped import Json
+from tribolab.units.stamping import stamp
 
 DECISIONS = "decisions"  # attribute: what was decided, in plain data, with the segments it touches
 _MORE_THAN = 0.5  # of the decision's interval lies in the segment that it means

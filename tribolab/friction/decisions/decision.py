@@ -6,9 +6,9 @@ import datetime as dt
 import math
 from dataclasses import dataclass
 
-from tribolab.errors import AnalysisError, nearest, shown
-from tribolab.units import to_si
-from tribolab.untyped import Json
+from tribolab.core.errors import AnalysisError, nearest, shown
+from tribolab.core.untyped import Json
+from tribolab.units.conversion import to_si
 
 REJECT, ACCEPT, NEW_BOUNDS, NOTE = "reject", "accept", "bounds", "note"
 ACTIONS = (REJECT, ACCEPT, NEW_BOUNDS, NOTE)

@@ -8,7 +8,7 @@ import numpy as np
 from scipy import special
 
 from tribolab.friction.oscillation.oscillation import CYCLES, gather
-from tribolab.friction.oscillation.survey import Survey
+from tribolab.friction.oscillation.spectrum.survey import Survey
 
 MOST_COMPONENTS = 6
 _LEAST = 0.03  # of the strongest one's variance
@@ -36,7 +36,7 @@ def components(seen: Survey) -> tuple[Component, ...]:
     Parameters
     ----------
     seen
-        From `tribolab.friction.oscillation.survey.survey`.
+        From `tribolab.friction.oscillation.spectrum.survey.survey`.
 
     Notes
     -----

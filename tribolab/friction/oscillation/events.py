@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.medians import medians_of_rows
+from tribolab.arrays.medians import medians_of_rows
 
 _INSIDE = (0.08, 0.92)  # of a stick, in which the loading is looked at
 _CELLS, _WINDOW = 48, 16  # cells of it, and cells in a window: shorter ones add noise
@@ -43,7 +43,7 @@ def without_spikes(values: np.ndarray, noise: float) -> tuple[np.ndarray, int]:
     values
         (time)
     noise
-        Of a sample, from `tribolab.friction.oscillation.noise.noise_level`.
+        Of a sample, from `tribolab.friction.oscillation.spectrum.noise.noise_level`.
 
     Returns
     -------

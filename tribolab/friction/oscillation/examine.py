@@ -6,23 +6,33 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.arrays.medians import median
 from tribolab.friction.oscillation.components import Component, components
 from tribolab.friction.oscillation.events import Events, find_events, loading_rate, without_spikes
 from tribolab.friction.oscillation.few_periods import slow_wave, without_slow_wave
 from tribolab.friction.oscillation.mean_cycle import abrupt_drop, abrupt_rise, smooth_drop
-from tribolab.friction.oscillation.noise import noise_level, quantisation_step
 from tribolab.friction.oscillation.oscillation import Oscillation, oscillation
-from tribolab.friction.oscillation.periods import ALIKE, PeriodVerdict, at_odds, period_verdict
-from tribolab.friction.oscillation.regularity import SLIP_KINDS, Regularity, regularity, scatter
-from tribolab.friction.oscillation.spectra import EvenRecord, coarsened, make_record
-from tribolab.friction.oscillation.survey import CHANCE, Survey, survey
+from tribolab.friction.oscillation.periods import (
+    ALIKE,
+    PeriodVerdict,
+    at_odds,
+    period_verdict,
+)
+from tribolab.friction.oscillation.regularity import (
+    SLIP_KINDS,
+    Regularity,
+    regularity,
+    scatter,
+)
+from tribolab.friction.oscillation.spectrum.noise import noise_level, quantisation_step
+from tribolab.friction.oscillation.spectrum.spectra import EvenRecord, coarsened, make_record
+from tribolab.friction.oscillation.spectrum.survey import CHANCE, Survey, survey
 from tribolab.friction.oscillation.waveform import (
     WaveformFeatures,
     class_probabilities,
     describe_waveform,
     features,
 )
-from tribolab.medians import median
 
 _PER_PERIOD = 36  # samples in a period that events are sought in, at least; more is averaged ...
 _COARSE = 12  # the same, where noise splits drops

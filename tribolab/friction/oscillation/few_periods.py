@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.friction.oscillation.spectra import EvenRecord, block_means
+from tribolab.friction.oscillation.spectrum.spectra import EvenRecord, block_means
 
 _POINTS = 192  # that the record is averaged to
 _CYCLES = np.arange(2.0, 5.21, 0.1)  # waves in the record that are tried
@@ -47,7 +47,7 @@ def slow_wave(record: EvenRecord) -> SlowWave | None:
     Parameters
     ----------
     record
-        From `tribolab.friction.oscillation.spectra.make_record`.
+        From `tribolab.friction.oscillation.spectrum.spectra.make_record`.
 
     Notes
     -----
@@ -96,7 +96,7 @@ def without_slow_wave(record: EvenRecord) -> tuple[EvenRecord, float] | None:
     Parameters
     ----------
     record
-        From `tribolab.friction.oscillation.spectra.make_record`.
+        From `tribolab.friction.oscillation.spectrum.spectra.make_record`.
 
     Examples
     --------

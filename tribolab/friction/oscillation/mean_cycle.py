@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from tribolab.friction.oscillation.events import Events, find_events
-from tribolab.friction.oscillation.spectra import EvenRecord
+from tribolab.friction.oscillation.spectrum.spectra import EvenRecord
 
 _REACH = 0.38  # of a period to either side of the fall
 _BESIDE = 0.005  # of a period between the fall and the stretches beside it ...

@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
-from tribolab.friction.oscillation.background import significant_power
-from tribolab.friction.oscillation.mains import Mains
-from tribolab.friction.oscillation.spectra import Spectrum
-from tribolab.friction.oscillation.survey import CHANCE, Survey
+from tribolab.friction.oscillation.spectrum.background import significant_power
+from tribolab.friction.oscillation.spectrum.mains import Mains
+from tribolab.friction.oscillation.spectrum.spectra import Spectrum
+from tribolab.friction.oscillation.spectrum.survey import CHANCE, Survey
 
 _HARMONICS = 6
 _REACH = 0.15  # a line's power is gathered over this part of its frequency to either side
@@ -76,7 +76,7 @@ def oscillation(seen: Survey, near: float | None = None) -> Oscillation:
     Parameters
     ----------
     seen
-        From `tribolab.friction.oscillation.survey.survey`.
+        From `tribolab.friction.oscillation.spectrum.survey.survey`.
     near
         Frequency that the drops tell [Hz]: the oscillation is sought near it, be its line lower
         than its harmonics' or not.

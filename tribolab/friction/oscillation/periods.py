@@ -9,8 +9,13 @@ import numpy as np
 from tribolab.friction.oscillation.components import Component
 from tribolab.friction.oscillation.few_periods import SlowWave
 from tribolab.friction.oscillation.oscillation import CYCLES, Oscillation
-from tribolab.friction.oscillation.regularity import IRREGULAR, SLIP_KINDS, Regularity, scatter
-from tribolab.friction.oscillation.survey import CHANCE
+from tribolab.friction.oscillation.regularity import (
+    IRREGULAR,
+    SLIP_KINDS,
+    Regularity,
+    scatter,
+)
+from tribolab.friction.oscillation.spectrum.survey import CHANCE
 from tribolab.friction.oscillation.waveform import (
     CLASSES,
     NOT_CLEAR,

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.arrays.medians import median
 from tribolab.friction.oscillation.events import Events
-from tribolab.friction.oscillation.spectra import EvenRecord
-from tribolab.medians import median
+from tribolab.friction.oscillation.spectrum.spectra import EvenRecord
 
 SLIP_KINDS = ("regular", "irregular", "intermittent")
 IRREGULAR = 0.18  # scatter of the periods above which they are irregular

@@ -19,8 +19,8 @@ import numpy as np
 import xarray as xr
 from scipy import special
 
+from tribolab.arrays.chunks import pieces
 from tribolab.friction.run_out import turned
-from tribolab.pieces import pieces
 
 _TURNS = 8.0  # that one fit spans
 _FEWEST = 3.0  # turns: of fewer, a wander is not told from what repeats

@@ -9,14 +9,14 @@ import numpy as np
 import xarray as xr
 from scipy import special
 
-from tribolab.errors import AnalysisError
+from tribolab.arrays.medians import median_of_known
+from tribolab.core.errors import AnalysisError
 from tribolab.friction.decisions.rejected import REJECTED, kept
 from tribolab.friction.joined import Label, grouped, joined_curves
 from tribolab.friction.oscillation.rig_waves import REPEATS
 from tribolab.friction.oscillation.slip_table import ringing
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR, NOT_LOOKED_AT, oscillating
-from tribolab.medians import median_of_known
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 STEADY_SLIDING = CLASSES[0]
 _RESONANCE = "resonance"

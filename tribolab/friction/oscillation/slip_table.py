@@ -10,7 +10,7 @@ import xarray as xr
 from tribolab.friction.oscillation.components import MOST_COMPONENTS
 from tribolab.friction.oscillation.examine import Examined
 from tribolab.friction.oscillation.regularity import scatter
-from tribolab.friction.oscillation.survey import PER_DECADE
+from tribolab.friction.oscillation.spectrum.survey import PER_DECADE
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR, NOT_LOOKED_AT
 
 # what is said of a segment in which nothing oscillates

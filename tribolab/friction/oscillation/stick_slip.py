@@ -8,7 +8,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.arrays.broadcasting import of_runs
+from tribolab.arrays.chunks import one_by_one
+from tribolab.arrays.medians import median_of_known
+from tribolab.core.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import belong, friction_signal, trimmed_slices
 from tribolab.friction.decisions.rejected import REJECTED
 from tribolab.friction.oscillation.critical_stiffness import STIFFNESS, critical_stiffness
@@ -29,10 +32,7 @@ from tribolab.friction.oscillation.slip_table import (
 from tribolab.friction.oscillation.waveform import CLASSES, DOUBT, NOT_CLEAR
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.zero.rests import unloaded_rests
-from tribolab.medians import median_of_known
-from tribolab.pieces import one_by_one
-from tribolab.several import of_runs
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 _SOME = 100_000  # samples of a segment that tell its sign
 _CUT = 3  # stretches of three samples at an extreme that say that the signal is cut off

@@ -12,10 +12,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
+from tribolab.arrays.medians import median
 from tribolab.friction.oscillation.events import Events
 from tribolab.friction.oscillation.oscillation import Oscillation
 from tribolab.friction.oscillation.regularity import scatter
-from tribolab.medians import median
 
 
 class WaveformFeatures(NamedTuple):

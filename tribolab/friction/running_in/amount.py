@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from tribolab.errors import UnitError, shown
-from tribolab.units import to_si
+from tribolab.core.errors import UnitError, shown
+from tribolab.units.conversion import to_si
 
 _CYCLES = ("cycle", "cycles")
 

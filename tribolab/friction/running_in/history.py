@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, Cure
+from tribolab.arrays.broadcasting import of_runs
+from tribolab.core.errors import AnalysisError, Cure
 from tribolab.friction.coefficient.coefficient import belong, friction_coefficient, friction_signal
 from tribolab.friction.coefficient.cycles import friction_per_cycle
 from tribolab.friction.decisions.rejected import kept
@@ -22,8 +23,7 @@ from tribolab.friction.segments.find import find_segments
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.statistics import NORMAL
 from tribolab.friction.time_weights import on_grid
-from tribolab.several import of_runs
-from tribolab.stamping import stamp
+from tribolab.units.stamping import stamp
 
 _READ = (
     "start",

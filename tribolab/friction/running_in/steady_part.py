@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.friction.running_in.amount import discard_amount
 from tribolab.friction.running_in.history import histories_of
 from tribolab.friction.segments.stretches import name_of

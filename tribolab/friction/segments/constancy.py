@@ -17,10 +17,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.arrays.chunks import running_total
+from tribolab.arrays.medians import median, median_of_known
 from tribolab.friction.segments.plateaus import running_median
 from tribolab.friction.segments.proof import Readings, surely_changes
-from tribolab.medians import median, median_of_known
-from tribolab.pieces import running_total
 
 _INSIDE = 16  # bins within a piece
 _BESIDE = 1.5  # of its length are looked at on each side

@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, UnitError, shown
+from tribolab.arrays.broadcasting import as_stated, of_runs, over_dims
+from tribolab.arrays.chunks import one_by_one
+from tribolab.arrays.medians import median
+from tribolab.core.errors import AnalysisError, UnitError, shown
 from tribolab.friction.segments.loaded import loaded
 from tribolab.friction.segments.locate import ConstancyLimits
 from tribolab.friction.segments.slopes import line
@@ -24,11 +27,8 @@ from tribolab.friction.segments.stretches import (
     velocity_source,
 )
 from tribolab.friction.segments.strokes import middle_parts, shuttles
-from tribolab.medians import median
-from tribolab.pieces import one_by_one
-from tribolab.several import as_stated, of_runs, over_dims
-from tribolab.stamping import stamp
-from tribolab.units import to_si
+from tribolab.units.conversion import to_si
+from tribolab.units.stamping import stamp
 
 _OF_STROKE = 5  # samples of a middle, at least: many short strokes tell as much as a long one
 _OF_STROKES = 5  # degree of the polynomial through the positions of a stroke

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.arrays.medians import median
 from tribolab.friction.segments.stretches import Stretch
-from tribolab.medians import median
 
 _BINS = 600  # in a stretch
 _FEWEST = 10  # samples of a bin

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from tribolab.arrays.chunks import one_by_one
+from tribolab.arrays.medians import median
 from tribolab.friction.segments.load_steps import at_levels
 from tribolab.friction.segments.locate import ConstancyLimits
 from tribolab.friction.segments.stretches import Stretch
 from tribolab.friction.zero.limits import UNLOADED_NOISE, UNLOADED_SHARE
-from tribolab.medians import median
-from tribolab.pieces import one_by_one
 
 _NO_LOAD = "no load"
 _NO_CONTACT = 0.02  # share of the run's load below which there is none, if no rest tells more

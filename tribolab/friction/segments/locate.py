@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.arrays.chunks import one_by_one
 from tribolab.friction.segments.constancy import MeanVelocities, held_part, is_constant
 from tribolab.friction.segments.plateaus import (
     Noise,
@@ -17,7 +18,6 @@ from tribolab.friction.segments.plateaus import (
     straight_pieces,
 )
 from tribolab.friction.segments.proof import is_proven
-from tribolab.pieces import one_by_one
 
 _MOST_BLOCKS = 16384  # more blocks cost time and find nothing more: leftovers are looked at again
 _FEW_BLOCKS = 512  # in a second look

@@ -23,9 +23,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.medians import median
-from tribolab.pieces import pieces
-from tribolab.room import room
+from tribolab.arrays.chunks import pieces
+from tribolab.arrays.medians import median
+from tribolab.arrays.scratch import room
 
 _SIGNIFICANT = 6.0  # standard errors between neighbouring windows that make a break
 _TRUSTED = 0.02  # share of the blocks from which on a speed tells its own noise

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.arrays.chunks import pieces
+from tribolab.arrays.medians import median
+from tribolab.arrays.scratch import room
 from tribolab.friction.segments.plateaus import quantum
-from tribolab.medians import median
-from tribolab.pieces import pieces
-from tribolab.room import room
 
 _WANTED_ERROR = 0.03  # relative error of a block's slope that the block size aims at
 FEWEST_OF_BLOCK = 8  # samples in a block

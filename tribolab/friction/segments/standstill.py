@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from tribolab.arrays.chunks import anywhere, one_by_one
 from tribolab.friction.segments import slopes
 from tribolab.friction.segments.limits import (
     MAX_ERROR_OF_BLOCK,
@@ -15,7 +16,6 @@ from tribolab.friction.segments.limits import (
 )
 from tribolab.friction.segments.plateaus import quantum
 from tribolab.friction.segments.stretches import Stretch, track
-from tribolab.pieces import anywhere, one_by_one
 
 _PARTS = (32, 16, 8)  # of a segment: as many as the noise of the position allows
 

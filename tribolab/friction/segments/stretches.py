@@ -8,14 +8,14 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.arrays.chunks import anywhere
+from tribolab.arrays.medians import median
+from tribolab.core.errors import AnalysisError
 from tribolab.friction.segments import slopes
 from tribolab.friction.segments.constancy import MeanVelocities
 from tribolab.friction.segments.locate import ConstancyLimits, VelocityPiece, held, locate, moving
 from tribolab.friction.segments.turns import strokes_within
 from tribolab.friction.time_weights import without_gaps
-from tribolab.medians import median
-from tribolab.pieces import anywhere
 
 _NOWHERE = 3.0  # standard deviations of a reading of the position: so far is nowhere
 _NEAR = 4  # intervals on each side of one that tell whether it is a gap

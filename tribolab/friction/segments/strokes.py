@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, Cure
+from tribolab.arrays.medians import median
+from tribolab.core.errors import AnalysisError, Cure
 from tribolab.friction.segments.stretches import finite, name_of
 from tribolab.friction.segments.turns import SAME, last_side, turns_of
-from tribolab.medians import median
 
 _LEAST_SPEED = 0.2  # of the usual speed: what is slower does not say which way it goes
 _SHORTEST = 0.5  # of the usual length: what is shorter is no stroke

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from tribolab.arrays.chunks import pieces
+from tribolab.arrays.medians import median
 from tribolab.friction.zero import limits
 from tribolab.friction.zero.parts import Doubt, ZeroReference
 from tribolab.friction.zero.without_sliding import stretches_of
 from tribolab.friction.zero.words import of_leak, of_retained_load
-from tribolab.medians import median
-from tribolab.pieces import pieces
 
 UNIFORM = np.sqrt(3)  # a difference that is an error or none: the half width of a uniform one
 _FEWEST = 20  # samples of a rest

@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError, UnitError, shown
+from tribolab.arrays.medians import median, median_of_known
+from tribolab.core.errors import AnalysisError, UnitError, shown
 from tribolab.friction.zero.limits import LOADS_DIFFER
 from tribolab.friction.zero.offsets import pair_strokes
 from tribolab.friction.zero.part_folded import of_parts
@@ -19,9 +20,8 @@ from tribolab.friction.zero.reference import find_reference
 from tribolab.friction.zero.rests import UNLOADED, Zeros
 from tribolab.friction.zero.unequal import TOO_FAR
 from tribolab.friction.zero.words import of_fold
-from tribolab.medians import median, median_of_known
-from tribolab.quantities import quantity
-from tribolab.units import to_si
+from tribolab.units.conversion import to_si
+from tribolab.units.quantities import quantity
 
 _FROM_TORQUE = re.compile(r"\s*(?:\w+|\(\w+ - \w+\))\s*/\s*(?:(?P<arm>\w+)|'(?P<length>[^']+)')\s*")
 _WITHOUT_SIGN = "mean of both directions: recorded without sign"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.arrays.medians import median
 from tribolab.friction.zero.parts import Doubt, StrokeMeans, doubt
-from tribolab.medians import median
 
 _CLEAR = 5.0  # standard errors beyond which a level has a sign
 _CENTRED = (

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
+from tribolab.arrays.chunks import anywhere, one_by_one
+from tribolab.arrays.medians import median, median_of_known
 from tribolab.friction.zero import limits
-from tribolab.medians import median, median_of_known
-from tribolab.pieces import anywhere, one_by_one
 
 _INNER = float(2 * special.ndtri(0.95))  # standard deviations from the 5th to 95th percentile
 _DIP = 0.5  # of the strokes' level, below which the force at a reversal is on its way through zero

@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from tribolab.errors import AnalysisError, Cure
+from tribolab.arrays.medians import median, median_of_known
+from tribolab.core.errors import AnalysisError, Cure
 from tribolab.friction.zero.middles import Middles, error_of_rows, interpolated, middles
 from tribolab.friction.zero.parts import Doubt, KnownOfZero, StrokeMeans, ZeroReference, doubt
 from tribolab.friction.zero.rectified import Fold
 from tribolab.friction.zero.rests import Zeros
 from tribolab.friction.zero.unequal import across_speeds
 from tribolab.friction.zero.words import of_speeds, words_of
-from tribolab.medians import median, median_of_known
 
 _ASYMMETRY = 0.05  # share of friction by which a zero may miss the middle of the loop
 _MISSED = 3.0  # standard errors of the same

@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from tribolab.arrays.medians import median
 from tribolab.friction.statistics import NORMAL, estimates_of
 from tribolab.friction.zero import limits
-from tribolab.medians import median
 
 UNLOADED = 0.1  # share of the load by which the zero of the normal force may move between rests
 _LIGHT = 0.4  # share of the load below which a rest may turn out to be one without contact

@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from tribolab.arrays.medians import median
 from tribolab.friction.zero import limits
 from tribolab.friction.zero.parts import Doubt, ZeroReference, doubt
 from tribolab.friction.zero.rests import Zeros, level_without_load
-from tribolab.medians import median
 
 _FEWEST = 20  # samples
 _LOADED = 0.8  # share of the load from which on a rest is under load

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.core.wording import many
 from tribolab.friction.zero.middles import Middles
 from tribolab.friction.zero.parts import Doubt, KnownOfZero, StrokeMeans, doubt
 from tribolab.friction.zero.rectified import Fold
 from tribolab.friction.zero.rests import LightRest, PartialContact
-from tribolab.words import many
 
 
 def words_of(

@@ -11,7 +11,7 @@ from tribolab.contact.geometry import PointContact
 from tribolab.contact.hertz import hertz_half_width
 from tribolab.contact.point import solve_rings
 from tribolab.contact.polar import polar_mesh
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.lubrication.mixed import NotConvergedError
 from tribolab.lubrication.parameters import Liquid
 from tribolab.lubrication.point.equations import (

@@ -8,7 +8,8 @@ from typing import Any, Never
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ConfigError, nearest, shown
+from tribolab.arrays.broadcasting import of_runs
+from tribolab.core.errors import ConfigError, nearest, shown
 from tribolab.friction.decisions.rejected import kept, rejected
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach_all, combine, uniform
@@ -20,8 +21,7 @@ from tribolab.qc.run.rig import RIG_CHECKS
 from tribolab.qc.run.sliding import SLIDING_CHECKS
 from tribolab.qc.run.subject import RunSubject
 from tribolab.qc.run.zero import ZERO_CHECKS
-from tribolab.several import of_runs
-from tribolab.units import to_si
+from tribolab.units.conversion import to_si
 
 RUN_CHECKS: dict[str, Check[RunSubject]] = {
     check.name: check

@@ -7,12 +7,12 @@ from collections.abc import Mapping
 import numpy as np
 
 from tribolab.core.limit import Limit
+from tribolab.core.wording import Count
 from tribolab.friction.oscillation.regularity import SLIP_KINDS
 from tribolab.friction.oscillation.waveform import CLASSES
 from tribolab.qc.flags import FAIL, GOOD
 from tribolab.qc.register import Check, Result, Skip
 from tribolab.qc.run.subject import RunSubject
-from tribolab.words import Count
 
 
 def _sense(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from tribolab.core.wording import Count
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT
 from tribolab.qc.register import Result, Skip
 from tribolab.qc.run.subject import RunSubject
-from tribolab.words import Count
 
 
 def grade(values: np.ndarray, suspect: float, fail: float) -> np.ndarray:

@@ -7,14 +7,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from tribolab.arrays.medians import median
+from tribolab.core.errors import AnalysisError
 from tribolab.core.limit import Limit
-from tribolab.errors import AnalysisError
+from tribolab.core.wording import Count
 from tribolab.friction.segments.strokes import find_strokes
-from tribolab.medians import median
 from tribolab.qc.register import Check, Result, Skip
 from tribolab.qc.run.subject import RunSubject
 from tribolab.reading.runs.force_ratio import LARGEST, SMALLEST
-from tribolab.words import Count
 
 
 def _rows_left_out(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

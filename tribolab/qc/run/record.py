@@ -7,18 +7,18 @@ from dataclasses import replace
 
 import numpy as np
 
+from tribolab.arrays.chunks import anywhere, one_by_one
+from tribolab.arrays.scratch import filled
+from tribolab.core.errors import AnalysisError, shown
 from tribolab.core.limit import Limit
-from tribolab.errors import AnalysisError, shown
-from tribolab.friction.oscillation.noise import quantisation_step
-from tribolab.pieces import anywhere, one_by_one
+from tribolab.core.wording import Count
+from tribolab.friction.oscillation.spectrum.noise import quantisation_step
 from tribolab.qc import signals
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
 from tribolab.qc.register import OBJECTIONS, Check, Result, Skip, sample_result
 from tribolab.qc.run import schema, timing
 from tribolab.qc.run.subject import RunSubject
 from tribolab.reading.dialect.formula import names_in, parse_formula
-from tribolab.room import filled
-from tribolab.words import Count
 
 _DEAD_CHANNEL = 0.10  # reason: a tenth of a signal gone takes whole segments with it
 

@@ -6,14 +6,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from tribolab.arrays.chunks import one_by_one
+from tribolab.arrays.medians import median, median_of_known
 from tribolab.core.limit import Limit
+from tribolab.core.wording import duration
 from tribolab.friction.segments.slopes import digit, position_noise
-from tribolab.medians import median, median_of_known
-from tribolab.pieces import one_by_one
 from tribolab.qc.register import Check, Result, Skip
 from tribolab.qc.run.per_segment import by_segment, status_of
 from tribolab.qc.run.subject import RunSubject
-from tribolab.words import duration
 
 
 def _zero_offset(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

@@ -10,8 +10,8 @@ import numpy as np
 import xarray as xr
 
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
-from tribolab.quantities import QUANTITIES
 from tribolab.reading.netcdf.table_schema import load_schema
+from tribolab.units.quantities import QUANTITIES
 
 _FRICTION = ("friction_force", "friction_coefficient", "shear_stress")
 _SPEED = ("sliding_velocity", "position", "step", "set_speed", "shear_rate")

@@ -9,9 +9,10 @@ import numpy as np
 import xarray as xr
 
 from tribolab.core.limit import Limit
+from tribolab.core.wording import Count
 from tribolab.friction.coefficient import steadiness
 from tribolab.friction.coefficient.steadiness import chance_limit, relative_change, undecided
-from tribolab.friction.oscillation.lines import Line
+from tribolab.friction.oscillation.spectrum.lines import Line
 from tribolab.friction.points.strokes import run_means, shared_error
 from tribolab.friction.statistics import NORMAL
 from tribolab.friction.zero.limits import LOADS_DIFFER
@@ -21,7 +22,6 @@ from tribolab.qc.run.friction_sign import FRICTION_SIGN
 from tribolab.qc.run.per_segment import by_segment, status_of
 from tribolab.qc.run.strokes import DISTANCE, SAMPLING, SEGMENT_SPEED, find_lost_strokes
 from tribolab.qc.run.subject import RunSubject
-from tribolab.words import Count
 
 
 def _hum(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

@@ -6,15 +6,15 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from tribolab.core.errors import AnalysisError
 from tribolab.core.limit import Limit
-from tribolab.errors import AnalysisError
+from tribolab.core.wording import Count, duration
 from tribolab.friction.coefficient import steadiness
 from tribolab.friction.oscillation.periods import AT_ODDS
-from tribolab.friction.oscillation.survey import CHANCE
+from tribolab.friction.oscillation.spectrum.survey import CHANCE
 from tribolab.friction.segments.strokes import find_strokes
 from tribolab.qc.register import Check, Result
 from tribolab.qc.run.subject import RunSubject
-from tribolab.words import Count, duration
 
 _NOT_CONSTANT = ("at rest", "ramp", "too short")
 

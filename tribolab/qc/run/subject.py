@@ -7,20 +7,20 @@ from functools import cached_property
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.arrays.chunks import PIECE, one_by_one, pieces, stretches
+from tribolab.arrays.medians import median_in_pieces, median_of_known
+from tribolab.arrays.reversals import reversals
+from tribolab.arrays.scratch import filled
+from tribolab.core.errors import AnalysisError
+from tribolab.core.wording import number as number_text
+from tribolab.core.wording import speed_text
 from tribolab.friction.coefficient.coefficient import friction_coefficient
-from tribolab.friction.oscillation.lines import Line, segment_lines
-from tribolab.friction.oscillation.noise import noise_level
+from tribolab.friction.oscillation.spectrum.lines import Line, segment_lines
+from tribolab.friction.oscillation.spectrum.noise import noise_level
 from tribolab.friction.oscillation.stick_slip import stick_slip
 from tribolab.friction.segments.find import find_segments, why_no_segment
-from tribolab.medians import median_in_pieces, median_of_known
-from tribolab.pieces import PIECE, one_by_one, pieces, stretches
 from tribolab.qc.flags import NOT_EVALUATED
 from tribolab.qc.register import Skip
-from tribolab.reversals import reversals
-from tribolab.room import filled
-from tribolab.words import number as number_text
-from tribolab.words import speed_text
 
 _FORCES = ("friction_force", "normal_force", "friction_coefficient")
 _SIGNALS = (*_FORCES, "sliding_velocity", "position", "normal_stress", "temperature")

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.arrays.chunks import pieces
+from tribolab.arrays.medians import median, medians_of_rows
+from tribolab.arrays.scratch import filled
 from tribolab.friction.time_weights import without_gaps
-from tribolab.medians import median, medians_of_rows
-from tribolab.pieces import pieces
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
-from tribolab.room import filled
 
 _PARTS = 16  # of a stretch, whose rates are compared
 _BLOCK = 64  # samples over which a sampling interval is called local

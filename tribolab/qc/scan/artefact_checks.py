@@ -7,15 +7,15 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
+from tribolab.core.errors import AnalysisError
 from tribolab.core.limit import Limit
-from tribolab.errors import AnalysisError
+from tribolab.core.wording import number
 from tribolab.qc.flags import GOOD, SUSPECT
 from tribolab.qc.register import Check, Result
 from tribolab.qc.scan.artefacts import outlying_features, rounding_step, stuck_stretch
 from tribolab.qc.scan.subject import ScanSubject
 from tribolab.surface.form import fill_dropouts
 from tribolab.surface.roughness import primary_roughness, roughness_parameters
-from tribolab.words import number
 
 _CALIBRATED = "tests/benchmarks/tricky_scans.py, sets 1000 to 1002, and the scans of ../shared/data"
 # the seven-point slope of white noise of unit variance, times the pitch (ISO 4287, 4.4.1)

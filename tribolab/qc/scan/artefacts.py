@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 from scipy import ndimage
 
-from tribolab.friction.oscillation.noise import quantisation_step
-from tribolab.medians import median, medians_of_rows
+from tribolab.arrays.medians import median, medians_of_rows
+from tribolab.friction.oscillation.spectrum.noise import quantisation_step
 
 _BLOCKS = {1: 20, 2: 4}  # of the baseline along each axis of profiles and maps
 _WIDEST = {1: 0.04, 2: 0.2}  # share of all points: a wider feature is form, such as a chamfer

@@ -7,8 +7,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
+from tribolab.arrays.broadcasting import of_runs
+from tribolab.core.errors import AnalysisError, ConfigError, Cure, nearest, shown
 from tribolab.core.limit import Limit
-from tribolab.errors import AnalysisError, ConfigError, Cure, nearest, shown
+from tribolab.core.wording import Count
 from tribolab.qc import signals
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import FAIL, SUSPECT, attach
@@ -24,9 +26,7 @@ from tribolab.qc.scan.artefact_checks import ARTEFACT_CHECKS
 from tribolab.qc.scan.artefacts import longest_run
 from tribolab.qc.scan.instrument import INSTRUMENT_CHECKS
 from tribolab.qc.scan.subject import ScanSubject
-from tribolab.several import of_runs
 from tribolab.surface.level import level_map
-from tribolab.words import Count
 
 
 @of_runs

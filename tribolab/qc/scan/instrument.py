@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
+from tribolab.core.errors import AnalysisError
 from tribolab.core.limit import Limit
-from tribolab.errors import AnalysisError
 from tribolab.qc.register import Check, Result
 from tribolab.qc.scan.subject import ScanSubject
 from tribolab.reading.scans.extent import doubt_about_heights, impossible_heights

@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
-from tribolab.medians import median, median_of_known
+from tribolab.arrays.medians import median, median_of_known
+from tribolab.core.errors import AnalysisError
 from tribolab.qc import signals
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, SUSPECT
 from tribolab.qc.scan.artefacts import longest_run, noisy_stop, rounding_step

@@ -8,11 +8,11 @@ from functools import cached_property
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import AnalysisError
+from tribolab.core.errors import AnalysisError
 from tribolab.surface.character import repeating_wave, why_not_self_affine
 from tribolab.surface.form import fill_dropouts, remove_form
 from tribolab.surface.level import level_rows
-from tribolab.surface.psd import psd_1d
+from tribolab.surface.spectra.psd import psd_1d
 
 _FEWEST = 8  # heights of a profile: fewer have neither form nor roughness
 

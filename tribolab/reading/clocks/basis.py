@@ -9,8 +9,8 @@ from itertools import chain
 import numpy as np
 from numpy.typing import NDArray
 
-from tribolab.aliases import Array
-from tribolab.medians import median
+from tribolab.arrays.medians import median
+from tribolab.core.aliases import Array
 from tribolab.reading.clocks.motion import Motion
 
 Ways = Array | NDArray[np.int64]  # -1 backward, 0 at rest, 1 forward

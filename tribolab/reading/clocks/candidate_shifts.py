@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.aliases import Array
+from tribolab.core.aliases import Array
 from tribolab.reading.clocks.basis import Basis
 from tribolab.reading.clocks.joint import fit_jointly, sampling
 

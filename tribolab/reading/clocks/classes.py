@@ -20,8 +20,8 @@ import numpy as np
 from numpy.fft import irfft, rfft
 from numpy.typing import NDArray
 
-from tribolab.aliases import Array
-from tribolab.medians import median
+from tribolab.arrays.medians import median
+from tribolab.core.aliases import Array
 
 _GRID = 1 << 14  # cells of the coarse grid over the longer log
 _OVERLAP = 0.6  # least part of the largest possible overlap

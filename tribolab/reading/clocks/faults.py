@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.medians import median
-from tribolab.pieces import chosen, pieces
-from tribolab.room import room
+from tribolab.arrays.chunks import chosen, pieces
+from tribolab.arrays.medians import median
+from tribolab.arrays.scratch import room
 
 _BLOCK = 1 << 18  # samples looked at in one go, so that no second array of full length is made
 _MANY = 10_000  # small falls that are looked at one by one; a clock with more of them jitters

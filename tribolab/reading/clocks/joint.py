@@ -21,8 +21,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tribolab.aliases import Array
-from tribolab.medians import median
+from tribolab.arrays.medians import median
+from tribolab.core.aliases import Array
 from tribolab.reading.clocks.basis import SLACKS, Basis
 
 _SAMPLES = 2000  # of the force, looked at in one fit

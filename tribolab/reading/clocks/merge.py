@@ -6,10 +6,10 @@ import datetime as dt
 
 import numpy as np
 
-from tribolab.errors import Cure, ReadError
+from tribolab.core.errors import Cure, ReadError
+from tribolab.core.untyped import Json
 from tribolab.reading.clocks.shift import estimate_clock_shift
 from tribolab.reading.signals import Signals
-from tribolab.untyped import Json
 
 _STEPWISE = {
     "set_speed",

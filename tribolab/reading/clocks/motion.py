@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tribolab.aliases import Array
+from tribolab.core.aliases import Array
 
 _DECADES = 5  # slower than this many decades below the fastest is rest
 _QUIET = 0.02  # of the fastest speed: most noise that is left after averaging

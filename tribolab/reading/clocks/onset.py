@@ -17,8 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.aliases import Array
-from tribolab.medians import median
+from tribolab.arrays.medians import median
+from tribolab.core.aliases import Array
 
 _PART = 0.05  # of a stroke's length is looked at, and as long before it
 _DISTANCES = 1e-6 * 2.0 ** np.arange(17)  # d, in lengths of the stroke

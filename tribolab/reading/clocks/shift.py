@@ -22,8 +22,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tribolab.aliases import Array
-from tribolab.medians import median
+from tribolab.arrays.medians import median
+from tribolab.arrays.threads import one_thread
+from tribolab.core.aliases import Array
 from tribolab.reading.clocks.basis import Basis
 from tribolab.reading.clocks.candidate_shifts import APART, Candidate, candidates, likeliest
 from tribolab.reading.clocks.classes import Classes, coarse_shift, motion_classes
@@ -37,7 +38,6 @@ from tribolab.reading.clocks.starts import (
     changes,
     shift_from_starts,
 )
-from tribolab.threads import one_thread
 
 _LEAST_SIGNIFICANCE = 10.0  # as an F ratio: the classes alone tell that force follows motion
 _LEAST_AT_ALL = 1.5  # with the other ways' consent

@@ -19,8 +19,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from tribolab.aliases import Array
-from tribolab.medians import median
+from tribolab.arrays.medians import median
+from tribolab.core.aliases import Array
 
 QUARTZ = 10e-6  # usual relative difference of two quartz clocks: standard deviation
 _MOST_STARTS = 64

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from tribolab.errors import ReadError, shown
-from tribolab.provenance import sha256_of_file
+from tribolab.core.errors import ReadError, shown
+from tribolab.core.provenance import sha256_of_file
 from tribolab.reading.content.model import Content, Piece
 from tribolab.reading.content.steps import started
 from tribolab.reading.dialect.column_rule import FRICTION_SIGNALS
@@ -19,7 +19,7 @@ from tribolab.reading.raw.clocks import OneClock, on_one_clock
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, text_of
 from tribolab.reading.text.bounded_patterns import guarded
 from tribolab.reading.text.cells import split_name
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
 
 _NAMED = 8  # tables that an attribute names
 

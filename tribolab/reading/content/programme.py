@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tribolab.errors import ReadError, shown
+from tribolab.core.errors import ReadError, shown
 from tribolab.reading.content.model import Content
 from tribolab.reading.content.values import converted
 from tribolab.reading.dialect.model import Dialect

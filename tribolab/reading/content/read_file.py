@@ -8,9 +8,9 @@ from typing import TypeVar
 
 import numpy as np
 
-from tribolab.errors import ReadError, shown
-from tribolab.pieces import anywhere
-from tribolab.provenance import sha256_of_file
+from tribolab.arrays.chunks import anywhere
+from tribolab.core.errors import ReadError, shown
+from tribolab.core.provenance import sha256_of_file
 from tribolab.reading.content.model import Content, Piece
 from tribolab.reading.content.programme import programmed_steps
 from tribolab.reading.content.steps import last_match, started

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 
-from tribolab.errors import ReadError, shown
+from tribolab.core.errors import ReadError, shown
 from tribolab.reading.content.model import Content, Piece
 from tribolab.reading.content.steps import last_match
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.dialect.time_rule import sampling_interval
-from tribolab.units import positive
+from tribolab.units.conversion import positive
 
 _THOUSANDS = re.compile(r"[1-9]\d{0,2}(?:[ \u00a0\u202f',]\d{3})+")  # "1 000"
 _COMMA = re.compile(r"\d+,\d+(?:[eE][-+]?\d+)?")

@@ -6,15 +6,15 @@ import re
 
 import numpy as np
 
-from tribolab.errors import ReadError, shown
+from tribolab.core.errors import ReadError, shown
+from tribolab.core.untyped import Json
 from tribolab.reading.content.model import Content
 from tribolab.reading.content.steps import last_match
 from tribolab.reading.dialect.formula import names_in, parse_formula
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.dialect.value_rule import Value
 from tribolab.reading.text.bounded_patterns import guarded
-from tribolab.units import conversion, to_si
-from tribolab.untyped import Json
+from tribolab.units.conversion import conversion, to_si
 
 # 21,5 above a table with decimal points; 1,200 may be a thousand and is asked about
 _OWN_COMMA = re.compile(r"[-+]?(?:\d+,\d{1,2}|\d+,\d{4,}|0,\d+)(?:[eE][-+]?\d+)?")

@@ -9,14 +9,14 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, ConfigDict, Field
 
-from tribolab.errors import TribolabError, shown
-from tribolab.quantities import quantity
+from tribolab.core.errors import TribolabError, shown
 from tribolab.reading.dialect.formula import parse_formula
 from tribolab.reading.dialect.switches import NoSwitches
 from tribolab.reading.dialect.zero_reading import parse_zero
 from tribolab.reading.text.bounded_patterns import PatternError, guarded
-from tribolab.turns import Counted
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
+from tribolab.units.quantities import quantity
+from tribolab.units.reciprocals import Counted
 
 
 def _is_pattern(text: str) -> str:

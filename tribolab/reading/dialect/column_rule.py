@@ -6,7 +6,6 @@ from typing import Literal, Self
 
 from pydantic import Field, PositiveInt, model_validator
 
-from tribolab.quantities import QUANTITIES, quantity
 from tribolab.reading.dialect.checked_text import (
     Pattern,
     QuantityName,
@@ -16,9 +15,10 @@ from tribolab.reading.dialect.checked_text import (
     ZeroText,
     check_unit,
 )
-from tribolab.turns import Counted, reciprocal
-from tribolab.unit_names import plain_unit
-from tribolab.units import base_unit, to_si
+from tribolab.units.conversion import base_unit, to_si
+from tribolab.units.quantities import QUANTITIES, quantity
+from tribolab.units.reciprocals import Counted, reciprocal
+from tribolab.units.spellings import plain_unit
 
 _TURNING = {"cycles": "Hz", "radians": "rad/s"}
 FRICTION_SIGNALS = ("friction_force", "friction_coefficient")  # signals whose zero can be stated

@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import LacksError, ReadError, UnitError, nearest, shown
+from tribolab.core.errors import LacksError, ReadError, UnitError, nearest, shown
 from tribolab.reading.dialect.column_rule import Column
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.text.bounded_patterns import guarded
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
 
 AGAIN = "~"  # between a quantity and the number of a further column that may hold it
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tribolab.errors import shown
+from tribolab.core.errors import shown
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.dialect.python_reader import PythonReader
 from tribolab.reading.raw.containers.read import read_container

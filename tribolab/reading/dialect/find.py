@@ -11,14 +11,14 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from tribolab.errors import ConfigError, ReadError, TribolabError, brief, nearest, shown
+from tribolab.core.errors import ConfigError, ReadError, TribolabError, brief, nearest, shown
+from tribolab.core.untyped import Json
 from tribolab.reading import cures
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.raw.readers import installed_readers, is_reader
 from tribolab.reading.raw.source import Identity, check_regular, identity_of
 from tribolab.reading.schema_folder import schema_folder
 from tribolab.reading.text.first_bytes import File, peek, results_error
-from tribolab.untyped import Json
 
 __all__ = [
     "Dialect",

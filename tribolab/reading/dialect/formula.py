@@ -17,9 +17,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.aliases import Array
-from tribolab.errors import UnitError, nearest, shown
-from tribolab.units import base_unit, registry, to_si
+from tribolab.core.aliases import Array
+from tribolab.core.errors import UnitError, nearest, shown
+from tribolab.units.conversion import base_unit, registry, to_si
 
 _LONGEST = 300  # letters
 _DEEPEST = 20
@@ -133,7 +133,7 @@ def evaluate(text: str, known: Mapping[str, Operand], si_unit: str) -> Array | f
     [0.025, 0.05]
     >>> evaluate("rotation_speed + '25 mm'", known, "m/s")
     Traceback (most recent call last):
-    tribolab.errors.UnitError: formula 'rotation_speed + '25 mm'': 1/s and m cannot be added
+    tribolab.core.errors.UnitError: formula 'rotation_speed + '25 mm'': 1/s and m cannot be added
     """
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         result = _value(parse_formula(text), known, text)

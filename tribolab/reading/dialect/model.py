@@ -10,7 +10,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tribolab.errors import nearest, shown
+from tribolab.core.errors import nearest, shown
 from tribolab.reading.dialect.checked_text import Formula, QuantityName, Strict, ZeroText
 from tribolab.reading.dialect.column_rule import Column
 from tribolab.reading.dialect.file_layout import (
@@ -29,7 +29,7 @@ from tribolab.reading.dialect.speed_rule import Speed
 from tribolab.reading.dialect.time_rule import Time
 from tribolab.reading.dialect.uncertainty import Uncertainty
 from tribolab.reading.dialect.value_rule import Value
-from tribolab.units import positive
+from tribolab.units.conversion import positive
 
 
 class Derived(Strict):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tribolab.errors import shown
+from tribolab.core.errors import shown
 from tribolab.reading.dialect.value_rule import Value
-from tribolab.units import positive
+from tribolab.units.conversion import positive
 
 
 def check_pitch(

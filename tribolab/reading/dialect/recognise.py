@@ -7,7 +7,7 @@ import re
 
 import numpy as np
 
-from tribolab.errors import ReadError, shown
+from tribolab.core.errors import ReadError, shown
 from tribolab.reading.dialect.delimited.tables import find_tables
 from tribolab.reading.dialect.file_layout import Recognise
 from tribolab.reading.dialect.model import Dialect

@@ -6,9 +6,9 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from tribolab.errors import shown
+from tribolab.core.errors import shown
 from tribolab.reading.dialect.checked_text import Strict
-from tribolab.units import positive
+from tribolab.units.conversion import positive
 
 
 class Speed(Strict):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.dialect.python_reader import PythonReader, with_columns
 from tribolab.reading.text.bounded_patterns import guarded

@@ -7,10 +7,10 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from tribolab.errors import UnitError, shown
+from tribolab.core.errors import UnitError, shown
 from tribolab.reading.dialect.checked_text import Pattern, Strict
 from tribolab.reading.text.dates import Epoch, is_form
-from tribolab.units import positive
+from tribolab.units.conversion import positive
 
 
 class Time(Strict):

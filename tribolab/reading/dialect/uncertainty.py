@@ -8,10 +8,10 @@ from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import AfterValidator, ConfigDict, Field, model_validator
 
-from tribolab.errors import TribolabError, UnitError, shown
+from tribolab.core.errors import TribolabError, UnitError, shown
+from tribolab.core.untyped import Json
 from tribolab.reading.dialect.switches import NoSwitches
-from tribolab.units import conversion, to_si
-from tribolab.untyped import Json
+from tribolab.units.conversion import conversion, to_si
 
 Distribution = Literal["standard", "expanded", "half-width", "triangular", "step"]
 Varies = Literal["calibration", "mount", "run", "stroke"]

@@ -8,12 +8,12 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from tribolab.errors import TribolabError, nearest, shown
-from tribolab.quantities import QUANTITIES, quantity
+from tribolab.core.errors import TribolabError, nearest, shown
 from tribolab.reading.dialect.checked_text import Pattern, Sign, Strict, check_unit
 from tribolab.reading.text.bounded_patterns import guarded
-from tribolab.turns import Counted, reciprocal
-from tribolab.units import base_unit, conversion, to_si
+from tribolab.units.conversion import base_unit, conversion, to_si
+from tribolab.units.quantities import QUANTITIES, quantity
+from tribolab.units.reciprocals import Counted, reciprocal
 
 
 class Value(Strict):

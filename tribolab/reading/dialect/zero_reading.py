@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import Cure, ReadError, UnitError, shown
-from tribolab.pieces import lowered
-from tribolab.quantities import quantity
-from tribolab.units import to_si
-from tribolab.untyped import Json
+from tribolab.arrays.chunks import lowered
+from tribolab.core.errors import Cure, ReadError, UnitError, shown
+from tribolab.core.untyped import Json
+from tribolab.units.conversion import to_si
+from tribolab.units.quantities import quantity
 
 _SAMPLES = re.compile(r"^\s*first\s+(\d+)\s+samples?\s*$")
 _FIRST = re.compile(r"^\s*first\s+(\S.*?)\s*$")

@@ -9,8 +9,8 @@ from typing import NamedTuple
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern
 from tribolab.reading.numbers import decimal
-from tribolab.unit_names import WEIGHTS
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
+from tribolab.units.spellings import WEIGHTS
 
 
 class Amount(NamedTuple):

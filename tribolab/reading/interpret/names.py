@@ -6,7 +6,6 @@ import functools
 import re
 from typing import NamedTuple
 
-from tribolab.quantities import quantity
 from tribolab.reading.interpret.unit_texts import converts, is_turns, is_unit
 from tribolab.reading.lexicon.lexicon import (
     Word,
@@ -20,7 +19,8 @@ from tribolab.reading.lexicon.lexicon import (
     role_of,
     without_role,
 )
-from tribolab.unit_names import WEIGHTS, unit_in_words
+from tribolab.units.quantities import quantity
+from tribolab.units.spellings import WEIGHTS, unit_in_words
 
 _VAGUE = 0.6  # of the score of a word that names this quantity alone
 _OF_DEVICE = 0.98

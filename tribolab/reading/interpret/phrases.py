@@ -18,7 +18,7 @@ from tribolab.reading.lexicon.lexicon import (
     text_pattern,
 )
 from tribolab.reading.numbers import NUMBER, Number, decimal, numbers_in
-from tribolab.unit_names import WEIGHTS
+from tribolab.units.spellings import WEIGHTS
 
 LONGEST_LINE = 300  # characters of a line that are looked at
 _MOST_OF_LINE = 8  # numbers of a line

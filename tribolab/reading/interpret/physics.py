@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.quantities import QUANTITIES
 from tribolab.reading.interpret.limits import AGREEMENT, ROWS, SPREAD
 from tribolab.reading.interpret.rules import (
     Rule,
@@ -24,7 +23,8 @@ from tribolab.reading.interpret.rules import (
     units_written,
 )
 from tribolab.reading.interpret.unit_texts import converts
-from tribolab.unit_names import WEIGHTS
+from tribolab.units.quantities import QUANTITIES
+from tribolab.units.spellings import WEIGHTS
 
 _MOST_MEMBERS = 500  # ways in which columns may be members of one rule
 Units = dict[int, str]

@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
-from tribolab.quantities import QUANTITIES, quantity, unit_conversion
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
+from tribolab.units.quantities import QUANTITIES, quantity, unit_conversion
 
 _WORD = re.compile(
     r"'(?P<amount>[\d.]+)[^']*'|(?P<name>[a-z]\w*)|(?P<number>\d[\d.]*)|(?P<sign>[*/])"

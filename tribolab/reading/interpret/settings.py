@@ -29,7 +29,7 @@ from tribolab.reading.lexicon.lexicon import (
     without_role,
 )
 from tribolab.reading.numbers import NUMBER
-from tribolab.unit_names import WEIGHTS, unit_in_words
+from tribolab.units.spellings import WEIGHTS, unit_in_words
 
 _LONGEST_ENTRY = 1000  # of a line with a key: searches take their square
 # "# rate: 10 Hz", "Set Force = -200", "Disc track radius used (mm)<tab>21.232"; of testXpert

@@ -5,10 +5,10 @@ from __future__ import annotations
 import functools
 import re
 
-from tribolab.errors import TribolabError
-from tribolab.turns import Counted
-from tribolab.unit_names import WEIGHTS
-from tribolab.units import conversion
+from tribolab.core.errors import TribolabError
+from tribolab.units.conversion import conversion
+from tribolab.units.reciprocals import Counted
+from tribolab.units.spellings import WEIGHTS
 
 # SI units of what an instrument records: a text that converts to one of them is a unit
 DIMENSIONS = (

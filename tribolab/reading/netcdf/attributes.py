@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tribolab.untyped import Json
+from tribolab.core.untyped import Json
 
 _MARK, _TUPLE = "json:", "json-tuple:"
 

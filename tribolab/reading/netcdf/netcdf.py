@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Literal
 
 import xarray as xr
 
-from tribolab.errors import ReadError, TribolabError, shown
-from tribolab.pieces import pieces
+from tribolab.arrays.chunks import pieces
+from tribolab.arrays.scratch import is_long, room
+from tribolab.core.errors import ReadError, TribolabError, shown
 from tribolab.reading.netcdf.attributes import decoded
 from tribolab.reading.netcdf.seal import check_seal, seal, unseal
 from tribolab.reading.netcdf.storage import write_into
 from tribolab.reading.netcdf.stored import read_plain
 from tribolab.reading.raw.opening import damage_told, isolated
-from tribolab.room import is_long, room
 
 if TYPE_CHECKING:
     import netCDF4

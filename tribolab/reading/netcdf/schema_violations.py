@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from tribolab.errors import shown
+from tribolab.core.errors import shown
 
 _SCREEN = 20  # violations that are shown
 

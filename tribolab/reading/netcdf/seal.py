@@ -11,7 +11,7 @@ import os
 from pathlib import Path
 from typing import BinaryIO
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 
 _MARK = b"\ntribolab sha256 "
 _LENGTH = len(_MARK) + 64

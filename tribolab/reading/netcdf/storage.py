@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from tribolab.pieces import pieces
+from tribolab.arrays.chunks import pieces
+from tribolab.core.untyped import Arguments
 from tribolab.reading.netcdf.attributes import encoded
-from tribolab.untyped import Arguments
 
 if TYPE_CHECKING:
     import netCDF4

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from tribolab.arrays.scratch import is_long
+from tribolab.core.untyped import Json
 from tribolab.reading.netcdf.attributes import decoded
 from tribolab.reading.netcdf.storage import COORDINATES, ORDERS
-from tribolab.room import is_long
-from tribolab.untyped import Json
 
 if TYPE_CHECKING:
     import netCDF4

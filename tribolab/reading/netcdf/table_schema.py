@@ -12,11 +12,11 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from tribolab.errors import ConfigError, ReadError, UnitError, nearest, shown
+from tribolab.core.errors import ConfigError, ReadError, UnitError, nearest, shown
 from tribolab.reading.netcdf.schema_violations import Broken, Violations
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.schema_folder import schema_folder
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
 
 _SCHEMAS = ("run", "scan")
 _TYPES = {"number": "fiub", "integer": "fiub", "boolean": "b", "string": "OUST"}

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from tribolab.errors import TribolabError
+from tribolab.core.errors import TribolabError
 from tribolab.reading.raw import limits, opening
 from tribolab.reading.raw.child_results import LENGTH, packed_error, write_result
 from tribolab.reading.raw.hdf5_safety import refuse_outside

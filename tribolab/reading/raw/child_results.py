@@ -8,7 +8,7 @@ import os
 import pickle
 from typing import Any, NamedTuple
 
-from tribolab.room import take_in
+from tribolab.arrays.scratch import take_in
 
 LENGTH = 8  # bytes of a message's length
 _MAPPED = 1 << 20  # bytes of a result from which on it stays in its file

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError, shown
+from tribolab.core.errors import ReadError, shown
 from tribolab.reading.raw.model import Clock, RawColumn, Setting
 
 INTERVAL_KEY = "wf_increment"  # what LabVIEW calls the time from value to value

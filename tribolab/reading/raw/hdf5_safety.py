@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from tribolab.errors import shown
+from tribolab.core.errors import shown
 from tribolab.reading.raw import limits
 from tribolab.reading.raw.opening import RefusedError, isolated, missing
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.pieces import anywhere, pieces
+from tribolab.arrays.chunks import anywhere, pieces
 
 LARGEST = 1e60  # [SI] beyond it a number is damage; its fourth power is a number still
 _NO_SIGNAL = 9.8e29  # in the file's own unit: beyond it a number is a mark, how rare it may be

@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
-from tribolab.errors import ReadError, TribolabError
+from tribolab.core.errors import ReadError, TribolabError
 from tribolab.reading.raw import limits
 from tribolab.reading.raw.child_results import read_result, unpacked_error
 from tribolab.reading.raw.scratch import scratch_errors, scratch_place

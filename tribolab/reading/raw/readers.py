@@ -16,11 +16,11 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from tribolab.errors import ConfigError, ReadError, TribolabError, shown
-from tribolab.quantities import QUANTITIES
+from tribolab.core.errors import ConfigError, ReadError, TribolabError, shown
 from tribolab.reading.raw.containers.settings import settings_of
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable
 from tribolab.reading.raw.source import check_regular
+from tribolab.units.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint

@@ -11,7 +11,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from tribolab.errors import OutputError, brief
+from tribolab.core.errors import OutputError, brief
 
 
 def scratch_place() -> str:

@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
-from tribolab.errors import ReadError
-from tribolab.provenance import sha256_of_file
+from tribolab.core.errors import ReadError
+from tribolab.core.provenance import sha256_of_file
 from tribolab.reading.raw import limits
 
 R = TypeVar("R")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from tribolab.errors import TribolabError
-from tribolab.units import conversion
+from tribolab.core.errors import TribolabError
+from tribolab.units.conversion import conversion
 
 # SI units of what instruments record
 _MEASURED = (

@@ -12,7 +12,7 @@ import zlib
 from pathlib import Path
 from typing import Protocol
 
-from tribolab.errors import Cure, ReadError, TribolabError, shown
+from tribolab.core.errors import Cure, ReadError, TribolabError, shown
 from tribolab.reading.raw.opening import largest_unpacked
 from tribolab.reading.raw.scratch import scratch_errors, scratch_folder
 

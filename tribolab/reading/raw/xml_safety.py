@@ -11,7 +11,7 @@ from xml.parsers import expat
 
 import numpy as np
 
-from tribolab.errors import ReadError, brief, shown
+from tribolab.core.errors import ReadError, brief, shown
 from tribolab.reading.raw.limits import LETTERS_OF_DEFAULTS, LETTERS_OF_ENTITY, XML_DEPTH
 from tribolab.reading.raw.opening import RefusedError
 

@@ -7,7 +7,7 @@ from typing import TypedDict
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.dialect.find import load_dialect, recognise
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.runs.logs import companion_name, companion_path

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tribolab.errors import Cure, ReadError, UnitError
-from tribolab.medians import median
-from tribolab.pieces import lowered
-from tribolab.quantities import QUANTITIES, quantity
+from tribolab.arrays.chunks import lowered
+from tribolab.arrays.medians import median
+from tribolab.core.errors import Cure, ReadError, UnitError
+from tribolab.core.untyped import Json
 from tribolab.reading.dialect.formula import (
     Operand,
     evaluate,
@@ -21,7 +21,7 @@ from tribolab.reading.dialect.model import Derived, Dialect
 from tribolab.reading.dialect.value_rule import Value
 from tribolab.reading.raw.missing_marks import measurable
 from tribolab.reading.runs.return_strokes import goes_back
-from tribolab.untyped import Json
+from tribolab.units.quantities import QUANTITIES, quantity
 
 _LIGHT, _UNLOADED = 0.4, 0.1  # shares of the usual normal stress: a light one, and none
 _FEWEST = 20  # samples that tell a zero

@@ -6,12 +6,12 @@ from typing import TypedDict
 
 import numpy as np
 
-from tribolab.aliases import PathLike
-from tribolab.medians import median
-from tribolab.quantities import QUANTITIES
+from tribolab.arrays.medians import median
+from tribolab.core.aliases import PathLike
 from tribolab.reading.dialect.find import Instrument, known_dialects, load_dialect
 from tribolab.reading.runs.row_counts import ROW_ATTRIBUTES, rows_in_words
 from tribolab.reading.signals import Signals
+from tribolab.units.quantities import QUANTITIES
 
 
 class ColumnFacts(TypedDict):

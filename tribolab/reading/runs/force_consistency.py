@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribolab.medians import median
-from tribolab.untyped import Json
+from tribolab.arrays.medians import median
+from tribolab.core.untyped import Json
 
 _APART = 0.02  # relative; both are computed of the same readings, and written with three digits
 _LOADED = 0.1  # of the largest load

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribolab.medians import median
+from tribolab.arrays.medians import median
 
 LARGEST = 10.0  # soft rubber on glass reaches some 4, gels and gecko feet at light loads more
 SMALLEST = 2e-4  # superlubric contacts come to 1e-3 and a little below

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from tribolab.errors import ReadError, shown
-from tribolab.pieces import chosen, concatenated
-from tribolab.provenance import CONVENTIONS, as_text, history_line
-from tribolab.quantities import QUANTITIES
+from tribolab.arrays.chunks import chosen, concatenated
+from tribolab.core.errors import ReadError, shown
+from tribolab.core.provenance import CONVENTIONS, as_text, history_line
+from tribolab.core.untyped import Json
 from tribolab.reading.clocks.clock import join_clocks, mended_time, recorded_at, set_time
 from tribolab.reading.content.model import Content
 from tribolab.reading.content.newest_first import oldest_first
@@ -33,7 +33,7 @@ from tribolab.reading.runs.speed import add_speed, keep_settings
 from tribolab.reading.runs.two_rates import sampled_together
 from tribolab.reading.signals import Signals
 from tribolab.reading.text.first_bytes import peek
-from tribolab.untyped import Json
+from tribolab.units.quantities import QUANTITIES
 
 LogDialects = list[tuple[Path, Dialect]]
 

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import Cure, ReadError
-from tribolab.medians import median
-from tribolab.stamping import stamp
+from tribolab.arrays.medians import median
+from tribolab.core.errors import Cure, ReadError
+from tribolab.units.stamping import stamp
 
 _MOTION = ("sliding_velocity", "position")
 _WIDEST = 200  # samples on either side of a window

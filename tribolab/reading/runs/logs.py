@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from tribolab.aliases import PathLike
-from tribolab.provenance import as_text
+from tribolab.core.aliases import PathLike
+from tribolab.core.provenance import as_text
 from tribolab.reading.dialect.find import Dialect, Instrument, every_dialect, load_dialect
 
 

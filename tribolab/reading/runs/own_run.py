@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError
-from tribolab.quantities import QUANTITIES
+from tribolab.core.errors import ReadError
+from tribolab.core.untyped import Json
 from tribolab.reading.dialect.find import UnknownFileError
 from tribolab.reading.raw.hdf5_safety import check_self_contained
 from tribolab.reading.raw.opening import CrashedError
-from tribolab.untyped import Json
+from tribolab.units.quantities import QUANTITIES
 
 _NUMBERS = "fiub"
 _DESCRIBE = "of others a description says which is which (raw_data_schema/README.md)"

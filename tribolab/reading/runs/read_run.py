@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
 
-from tribolab.aliases import PathLike
-from tribolab.errors import ReadError, shown
+from tribolab.core.aliases import PathLike
+from tribolab.core.errors import ReadError, shown
 from tribolab.reading import cures
 from tribolab.reading.dialect.find import Dialect, Instrument, is_scan, load_dialect, recognise
 from tribolab.reading.raw.source import check_regular, read_unchanged
@@ -16,7 +16,7 @@ from tribolab.reading.runs.logs import companion_name, companion_path
 from tribolab.reading.runs.row_counts import with_companion_rows
 from tribolab.reading.signals import Signals, dataset_of, signals_of
 from tribolab.reading.text.first_bytes import peek
-from tribolab.units import positive, to_si
+from tribolab.units.conversion import positive, to_si
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -12,11 +12,11 @@ from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
+from tribolab.core.untyped import Json
 from tribolab.reading.clocks.clock import Mended
 from tribolab.reading.content.model import Content
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.signals import Signals
-from tribolab.untyped import Json
 
 ROW_ATTRIBUTES = ("rows_in_file", "rows_left_out", "rows_left_out_why", "rows_left_out_meant")
 

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from tribolab.errors import LacksError, ReadError
-from tribolab.medians import median
+from tribolab.arrays.medians import median
+from tribolab.core.errors import LacksError, ReadError
+from tribolab.core.untyped import Json
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.runs.stroke_speed import FEWEST_CYCLES, velocity_of_strokes
-from tribolab.units import to_si
-from tribolab.untyped import Json
+from tribolab.units.conversion import to_si
 
 
 def add_speed(

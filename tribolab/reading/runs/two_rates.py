@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.medians import median
-from tribolab.pieces import chosen, pieces
+from tribolab.arrays.chunks import chosen, pieces
+from tribolab.arrays.medians import median
+from tribolab.core.untyped import Json
 from tribolab.reading.dialect.column_rule import FRICTION_SIGNALS
-from tribolab.untyped import Json
 
 _MOST = 0.6  # share of rows with a value, of what was sampled more seldom
 _FEW = 8  # values that show a rate

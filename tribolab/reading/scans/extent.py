@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError
-from tribolab.provenance import history_line
+from tribolab.core.errors import ReadError
+from tribolab.core.provenance import history_line
+from tribolab.core.wording import Count
 from tribolab.reading.scans.limits import (
     DOUBTFUL_REACH,
     DOUBTFUL_SLOPE,
@@ -19,7 +20,6 @@ from tribolab.reading.scans.limits import (
     LONGEST_PROBE_SCAN,
     MIN_HEIGHTS_OF_LINE,
 )
-from tribolab.words import Count
 
 _LINES = 16  # along x and along y, by which a map is judged
 _USUAL = (0.5, 99.5)  # percentiles: spikes and marks of missing heights are no surface

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError
-from tribolab.medians import median
+from tribolab.arrays.medians import median
+from tribolab.core.errors import ReadError
 
 _JITTER = 0.01  # largest deviation from an even grid, in pitches, that changes nothing
 _LARGEST = 1e4  # m

@@ -26,7 +26,7 @@ from tribolab.reading.scans.unit_words import (
     only_one,
     stated_units,
 )
-from tribolab.unit_names import unit_of_length
+from tribolab.units.spellings import unit_of_length
 
 _LONGEST = 300  # characters of a line that are looked at
 _MOST_NUMBERS = 2  # of an entry; more are a date, a time, a row of results

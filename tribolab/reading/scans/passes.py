@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.medians import median
-from tribolab.words import Count
+from tribolab.arrays.medians import median
+from tribolab.core.wording import Count
 
 _END = 0.2  # of the way, at each of its ends, where the sensor turns
 _JUMP = 0.1  # of the way: so far no sensor goes between two rows of a pass

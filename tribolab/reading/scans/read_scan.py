@@ -9,9 +9,11 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from tribolab.aliases import PathLike
-from tribolab.errors import Cure, ReadError, shown
-from tribolab.provenance import as_text, made, sha256_of_file
+from tribolab.core.aliases import PathLike
+from tribolab.core.errors import Cure, ReadError, shown
+from tribolab.core.provenance import as_text, made, sha256_of_file
+from tribolab.core.untyped import Json
+from tribolab.core.wording import Count
 from tribolab.reading import cures
 from tribolab.reading.content.read_file import read_content
 from tribolab.reading.dialect.find import (
@@ -31,10 +33,8 @@ from tribolab.reading.scans.grid import even, gridded
 from tribolab.reading.scans.isolated import take_isolated
 from tribolab.reading.scans.passes import find_passes
 from tribolab.reading.text.first_bytes import File, peek, results_error
-from tribolab.stamping import stamp
-from tribolab.units import positive
-from tribolab.untyped import Json
-from tribolab.words import Count
+from tribolab.units.conversion import positive
+from tribolab.units.stamping import stamp
 
 # where the scans of a surface differ, the one that shows least counts for all
 _WORST = {"tip_radius_m": max, "lambda_s_m": max, "lambda_c_m": min}

@@ -8,9 +8,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError, UnitError, shown
-from tribolab.provenance import provenance
-from tribolab.quantities import QUANTITIES
+from tribolab.core.errors import ReadError, UnitError, shown
+from tribolab.core.provenance import provenance
 from tribolab.reading.raw.source import read_unchanged
 from tribolab.reading.scans.formats.profilometers import result
 from tribolab.reading.text.first_bytes import (
@@ -20,8 +19,9 @@ from tribolab.reading.text.first_bytes import (
     peek,
     results_error,
 )
-from tribolab.stamping import stamp
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
+from tribolab.units.quantities import QUANTITIES
+from tribolab.units.stamping import stamp
 
 _SETTINGS = {"Lc": "lambda_c", "Ls": "lambda_s", "Pitch": "pitch", "M-Speed": "measuring_speed"}
 _NAMES = {"rdq": "Rdq", "rδq": "Rdq"}

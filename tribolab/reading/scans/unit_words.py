@@ -13,8 +13,8 @@ from tribolab.reading.lexicon.lexicon import (
     part_pattern,
     words_of,
 )
-from tribolab.unit_names import unit_of_length
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
+from tribolab.units.spellings import unit_of_length
 
 WORD = re.compile(r"[^\W\d_]+")
 IN_BRACKETS = re.compile(r"[\[(]\s*$")

@@ -9,7 +9,7 @@ from typing import Any, AnyStr, Generic
 
 import regex
 
-from tribolab.errors import ReadError, shown
+from tribolab.core.errors import ReadError, shown
 
 _LONGEST = 1000  # letters of a pattern
 _SECONDS = 2.0  # that a pattern may take on a little text, and on each _AMOUNT more

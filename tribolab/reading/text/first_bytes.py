@@ -8,7 +8,7 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading import cures
 from tribolab.reading.file_patterns import why_missing
 from tribolab.reading.raw.containers.declared_records import declares_records

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.core.wording import many, number, percent, speed_text
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import Notice, number_of
-from tribolab.words import many, number, percent, speed_text
 
 CURVES_AS_FOUND = "stribeck_as_found.csv"  # table of the curves without decisions
 _SPEED, _MU = "sliding_speed_m_s", "friction_coefficient"

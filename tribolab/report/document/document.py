@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import TypeAdapter
 
-from tribolab.provenance import sha256_of_file
+from tribolab.core.provenance import sha256_of_file
+from tribolab.core.untyped import Json
+from tribolab.core.wording import load_label, many, span
 from tribolab.records.judgement import THRESHOLDS, is_bad, status_word
 from tribolab.records.parts import Row
 from tribolab.records.wording import SYMBOLS, UNITS, plain_value
@@ -29,13 +31,11 @@ from tribolab.report.document.schema import (
     ReportHead,
     SourceFile,
 )
-from tribolab.untyped import Json
-from tribolab.words import load_label, many, span
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
     from tribolab.campaign.store.outcome import Outcome
-    from tribolab.records.joint_record import JointRecord
+    from tribolab.records.models.joint_record import JointRecord
     from tribolab.records.part_records import FigureRecord
     from tribolab.records.parts import CurveOutcome, Notice, RunOutcome, SurfaceOutcome
 

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from tribolab.records.model_rows import FITTED, MODEL_LABELS
+from tribolab.core.untyped import Json
+from tribolab.records.models.model_rows import FITTED, MODEL_LABELS
 from tribolab.records.part_records import ModelRows
-from tribolab.untyped import Json
 
 if TYPE_CHECKING:
     from tribolab.records.part_records import ModelRecord

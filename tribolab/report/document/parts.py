@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from pydantic import TypeAdapter
 
+from tribolab.core.wording import load_label
 from tribolab.records.parts import PartOutcome
 from tribolab.report.document.schema import (
     ReportedCurve,
@@ -15,15 +16,14 @@ from tribolab.report.document.schema import (
     ReportedRun,
     ReportedSurface,
 )
-from tribolab.words import load_label
 
 if TYPE_CHECKING:
-    from tribolab.records.mode_record import ModeRecord
+    from tribolab.core.untyped import Arguments, Json
+    from tribolab.records.models.mode_record import ModeRecord
     from tribolab.records.part_records import CurveRecord, SurfaceRows
     from tribolab.records.parts import ModelOutcome, SurfaceOutcome
-    from tribolab.records.run_record import RunRecord
+    from tribolab.records.runs.run_record import RunRecord
     from tribolab.report.document.models import ModelRow
-    from tribolab.untyped import Arguments, Json
 
 _RUN = TypeAdapter(ReportedRun)
 

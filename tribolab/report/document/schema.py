@@ -10,22 +10,22 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
 from tribolab.campaign.modes import SPEED_COLUMNS
-from tribolab.mode.model import LOCAL, NO_STICK_SLIP, SUSPECTED, UNEXPLAINED, UNKNOWN
+from tribolab.core.untyped import Json
+from tribolab.core.wording import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES
 from tribolab.qc.register import STATUSES
 from tribolab.records.annotations import Columns, Natural, means, one_of
-from tribolab.records.joint_record import JointRecord
 from tribolab.records.judgement import Limits
-from tribolab.records.mode_record import EvidenceRow
-from tribolab.records.model_rows import FITTED
+from tribolab.records.models.joint_record import JointRecord
+from tribolab.records.models.mode_record import EvidenceRow
+from tribolab.records.models.model_rows import FITTED
 from tribolab.records.part_records import BudgetRow, FigureRecord, Point
 from tribolab.records.parts import Row
-from tribolab.records.run_record import RunFacts
-from tribolab.records.surface_rows import ADHESION, CONTACT, ROUGHNESS
+from tribolab.records.runs.run_record import RunFacts
+from tribolab.records.surfaces.surface_rows import ADHESION, CONTACT, ROUGHNESS
 from tribolab.records.wording import UNITS
+from tribolab.regime.model import LOCAL, NO_STICK_SLIP, SUSPECTED, UNEXPLAINED, UNKNOWN
 from tribolab.report.document.models import BESIDE_FIT, SENSITIVE
 from tribolab.report.tables import SEVERITIES
-from tribolab.untyped import Json
-from tribolab.words import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES
 
 REPORT_SCHEMA_FILE = "report.schema.json"
 _DESCRIPTION = (

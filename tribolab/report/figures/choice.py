@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from tribolab.errors import ConfigError, shown
+from tribolab.core.errors import ConfigError, shown
 
 Wanted = Literal["all", "curves", "none"]
 

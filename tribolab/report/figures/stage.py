@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 
 from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.store.catalogue import Store
+from tribolab.core.provenance import sha256_of
+from tribolab.core.wording import explain, force_text
 from tribolab.figures.spec import FigureSpec, Series, legend, safe
 from tribolab.figures.subjects.surfaces import shaded_loads
-from tribolab.provenance import sha256_of
 from tribolab.records.part_records import FigureRecord
 from tribolab.records.parts import Notice
 from tribolab.report import tables
 from tribolab.report.code import code_of_figures
-from tribolab.words import explain, force_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from tribolab.core.untyped import Arguments
+from tribolab.core.wording import many
 from tribolab.figures.colours import BLACK
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, places
 from tribolab.friction.running_in.kinds import STRETCHES
 from tribolab.records.parts import BAD, number_of
-from tribolab.records.run_record import RunRecord
-from tribolab.records.running_in_record import RunningIn
+from tribolab.records.runs.run_record import RunRecord
+from tribolab.records.runs.running_in_record import RunningIn
 from tribolab.records.wording import with_error
-from tribolab.untyped import Arguments
-from tribolab.words import many
 
 MAX_RUNS = 8  # that are shown
 

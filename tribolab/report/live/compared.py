@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from tribolab.core.wording import force_text, load_text, many, number, span
 from tribolab.figures.colours import surface_colours
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, SeriesLabels, places
 from tribolab.figures.subjects.curves import FRICTION_AXIS, SPEED_AXIS
@@ -19,7 +20,6 @@ from tribolab.report.live.curves import (
 )
 from tribolab.report.live.points import RunPoint, of_curve
 from tribolab.report.plain import plain_speed
-from tribolab.words import force_text, load_text, many, number, span
 
 _SHARE = Axis("µ over its highest value")
 _HALF = 0.5

@@ -6,11 +6,11 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from tribolab.core.wording import many, percent
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series
 from tribolab.metrology.budget_parts import BETWEEN, NOISE, coverage_factor
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import number_of
-from tribolab.words import many, percent
 
 _MIN_SHARE = 0.005  # of the variance: less is no bar
 _MIN_GAIN = 0.01  # of U95: less is no advice

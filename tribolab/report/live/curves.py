@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
+from tribolab.core.wording import force_text, is_dry, load_text, many, span, speeds
 from tribolab.figures.axes import comparable
 from tribolab.figures.colours import GREY
 from tribolab.figures.spec import FigureSpec, Panel, Series, SeriesLabels
@@ -20,7 +21,6 @@ from tribolab.report.document.models import ModelRow
 from tribolab.report.live.points import RunPoint, at_speed, of_curve, point_error, told_point
 from tribolab.report.live.record import Band
 from tribolab.report.plain import listed, plain_speed
-from tribolab.words import force_text, is_dry, load_text, many, span, speeds
 
 if TYPE_CHECKING:
     from tribolab.records.parts import Row

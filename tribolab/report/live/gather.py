@@ -12,8 +12,8 @@ from tribolab.campaign.engine.stage import begun
 from tribolab.campaign.recorded import done_and_failed
 from tribolab.campaign.store.catalogue import Store
 from tribolab.figures.spec import FigureSpec
-from tribolab.records.joint_record import JointRecord
-from tribolab.records.mode_record import ModeRecord
+from tribolab.records.models.joint_record import JointRecord
+from tribolab.records.models.mode_record import ModeRecord
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import Notice
 from tribolab.report.document.models import ModelRow

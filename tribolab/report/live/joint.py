@@ -10,11 +10,11 @@ from typing import NamedTuple
 import xarray as xr
 
 from tribolab.campaign.store.data_files import read_data
+from tribolab.core.wording import many
 from tribolab.figures.spec import FigureSpec, safe
 from tribolab.figures.subjects.fits import joint_fit
-from tribolab.records.joint_record import JointRecord
+from tribolab.records.models.joint_record import JointRecord
 from tribolab.report.live.curves import system_name
-from tribolab.words import many
 
 
 class _Fitted(NamedTuple):

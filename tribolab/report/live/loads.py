@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from tribolab.core.wording import is_dry
 from tribolab.figures.colours import surface_colours
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series
 from tribolab.records.parts import Row, number_of
 from tribolab.report.live.curves import FrictionOverSpeed, system_name, systems
 from tribolab.report.live.points import point_error
 from tribolab.report.plain import plain_speed
-from tribolab.words import is_dry
 
 _MIN_LOADS = 2
 _SAME = 1.1  # speeds within this ratio are one, as in the measured curves

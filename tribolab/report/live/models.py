@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING, Any
 import pandas as pd
 
 from tribolab.campaign.store.data_files import read_data
+from tribolab.core.wording import force_text, is_dry, percent
 from tribolab.figures.colours import surface_colours
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, SeriesLabels, safe
 from tribolab.figures.subjects.film import film_profiles, lubrication_factors
 from tribolab.figures.subjects.mixed import mixed_curve, shear_stress
-from tribolab.records.model_words import shear_stress_u95, stress_interval
+from tribolab.records.models.model_words import shear_stress_u95, stress_interval
 from tribolab.records.parts import number_of
 from tribolab.records.wording import with_error
 from tribolab.report.document.models import ModelRow
 from tribolab.report.live.curves import system_name
 from tribolab.report.live.record import Band
 from tribolab.report.plain import plain_speed
-from tribolab.words import force_text, is_dry, percent
 
 if TYPE_CHECKING:
     import xarray as xr

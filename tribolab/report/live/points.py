@@ -8,13 +8,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tribolab.core.wording import many, number
 from tribolab.friction.points.strokes import run_means
 from tribolab.friction.statistics import NORMAL
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.records.parts import Row, number_of
 from tribolab.records.wording import with_error
 from tribolab.report.plain import plain_speed
-from tribolab.words import many, number
 
 _NAMED = 4  # runs, at a point
 _SAME = 1.1  # speeds within this ratio are one, as in the measured curves

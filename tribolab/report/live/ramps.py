@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
+from tribolab.core.wording import many
 from tribolab.figures.signals import LOOKED_AT, main_signal
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series
 from tribolab.records.parts import BAD, RunOutcome
-from tribolab.words import many
 
 MAX_RUNS = 8
 _SPEEDS = "sliding_velocity", "set_speed"

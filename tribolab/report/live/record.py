@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.store.catalogue import Store
-from tribolab.provenance import sha256_of
+from tribolab.core.provenance import sha256_of
+from tribolab.core.wording import explain
 from tribolab.records.parts import Notice
 from tribolab.report.code import code_of_figures
 from tribolab.report.live.shown import ShownFigure
-from tribolab.words import explain
 
 
 class Band(NamedTuple):

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from tribolab.core.wording import force_text
 from tribolab.figures.page.still import first_series, still
 from tribolab.figures.spec import FigureSpec, legend, plain_data, written_labels
 from tribolab.records.packed import deflated
-from tribolab.records.traces import script_json
-from tribolab.words import force_text
+from tribolab.records.runs.traces import script_json
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from tribolab.core.wording import force_text, is_dry, number
 from tribolab.figures.colours import surface_colours
 from tribolab.figures.envelope import envelope_index
 from tribolab.figures.signals import LOOKED_AT, main_signal
@@ -26,12 +27,11 @@ from tribolab.figures.spec import (
 from tribolab.figures.subjects.curves import SPEED_AXIS
 from tribolab.figures.subjects.slip import cumulative, waveform_map
 from tribolab.figures.subjects.slip_spectra import power_levels
-from tribolab.records.mode_record import ModeRecord
+from tribolab.records.models.mode_record import ModeRecord
 from tribolab.records.parts import CurveOutcome
 from tribolab.report.live.curves import labels_of, system_name, told_apart
 from tribolab.report.plain import plain_speed
 from tribolab.report.slowest import Slow, lowest_loads
-from tribolab.words import force_text, is_dry, number
 
 _UNDECIDED = "not decided"
 _STEADY = frozenset({"smooth sliding", _UNDECIDED})

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from tribolab.core.wording import many
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, places
 from tribolab.friction.statistics import NORMAL
 from tribolab.records.parts import BAD, Row, number_of
-from tribolab.records.run_record import RunRecord
-from tribolab.words import many
+from tribolab.records.runs.run_record import RunRecord
 
 _MIN_TIMES = 3  # of rest that differ: else the rests are those between strokes
 _MIN_RATIO = 1.5  # of two times of rest that differ

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from tribolab.core.wording import force_text, many
 from tribolab.records.judgement import check_words, is_bad, why
 from tribolab.report.live.curves import system_name
 from tribolab.report.plain import listed
-from tribolab.words import force_text, many
 
 _GRAVE = ("error", "fail", "suspect")
 _MAX_NAMED, _MAX_LISTED = 2, 6  # runs named in a doubt, and in that about all left out

@@ -7,10 +7,10 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from tribolab.core.wording import force_text, many
 from tribolab.records.wording import NORMAL, with_error
 from tribolab.report.live.curves import system_name
 from tribolab.report.plain import listed
-from tribolab.words import force_text, many
 
 _MIN_SHARE = 0.005  # of the variance: less is not listed
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from tribolab.records.model_words import is_described, stress_interval
+from tribolab.core.wording import load_text
+from tribolab.records.models.model_words import is_described, stress_interval
 from tribolab.records.parts import Row, number_of
-from tribolab.records.roughness_words import roughness_u95
-from tribolab.records.running_in_record import length_text
+from tribolab.records.runs.running_in_record import length_text
+from tribolab.records.surfaces.roughness_words import roughness_u95
 from tribolab.records.wording import NORMAL, with_error
 from tribolab.report.live.curves import system_name
 from tribolab.report.live.points import point_error
 from tribolab.report.page.in_words import by_speed, half_speed
 from tribolab.report.plain import plain_speed
-from tribolab.words import load_text
 
 
 class KeyRow(NamedTuple):

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from markupsafe import Markup
 
+from tribolab.core.untyped import Json
 from tribolab.records.packed import deflated
-from tribolab.records.traces import script_json
+from tribolab.records.runs.traces import script_json
 from tribolab.report.live.points import RunPoint
 from tribolab.report.live.shown import ShownFigure
 from tribolab.report.page.doubts import doubts
@@ -24,7 +25,6 @@ from tribolab.report.page.scan_list import listed_scans
 from tribolab.report.page.sections import shown_sections
 from tribolab.report.page.templating import environment, framing, library
 from tribolab.report.page.views import views
-from tribolab.untyped import Json
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.catalogue import Catalogue

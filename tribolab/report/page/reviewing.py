@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from tribolab.campaign.settings.review import REVIEW_FILE, load_entries
 from tribolab.campaign.settings.toml_file import text_of
-from tribolab.provenance import as_text
-from tribolab.untyped import Json
+from tribolab.core.provenance import as_text
+from tribolab.core.untyped import Json
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign

@@ -7,12 +7,12 @@ import statistics
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
+from tribolab.core.wording import MINUS
 from tribolab.records.judgement import is_bad, status_word, why
 from tribolab.records.wording import UNITS, with_error
 from tribolab.report.live.points import RunPoint, at_speed
 from tribolab.report.page.sparkline import spark_path
 from tribolab.report.plain import plain_speed
-from tribolab.words import MINUS
 
 _ODD = "odd"
 _WORST_FIRST: tuple[str, ...] = ("failed", "rejected", "error", "rejected by hand", "kept")
@@ -65,7 +65,7 @@ def listed_runs(
     points
         Friction over speed of each run, by its name.
     traces
-        Coarse trace of each run, by its name, as `tribolab.records.traces` has it.
+        Coarse trace of each run, by its name, as `tribolab.records.runs.traces` has it.
     """
     speeds = _speeds(points)
     means = {run["name"]: _means(run, points.get(run["name"], ()), speeds) for run in runs}

@@ -19,7 +19,7 @@ def spark_path(trace: Mapping[str, Any]) -> str:
     Parameters
     ----------
     trace
-        As `tribolab.records.traces.decimated_trace` has it.
+        As `tribolab.records.runs.traces.decimated_trace` has it.
     """
     places, values = unpacked_points(trace["signals"][0])
     knots, at_s = trace["clock"]

@@ -16,20 +16,21 @@ import jinja2
 import jinja2.bccache
 from markupsafe import Markup
 
-from tribolab import words
-from tribolab.provenance import without_controls
-from tribolab.records import judgement, trends, wording
-from tribolab.records.hurst_words import hurst_verdict, is_steep
-from tribolab.records.model_words import is_described, shear_stress_u95, stress_interval
+from tribolab.core import wording as words
+from tribolab.core.provenance import without_controls
+from tribolab.core.untyped import Json
+from tribolab.core.wording import aligned, force_text, number
+from tribolab.records import judgement, wording
+from tribolab.records.models.model_words import is_described, shear_stress_u95, stress_interval
 from tribolab.records.packed import deflated
-from tribolab.records.roughness_words import form_in_words, roughness_u95
+from tribolab.records.runs import trends
+from tribolab.records.surfaces.hurst_words import hurst_verdict, is_steep
+from tribolab.records.surfaces.roughness_words import form_in_words, roughness_u95
 from tribolab.report.document.document import state_of
 from tribolab.report.page.glossary import HEADS, TERMS
 from tribolab.report.page.in_words import budget_shares, conditions, oscillation_text
 from tribolab.report.page.sections import Section
 from tribolab.report.plain import plain_speed, plain_speeds, without_exponents
-from tribolab.untyped import Json
-from tribolab.words import aligned, force_text, number
 
 _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
 # Everything that may stand in a data address inside a quoted HTML attribute.

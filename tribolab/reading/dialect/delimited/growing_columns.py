@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pyarrow as pa
 
+from tribolab.arrays.scratch import is_long, let_go, room
 from tribolab.reading.dialect.columns import ReadColumn
-from tribolab.room import is_long, let_go, room
 
 _FEW = 5  # lines that tell that each other one is empty
 

@@ -7,7 +7,7 @@ import mmap
 import re
 from itertools import islice
 
-from tribolab.errors import ReadError, shown
+from tribolab.core.errors import ReadError, shown
 from tribolab.reading import cures
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.text.bounded_patterns import Guarded

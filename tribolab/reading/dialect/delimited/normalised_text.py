@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable
 from typing import AnyStr
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.dialect.delimited.headers import (
     compiled,
     header_starts,

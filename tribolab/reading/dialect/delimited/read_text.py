@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.dialect.columns import ReadColumn
 from tribolab.reading.dialect.delimited.growing_columns import GrowingColumns, of_one_column
 from tribolab.reading.dialect.delimited.headers import LONGEST_LINE

@@ -6,13 +6,13 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv as arrow_csv
 
-from tribolab.errors import ReadError, shown
+from tribolab.core.errors import ReadError, shown
+from tribolab.core.untyped import Arguments
 from tribolab.reading.dialect.columns import ReadColumn
 from tribolab.reading.dialect.delimited.headers import endless
 from tribolab.reading.dialect.delimited.tables import RawText, TextTable
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.text.dates import seconds
-from tribolab.untyped import Arguments
 
 _ONE_PIECE = 1 << 20  # arrow's own block: its intermediate results stay in the cache
 _BLANK = ["", " ", "  ", "   "]  # arrow takes no blanks off

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.dialect.delimited.tables import RawText
 from tribolab.reading.dialect.model import Dialect
 

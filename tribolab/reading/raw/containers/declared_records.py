@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, Setting
 from tribolab.reading.raw.unit_endings import is_unit, without_unit

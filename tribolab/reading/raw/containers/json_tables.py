@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
+from tribolab.core.untyped import Json
 from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, Setting
 from tribolab.reading.raw.unit_endings import is_unit, without_unit
-from tribolab.untyped import Json
 
 _JSON = re.compile(r"\ufeff?\s*(?:\{\s*\"[^\"]*\"\s*:|\[\s*[\[{])")
 _FEWEST = 3  # numbers in a column

@@ -10,7 +10,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.containers.groups import Groups
 from tribolab.reading.raw.containers.settings import settings_of

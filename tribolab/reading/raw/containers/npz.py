@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tribolab.errors import ReadError, shown
+from tribolab.core.errors import ReadError, shown
 from tribolab.reading.raw.containers.groups import Groups
 from tribolab.reading.raw.containers.settings import plain, settings_of
 from tribolab.reading.raw.model import RawColumn, RawFile, Setting

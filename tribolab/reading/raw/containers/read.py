@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 from pathlib import Path
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.raw import limits
 from tribolab.reading.raw.model import RawFile
 

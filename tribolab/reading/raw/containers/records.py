@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable
 
 

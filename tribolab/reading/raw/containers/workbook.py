@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from tribolab.errors import ReadError, shown
+from tribolab.core.errors import ReadError, shown
 from tribolab.reading.raw.containers.xml_workbook import XmlWorkbook, is_xml_workbook
 from tribolab.reading.raw.model import Place, RawColumn, RawFile, RawTable, Setting
 from tribolab.reading.raw.opening import damage_told, isolated

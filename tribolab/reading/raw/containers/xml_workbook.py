@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 from xml.parsers import expat
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 
 _MARK = b"urn:schemas-microsoft-com:office:spreadsheet"
 _MOST_CELLS = 5_000_000  # all are held at once

@@ -7,11 +7,11 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from tribolab.errors import shown
+from tribolab.core.errors import shown
 from tribolab.reading.lexicon.lexicon import keys_of, words_of
 from tribolab.reading.scans.formats.named_arrays import HeldArray
 from tribolab.reading.scans.unit_words import axes_of, is_about_heights, stated_units
-from tribolab.unit_names import unit_of_length
+from tribolab.units.spellings import unit_of_length
 
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[^\W\d_A-Z]+")
 _LATERAL = frozenset("lateral horizontal position pos".split())

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError, shown
+from tribolab.core.errors import ReadError, shown
+from tribolab.core.untyped import Json
 from tribolab.reading.raw.missing_marks import measurable, take_marks
 from tribolab.reading.scans.formats.array_units import (
     UNITS,
@@ -24,9 +25,8 @@ from tribolab.reading.scans.formats.profilometers import NotSaidError
 from tribolab.reading.scans.grid import even
 from tribolab.reading.scans.header import map_header
 from tribolab.reading.text.cells import split_name
-from tribolab.unit_names import unit_of_length
-from tribolab.units import conversion
-from tribolab.untyped import Json
+from tribolab.units.conversion import conversion
+from tribolab.units.spellings import unit_of_length
 
 _FEWEST = 8  # rows, and heights of each
 _HEIGHTS = frozenset(

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import shown
+from tribolab.core.errors import shown
 from tribolab.reading.lexicon.lexicon import plain_text, text_pattern
 from tribolab.reading.raw.missing_marks import measurable, take_marks
 from tribolab.reading.scans.extent import RefusedScanError

@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError, UnitError, brief
+from tribolab.core.errors import ReadError, UnitError, brief
 from tribolab.reading.raw.missing_marks import measurable
 from tribolab.reading.scans.grid import even
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
 
 _AXIS = re.compile(
     rb"^[ \t]*C(?P<axis>[XYZ])[ \t]+(?P<kind>[IAM])[ \t]+(?P<number>[\d.eE+]+)[ \t]+(?P<unit>\w+)"

@@ -20,7 +20,7 @@ from tribolab.reading.scans.formats.matrix import GRAMMARS, cells_of, texts_of, 
 from tribolab.reading.scans.formats.named_units import unsaid
 from tribolab.reading.scans.formats.profilometers import NotSaidError
 from tribolab.reading.scans.header import map_header
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
 
 _HEAD_LINES = 60  # above the positions
 _FEWEST = 8  # rows, and heights of each

@@ -12,14 +12,14 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError, shown
+from tribolab.core.errors import ReadError, shown
 from tribolab.reading import cures
 from tribolab.reading.raw.missing_marks import Marked, measurable, take_marks
 from tribolab.reading.scans.formats.named_units import unsaid
 from tribolab.reading.scans.formats.profilometers import NotSaidError
 from tribolab.reading.scans.header import MapHeader, map_header, unit_of_range
 from tribolab.reading.scans.stated_missing import take_stated
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
 
 _HEAD = 1 << 20  # bytes in which a matrix begins
 _CUT = 8  # bytes of a sign at their end

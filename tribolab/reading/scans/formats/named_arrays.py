@@ -8,12 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError, brief
+from tribolab.core.errors import ReadError, brief
+from tribolab.core.untyped import Json
 from tribolab.reading.raw.containers.mat import read_variables
 from tribolab.reading.raw.containers.settings import plain
 from tribolab.reading.raw.opening import isolated
 from tribolab.reading.scans.formats.profilometer_safety import DAMAGE
-from tribolab.untyped import Json
 
 NPY = b"\x93NUMPY"
 _HDF5 = b"\x89HDF\r\n\x1a\n"

@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 from typing import NamedTuple
 
-from tribolab.errors import Cure
-from tribolab.unit_names import unit_of_length
+from tribolab.core.errors import Cure
+from tribolab.units.spellings import unit_of_length
 
 _SAID = re.compile(
     r"(?i)(?<![^\W_])(?P<what>xyz|xy|x|y|z|heights?|h(?:ö|oe)hen?)[-_ =]?(?:in[-_ ])?"

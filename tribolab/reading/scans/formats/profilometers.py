@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError, TribolabError, brief
+from tribolab.core.errors import ReadError, TribolabError, brief
+from tribolab.core.untyped import Arguments, Json
 from tribolab.reading import cures
 from tribolab.reading.raw.missing_marks import measurable, take_marks
 from tribolab.reading.raw.opening import isolated
 from tribolab.reading.scans.formats.profilometer_safety import formats_to_try
 from tribolab.reading.scans.grid import even
 from tribolab.reading.text.first_bytes import peek
-from tribolab.units import conversion, to_si
-from tribolab.untyped import Arguments, Json
+from tribolab.units.conversion import conversion, to_si
 
 _OF_PROGRAM = (LookupError, TypeError, AttributeError, AssertionError)  # no words about a file
 

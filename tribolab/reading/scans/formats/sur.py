@@ -10,7 +10,7 @@ import struct
 import zlib
 from pathlib import Path
 
-from tribolab.errors import ReadError, brief
+from tribolab.core.errors import ReadError, brief
 from tribolab.reading.raw.scratch import scratch_copy
 
 _PLAIN, _PACKED = b"DIGITAL SURF", b"DSCOMPRESSED"

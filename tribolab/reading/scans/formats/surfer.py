@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError, brief
+from tribolab.core.errors import ReadError, brief
 from tribolab.reading.raw.missing_marks import measurable
 from tribolab.reading.scans.formats.named_units import unsaid
 from tribolab.reading.scans.formats.profilometers import NotSaidError
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
 
 _TEXT, _SINGLE = b"DSAA", b"DSBB"
 _BLANK = 1.70141e38  # stands where no height is; larger numbers do, too

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.raw.unpacked import ZIP, of_the_file, unpacked
 from tribolab.reading.scans.formats.arrays import read_scan_arrays
 from tribolab.reading.scans.formats.column_map import read_column_map

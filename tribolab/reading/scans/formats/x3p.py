@@ -17,7 +17,7 @@ from xml.etree import ElementTree
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError, brief, shown
+from tribolab.core.errors import ReadError, brief, shown
 from tribolab.reading.raw.missing_marks import measurable
 from tribolab.reading.raw.opening import isolated
 from tribolab.reading.raw.xml_safety import parsed

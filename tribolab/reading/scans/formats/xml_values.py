@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError, UnitError, shown
+from tribolab.core.errors import ReadError, UnitError, shown
 from tribolab.reading import cures
 from tribolab.reading.raw.missing_marks import measurable
 from tribolab.reading.raw.xml_safety import parsed
@@ -19,7 +19,7 @@ from tribolab.reading.scans.formats.array_units import stated_unit
 from tribolab.reading.scans.formats.profilometers import NotSaidError
 from tribolab.reading.scans.grid import even
 from tribolab.reading.scans.header import map_header
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
 
 _FEWEST = 16  # numbers of a list that may be a profile
 _LONGEST = 100  # letters of a text that says something

@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from tribolab.errors import ReadError, brief
+from tribolab.core.errors import ReadError, brief
 from tribolab.reading import cures
 from tribolab.reading.raw.missing_marks import measurable
 from tribolab.reading.scans.formats.profilometers import NotSaidError
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
 
 _BEGIN = b"Zygo XYZ Data File"
 _HEIGHT = 1e-6  # m, of a number in the file

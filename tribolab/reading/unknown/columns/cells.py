@@ -9,7 +9,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv as arrow_csv
 
-from tribolab.errors import ReadError, brief
+from tribolab.core.errors import ReadError, brief
 from tribolab.reading.dialect.delimited.rows import floats_of
 from tribolab.reading.raw.missing_marks import LARGEST, take_marks
 from tribolab.reading.unknown.layout.text_layout import Layout

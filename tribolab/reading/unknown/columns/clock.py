@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from tribolab.medians import median
-from tribolab.quantities import unit_conversion
+from tribolab.arrays.medians import median
 from tribolab.reading.clocks.faults import find_faults, rows_at_fault
 from tribolab.reading.content.newest_first import is_newest_first
 from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern
 from tribolab.reading.text.cells import split_name
+from tribolab.units.quantities import unit_conversion
 
 if TYPE_CHECKING:
     from tribolab.reading.unknown.layout.text_layout import Layout

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.quantities import unit_conversion
 from tribolab.reading.interpret.names import split_unit
 from tribolab.reading.runs.force_ratio import doubt_about, doubt_about_coefficient
 from tribolab.reading.unknown.model import DraftColumn
+from tribolab.units.quantities import unit_conversion
 
 _RATIO = ("friction_coefficient", "friction_force", "normal_force")
 _APART = 1.5  # times: filters and zeros that the instrument took off make less

@@ -7,8 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import shown
-from tribolab.quantities import quantity
+from tribolab.core.errors import shown
 from tribolab.reading.interpret.names import KNOWN_WORD, Match
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.unknown.columns.evidence import (
@@ -23,6 +22,7 @@ from tribolab.reading.unknown.columns.evidence import (
 )
 from tribolab.reading.unknown.columns.unit_and_sign import FORCES, filled_in
 from tribolab.reading.unknown.model import DraftColumn, Reason
+from tribolab.units.quantities import quantity
 
 SIGNALS = {
     "friction_force",

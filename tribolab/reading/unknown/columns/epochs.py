@@ -8,7 +8,7 @@ import numpy as np
 
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.text.dates import Epoch
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
 
 _DAY = 86400.0  # [s]
 # [s] since 1970 and since 1904: from the year 2000 to that of 2050

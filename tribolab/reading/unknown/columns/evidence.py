@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.quantities import QUANTITIES, quantity, unit_conversion
 from tribolab.reading.interpret.names import (
     KNOWN_WORD,
     Match,
@@ -26,6 +25,7 @@ from tribolab.reading.lexicon.lexicon import Role, normalise_label, role_of
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
 from tribolab.reading.unknown.columns.unit_and_sign import FORCES, Bare
 from tribolab.reading.unknown.model import DraftColumn, Kind
+from tribolab.units.quantities import QUANTITIES, quantity, unit_conversion
 
 RULED_OUT = -100.0
 NEAR = 0.05  # names whose scores differ by less suit a quantity about as well

@@ -14,7 +14,7 @@ from tribolab.reading.unknown.header.settings import text_settings
 from tribolab.reading.unknown.layout.lvm import units_above
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
-from tribolab.unit_names import unit_in_words
+from tribolab.units.spellings import unit_in_words
 
 _LONGEST = 300  # characters of a line that are looked at
 _PURE = ("1", "-")  # what stands for the unit of a pure number

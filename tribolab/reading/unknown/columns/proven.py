@@ -6,13 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.quantities import QUANTITIES
 from tribolab.reading.interpret.names import Match, is_count, is_track_radius, matches
 from tribolab.reading.interpret.physics import Candidate, Proof, known_quantities, prove
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.model import DraftColumn
+from tribolab.units.quantities import QUANTITIES
 
 _NEAR = 0.1  # of the best score: names that suit a quantity about as well
 _MOST = 100  # columns: of more, too many may be members of a rule

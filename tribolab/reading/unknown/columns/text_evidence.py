@@ -7,8 +7,7 @@ from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
-from tribolab.errors import shown
-from tribolab.quantities import unit_conversion
+from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
 from tribolab.reading.interpret.unit_texts import converts
@@ -28,6 +27,7 @@ from tribolab.reading.unknown.header.load import find_load, stated_number
 from tribolab.reading.unknown.header.settings import numeric_settings
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Reason
+from tribolab.units.quantities import unit_conversion
 
 _LONGEST_LINE = 300  # characters of a line that are looked at
 _AXIS = re.compile(r"(?:f|force|kraft|sila|forza)?(?:[xyz]|[1-3])")  # names of a sensor's axes

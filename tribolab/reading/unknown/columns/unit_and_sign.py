@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import shown
-from tribolab.quantities import quantity
+from tribolab.core.errors import shown
 from tribolab.reading.interpret.names import KNOWN_WORD, Match, is_count, is_date
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, role_of
 from tribolab.reading.unknown.columns.epochs import counted_from
 from tribolab.reading.unknown.model import DraftColumn, Kind, other_units, time_unit
+from tribolab.units.quantities import quantity
 
 Bare = tuple[str, str | None, bool]  # a name without its unit, the unit, whether it is to be said
 FORCES = {"friction_force", "normal_force", "friction_coefficient"}  # what a coefficient is made of

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from tribolab.errors import shown
+from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.unknown.derivations.model import Follows
 from tribolab.reading.unknown.header.load import find_load, stated_number
 from tribolab.reading.unknown.header.settings import numeric_settings
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import Agreed, Understood
-from tribolab.unit_names import WEIGHTS
+from tribolab.units.spellings import WEIGHTS
 
 _UNITS = {"track_radius": "m", "normal_force": "N", "sliding_velocity": "m/s"}
 _QUOTED = 3

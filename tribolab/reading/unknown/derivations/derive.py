@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.quantities import unit_conversion
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.derive import Derivation, Given, derive
 from tribolab.reading.unknown.derivations.candidate_lines import find_stated_load
@@ -19,6 +18,7 @@ from tribolab.reading.unknown.header.load import lifted_on_return, stated_number
 from tribolab.reading.unknown.header.stroke_settings import stated_strokes
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Understood
+from tribolab.units.quantities import unit_conversion
 
 _MEASURED = ("friction_reading", "arm_force", "friction_force_signal")
 _PRESSED = 0.5  # of the largest load: what is less is no contact

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import shown
+from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
 from tribolab.reading.interpret.unit_texts import converts

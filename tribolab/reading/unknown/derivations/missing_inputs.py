@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from tribolab.errors import shown
+from tribolab.arrays.reversals import reversals
+from tribolab.core.errors import shown
 from tribolab.reading.interpret.derive import Given
 from tribolab.reading.interpret.missing import MissingInput, missing_inputs
 from tribolab.reading.unknown.columns.rotating_parts import (
@@ -18,7 +19,6 @@ from tribolab.reading.unknown.derivations.derive import held_quantities
 from tribolab.reading.unknown.derivations.gains import column_in_volts
 from tribolab.reading.unknown.derivations.model import CRANK, SAYS_FRICTION, Follows
 from tribolab.reading.unknown.model import DraftColumn, Reason, Understood
-from tribolab.reversals import reversals
 
 
 class Uncalibrated(NamedTuple):

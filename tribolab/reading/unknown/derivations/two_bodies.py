@@ -21,8 +21,8 @@ from tribolab.reading.lexicon.lexicon import (
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
-from tribolab.turns import reciprocal
-from tribolab.unit_names import plain_unit
+from tribolab.units.reciprocals import reciprocal
+from tribolab.units.spellings import plain_unit
 
 _LONGEST = 200  # characters of a line that are looked at
 _SURFACE = "the speed of one of two surfaces"

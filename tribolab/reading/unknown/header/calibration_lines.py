@@ -8,7 +8,7 @@ from __future__ import annotations
 import itertools
 import re
 
-from tribolab.errors import shown
+from tribolab.core.errors import shown
 from tribolab.reading.lexicon.lexicon import alternatives, normalise_label, part_pattern, says
 from tribolab.reading.numbers import numbers_in
 from tribolab.reading.unknown.layout.text_layout import Layout

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.errors import shown
+from tribolab.core.errors import shown
 from tribolab.reading.interpret.phrases import phrases, ratios_in, single_number, weight_on_lever
 from tribolab.reading.lexicon.lexicon import (
     key_pattern,

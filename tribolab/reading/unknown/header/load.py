@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.lexicon.lexicon import plain_text, says, text_pattern
 from tribolab.reading.unknown.layout.text_layout import Layout
-from tribolab.unit_names import WEIGHTS
+from tribolab.units.spellings import WEIGHTS
 
 _LONGEST = 300  # characters of a line that are looked at
 _DENIED_WITHIN = 12  # characters before a word

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import shown
+from tribolab.core.errors import shown
 from tribolab.reading.interpret.patterns import escaped
 from tribolab.reading.interpret.phrases import single_number
 from tribolab.reading.interpret.unit_texts import converts

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import shown
+from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.interpret.names import is_stroke_frequency, is_stroke_length, split_unit
 from tribolab.reading.interpret.unit_texts import converts

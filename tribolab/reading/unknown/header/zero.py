@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from tribolab.errors import shown
+from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.interpret.names import matches
 from tribolab.reading.interpret.phrases import phrases

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import shown
+from tribolab.core.errors import shown
 from tribolab.reading.lexicon.lexicon import known_words
 from tribolab.reading.unknown.layout.header import names_any
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.errors import ReadError
+from tribolab.core.errors import ReadError
 from tribolab.reading.content.containers import seconds_of
 from tribolab.reading.dialect.containers import name_and_unit
 from tribolab.reading.raw.clocks import INTERVAL_PATTERN, OneClock, on_one_clock

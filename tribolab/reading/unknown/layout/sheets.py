@@ -6,7 +6,7 @@ import datetime as dt
 from collections.abc import Sequence
 from pathlib import Path
 
-from tribolab.errors import ReadError, shown
+from tribolab.core.errors import ReadError, shown
 from tribolab.reading.raw.containers.workbook import sheets_of
 from tribolab.reading.unknown.layout.container_column import ROWS
 from tribolab.reading.unknown.layout.text_layout import Held

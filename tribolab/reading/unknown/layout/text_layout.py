@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tribolab.errors import ReadError, shown
+from tribolab.core.errors import ReadError, shown
 from tribolab.reading.dialect.delimited.normalised_text import line_feeds
 from tribolab.reading.raw import limits
 from tribolab.reading.text.cells import split_row

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-from tribolab.errors import ReadError
-from tribolab.quantities import QUANTITIES, quantity
+from tribolab.core.errors import ReadError
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.unknown.columns.clock import find_clock
 from tribolab.reading.unknown.model import DraftColumn
 from tribolab.reading.unknown.proposal.calibration_factor import ANGLE, TORQUE, Worth, si_unit_of
 from tribolab.reading.unknown.proposal.model import Drafted
+from tribolab.units.quantities import QUANTITIES, quantity
 
 AnyDraft = TypeVar("AnyDraft", bound=Drafted)
 

@@ -6,10 +6,10 @@ import re
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-from tribolab.errors import UnitError, shown
-from tribolab.quantities import QUANTITIES, quantity
+from tribolab.core.errors import UnitError, shown
 from tribolab.reading.interpret.unit_texts import converts
-from tribolab.units import conversion
+from tribolab.units.conversion import conversion
+from tribolab.units.quantities import QUANTITIES, quantity
 
 # no quantities of a run, but what a radius makes a friction force and a position of
 TORQUE: Final = "torque"

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, overload
 
 from pydantic import BaseModel
 
-from tribolab.errors import ReadError, TribolabError
+from tribolab.core.errors import ReadError, TribolabError
 from tribolab.reading.dialect.column_rule import Column
 from tribolab.reading.dialect.file_layout import TEXT_CONTAINERS, Header, Text
 from tribolab.reading.dialect.model import Derived, Dialect

@@ -8,8 +8,8 @@ import warnings
 from dataclasses import replace
 from pathlib import Path
 
-from tribolab.aliases import PathLike
-from tribolab.errors import ConfigError, OutputError, ReadError, TribolabError, shown
+from tribolab.core.aliases import PathLike
+from tribolab.core.errors import ConfigError, OutputError, ReadError, TribolabError, shown
 from tribolab.reading.dialect.find import recognise
 from tribolab.reading.interpret.names import matches, split_unit
 from tribolab.reading.text.cells import split_name

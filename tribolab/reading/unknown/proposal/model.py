@@ -10,8 +10,7 @@ from typing import Literal, Self
 
 import numpy as np
 
-from tribolab.errors import TribolabError, shown
-from tribolab.quantities import unit_conversion
+from tribolab.core.errors import TribolabError, shown
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.dialect.write import FILL_IN, dialect_toml
 from tribolab.reading.runs.read_run import read_log
@@ -21,6 +20,7 @@ from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import Kind, Understood
 from tribolab.reading.unknown.proposal.dialect import Described, describe, dialect_of
 from tribolab.reading.unknown.proposal.remarks import remarks_of
+from tribolab.units.quantities import unit_conversion
 
 SHOWN = 10  # rows shown as understood
 

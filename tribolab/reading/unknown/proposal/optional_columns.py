@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TypeVar
 
-from tribolab.errors import shown
+from tribolab.core.errors import shown
 from tribolab.reading.unknown.model import DraftColumn
 from tribolab.reading.unknown.proposal.model import Drafted
 

@@ -8,8 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from tribolab.errors import ReadError, shown
-from tribolab.quantities import quantity
+from tribolab.core.errors import ReadError, shown
 from tribolab.reading import cures
 from tribolab.reading.interpret.missing import MissingInput
 from tribolab.reading.raw.source import check_regular
@@ -26,6 +25,7 @@ from tribolab.reading.unknown.header.zero import STILL
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn, Reason, Understood
 from tribolab.reading.unknown.proposal.model import Drafted
+from tribolab.units.quantities import quantity
 
 _UNSAID = {
     "count": "how much one count of the heights is",

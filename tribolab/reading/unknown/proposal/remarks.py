@@ -6,7 +6,6 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from tribolab.quantities import quantity
 from tribolab.reading.dialect.write import FILL_IN, Remarks, comment, commented, table_lines
 from tribolab.reading.unknown.columns.rotating_parts import torque_of
 from tribolab.reading.unknown.derivations.model import SAYS_FRICTION
@@ -17,6 +16,7 @@ from tribolab.reading.unknown.proposal.dialect import (
     formula_content,
     value_content,
 )
+from tribolab.units.quantities import quantity
 
 _REMOVE = "then remove the '#' below"
 _RATE = ['source = "rate"', 'rate = "? Hz"']

@@ -13,12 +13,12 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from tribolab.errors import shown as cut
-from tribolab.quantities import quantity
+from tribolab.core.errors import shown as cut
 from tribolab.reading.unknown.derivations.derive import what_follows
 from tribolab.reading.unknown.derivations.model import Follows
 from tribolab.reading.unknown.model import DraftColumn
 from tribolab.reading.unknown.proposal.model import SHOWN, Drafted
+from tribolab.units.quantities import quantity
 
 _PRE = '<pre style="font-family: monospace; line-height: 1.25">{code}</pre>'
 _COLUMNS = 12  # of raw cells that are shown side by side

@@ -1,0 +1,1 @@
+"""What `tribolab info` says of a file of runs or scans."""

@@ -1,0 +1,124 @@
+"""Describe the instrument of unknown files: in a terminal by questions, else by what they say."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from itertools import count
+from pathlib import Path
+
+import typer
+
+from tribolab.app.questions.asking import ask_about
+from tribolab.app.questions.dialect import try_on
+from tribolab.app.reported import UNREADABLE, fail
+from tribolab.app.streams import say
+from tribolab.app.terminal import console
+from tribolab.reading.unknown.proposal.draft import (
+    Draft,
+    as_profile,
+    check_target,
+    draft_dialect,
+    save_draft,
+)
+from tribolab.reading.unknown.proposal.show import print_draft, print_next, print_signals
+
+
+def describe(
+    files: Sequence[Path], target: Path | None, name: str | None, *, force: bool, ask: bool | None
+) -> None:
+    """Describe the instrument that wrote some files, try that on them and say what comes next.
+
+    Parameters
+    ----------
+    files
+        Of one instrument.
+    target, name
+        The file of the description, and the name in it; by default after the first file.
+    force
+        Whether to replace a description that is there.
+    ask
+        Whether to ask what the files do not say; None: in a terminal.
+    """
+    draft = draft_dialect(files[0], name)
+    target = target or Path(f"{draft.name}.toml")
+    asking = ask or (ask is None and is_terminal())
+    print_draft(draft, console(), rows=not asking)
+    if draft.dialect is not None:
+        check_target(target, force=force)
+    if asking:
+        draft = _asked(draft)
+    if draft.unsaid == "pitch":
+        check_target(target, force=force)
+        draft = as_profile(draft)
+    if draft.dialect is None:
+        why = draft.answer or "the units of its columns are not stated; answer in a terminal"
+        fail(f"{files[0]}: no dialect is written: {why}", UNREADABLE, debug=False)
+    _write(files, draft, target, force=force)
+    print_next(draft, target, console())
+
+
+def describe_by_questions(files: Sequence[Path], *, keep: bool) -> Path | None:
+    """Ask in a terminal what unknown files leave open, and write the answers as a description.
+
+    Parameters
+    ----------
+    files
+        Raw files.
+    keep
+        Whether the description is written without asking where to.
+
+    Returns
+    -------
+    Path or None
+        Of the description; None if there is no terminal, nothing is open, or it is not to be kept.
+    """
+    if not is_terminal() or not files or not all(map(_leaves_open, files)):
+        return None
+    draft = draft_dialect(files[0])
+    print_draft(draft, console(), rows=False)
+    draft = _asked(draft)
+    if draft.dialect is None:
+        return None
+    names = (f"{draft.name}{'' if n == 1 else f'_{n}'}.toml" for n in count(1))
+    target = next(name for name in names if not Path(name).exists())
+    if not keep:
+        target = _prompt("which file shall keep this description? (- for none)", target).strip()
+        if target == "-":
+            return None
+    check_target(Path(target))
+    _write(files, draft, Path(target))
+    return Path(target)
+
+
+def is_terminal() -> bool:
+    """Whether somebody can be asked."""
+    return sys.stdin.isatty() and sys.stdout.isatty()
+
+
+def _leaves_open(path: Path) -> bool:
+    # late: starting stays quick
+    from tribolab.reading.kinds import kind_of
+    from tribolab.reading.moduli import holds_modulus
+    from tribolab.reading.unknown_run import draft_of, left_open
+
+    if not path.is_file() or path.suffix == ".toml" or kind_of(path) != "unknown":
+        return False
+    draft = None if holds_modulus(path) else draft_of(path)
+    return draft is not None and left_open(draft) is not None
+
+
+def _asked(draft: Draft) -> Draft:
+    asked = ask_about(draft, _prompt, say)
+    print_signals(asked, console())
+    return asked
+
+
+def _write(files: Sequence[Path], draft: Draft, target: Path, *, force: bool = False) -> None:
+    written = save_draft(draft, target, force=force)
+    for line in try_on(files, written, draft.kind):
+        say(line)
+
+
+def _prompt(question: str, default: str) -> str:
+    return str(typer.prompt(question, default=default))

@@ -1,0 +1,355 @@
+"""What `tribolab info` says of a raw file of any kind: a run, a scan, or results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from tribolab.app.info.scan_info import areal_lines, roughness_lines, stated_lines
+from tribolab.app.quick import importing, plain_arrays_only
+from tribolab.app.ranges import range_of
+from tribolab.arrays.reversals import reversals
+from tribolab.campaign.engine.stage import Stage
+from tribolab.core.errors import ReadError, TribolabError, shown, told
+from tribolab.core.wording import Count, explain
+from tribolab.reading import cures
+from tribolab.reading.dialect.find import known_dialects, load_dialect
+from tribolab.reading.interpret.missing import missing_inputs
+from tribolab.reading.kinds import kind_of
+from tribolab.reading.moduli import holds_modulus, read_modulus_table
+from tribolab.reading.raw.source import check_regular
+from tribolab.reading.runs.companion import CompanionFacts, describe_companion
+from tribolab.reading.runs.file_facts import FileFacts, file_facts
+from tribolab.reading.runs.force_ratio import doubt_about, doubt_about_coefficient
+from tribolab.reading.runs.read_run import read_log as known_log
+from tribolab.reading.text.cells import split_name
+from tribolab.reading.text.first_bytes import peek
+from tribolab.reading.unknown_run import draft_of, holds_run, read_log
+from tribolab.units.quantities import quantity
+
+if TYPE_CHECKING:
+    import numpy as np
+
+_PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
+_PROVENANCE |= {"drafted_layout"}
+_LONGEST = 300  # letters of what a file says of itself
+_TOLD_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
+_TOLD_OF_SCAN = {"tip_radius_m", "stated_length_m", "stated_pitch_m", "stated_points", "doubtful"}
+_ROUNDING = 1e-6  # of a step: positions that deviate by less are even
+
+
+def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
+    """Say how a raw file is understood: a run, a scan, or the results of a roughness tester.
+
+    Raises
+    ------
+    ReadError
+        If the file cannot be read.
+    ConfigError
+        If there is no such instrument.
+    """
+    kind = kind_of(path, instrument)
+    if kind == "unknown" and holds_modulus(path):
+        return _modulus_lines(path)
+    drafted = kind == "unknown" and holds_run(path)
+    if drafted or kind == "run":
+        log = read_log(path, instrument)
+        facts = file_facts(log, path, instrument)
+        told = [] if drafted else companion_lines(describe_companion(path, instrument, log))
+        return run_lines(facts) + (told or missing_lines(facts, log.columns)) + _doubts(log.columns)
+    with importing():
+        plain_arrays_only()
+    return _results_lines(path) if kind == "results" else _scan_lines(path, instrument)
+
+
+def _modulus_lines(path: Path) -> list[str]:
+    """Describe a table of storage and loss modulus, and say where its name goes."""
+    name = f'name it as modulus_file = "{shown(path.name)}" in [contact] of a campaign file'
+    try:
+        table = read_modulus_table(path)
+    except ReadError as error:
+        raise ReadError(f"a modulus over frequency: {error.what}", cure=error.cure) from error
+    omega = table.angular_frequency
+    warm = f" at {table.temperature:.3g} C" if table.temperature == table.temperature else ""
+    said = [
+        f"{path}: storage and loss modulus over frequency",
+        f"  {omega.size} rows, {range_of(f'{omega[0]:.3g}', f'{omega[-1]:.3g}')} rad/s{warm}",
+        f"  storage  {range_of(f'{table.storage.min():.3g}', f'{table.storage.max():.3g}')} Pa",
+        f"  loss     {range_of(f'{table.loss.min():.3g}', f'{table.loss.max():.3g}')} Pa",
+    ]
+    return [*said, *(f"  {remark}" for remark in table.remarks), f"  {name}"]
+
+
+@dataclass(frozen=True)
+class Described:
+    """A file, what is said of it, and why it could not be read."""
+
+    file: Path
+    lines: tuple[str, ...] = ()
+    error: str = ""
+
+
+class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]):
+    """The stage of `tribolab info`: files, each as it is understood."""
+
+    name = "files"
+
+    def __init__(self, files: Sequence[Path], instrument: str | Path | None) -> None:
+        self._files = files
+        self._instrument = instrument
+
+    def plan(self) -> list[tuple[Path, str | Path | None]]:
+        """Return the files and their instrument."""
+        return [(file, self._instrument) for file in self._files]
+
+    @staticmethod
+    def work(task: tuple[Path, str | Path | None]) -> Described:
+        """Describe one file."""
+        return Described(task[0], tuple(file_lines(*task)))
+
+    def failed(self, task: tuple[Path, str | Path | None], error: BaseException) -> Described:
+        """Return why a file could not be described; a wrong instrument is wrong for all."""
+        if isinstance(error, TribolabError) and not isinstance(error, ReadError):
+            raise error
+        read = isinstance(error, ReadError)  # the other files want to be seen too
+        return Described(task[0], error=told(error, "terminal") if read else explain(error)[0])
+
+    def keep(
+        self, task: tuple[Path, str | Path | None], place: int, record: Described
+    ) -> Described:
+        """Return what is said."""
+        return record
+
+
+def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, Any]:
+    """Read the traces of a scan; what turns out to be none is told about as a run would be."""
+    # late: starting stays quick
+    from tribolab.reading.scan_files import read_traces
+    from tribolab.reading.scans.formats.profilometers import NotSaidError
+
+    try:
+        return read_traces(path, instrument)
+    except ReadError as error:
+        if _is_told(path, error):
+            raise
+        if instrument is None and kind_of(path) == "unknown" and _is_text(path):
+            # a map or profile, but for its units
+            bare = isinstance(error, NotSaidError) and not holds_run(path, by_name=False)
+            draft = draft_of(path)
+            named = draft is not None and draft.kind == "table"
+            try:
+                known_log(path) if bare and not named else read_log(path)  # says what is missing
+            except ReadError as as_run:
+                if bare:
+                    what = f"{as_run.what}; taken for a profile or map, {error.what}"
+                    general = error.cure in ("", cures.MEND_UNITS, cures.SIZE)
+                    cure = as_run.cure if general else error.cure
+                    raise ReadError(what, where=as_run.where, cure=cure) from error
+                raise
+        raise
+
+
+def _is_told(path: Path, error: ReadError) -> bool:
+    """Whether an error says of a scan, and of nothing else, what is wrong with it."""
+    # late: starting stays quick
+    from tribolab.reading.scans.extent import RefusedScanError
+    from tribolab.reading.scans.formats.undescribed import is_own_text
+    from tribolab.reading.unknown.proposal.questions import GuessedError, questions
+
+    if isinstance(error, GuessedError | RefusedScanError):
+        return isinstance(error, RefusedScanError)  # the other is told again
+    try:
+        check_regular(path)
+        if is_own_text(path):
+            return True
+    except ReadError:  # which the error says
+        return True
+    except OSError:
+        return False
+    draft = draft_of(path)
+    return draft is not None and draft.kind == "scan" and draft.named and not questions(draft)
+
+
+def _is_text(path: Path) -> bool:
+    try:
+        return peek(path).format == "text"
+    except ReadError:
+        return not path.is_file() or path.stat().st_size == 0
+
+
+def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
+    # late: starting stays quick
+    from tribolab.reading.scans.extent import doubt_about_heights
+
+    traces = list(read_scan(path, instrument).values())
+    scan = traces[0]
+    name = str(scan.attrs.get("instrument", ""))
+    axes = [axis for axis in ("x", "y") if scan.sizes.get(axis, 1) > 1]
+    lines = [
+        f"{path}: {_titled(name, instrument)}",
+        f"  {'profile' if axes == ['x'] else 'map'} of "
+        f"{' x '.join(str(scan.sizes[axis]) for axis in axes)} points",
+    ]
+    if len(traces) > 1:
+        lines.append(f"  {len(traces)} traces stand in the file, of the first:")
+    for axis in axes:
+        values = scan[axis].values
+        length = float(values[-1] - values[0])
+        pitch = length / (values.size - 1)
+        lines.append(f"  {axis}       {1e3 * length:.6g} mm, one point every {1e6 * pitch:.4g} um")
+    low, high = float(scan["height"].min()), float(scan["height"].max())
+    lines.append(f"  height  {1e6 * low:.6g} to {1e6 * high:.6g} um")
+    if missing := int(scan["height"].isnull().sum()):
+        lines.append(f"  {Count(missing):point|points} without a height")
+    lines += stated_lines(scan.attrs)
+    lines += areal_lines(scan) if "y" in axes else []
+    lines += roughness_lines(scan)
+    if doubt := doubt_about_heights(scan):
+        lines.append(f"  doubtful: {doubt}")
+    attrs = {key: value for key, value in scan.attrs.items() if key not in _TOLD_OF_SCAN}
+    return lines + _attribute_lines(attrs, path)
+
+
+def _results_lines(path: Path) -> list[str]:
+    # late: starting stays quick
+    from tribolab.reading.scans.results import read_tester_results
+
+    results = read_tester_results(path)
+    lines = [f"{path}: results of a roughness tester, no profile"]
+    for name, values in results.data_vars.items():
+        unit = quantity(str(name)).unit
+        lines.append(f"  {name}  {float(values):.6g}{'' if unit == '1' else f' {unit}'}")
+    return lines + _attribute_lines(results.attrs, path)
+
+
+def _attribute_lines(attrs: Mapping[str, Any], path: str | Path) -> list[str]:
+    told = {key: value for key, value in attrs.items() if key not in _PROVENANCE | _TOLD_ABOVE}
+    if float(told.get("x_unevenness", 1.0)) < _ROUNDING:
+        del told["x_unevenness"]
+    if "to_keep_it" in told:  # to be typed where `info` was
+        # late: starting stays quick
+        from tribolab.reading.unknown.proposal.questions import how_to_keep
+
+        told["to_keep_it"] = how_to_keep(str(path))
+    return [f"  {key}: {shown(_said(value), _LONGEST)}" for key, value in told.items()]
+
+
+def _said(value: object) -> str:
+    if isinstance(value, Mapping):
+        return "; ".join(f"{name} = {text}" for name, text in value.items())
+    return f"{value:.9g}" if isinstance(value, float) else str(value)
+
+
+def _titled(name: str, instrument: str | Path | None) -> str:
+    """Name of a dialect with what it is; as it is where another library read the file."""
+    known = instrument or (name if name in known_dialects() else None)
+    return f"{name} ({load_dialect(known).title})" if known else name
+
+
+def run_lines(facts: FileFacts) -> list[str]:
+    """Say how a raw file of a run is understood.
+
+    Parameters
+    ----------
+    facts
+        From `tribolab.reading.runs.file_facts.file_facts`.
+    """
+    title = f" ({facts['title']})" if facts["title"] else ""
+    lines = [f"{facts['file']}: {facts['instrument'] or 'netCDF'}{title}"]
+    sampling = f"  {Count(facts['rows']):row|rows} over {facts['duration_s']:.6g} s"
+    if facts["are_points"]:
+        sampling = (
+            f"  {Count(facts['rows']):result|results}, each at one speed: its error is unknown"
+        )
+    elif facts["interval_s"] is not None:
+        sampling += (
+            f", one every {facts['interval_s']:.3g} s, at most {facts['longest_interval_s']:.3g} s"
+        )
+    lines.append(sampling + (f", {Count(facts['steps']):step|steps}" if facts["steps"] else ""))
+    if facts["left_out"]:
+        lines.append(f"  left out: {facts['left_out']}")
+    width = max((len(name) for name in facts["columns"]), default=0)
+    for name, column in facts["columns"].items():
+        span = range_of(f"{column['minimum']:.6g}", f"{column['maximum']:.6g}")
+        span += f" {column['unit']}" if column["unit"] != "1" else ""
+        label = f"   from '{shown(column['label'])}'" if column["label"] else ""
+        lines.append(f"  {name:<{width}}  {span}{label}")
+    if facts["not_used"]:
+        lines.append(f"  not used: {', '.join(map(shown, facts['not_used']))}")
+    lines += _attribute_lines(facts["metadata"], facts["file"])
+    return lines
+
+
+def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[str]:
+    """Say what a run that has a force lacks for a friction coefficient over the sliding speed.
+
+    Parameters
+    ----------
+    facts
+        From `tribolab.reading.runs.file_facts.file_facts`.
+    columns
+        The signals themselves, by quantity.
+    """
+    names = set(facts["columns"])
+    forces = {"friction_force", "friction_coefficient", "shear_stress", "normal_force"}
+    if not names & forces:
+        return []  # of a log of the motion nothing else is expected
+    if "set_speed_m_s" in facts["metadata"]:
+        names.add("set_speed")
+    if facts["not_used"] and not names & {"sliding_velocity", "position", "set_speed"}:
+        # late: starting stays quick
+        from tribolab.reading.interpret.names import is_stroke_frequency
+
+        if any(is_stroke_frequency(*split_name(label)) for label in facts["not_used"]):
+            names.add("frequency")
+    rig = {"crank"} if "drive" in facts["metadata"] else set()  # where what turns is a crank
+    if "friction_force" in columns and reversals(columns["friction_force"]):
+        rig.add("reversals")
+    return [f"  missing: {lack}" for lack in missing_inputs(names, rig)]
+
+
+def _doubts(signals: Mapping[str, np.ndarray]) -> list[str]:
+    """Say what cannot be: forces whose ratio is no friction coefficient, or such a coefficient."""
+    doubt = ""
+    if "friction_coefficient" in signals and "friction_force" not in signals:
+        doubt = doubt_about_coefficient(signals["friction_coefficient"])
+    elif {"friction_force", "normal_force"} <= set(signals):
+        doubt = doubt_about(signals["friction_force"], signals["normal_force"])
+    return [f"  doubtful: {doubt}"] if doubt else []
+
+
+def companion_lines(told: CompanionFacts) -> list[str]:
+    """Say whether a run's second log was found, and how its clock was matched.
+
+    Parameters
+    ----------
+    told
+        From `tribolab.reading.runs.companion.describe_companion`.
+    """
+    if "missing" in told:
+        return [f"  companion log: {told['missing']} is not there"]
+    if "ways" not in told:
+        return [f"  companion log: refused: {told['refused']}"] if told else []
+    lines = [f"  companion log: found ({told['instrument']})"]
+    if "refused" in told:
+        lines.append(
+            f"  clock shift: not told by the signals: {told['refused']}; "
+            "state clock_shift in the [[run]] of a campaign file"
+        )
+    else:
+        lines.append(
+            f"  clock shift: {told['shift_s']:.6g} s, standard uncertainty "
+            f"{told['uncertainty_s']:.2g} s, {told['source']}"
+        )
+    return lines + [
+        f"    told by {_WAYS.get(name, name)}: {way}" for name, way in told["ways"].items()
+    ]
+
+
+_WAYS = {
+    "classes": "classes of velocity",
+    "starts": "the starts of motion",
+    "motion": "a fit by distance, speed and acceleration",
+}

@@ -1,0 +1,462 @@
+"""What `tribolab info FILE --write` asks: which column is what, and what no column holds."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+import numpy as np
+
+from tribolab.app.questions.typed import (
+    NUMBER,
+    amount_typed,
+    as_amount,
+    as_strokes,
+    turning,
+    turns_alone,
+)
+from tribolab.core.errors import ReadError, TribolabError, shown
+from tribolab.reading.dialect.zero_reading import parse_zero
+from tribolab.reading.interpret.amounts import Amount
+from tribolab.reading.interpret.unit_texts import converts, is_unit
+from tribolab.reading.scans.extent import likely_height_unit
+from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
+from tribolab.reading.unknown.derivations.candidate_lines import (
+    amount_of,
+    candidate_lines,
+    likely_value,
+)
+from tribolab.reading.unknown.derivations.derive import what_follows
+from tribolab.reading.unknown.derivations.missing_inputs import lacking
+from tribolab.reading.unknown.header.load import stated_number
+from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.reading.unknown.model import Agreed, DraftColumn, Reason, Understood, other_units
+from tribolab.reading.unknown.proposal.answers import column_of, corrected, fits
+from tribolab.reading.unknown.proposal.calibration_factor import (
+    ANGLE,
+    TORQUE,
+    Worth,
+    si_unit_of,
+    worth_of,
+)
+from tribolab.reading.unknown.proposal.draft import Draft, as_profile
+from tribolab.units.conversion import positive
+from tribolab.units.quantities import QUANTITIES, quantity
+
+_NONE = "-"
+_YES = ("yes", "y")
+_SUM = re.compile(r"^\d+(?:\s*\+\s*\d+)+$")
+_FRICTION = ("friction_force", TORQUE, "friction_coefficient", "shear_stress")
+_LOAD = ("normal_force", "normal_stress")
+_MOTION = ("sliding_velocity", "rotation_speed", "position", ANGLE)
+_SCAN = {"x": "the coordinate along the profile", "height": "the height"}
+
+
+class Ask(Protocol):
+    """How a question is asked: it returns what was typed, or the default."""
+
+    def __call__(self, question: str, default: str) -> str:
+        """Ask."""
+
+
+Say = Callable[[str], None]
+
+
+def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
+    """Ask a person which column is what, in which unit, and what no column holds.
+
+    Parameters
+    ----------
+    draft
+        What was understood; its guesses are the defaults.
+    ask
+        How to ask.
+    say
+        How to say why an answer cannot be taken; it is then asked for again.
+
+    Returns
+    -------
+    Draft
+        The draft with the answers in it, which are no guesses any more.
+    """
+    if draft.layout is None or draft.understood is None:
+        return draft
+    alone = len(draft.understood.columns) == 1  # one column of numbers is no run
+    if draft.kind == "table" and (alone or draft.unsaid):
+        return _ask_for_pitch(draft, ask, say)
+    if draft.kind == "scan":
+        for name, words in _SCAN.items():
+            question = f"which column is {words}? (its number; {_NONE} for none)"
+            draft = _ask_for(draft, (name,), question, ask, say)
+        return draft
+    question = "which column is the time? (its number; or the rate of the rows, such as 100 Hz; "
+    question += f"{_NONE})"
+    if draft.understood and not draft.understood.rate_pattern:  # else the file states it
+        draft = _ask_for(draft, ("time",), question, ask, say, amount="rate")
+    question = "which column is the friction force (or its torque, or a friction coefficient)?"
+    draft = _ask_for(draft, _FRICTION, f"{question} (its number; {_NONE} for none)", ask, say)
+    if column_of(draft, "normal_force") or not column_of(draft, "friction_coefficient"):
+        question = (
+            "which column is the normal force? (its number, 4 + 5 if two add up; or the load "
+        )
+        question += "itself: 20 N, 2 kg, 10 x 2 kg on a lever; "
+        draft = _ask_for(draft, _LOAD, f"{question}{_NONE} for none)", ask, say, amount="load")
+    question = (
+        "which column tells how it moves: a speed, turns, an angle or a position? (its number; or "
+    )
+    question += "the sliding speed itself: 6 mm/min, 8 rpm at 20 mm radius; or strokes to and fro: "
+    question += f"8 mm at 2 Hz; {_NONE} for none)"
+    if not _told_by_settings(draft):
+        draft = _ask_for(draft, _MOTION, question, ask, say, amount="speed")
+    return _ask_for_motion(draft, ask, say) if draft.kind == "run" else draft
+
+
+def _told_by_settings(draft: Draft) -> bool:
+    """Whether what is stated tells the speed, and no column had to be guessed for it."""
+    if draft.layout is None or draft.understood is None or _held(draft, _MOTION) is not None:
+        return False
+    speed = what_follows(draft.layout, draft.understood).speed
+    return speed is not None and speed.source != "none"
+
+
+def _ask_for_motion(draft: Draft, ask: Ask, say: Say) -> Draft:
+    """Ask for what the speed follows from, if that is all that is missing."""
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return draft
+    speed = what_follows(layout, understood).speed
+    if speed is not None and speed.guess and speed.source == "stroke":
+        crank = f"does a crank drive it ({_NONE}: its speed is constant both ways)?"
+        drive = "constant speed" if ask(crank, "yes").strip() == _NONE else "crank"
+        understood = understood._replace(drive=drive)
+    return _ask_for_lengths(draft, layout, understood, ask, say)
+
+
+def _ask_for_lengths(
+    draft: Draft, layout: Layout, understood: Understood, ask: Ask, say: Say
+) -> Draft:
+    """Ask for the radius of the track, where the file does not say it, and for a stated zero."""
+    follows = what_follows(layout, understood)
+    lacks = {lack.member for lack in lacking(understood, follows)}
+    if follows.zero_in_doubt is not None:
+        text = follows.zero_in_doubt.text
+        taken = ask(f"was '{text}' taken off the signal ({_NONE}: it is still in it)?", "yes")
+        understood = understood._replace(zero="in it" if taken.strip() == _NONE else "taken off")
+        follows = what_follows(layout, understood)
+    guessed = [value for value in follows.values if value.guess]
+    if guessed or "track_radius" in lacks:
+        guess = f"{stated_number(guessed[0]):.6g} {guessed[0].unit}" if guessed else _NONE
+        said = candidate_lines(layout, follows, "track_radius")
+        value = likely_value(layout, follows, "track_radius")
+        question = "what is the radius of the track, with its unit"
+        question += f"; is it in {said}?" if said else "?"
+        likely = amount_of(value)
+        guess = _YES[0] if likely and guess == _NONE else guess
+        radius = _ask_amount(question, "radius", "m", guess, ask, say, likely)
+        if radius and value is not None and radius == likely:  # as the file has it
+            agreed = (*understood.agreed, ("radius", value.text))
+            understood = understood._replace(agreed=agreed)
+        else:
+            understood = understood._replace(radius=radius)
+    return draft.with_understood(understood)
+
+
+def _ask_for_pitch(draft: Draft, ask: Ask, say: Say) -> Draft:
+    """Ask how far heights lie apart that stand in a file without positions."""
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return draft
+    pitch = ""
+    if not understood.pitched:
+        question = "how far do neighbouring heights lie apart, with its unit?"
+        pitch = _ask_amount(question, "pitch", "m", _NONE, ask, say)
+    if not (pitch or understood.pitched):
+        return draft
+    if draft.unsaid != "count":
+        return as_profile(draft, pitch, _height_unit(understood, pitch, ask, say))
+    question = "how much is one count, with its unit (e.g. 0.5 nm)?"
+    count = _ask_amount(question, "count", "m", _NONE, ask, say)
+    return as_profile(draft, pitch, count) if count else draft
+
+
+def _height_unit(understood: Understood, pitch: str, ask: Ask, say: Say) -> str:
+    """Return the unit of heights: as the file states it, as its numbers tell, or as is typed."""
+    column = understood.columns[0]
+    unit = column.read_unit
+    if unit is None and pitch:
+        unit = likely_height_unit(understood.numbers[:, column.place - 1], positive(pitch, "m", ""))
+        if unit:
+            say(f"heights in {unit}: in another unit no instrument measures such a profile")
+    if unit:
+        return unit
+    guess = _unit_guess(column, "height")
+    return ask(f"in which unit does column {column.place} write it?", guess).strip()
+
+
+def _ask_amount(
+    question: str, name: str, si_unit: str, guess: str, ask: Ask, say: Say, likely: str = ""
+) -> str:
+    """Ask for a number with a unit until it is one, or "yes" to `likely`; "" if not known."""
+    while True:
+        agree = f"yes: {likely}; " if likely else ""
+        typed = ask(f"{question} ({agree}{_NONE}: not known)", guess).strip()
+        if typed == _NONE:
+            return ""
+        if likely and typed.lower() in _YES:
+            typed = likely
+        try:
+            return amount_typed(typed, name, si_unit)
+        except TribolabError as error:
+            say(str(error.what))
+
+
+def _ask_for(
+    draft: Draft, names: Sequence[str], question: str, ask: Ask, say: Say, amount: str = ""
+) -> Draft:
+    """Ask which column holds one of several quantities, or for an amount in place of a column."""
+    held = _held(draft, names)
+    said, stated = _said_amount(draft, amount), _stated_amount(draft, amount)
+    lines, value = ("", None) if held or said else _may_say(draft, amount)
+    likely = amount_of(value)
+    if lines:
+        question += f"; does {lines} say it?" + (f" (yes: {likely})" if likely else "")
+    while True:
+        usual = _YES[0] if likely else _NONE
+        typed = ask(question, str(held.place) if held else said or stated or usual).strip()
+        if stated and typed == stated:
+            return draft
+        if typed == _NONE:
+            return draft if held is None else _without(draft, names)
+        if value is not None and typed.lower() in (*_YES, likely):
+            return _with_line(_without(draft, names), amount, value)
+        try:
+            if amount == "load" and _SUM.match(typed):
+                return _with_sum(_without(draft, names), typed, ask)
+            strokes = as_strokes(typed) if amount == "speed" and not turning(typed) else None
+            if strokes:
+                return _with_strokes(_without(draft, names), strokes)
+            if amount and (text := as_amount(typed, amount)):
+                return _with_amount(_without(draft, names), amount, text)
+            column = _column(draft, typed)
+            if held and column.place == held.place and not held.guessed and not held.fill_in:
+                return draft
+            known = held if held and column.place == held.place else None
+            worth = _ask_worth(column, names, known, ask)
+            sign = _ask_sign(draft, column, worth.name, ask)
+            draft = _without(draft, names, but=worth.name)
+            draft = corrected(
+                draft, worth.name, column.place, worth.unit or None, sign, scale=worth.scale
+            )
+            return _ask_zero(draft, column, worth, ask, say)
+        except TribolabError as error:
+            say(str(error.what))
+
+
+def _held(draft: Draft, names: Sequence[str]) -> DraftColumn | None:
+    """Return the column that holds the first of the quantities that any holds."""
+    columns = draft.understood.columns if draft.understood else ()
+    for name in names:
+        by_name = {TORQUE: torque_of, ANGLE: angle_of}.get(name)
+        held = column_of(draft, name) if by_name is None else by_name(columns)
+        if held is not None:
+            return held
+    return None
+
+
+def _without(draft: Draft, names: Sequence[str], but: str = "") -> Draft:
+    """Return a draft in which no column holds any of the quantities, but one."""
+    for name in names:
+        if name != but and (name not in QUANTITIES or column_of(draft, name) is not None):
+            draft = corrected(draft, name, None)
+    return draft
+
+
+def _with_strokes(draft: Draft, strokes: tuple[str, str]) -> Draft:
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return draft
+    draft = draft.with_understood(understood._replace(strokes=strokes))
+    speed = what_follows(layout, understood._replace(strokes=strokes)).speed
+    if speed is None or speed.source != "stroke":
+        if not strokes[0] and turns_alone(strokes[1]):
+            raise ReadError(f"turns need the radius of their track: {strokes[1]} at 20 mm radius")
+        lacking_one = "frequency, such as 2 Hz" if strokes[0] else "length, such as 8 mm"
+        raise ReadError(f"strokes need a {lacking_one}, too")
+    return draft
+
+
+def _with_sum(draft: Draft, typed: str, ask: Ask) -> Draft:
+    """Return a draft in which several columns add up to the load: 4 + 5."""
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return draft
+    wanted = [_column(draft, place.strip()) for place in typed.split("+")]
+    said = {column.place: _ask_worth(column, _LOAD[:1], None, ask) for column in wanted}
+    columns = [
+        c._replace(
+            quantity=None,
+            used=False,
+            guessed=(),
+            options=(),
+            fill_in="",
+            unit=said[c.place].unit or None,
+            scale=said[c.place].scale,
+            note=Reason.ADDS.value,
+            reason=Reason.ADDS,
+        )
+        if c.place in said
+        else c
+        for c in understood.columns
+    ]
+    return draft.with_understood(understood._replace(kind="run", columns=tuple(columns)))
+
+
+def _said_amount(draft: Draft, amount: str) -> str:
+    understood = draft.understood
+    if understood is None:
+        return ""
+    return {"load": understood.load, "speed": understood.speed, "rate": understood.rate}.get(
+        amount, ""
+    )
+
+
+def _stated_amount(draft: Draft, amount: str) -> str:
+    """Return the load that the file states without any guess; "" if that is not one number."""
+    layout, understood = draft.layout, draft.understood
+    if amount != "load" or layout is None or understood is None or understood.load:
+        return ""
+    follows = what_follows(layout, understood)
+    formulas = {each.formula for each in follows.formulas if each.quantity == "normal_force"}
+    told = [value for value in follows.values if {value.name} == formulas]
+    return amount_of(told[0]) if told and not told[0].guess else ""
+
+
+def _with_line(draft: Draft, amount: str, value: Amount) -> Draft:
+    """Return a draft in which a line of the file states the load or the speed, as a person said."""
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return draft
+    what: Agreed = "load" if amount == "load" else "speed"
+    understood = understood._replace(agreed=(*understood.agreed, (what, value.text)))
+    return draft.with_understood(understood)
+
+
+def _may_say(draft: Draft, amount: str) -> tuple[str, Amount | None]:
+    """Quote the lines of the file that may state an amount, and return what they state."""
+    layout, understood = draft.layout, draft.understood
+    lack = {"load": "normal_force", "speed": "sliding_velocity"}.get(amount, "")
+    if layout is None or understood is None or not lack:
+        return "", None
+    follows = what_follows(layout, understood)
+    missing = any(said.member == lack for said in lacking(understood, follows))
+    if not missing:
+        return "", None
+    return candidate_lines(layout, follows, lack), likely_value(layout, follows, lack)
+
+
+def _with_amount(draft: Draft, amount: str, text: str) -> Draft:
+    layout, understood = draft.layout, draft.understood
+    if layout is None or understood is None:
+        return draft
+    if amount == "load":
+        understood = understood._replace(load=text)
+    elif amount == "speed":
+        understood = understood._replace(speed=text)
+    else:
+        understood = understood._replace(rate=text)
+    return draft.with_understood(understood)
+
+
+def _column(draft: Draft, typed: str) -> DraftColumn:
+    """Return the column that was named by its number or by its name."""
+    columns = draft.understood.columns if draft.understood else ()
+    for column in columns:
+        if typed.strip() in (str(column.place), column.label, column.name):
+            return column
+    raise TribolabError(f"there is no column '{shown(typed)}': type a number from 1 on")
+
+
+def _ask_worth(
+    column: DraftColumn, names: Sequence[str], held: DraftColumn | None, ask: Ask
+) -> Worth:
+    """Ask what one number of a column is; where the file says its unit and that fits, it is that.
+
+    Of a column that is known to hold a quantity, only the unit is asked.
+    """
+    name = next((name for name in names if held is not None and held.quantity == name), "")
+    asked = (name,) if name else tuple(names)
+    said = column.file_unit or ""
+    for wanted in asked if said else ():
+        if _fits(said, wanted) and (column.unit is None or wanted not in QUANTITIES):
+            return Worth(wanted, "")
+    if name and quantity(name).unit == "1":
+        return Worth(name, "")
+    foreign = bool(said) and is_unit(said) and not any(_fits(said, wanted) for wanted in asked)
+    question = f"in which unit does column {column.place} write it?"
+    guess = _unit_guess(column, asked[0])
+    if foreign:
+        question = f"column {column.place} is in {shown(said)}: how much is 1 {shown(said)}?"
+        question += f" (e.g. 8.2 {guess}/{shown(said)})"
+        guess = "?"
+    elif "friction_force" in names or "normal_force" in names:
+        question = question.removesuffix("?") + ", or what is one count of it (0.5 mN)?"
+    typed = ask(question, guess).strip()
+    worth = worth_of(typed, asked, column.file_unit)
+    if foreign and not typed[:1].isdigit() and typed[:1] not in "+-.":
+        raise TribolabError(f"say how much of {shown(typed, 20)} 1 {shown(said)} is")
+    return worth
+
+
+def _fits(unit: str, name: str) -> bool:
+    return fits(unit, name) if name in QUANTITIES else converts(unit, si_unit_of(name))
+
+
+def _unit_guess(column: DraftColumn, name: str) -> str:
+    if column.unit and fits(column.unit, name):
+        return column.unit
+    return other_units("height" if name == "height" else quantity(name).unit)[0]
+
+
+def _ask_sign(draft: Draft, column: DraftColumn, name: str, ask: Ask) -> int:
+    """Ask how a force is counted whose numbers are on one side of zero only, the wrong one."""
+    if name != "normal_force" or draft.understood is None:
+        return 1
+    values = draft.understood.numbers[:, column.place - 1]
+    values = values[np.isfinite(values)]
+    if not values.size or not values.min() < 0:
+        return 1
+    counted = f"{values.min():.4g} to {values.max():.4g}"
+    guess = "yes" if column.sign < 0 or values.max() <= 0 else "no"
+    typed = ask(f"column {column.place} goes from {counted}: is pressing negative?", guess)
+    return -1 if typed.strip().lower().startswith(("y", "j", "o", "s")) else 1
+
+
+def _ask_zero(draft: Draft, column: DraftColumn, worth: Worth, ask: Ask, say: Say) -> Draft:
+    """Ask what a column reads without contact, if its numbers are a converter's."""
+    layout, understood = draft.layout, draft.understood
+    forces = {*_FRICTION, *_LOAD}
+    if worth.scale == 1 or worth.name not in forces or layout is None or understood is None:
+        return draft
+    question = f"what does column {column.place} read without contact, in its own numbers? "
+    question += f"(or where it is so: first 5 s; {_NONE}: zero)"
+    while True:
+        typed = ask(question, _NONE).strip()
+        if typed == _NONE:
+            return draft
+        offset, zero = 0.0, ""
+        if NUMBER.match(typed):
+            offset = -worth.scale * float(typed.replace(",", "."))
+            break
+        try:
+            parse_zero(typed)
+        except TribolabError as error:
+            say(str(error.what))
+            continue
+        zero = typed
+        break
+    columns = [
+        c._replace(offset=offset, zero=zero) if c.place == column.place else c
+        for c in understood.columns
+    ]
+    return draft.with_understood(understood._replace(columns=tuple(columns)))

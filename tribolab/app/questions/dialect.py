@@ -1,0 +1,121 @@
+"""Try a dialect that `tribolab info FILE --write` has written on its files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tribolab.core.errors import TribolabError
+from tribolab.core.wording import Count
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def try_on(files: Sequence[Path], dialect: Path, kind: str) -> list[str]:
+    """Read files with a dialect and say what comes of it: mu of the segments, or what is missing.
+
+    Parameters
+    ----------
+    files
+        The files that it was drafted from.
+    dialect
+        The TOML file.
+    kind
+        ``run`` or ``scan``.
+    """
+    lines = []
+    for file in files:
+        try:
+            said = _run_said(file, dialect) if kind == "run" else _scan_said(file, dialect)
+        except TribolabError as error:
+            said = error.told("terminal").removeprefix(f"{file}: ")
+        lines.append(f"tried:  {file.name}: {said}")
+    return lines
+
+
+def _run_said(file: Path, dialect: Path) -> str:
+    # late: starting stays quick
+    from tribolab.arrays.reversals import reversals
+    from tribolab.friction.coefficient.coefficient import friction_coefficient, friction_signal
+    from tribolab.friction.segments.find import find_segments, why_no_segment
+    from tribolab.reading.runs.read_run import read_run
+
+    run = read_run(file, dialect, pair=False)
+    time = run["time"].values
+    said = f"{Count(len(time)):row|rows} over {float(time[-1]):.4g} s"
+    if run.attrs.get("rows_are") == "points":
+        said = f"{Count(len(time)):result|results}, each at one speed"
+    if not {"friction_force", "friction_coefficient", "shear_stress"} & set(run.variables):
+        return f"{said}; no friction coefficient yet: nothing holds the friction"
+    try:
+        segments = find_segments(run)
+        friction = friction_coefficient(run, segments)
+    except TribolabError as error:
+        why = error.told("terminal").removeprefix(f"{file.name}: ")
+        return f"{said}; no friction coefficient: {why}"
+    if why := why_no_segment(segments):
+        return f"{said}; {why}"
+    said += f", {Count(segments.sizes['segment']):segment|segments}"
+    if "friction_coefficient" not in friction:
+        return f"{said}, a friction force without a load: no friction coefficient"
+    signal = friction_signal(run)
+    turned = reversals(run[signal].values) if _undirected(run, segments) else 0
+    if turned:
+        return (
+            f"{said}; friction changes its sign {turned} times while nothing tells the way: it "
+            "looks like motion to and fro, whose mean is no friction coefficient; state stroke and "
+            'frequency under [speed], with source = "stroke"'
+        )
+    return f"{said}{_coefficients(friction)}"
+
+
+def _coefficients(friction: xr.Dataset) -> str:
+    """Say the friction coefficient: of segments at one speed their mean, else that of each."""
+    # late: starting stays quick
+    from tribolab.friction.stribeck import measured_stribeck_curve
+    from tribolab.records.wording import with_error
+
+    name = "friction_coefficient"
+    of, values, at = "", friction, ""
+    curve = measured_stribeck_curve([friction])
+    if 0 < curve.sizes["sliding_speed"] < friction.sizes["segment"]:
+        of, values = "means of the segments of a speed, ", curve
+        speeds = curve.sizes["sliding_speed"]
+        at = f" at {Count(speeds):speed|speeds}" if speeds > 1 else ""
+    mu, wide = (np.atleast_1d(values[f"{name}{end}"].values) for end in ("", "_U95"))
+    wide, mu = wide[np.isfinite(mu)], mu[np.isfinite(mu)]
+    if not mu.size:
+        return ""
+    if mu.size == 1 and of and np.isfinite(wide[0]):
+        count = int(curve["segments"].values[0])
+        said = with_error(float(mu[0]), float(wide[0]))
+        return f", friction coefficient {said} (U95, mean of {count}; statistical only)"
+    span = f"{mu.min():.3g}" + (f" to {mu.max():.3g}" if mu.size > 1 else "")
+    known = wide[np.isfinite(wide)]
+    width = f"at most {known.max():.2g}" if known.size else "not known"
+    return f", friction coefficient {span}{at} ({of}± U95 {width}, statistical only)"
+
+
+def _undirected(run: xr.Dataset, segments: xr.Dataset) -> bool:
+    """Whether nothing tells which way it slid; a set-point that turns over does."""
+    unknown = bool(segments["sliding_speed"].isnull().any())
+    by_set_speed = segments.attrs["velocity_source"] == "set speed"
+    signed = "set_speed" in run and bool((run["set_speed"] < 0).any())
+    return unknown or (by_set_speed and not signed)
+
+
+def _scan_said(file: Path, dialect: Path) -> str:
+    # late: starting stays quick
+    from tribolab.reading.scan_files import read_scans
+    from tribolab.reading.scans.extent import doubt_about_heights
+
+    scan = read_scans(file, dialect)
+    height = scan["height"]
+    span = float(height.max() - height.min())
+    doubt = doubt_about_heights(scan)
+    said = f"{Count(height.size):point|points}, heights over {1e6 * span:.4g} um"
+    return f"{said}; doubtful: {doubt}" if doubt else said

@@ -1,0 +1,1 @@
+"""Long arrays: medians, chunks, scratch files, and functions over several runs at once."""

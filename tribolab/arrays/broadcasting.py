@@ -1,0 +1,240 @@
+"""Functions of one thing that take several: a list of runs, or a dataset with a further dim."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar, overload
+
+import numpy as np
+
+from tribolab.core.errors import AnalysisError, Cure
+from tribolab.core.untyped import Arguments
+from tribolab.core.validity import together
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+P = ParamSpec("P")
+R = TypeVar("R")
+R_co = TypeVar("R_co", covariant=True)
+
+
+class OfRuns(Protocol[P, R]):
+    """A function of a run that gives a list for a list of runs."""
+
+    @overload
+    def __call__(self, runs: list[xr.Dataset], /, *args: Any, **kwargs: Any) -> list[R]: ...
+
+    @overload
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R: ...
+
+
+def of_runs(function: Callable[P, R]) -> OfRuns[P, R]:
+    """Let a function of a run take a list of runs, and give a list.
+
+    Other arguments that are lists of datasets go with the runs, one each; the rest holds for all.
+
+    Examples
+    --------
+    >>> @of_runs
+    ... def length(run, unit="s"):
+    ...     return f"{float(run.time[-1])} {unit}"
+    >>> import xarray as xr
+    >>> runs = [xr.Dataset(coords={"time": [0.0, end]}) for end in (1, 2)]
+    >>> length(runs[0]), length(runs, unit="sec")
+    ('1.0 s', ['1.0 sec', '2.0 sec'])
+    """
+
+    @functools.wraps(function)
+    def with_lists(*args: Any, **kwargs: Any) -> Any:
+        if not args or not isinstance(args[0], list):
+            return function(*args, **kwargs)
+        count = len(args[0])
+        given: dict[Any, Any] = {**dict(enumerate(args)), **kwargs}
+        own = {key: value for key, value in given.items() if _of_datasets(value)}
+        for key, value in own.items():
+            if len(value) != count:
+                raise AnalysisError(
+                    f"{function.__name__}: {count} runs are given, and {len(value)} datasets as "
+                    f"{_name(function, key)}; give one for each run"
+                )
+        return [_called(function, given, own, len(args), number) for number in range(count)]
+
+    return with_lists
+
+
+class OfLists(Protocol[P, R_co]):
+    """A function that gives a list for lists."""
+
+    @overload
+    def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R_co: ...
+
+    @overload
+    def __call__(self, *args: Any, **kwargs: Any) -> list[R_co]: ...
+
+
+def of_lists(*names: str, beside: str = "") -> Callable[[Callable[P, R]], OfLists[P, R]]:
+    """Let a function take lists for these arguments, and give a list.
+
+    Parameters
+    ----------
+    *names
+        Arguments that may be lists; what is none holds for all.
+    beside
+        One more, whose list is for one call unless another argument is a list too.
+
+    Examples
+    --------
+    >>> @of_lists("load", "speed")
+    ... def named(load, speed, unit="N"):
+    ...     return f"{load} {unit}, {speed}"
+    >>> named(31, speed=["slow", "fast"])
+    ['31 N, slow', '31 N, fast']
+    """
+
+    def decorate(function: Callable[P, R]) -> OfLists[P, R]:
+        places = list(inspect.signature(function).parameters)
+
+        @functools.wraps(function)
+        def with_lists(*args: Any, **kwargs: Any) -> Any:
+            given = dict(zip(places, args, strict=False)) | kwargs
+            own = {name: given[name] for name in names if isinstance(given.get(name), list)}
+            if not own:
+                return function(*args, **kwargs)
+            if isinstance(given.get(beside), list):
+                own[beside] = given[beside]
+            counts = {name: len(value) for name, value in own.items()}
+            if len({*counts.values()}) > 1:
+                told = ", ".join(f"{count} for {name}" for name, count in counts.items())
+                raise AnalysisError(f"{function.__name__}: lists of one length are wanted: {told}")
+            count = next(iter(counts.values()))
+            return [_called(function, given, own, 0, number) for number in range(count)]
+
+        return with_lists
+
+    return decorate
+
+
+def _called(
+    function: Callable[..., R],
+    given: Mapping[Any, Any],
+    own: Mapping[Any, Sequence[Any]],
+    placed: int,
+    number: int,
+) -> R:
+    """Call a function with one thing of each list; so many arguments go by their place."""
+    mine = {key: own[key][number] if key in own else value for key, value in given.items()}
+    places = [mine.pop(place) for place in range(placed)]
+    return function(*places, **mine)
+
+
+def _of_datasets(value: Any) -> bool:
+    # by name: whoever calls with lists has loaded xarray already
+    return isinstance(value, list) and all(type(item).__name__ == "Dataset" for item in value)
+
+
+def _name(function: Callable[..., Any], key: int | str) -> str:
+    return key if isinstance(key, str) else f"'{list(inspect.signature(function).parameters)[key]}'"
+
+
+def over_dims(**own: tuple[str, ...]) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Let a function take arguments with further dims, and give them to the result.
+
+    Parameters
+    ----------
+    **own
+        The arguments that may have further dims, and those dims that the function knows itself.
+
+    Notes
+    -----
+    The function is called once for each place along the further dims, for which each argument that
+    has such a dim is cut; wavenumbers without a value are left out, so that spectra on different
+    wavenumbers may stand in one dataset. What the results say of their validity is joined.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> @over_dims(psd=("wavenumber",))
+    ... def highest(psd):
+    ...     return psd.psd_2d.max()
+    >>> psd = xr.Dataset({"psd_2d": (("surface", "wavenumber"), [[1.0, 2.0], [5.0, 4.0]])})
+    >>> highest(psd).values, highest(psd.isel(surface=0)).item()
+    (array([2., 5.]), 2.0)
+    """
+
+    def decorate(function: Callable[P, R]) -> Callable[P, R]:
+        places = list(inspect.signature(function).parameters)
+
+        @functools.wraps(function)
+        def with_dims(*args: P.args, **kwargs: P.kwargs) -> R:
+            given = dict(zip(places, args, strict=False)) | kwargs
+            further = [
+                dim
+                for name, known in own.items()
+                for dim in _dims(given.get(name))
+                if dim not in known
+            ]
+            if not further:
+                return function(*args, **kwargs)
+            return _along(with_dims, given, further[0])
+
+        return with_dims
+
+    return decorate
+
+
+def _dims(value: Any) -> tuple[Hashable, ...]:
+    """Dims of what an argument holds; beside its spectrum a dataset may tell of its scans."""
+    holder = value["psd_2d"] if "psd_2d" in getattr(value, "data_vars", ()) else value
+    return tuple(getattr(holder, "dims", ()))
+
+
+def _along(function: Callable[..., Any], given: Arguments, dim: Hashable) -> Any:
+    """Call a function for each place along a dim, and put the results together."""
+    # late: xarray takes long to load
+    import xarray as xr
+
+    having = {name: value for name, value in given.items() if dim in getattr(value, "dims", ())}
+    first = next(iter(having.values()))
+    results = []
+    for place in range(first.sizes[dim]):
+        cut = {name: _cut(value.isel({dim: place}, drop=True)) for name, value in having.items()}
+        result = function(**(given | cut))
+        known = isinstance(result, xr.Dataset | xr.DataArray)
+        results.append(result if known else _array(result, function.__name__))
+    index = first[dim] if dim in first.coords else xr.DataArray(range(len(results)), dims=[dim])
+    joined = xr.concat(
+        results, index, data_vars="all", coords="different", compat="equals", join="outer",
+        combine_attrs="drop_conflicts",
+    )  # fmt: skip
+    if any("validity" in result.attrs for result in results):
+        joined.attrs |= together(result.attrs for result in results)
+    return joined
+
+
+def as_stated(value: str | float | xr.DataArray) -> str | float:
+    """Return what was stated, or of an array without dims its number."""
+    return float(value.item()) if hasattr(value, "item") else value
+
+
+def _cut(value: Any) -> Any:
+    """Leave out what this part of several does not have: wavenumbers of spectra, segments."""
+    if not hasattr(value, "data_vars"):
+        return value
+    for dim in {"wavenumber", "segment"} & {*value.dims}:
+        value = value.dropna(dim, how="all")
+    return value
+
+
+def _array(result: Any, who: str) -> Any:
+    # late: xarray takes long to load
+    import xarray as xr
+
+    if np.ndim(result):
+        raise AnalysisError(
+            f"{who}: where further dims come in, arrays must name theirs",
+            cure=Cure(notebook='give e.g. xr.DataArray(pressure, dims="pressure")'),
+        )
+    return xr.DataArray(result)

@@ -1,0 +1,92 @@
+"""Results of several conditions, such as surfaces, media or loads, each by its labels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Generic, Self, TypeVar
+
+import numpy as np
+import xarray as xr
+
+from tribolab.core.errors import AnalysisError
+
+Selected = TypeVar("Selected")
+ConditionLabels = dict[Hashable, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Conditions(Generic[Selected]):
+    """A result for each condition.
+
+    Parameters
+    ----------
+    results
+        Over the conditions; None where nothing was measured.
+
+    Examples
+    --------
+    >>> results = Conditions.of({"surface": ["a", "b"]}, lambda labels: labels["surface"] * 2)
+    >>> results.sel(surface="b"), [labels for labels, result in results]
+    ('bb', [{'surface': 'a'}, {'surface': 'b'}])
+    """
+
+    results: xr.DataArray
+
+    @classmethod
+    def of(
+        cls, coords: Mapping[Hashable, Any], compute: Callable[[ConditionLabels], Selected | None]
+    ) -> Self:
+        """Compute a result for each condition.
+
+        Parameters
+        ----------
+        coords
+            The labels along each dim.
+        compute
+            Labels in, their result out; None where nothing was measured.
+        """
+        results = np.empty([len(values) for values in coords.values()], dtype=object)
+        for place in np.ndindex(results.shape):
+            labels = {dim: coords[dim][k] for dim, k in zip(coords, place, strict=True)}
+            results[place] = compute(labels)
+        return cls(xr.DataArray(results, coords, tuple(coords)))
+
+    def sel(self, **labels: object) -> Selected | Self:
+        """Return what one condition has, or what some have, as `xarray.DataArray.sel` does.
+
+        Raises
+        ------
+        AnalysisError
+            If nothing was measured under this condition.
+        """
+        chosen = self.results.sel(labels, drop=True)
+        if chosen.dims:
+            return type(self)(chosen)
+        result: Selected | None = chosen.item()
+        if result is None:
+            raise AnalysisError(f"nothing was measured at {labels_text(labels)}")
+        return result
+
+    def __iter__(self) -> Iterator[tuple[ConditionLabels, Selected]]:
+        """Give the labels of each condition that was measured, and what it has."""
+        for place in np.ndindex(self.results.shape):
+            part = self.results[place]
+            if part.item() is not None:
+                yield {dim: part[dim].item() for dim in self.results.dims}, part.item()
+
+
+def labels_text(labels: Mapping[Any, object]) -> str:
+    """Return labels with the dims that they are along.
+
+    Examples
+    --------
+    >>> labels_text({"surface": "Sb-R", "normal_force": 31.0})
+    'surface Sb-R, normal_force 31.0'
+    """
+    return ", ".join(f"{dim} {label}" for dim, label in labels.items())
+
+
+def labels_along(holder: xr.DataArray, dim: Hashable) -> np.ndarray:
+    """Return the labels along a dim; numbers from 0 where it has none."""
+    return holder[dim].to_numpy() if dim in holder.coords else np.arange(holder.sizes[dim])

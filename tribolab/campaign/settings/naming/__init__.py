@@ -1,0 +1,1 @@
+"""Names in a campaign file: of runs, of files, and what a pattern reads from them."""

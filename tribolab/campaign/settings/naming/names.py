@@ -1,0 +1,136 @@
+"""Names in a campaign file that lead nowhere: surfaces, media, instruments, checks."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from tribolab.campaign.settings.files import instrument_of
+from tribolab.campaign.settings.problems import SettingsProblem
+from tribolab.core.errors import ConfigError, TribolabError, nearest, shown
+from tribolab.lubrication.viscosity import LIQUIDS, knows_liquid
+
+if TYPE_CHECKING:
+    from tribolab.campaign.settings.config import Campaign
+    from tribolab.campaign.settings.measured import Medium
+
+
+def of_names(campaign: Campaign) -> list[SettingsProblem]:
+    """Names that are used but not declared, or declared twice."""
+    problems = []
+    surfaces = [surface.name for surface in campaign.surface]
+    for number, name in enumerate(surfaces):
+        if name in surfaces[:number]:
+            problems.append(
+                SettingsProblem(
+                    ("surface", number, "name"), f"'{shown(name)}' is the name of a surface before"
+                )
+            )
+    for number, surface in enumerate(campaign.surface):
+        if surface.instrument is not None and (what := _instrument(campaign, surface.instrument)):
+            problems.append(SettingsProblem(("surface", number, "instrument"), what))
+    stated = [
+        (("medium", name), quantity, medium)
+        for name, medium in campaign.medium.items()
+        for quantity in ("viscosity", "work_of_adhesion")
+    ]
+    for where, name, table in [*stated, (("contact",), "youngs_modulus", campaign.contact)]:
+        value, bounds = getattr(table, name), getattr(table, f"{name}_range")
+        if bounds and not (value is not None and bounds[0] <= value <= bounds[1]):
+            what = f"must go from below to above {name}"
+            problems.append(SettingsProblem((*where, f"{name}_range"), what))
+    problems += _of_liquids(campaign)
+    problems += _of_theory(campaign)
+    if not campaign.run and not any(surface.scans for surface in campaign.surface):
+        what = 'is missing; add [[run]] with files = "...", or [[surface]] with scans = "..."'
+        problems.append(SettingsProblem(("run",), what))
+    for number, entry in enumerate(campaign.run):
+        if entry.surface is not None and entry.surface not in surfaces:
+            what = f"no [[surface]] is called '{shown(entry.surface)}'" + _hint(
+                entry.surface,
+                surfaces,
+                f'add [[surface]] with name = "{shown(entry.surface)}" (its scans may be left out)',
+            )
+            problems.append(SettingsProblem(("run", number, "surface"), what))
+        if entry.medium is not None and entry.medium not in campaign.medium:
+            what = f"there is no [medium.{shown(entry.medium)}]" + _hint(
+                entry.medium,
+                campaign.medium,
+                f"add [medium.{shown(_toml_key(entry.medium))}] (its keys may be left out)",
+            )
+            problems.append(SettingsProblem(("run", number, "medium"), what))
+        if entry.instrument is not None and (what := _instrument(campaign, entry.instrument)):
+            problems.append(SettingsProblem(("run", number, "instrument"), what))
+    return problems
+
+
+def _of_liquids(campaign: Campaign) -> list[SettingsProblem]:
+    """Liquids that are not known, or none at their temperature."""
+    problems = []
+    for name, medium in campaign.medium.items():
+        if medium.liquid is not None and not knows_liquid(medium.liquid):
+            what = f"no liquid '{shown(medium.liquid)}' is known{nearest(medium.liquid, LIQUIDS)}"
+            problems.append(SettingsProblem(("medium", name, "liquid"), what))
+            continue
+        try:
+            campaign.viscosity_of(name)
+        except TribolabError as error:
+            key, _, what = str(error).partition(": ")
+            problems.append(SettingsProblem(("medium", name, key), what))
+    return problems
+
+
+def _of_theory(campaign: Campaign) -> list[SettingsProblem]:
+    """Surfaces and media that [joint] and [rubber] name, and a modulus that is stated twice."""
+    wrong = []
+    surfaces = [surface.name for surface in campaign.surface]
+    for name in campaign.joint.together:
+        if name not in surfaces:
+            what = f"no [[surface]] is called '{shown(name)}'{nearest(name, surfaces)}"
+            wrong.append(SettingsProblem(("joint", "together"), what))
+    for table, key, medium in (
+        ("joint", "dry", campaign.joint.dry),
+        ("rubber", "adhesion", campaign.rubber.adhesion),
+    ):
+        if medium is not None and medium not in campaign.medium:
+            what = f"there is no [medium.{shown(medium)}]{nearest(medium, campaign.medium)}"
+            wrong.append(SettingsProblem((table, key), what))
+        elif medium is not None and not _binds(campaign.medium[medium]):
+            what = f"[medium.{shown(medium)}] wants a work_of_adhesion above zero"
+            wrong.append(SettingsProblem((table, key), what))
+    rubber = campaign.rubber
+    file = campaign.contact.modulus_file
+    if rubber.prony_moduli and file is not None:
+        what = "there is [contact] modulus_file as well; state one of them"
+        wrong.append(SettingsProblem(("rubber", "prony_moduli"), what))
+    if rubber.temperature is not None and file is None and not rubber.prony_moduli:
+        what = "there is no modulus to shift; state [contact] modulus_file, or prony_moduli"
+        wrong.append(SettingsProblem(("rubber", "temperature"), what))
+    return wrong
+
+
+def _binds(medium: Medium) -> bool:
+    return medium.work_of_adhesion is not None and medium.work_of_adhesion > 0
+
+
+def _hint(word: str, known: Iterable[str], cure: str) -> str:
+    """Return the nearest that is declared, or how to declare it."""
+    hint = nearest(word, known)
+    return hint if "did you mean" in hint else f"{hint}; {cure}"
+
+
+def _toml_key(name: str) -> str:
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else json.dumps(name, ensure_ascii=False)
+
+
+def _instrument(campaign: Campaign, name: str) -> str:
+    # late: starting stays quick
+    from tribolab.reading.dialect.find import load_dialect
+
+    try:
+        load_dialect(instrument_of(campaign, name))
+    except ConfigError as error:
+        return error.told("campaign")
+    return ""

@@ -1,0 +1,315 @@
+"""Two campaigns, surfaces or media beside each other: what differs, and how surely."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import pandas as pd
+
+from tribolab.comparison.calibration_terms import CalibrationTerms, calibration_terms, terms_text
+from tribolab.comparison.changes import Change, changes_between
+from tribolab.comparison.quantities import of_quantities
+from tribolab.comparison.run_values import (
+    CONDITION,
+    SPEED_COLUMN,
+    Matched,
+    matched,
+)
+from tribolab.comparison.sides import Compared, Side, sides_of
+from tribolab.core.errors import AnalysisError
+from tribolab.core.wording import many
+from tribolab.metrology.differences import (
+    BONFERRONI,
+    PERMUTATION,
+    ROTATION,
+    Differences,
+    differences_of_groups,
+    interval,
+    verdicts,
+)
+from tribolab.units.conversion import to_si
+
+UNCHANGED, CHANGED = "unchanged", "changed by the analysis"
+_LEVEL, _EQUIVALENCE_LEVEL = 0.95, 0.90
+_EXACT = 1e-12  # relative: results of the same raw data by the same analysis are the same
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What differs between two groups of runs.
+
+    Parameters
+    ----------
+    names
+        Of the first and the second.
+    points
+        A row for each condition and speed: means, their difference (second less first), its
+        standard error and degrees of freedom, the interval that holds all differences together,
+        ``p_value`` alone and ``adjusted_p_value`` as one of all, and the ``verdict``.
+    quantities
+        A row for each number of a condition or surface: mean friction over the common speeds,
+        shear stress, roughness; difference with 95 % and 90 % intervals of each alone.
+    changes
+        What changed in settings, decisions, code and data.
+    method
+        How the error rate of all points is kept, in words.
+    calibration
+        What the errors hold beside the scatter of the runs, in words.
+    margin
+        The difference that does not matter, as it was stated; "" if none was.
+    counts
+        How many points have each verdict.
+    two_folders
+        Whether it is known what changed.
+    """
+
+    names: tuple[str, str]
+    points: pd.DataFrame
+    quantities: pd.DataFrame
+    changes: tuple[Change, ...] = ()
+    method: str = ""
+    calibration: str = ""
+    margin: str = ""
+    counts: dict[str, int] = field(default_factory=dict)
+    two_folders: bool = False
+
+
+def compare(
+    first: Compared,
+    second: Compared | None = None,
+    *,
+    by: str = "",
+    levels: Sequence[str] = (),
+    margin: str = "",
+    pairs: int = 1,
+) -> Comparison:
+    """Compare two campaigns, or two surfaces or media within one.
+
+    The unit is the run: the mean of its strokes at a speed is one observation.
+
+    Parameters
+    ----------
+    first, second
+        Results folders, what `read_results` returns of them, or tables of friction with the columns
+        ``run``, ``sliding_speed_m_s``, ``friction_coefficient`` and, where known, ``surface``,
+        ``medium``, ``nominal_normal_force_N``. Without a second, two levels of the first are
+        compared.
+    by
+        Column that tells these levels, e.g. ``"surface"``; with a second it is left out of what
+        makes a condition, e.g. to compare two surfaces that were measured in two campaigns.
+    levels
+        Which two, the first being what the second is compared with; by default the first two.
+    margin
+        The largest difference that does not matter, of the coefficient (``"0.01"``) or relative to
+        the first (``"5 %"``); without one nothing is called equivalent.
+    pairs
+        How many comparisons of this kind are made together: the error rate is of all of them.
+
+    Returns
+    -------
+    Comparison
+        See there.
+
+    Raises
+    ------
+    AnalysisError
+        If the two have no condition and speed in common.
+    UnitError
+        If the margin is no number and no share.
+
+    Notes
+    -----
+    Runs made of the same raw files are no two observations: where all runs of a condition are, its
+    verdict says whether the analysis changed the numbers, and there is no test.
+    `differences_of_groups` has the statistics. What results folders state of their calibration and
+    the scatter of the runs does not show is in the errors; what both share, such as the gain of one
+    instrument, only as far as it acts on them differently (`calibration_terms`).
+
+    Examples
+    --------
+    >>> import numpy as np, pandas as pd
+    >>> rng = np.random.default_rng(3)
+    >>> table = pd.DataFrame({
+    ...     "run": np.repeat([f"run {k}" for k in range(8)], 2),
+    ...     "surface": np.repeat(["smooth", "rough"], 8),
+    ...     "sliding_speed_m_s": np.tile([1e-4, 1e-3], 8),
+    ...     "friction_coefficient": np.tile([0.5, 0.3], 8) + rng.normal(0, 0.01, 16),
+    ... })
+    >>> table.loc[table.surface == "rough", "friction_coefficient"] += [0.0, 0.2] * 4
+    >>> compare(table, by="surface").points.verdict.tolist()
+    ['undecided', 'different']
+    """
+    sides = sides_of(first, second, by, levels)
+    kept = [name for name in CONDITION if name != by]
+    conditions = matched(sides[0].segments, sides[1].segments, kept)
+    if not conditions:
+        raise AnalysisError(
+            "there is nothing to compare: no surface, medium and load was measured in both at one "
+            "speed"
+        )
+    same = [_all_same(condition, *sides) for condition in conditions]
+    alpha = (1 - _LEVEL) / max(1, pairs)
+    tested = [condition for condition, is_same in zip(conditions, same, strict=True) if not is_same]
+    terms = [calibration_terms(c, sides[0].folder, sides[1].folder) for c in conditions]
+    own = [part for part, is_same in zip(terms, same, strict=True) if not is_same]
+    by_chance = _tested(tested, own, margin, alpha) if tested else None
+    points = [_points_of_same(c) for c, is_same in zip(conditions, same, strict=True) if is_same]
+    if by_chance is not None:
+        points.append(by_chance[1])
+    rows = pd.concat(points, ignore_index=True)
+    folders = [side.folder for side in sides]
+    two_folders = second is not None and None not in folders
+    return Comparison(
+        names=(sides[0].name, sides[1].name),
+        points=rows,
+        quantities=of_quantities(
+            conditions, same, [part.terms for part in terms], sides[0].tables, sides[1].tables, by
+        ),
+        changes=()
+        if second is None or folders[0] is None or folders[1] is None
+        else tuple(changes_between(folders[0], folders[1])),
+        method=_method(None if by_chance is None else by_chance[0], len(tested), pairs),
+        calibration=terms_text(own) if tested else "",
+        margin=margin,
+        counts={word: int((rows["verdict"] == word).sum()) for word in dict.fromkeys(rows.verdict)},
+        two_folders=two_folders,
+    )
+
+
+def _all_same(condition: Matched, first: Side, second: Side) -> bool:
+    """Tell whether the runs of a condition are made of the same raw files in both."""
+    if first.folder is None or second.folder is None or first.folder is second.folder:
+        return False
+    sums = [side.folder.checksums() if side.folder else {} for side in (first, second)]
+    files = [
+        sorted(sums[place].get(run, ()) for run in runs)
+        for place, runs in enumerate((condition.first_runs, condition.second_runs))
+    ]
+    return bool(files[0]) and files[0] == files[1] and all(any(sums) for sums in files[0])
+
+
+def _points_of_same(condition: Matched) -> pd.DataFrame:
+    """Return the rows of a condition whose raw data are the same: no chance is in them."""
+    first, second = (np.nanmean(values, axis=0) for values in (condition.first, condition.second))
+    return _rows(
+        condition,
+        first,
+        second,
+        verdict=[
+            UNCHANGED if abs(b - a) <= _EXACT * abs(a) else CHANGED
+            for a, b in zip(first, second, strict=True)
+        ],
+    )
+
+
+def _tested(
+    conditions: Sequence[Matched], terms: Sequence[CalibrationTerms], margin: str, alpha: float
+) -> tuple[Differences, pd.DataFrame]:
+    compared = differences_of_groups(
+        [(c.first, c.second) for c in conditions],
+        not_in_scatter=[part.terms for part in terms],
+        alpha=alpha,
+    )
+    limits = margin_of(margin, compared.first)
+    words = verdicts(compared, limits, alpha)
+    rows, start = [], 0
+    for condition in conditions:
+        part = slice(start, start + condition.speeds.size)
+        start = part.stop
+        low, high = interval(
+            compared.difference[part],
+            compared.standard_error[part],
+            compared.degrees_of_freedom[part],
+            _EQUIVALENCE_LEVEL,
+        )
+        rows.append(
+            _rows(
+                condition,
+                compared.first[part],
+                compared.second[part],
+                standard_error=compared.standard_error[part],
+                degrees_of_freedom=compared.degrees_of_freedom[part],
+                low=compared.low[part],
+                high=compared.high[part],
+                low_90=low,
+                high_90=high,
+                p_value=compared.p_value[part],
+                adjusted_p_value=compared.adjusted_p_value[part],
+                verdict=words[part],
+            )
+        )
+    return compared, pd.concat(rows, ignore_index=True)
+
+
+_NUMBERS = (
+    "standard_error",
+    "degrees_of_freedom",
+    "low",
+    "high",
+    "low_90",
+    "high_90",
+    "p_value",
+    "adjusted_p_value",
+)
+
+
+def _rows(
+    condition: Matched,
+    first: np.ndarray,
+    second: np.ndarray,
+    *,
+    verdict: Sequence[str],
+    **numbers: np.ndarray,
+) -> pd.DataFrame:
+    empty = np.full(condition.speeds.size, np.nan)
+    return pd.DataFrame(
+        {
+            "condition": condition.condition,
+            SPEED_COLUMN: condition.speeds,
+            "first": first,
+            "second": second,
+            "difference": second - first,
+            "relative_difference": (second - first) / np.where(first == 0, np.nan, first),
+            **{name: numbers.get(name, empty) for name in _NUMBERS},
+            "first_runs": np.isfinite(condition.first).sum(axis=0),
+            "second_runs": np.isfinite(condition.second).sum(axis=0),
+            "verdict": list(verdict),
+        }
+    )
+
+
+def margin_of(margin: str, values: np.ndarray) -> np.ndarray | None:
+    """Return a margin that was stated for values, as a share of them or as it is.
+
+    Raises
+    ------
+    UnitError
+        If it is neither.
+    """
+    if not margin:
+        return None
+    size = to_si(margin if any(c.isalpha() or c == "%" for c in margin) else float(margin), "1")
+    return np.abs(values) * size if "%" in margin else np.full(values.shape, size)
+
+
+_HOW = {
+    PERMUTATION: "runs change their groups, whole, and the largest difference over its error of a "
+    "condition's points tells what chance can do",
+    ROTATION: "the scatter of the runs, turned at random, tells what chance can do at the points "
+    "of a condition together, supposing that runs are normally distributed",
+    BONFERRONI: "Bonferroni's rule, where runs are few and lack speeds",
+}
+
+
+def _method(compared: Differences | None, conditions: int, pairs: int) -> str:
+    if compared is None:
+        return "the raw data are the same: what differs, the analysis changed"
+    points = int(np.isfinite(compared.p_value).sum())
+    how = "; ".join(_HOW[name] for name in dict.fromkeys(compared.methods))
+    others = f" and {pairs} comparisons" if pairs > 1 else ""
+    return (
+        f"Welch's t of the runs' means at {many(points, 'point')} of "
+        f"{many(conditions, 'condition')}; 5 % for all of them{others} together: {how}"
+    )

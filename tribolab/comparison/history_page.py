@@ -1,0 +1,148 @@
+"""The page and the table of an instrument's history."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from tribolab import plot
+from tribolab.comparison.history import History, Watched, expectations
+from tribolab.comparison.page import Part, Picture, Sheet, cells, write_parts
+from tribolab.core.wording import many
+from tribolab.metrology.control_charts import FEWEST_OF_BASELINE
+from tribolab.metrology.run_length import signal_probability
+from tribolab.report import tables
+
+
+def history_verdict(told: History) -> str:
+    """Return what came of it in one sentence."""
+    charts = many(len(told.charts), "chart")
+    judged = [chart for chart in told.charts if chart.chart is not None]
+    if not judged:
+        most = max((chart.values.size for chart in told.charts), default=0)
+        missing = 2 * FEWEST_OF_BASELINE - most
+        return (
+            f"nothing judged yet: the longest of {charts} has {many(most, 'point')}, and a control "
+            f"chart needs {2 * FEWEST_OF_BASELINE}. Add at least {missing} more campaigns of the "
+            "same instrument"
+            if missing > 0
+            else f"nothing judged yet: the remarks say why no chart of {charts} can be judged"
+        )
+    if not told.signalling:
+        others = len(told.charts) - len(judged)
+        return f"{charts}: no signal" + (f", {others} not judged yet" if others else "")
+    named = ", ".join(_name(chart, told) for chart in told.signalling[:4])
+    more = len(told.signalling) - 4
+    signal = "signal" if len(told.signalling) > 1 else "signals"
+    return (
+        f"{len(told.signalling)} of {charts} {signal}: {named}"
+        f"{f' and {more} more' if more > 0 else ''}"
+    )
+
+
+def _name(chart: Watched, told: History) -> str:
+    """Return the quantity, and of which instrument where there are several."""
+    several = len({other.instrument for other in told.charts}) > 1
+    return f"{chart.instrument}: {chart.quantity}" if several else chart.quantity
+
+
+def write_history(told: History, folder: Path) -> Path:
+    """Write ``history.html`` and ``history.csv``, and return the page."""
+    folder.mkdir(parents=True, exist_ok=True)
+    tables.write_csv(told.table(), folder / "history.csv")
+    page = folder / "history.html"
+    instruments = dict.fromkeys(chart.instrument for chart in told.charts)
+    write_parts(
+        page,
+        kind="History of instruments",
+        heading=", ".join(name or "instrument not named" for name in instruments),
+        verdict=history_verdict(told),
+        fine=not told.signalling and any(chart.chart is not None for chart in told.charts),
+        parts=[_summary(told), *(_chart(chart, told) for chart in _ordered(told))],
+    )
+    return page
+
+
+def _ordered(told: History) -> list[Watched]:
+    """Return the charts: first those that signal, last those that could not be judged."""
+    return sorted(told.charts, key=lambda chart: (not chart.signals.size, chart.chart is None))
+
+
+def _verdict(chart: Watched) -> str:
+    if chart.chart is None:
+        return "not judged"
+    if not chart.signals.size:
+        return "as usual"
+    first = chart.when[chart.signals[0]].date().isoformat()
+    return f"not as usual since {first}"
+
+
+def _summary(told: History) -> Part:
+    rows = [
+        cells(
+            (
+                _name(chart, told), chart.unit, len(chart.values), chart.baseline_points,
+                float(chart.values[-1]), chart.chart.low if chart.chart else float("nan"),
+                chart.chart.high if chart.chart else float("nan"), len(chart.signals),
+                _verdict(chart),
+            ),
+            digits=4,
+        )
+        for chart in _ordered(told)
+    ]  # fmt: skip
+    heads = ("Quantity", "Unit", "Points", "Baseline", "Last", "From", "To", "Signals", "Verdict")
+    due = [
+        f"{name}: calibration due {due.date.isoformat() if due.date else 'unknown'} ({due.reason})."
+        for name, due in told.due.items()
+    ]
+    unread = [f"Left out: {text}" for text in told.unread[:20]]
+    return Part(
+        "summary",
+        "All charts",
+        texts=(
+            "Each campaign is one point. The first ones say what is usual; a later one signals "
+            "where it lies further off than chance explains, or where several together do "
+            f"(rules: {', '.join(told.rules)}).{_by_chance(told)}",
+            *due,
+            *unread,
+        ),
+        tables=(Sheet("All charts", "history", heads, rows),),
+    )
+
+
+def _by_chance(told: History) -> str:
+    """Say how often any chart would signal if nothing had changed."""
+    judged = [chart for chart in told.charts if chart.chart is not None]
+    if not judged:
+        return ""
+    none = 1.0
+    for chart in judged:
+        points, usual = chart.values.size - chart.baseline_points, chart.baseline_points
+        none *= 1 - signal_probability(points, told.rules, baseline=usual)
+    return (
+        f" If nothing had changed, one or more of the {many(len(judged), 'chart')} that could be "
+        f"judged would signal by chance in up to {100 * (1 - none):.0f} % of such pages."
+    )
+
+
+def _chart(chart: Watched, told: History) -> Part:
+    rows = chart.table()
+    name = _name(chart, told)
+    drawn = Picture(plot.control(rows, title=name), name, f"{name} over time.")
+    said = expectations(chart, told.rules)
+    texts = [said[0].upper() + said[1:] + "."]
+    if chart.remark and chart.chart is not None:
+        texts.append(chart.remark[0].upper() + chart.remark[1:] + ".")
+    marked = rows[rows["signal"] != ""]
+    signals = [
+        cells((row["when"], row["value"], row["signal"], row["folder"]), digits=4)
+        for row in marked.to_dict("records")
+    ]
+    heads = ("When", "Value", "Rule", "Results")
+    return Part(
+        re.sub(r"\W+", "-", name),
+        name,
+        texts=texts,
+        figures=(drawn,),
+        tables=(Sheet(f"Signals of {name}", "signals", heads, signals),) if signals else (),
+    )

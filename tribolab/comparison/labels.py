@@ -1,0 +1,88 @@
+"""What tells runs apart beside what was measured: operator, mount, day, specimen, free labels.
+
+Labels shape no number, so they are looked up when somebody asks, and a label that is added to the
+campaign file has nothing analysed anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+import pandas as pd
+
+from tribolab.campaign.settings.config import Campaign
+from tribolab.campaign.settings.measured import RunEntry
+from tribolab.campaign.settings.name_pattern import NamePattern
+from tribolab.campaign.settings.naming.named import is_named
+from tribolab.comparison.folder import Folder, open_folder
+from tribolab.core.errors import AnalysisError
+
+_KEYS = ("operator", "mount", "day", "specimen")
+
+
+def labelled_segments(place: str | Path) -> pd.DataFrame:
+    """Return the table of friction of a campaign, with the labels of each row's run.
+
+    Parameters
+    ----------
+    place
+        A campaign file, its folder, or a results folder. With a campaign file the labels are those
+        that it has now.
+
+    Raises
+    ------
+    ConfigError, ReadError
+        If it cannot be read, or there are no results yet.
+    AnalysisError
+        If the results have no runs.
+    """
+    path = Path(place)
+    campaign: Campaign | None = None
+    if path.is_file() or (path / "campaign.toml").is_file():
+        # late: starting stays quick
+        from tribolab.campaign.settings.load import load_campaign
+
+        campaign = load_campaign(path)
+        folder = open_folder(campaign.output)
+    else:
+        folder = open_folder(path)
+        campaign = folder.campaign
+    table = folder.table("friction")
+    if table is None:
+        raise AnalysisError(f"{folder.path}: there is no table of friction: it has no runs")
+    labels = labels_of_runs(folder, campaign)
+    new = labels.columns.difference(table.columns)
+    return table.join(labels[new], on="run")
+
+
+def labels_of_runs(folder: Folder, campaign: Campaign | None) -> pd.DataFrame:
+    """Return the labels of the runs of a results folder, by the name of the run."""
+    rows = {}
+    for run in folder.done:
+        entry = _entry_of(campaign, run) if campaign is not None else None
+        named = campaign.campaign.files_named if campaign is not None else None
+        own = _of_entry(entry, run["files"][0], named) if entry is not None else {}
+        rows[run["name"]] = {"day": str(run["recorded_at"])[:10]} | own
+    table = pd.DataFrame.from_dict(rows, orient="index")
+    return table.replace("", None).dropna(axis="columns", how="all")
+
+
+def _entry_of(campaign: Campaign, run: Mapping[str, Any]) -> RunEntry | None:
+    for entry in campaign.run:
+        if any(is_named(campaign, entry.files, file) for file in run["files"]):
+            return entry
+    return None
+
+
+def _of_entry(entry: RunEntry, file: str, files_named: str | None) -> dict[str, str]:
+    stated = {key: getattr(entry, key) for key in _KEYS}
+    named = {}
+    if files_named is not None:
+        pattern = NamePattern(files_named, whole_words=True)
+        named = pattern.labels(PurePosixPath(file).stem)
+    if entry.labels_in_name is not None:
+        named |= NamePattern(entry.labels_in_name).labels(PurePosixPath(file).stem)
+    known = {key: value for key, value in stated.items() if value is not None}
+    return {**entry.labels, **named, **known}

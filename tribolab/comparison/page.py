@@ -1,0 +1,122 @@
+"""A page of texts, figures and tables in the frame that every page of tribolab has."""
+
+from __future__ import annotations
+
+import datetime as dt
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from tribolab.core.wording import aligned
+from tribolab.report.document.document import versions
+from tribolab.report.page.sections import Section
+from tribolab.report.page.templating import data_address, framed
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_BODY = "across/section.html.j2"
+_NARROW_MM = 120.0
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure on the page, with what a reader who does not see it is told."""
+
+    figure: Figure
+    caption: str
+    alt: str
+
+    @property
+    def wide(self) -> bool:
+        """Whether it takes the whole width of the page."""
+        return bool(self.figure.get_size_inches()[0] * 25.4 > _NARROW_MM)
+
+    @property
+    def address(self) -> str:
+        """The figure as an address that holds it."""
+        # late: starting stays quick
+        from tribolab.figures.look.style import svg
+
+        return data_address(svg(self.figure))
+
+
+@dataclass(frozen=True)
+class PageCell:
+    """What stands in a table: its text, and the number that it is sorted by."""
+
+    text: str
+    value: float | None = None
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A table on the page: what it is, its file without ending, heads and rows."""
+
+    label: str
+    file: str
+    heads: Sequence[str]
+    rows: Sequence[Sequence[PageCell]]
+
+
+@dataclass(frozen=True)
+class Part:
+    """A section of the page."""
+
+    id: str
+    title: str
+    texts: Sequence[str] = ()
+    figures: Sequence[Picture] = ()
+    tables: Sequence[Sheet] = ()
+    notes: Sequence[str] = ()
+
+
+def cells(row: Iterable[object], digits: int = 3) -> list[PageCell]:
+    """Return the cells of a row: numbers with so many digits, words as they are.
+
+    Examples
+    --------
+    >>> [cell.text for cell in cells(["dry", 0.51234, 4, float("nan")])]
+    ['dry', '0.512', '4', '–']
+    """
+    made = []
+    for value in row:
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            made.append(PageCell(str(value)))
+        elif isinstance(value, int):
+            made.append(PageCell(str(value), value))
+        else:
+            known = math.isfinite(value)
+            made.append(PageCell(aligned(value, digits), value if known else None))
+    return made
+
+
+def write_parts(
+    path: Path, *, kind: str, heading: str, verdict: str, fine: bool, parts: Sequence[Part]
+) -> None:
+    """Write a page that opens offline.
+
+    Parameters
+    ----------
+    path
+        The file.
+    kind, heading, verdict
+        What the page is, of what, and what came of it in one sentence.
+    fine
+        Whether nothing wants to be looked at: the colour of the banner.
+    parts
+        Its sections.
+    """
+    context = {
+        "kind": kind,
+        "heading": heading,
+        "verdict": {"status": "complete" if fine else "incomplete", "text": verdict},
+        "made_at": dt.datetime.now(dt.UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        "versions": versions(),
+        "parts": {part.id: part for part in parts},
+    }
+    sections = [Section(part.id, part.title, _BODY) for part in parts]
+    text = framed("across/page.html.j2", context, sections, path.parent)
+    path.write_text(text, encoding="utf-8")

@@ -1,0 +1,288 @@
+"""How well a friction coefficient repeats: within a mount, between mounts, days, operators."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from tribolab.comparison.labels import labelled_segments
+from tribolab.comparison.run_values import (
+    CONDITION,
+    SPEED_COLUMN,
+    VALUE,
+    condition_text,
+    segments_of,
+    speed_levels,
+)
+from tribolab.core.errors import AnalysisError, shown
+from tribolab.core.wording import many, speed_text
+from tribolab.metrology.gauge_study import gauge_study
+from tribolab.metrology.precision import LIMIT, mandel, mandel_limits, reproducibility_deviation
+from tribolab.metrology.reml import variance_components
+from tribolab.report.read_results import Results
+
+_POOLED = "all speeds"
+FEW = 5  # levels of a factor, below which what lies between them is hardly known
+
+
+@dataclass(frozen=True)
+class Repeatability:
+    """Components of variance of a friction coefficient.
+
+    Parameters
+    ----------
+    by
+        The factors.
+    table
+        A row for each speed and one for all of them: mean, standard deviations within
+        (``repeatability_std``) and between the levels of each factor (``between_..._std``), all of
+        them together (``reproducibility_std``), the limits r and R that two single runs differ by
+        with 95 %, and ``runs``. The row of all speeds is relative to the mean.
+    mandel
+        A row for each level of the first factor and condition with two runs or more at each: h and
+        k with their limits at 1 %.
+    method
+        How the components were told apart, in words.
+    levels
+        How many of each factor there were.
+    """
+
+    by: tuple[str, ...]
+    table: pd.DataFrame
+    mandel: pd.DataFrame
+    method: str
+    levels: dict[str, int]
+
+
+def repeatability(
+    table: pd.DataFrame | Results | str | Path, by: str | Sequence[str], *, value: str = VALUE
+) -> Repeatability:
+    """Tell the variance within runs that were measured alike from that between mounts, days ...
+
+    Parameters
+    ----------
+    table
+        Table of friction with a column for each factor, or a campaign file or results folder, whose
+        `[[run]]` entries say operator, mount, day, specimen or other labels.
+    by
+        The factors, as a list or parted by commas. A factor that has its own levels within another
+        (mounts of a day) is named with it: ``"day,day:mount"``.
+    value
+        Column to look at.
+
+    Returns
+    -------
+    Repeatability
+        See there.
+
+    Raises
+    ------
+    AnalysisError
+        If a factor is not known, has one level only, or cannot be told from another or from chance.
+
+    Notes
+    -----
+    One run is one observation, the mean of its strokes at a speed; conditions (surface, medium,
+    load) have means of their own, and what spreads their runs is relative to these. Where there is
+    one factor that is crossed with the conditions, with as many runs in each, it is the analysis of
+    variance with the interaction pooled where its p is above 0.25; else restricted maximum
+    likelihood (`variance_components`). ISO 5725-2:
+    s_R^2 = s_r^2 + s_L^2, r = 2.8 s_r, R = 2.8 s_R. For all speeds together variances relative to
+    the squared mean are averaged with the degrees of freedom as weights.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> table = pd.DataFrame({
+    ...     "run": list("abcdef"), "mount": [1, 1, 2, 2, 3, 3], "sliding_speed_m_s": 1e-3,
+    ...     "friction_coefficient": [1.0, 1.2, 2.0, 2.2, 3.0, 3.2],
+    ... })
+    >>> told = repeatability(table, "mount").table.iloc[0]
+    >>> f"{told.repeatability_std:.3f} {told.between_mount_std:.3f}"
+    '0.141 0.995'
+    """
+    if isinstance(table, Results):
+        table = labelled_segments(table.folder)
+    elif not isinstance(table, pd.DataFrame):
+        table = labelled_segments(table)
+    names = tuple(part.strip() for part in by.split(",")) if isinstance(by, str) else tuple(by)
+    renamed = table if value == VALUE else table.assign(**{VALUE: table[value]})
+    segments = segments_of(renamed)
+    runs = _per_run(segments, names)
+    rows, methods = [], []
+    for speed in np.unique(runs["level"]).tolist():
+        row, method = _of_speed(runs[runs["level"] == speed], names)
+        rows.append({SPEED_COLUMN: speed, "speed": speed_text(speed), **row})
+        methods.append(method)
+    rows.append(_pooled(rows, names))
+    return Repeatability(
+        names,
+        pd.DataFrame(rows),
+        _mandel(runs, names[0]),
+        "; ".join(dict.fromkeys(methods)),
+        {name: int(runs[name].nunique()) for name in names},
+    )
+
+
+def _per_run(segments: pd.DataFrame, names: Sequence[str]) -> pd.DataFrame:
+    """Mean of each run at each speed, with its condition and the levels of the factors."""
+    known = segments.copy()
+    wanted = dict.fromkeys(part for name in names for part in name.split(":"))
+    for part in wanted:
+        if part not in known:
+            there = [c for c in known if c in ("operator", "mount", "day", "specimen")]
+            raise AnalysisError(
+                f"nothing says which {shown(part)} a run belongs to; write it in [[run]] of the "
+                f"campaign file{'; there is ' + ', '.join(there) if there else ''}"
+            )
+        if known[part].isna().any():
+            run = known.loc[known[part].isna(), "run"].iloc[0]
+            raise AnalysisError(f"run {shown(run)}: nothing says which {shown(part)} it belongs to")
+    for name in names:
+        parts = [known[part].astype(str).tolist() for part in name.split(":")]
+        known[name] = [" / ".join(levels) for levels in zip(*parts, strict=True)]
+    known["condition"] = [
+        condition_text(*row) for row in known[CONDITION].itertuples(index=False, name=None)
+    ]
+    known["level"] = speed_levels(known[SPEED_COLUMN].to_numpy(dtype=float))
+    groups = known.groupby(["run", "level", "condition", *names], sort=False)[VALUE]
+    return groups.mean().reset_index()
+
+
+def _of_speed(runs: pd.DataFrame, names: Sequence[str]) -> tuple[dict[str, float], str]:
+    """Components at one speed, and how they were told apart."""
+    for name in names:
+        levels = runs[name].nunique()
+        if levels < 2:
+            raise AnalysisError(
+                f"all runs at {speed_text(float(runs['level'].iloc[0]))} have the same "
+                f"{shown(name)}: there is nothing to compare"
+            )
+        if levels == len(runs):
+            raise AnalysisError(
+                f"every run has a level of {shown(name)} of its own, which cannot be told from "
+                "repeatability; measure twice without changing it, or leave it out"
+            )
+    for first, other in itertools.combinations(names, 2):
+        if _is_alias(runs, first, other):
+            raise AnalysisError(
+                f"{shown(first)} and {shown(other)} change together and cannot be told apart; "
+                "leave one out"
+            )
+    runs = runs.assign(**{VALUE: _alike(runs)})
+    cube = _balanced(runs, names)
+    if cube is not None:
+        study = gauge_study(cube)
+        within = study.repeatability
+        between = {names[0]: study.appraisers, f"{names[0]} x condition": study.interaction}
+        if study.pooled:
+            between.pop(f"{names[0]} x condition")
+        with_it = "" if not study.pooled else ", the interaction with conditions pooled"
+        method = f"analysis of variance{with_it}"
+    else:
+        fitted = variance_components(
+            runs[VALUE].to_numpy(dtype=float),
+            [runs[name].to_numpy() for name in names],
+            runs["condition"].to_numpy(),
+        )
+        within, between = fitted.residual, dict(zip(names, fitted.factors, strict=True))
+        method = "restricted maximum likelihood"
+    freedom = len(runs) - runs["condition"].nunique() - sum(runs[n].nunique() - 1 for n in names)
+    return _row(runs, float(within), between, max(1, freedom)), method
+
+
+def _alike(runs: pd.DataFrame) -> pd.Series:
+    """Return the values as if all conditions had the mean of all: what spreads them is relative."""
+    means = runs.groupby("condition")[VALUE].transform("mean")
+    return runs[VALUE] / means.where(means != 0, 1.0) * runs[VALUE].mean()
+
+
+def _is_alias(runs: pd.DataFrame, first: str, other: str) -> bool:
+    pairs = runs[[first, other]].drop_duplicates()
+    return len(pairs) == runs[first].nunique() == runs[other].nunique()
+
+
+def _row(
+    runs: pd.DataFrame, within: float, between: dict[str, float], freedom: int
+) -> dict[str, float]:
+    repeat = float(np.sqrt(within))
+    spread = {name: float(np.sqrt(part)) for name, part in between.items()}
+    total = reproducibility_deviation(repeat, list(spread.values()))
+    return {
+        "mean": float(runs[VALUE].mean()),
+        "repeatability_std": repeat,
+        **{f"between_{name}_std": value for name, value in spread.items()},
+        "reproducibility_std": total,
+        "repeatability_limit": LIMIT * repeat,
+        "reproducibility_limit": LIMIT * total,
+        "runs": len(runs),
+        "degrees_of_freedom": freedom,
+    }
+
+
+def _balanced(runs: pd.DataFrame, names: Sequence[str]) -> np.ndarray | None:
+    """Return (condition, level, run), where one factor is crossed with conditions, as many each."""
+    if len(names) != 1 or runs["condition"].nunique() < 2:
+        return None
+    groups = runs.groupby(["condition", names[0]])[VALUE]
+    counts = groups.size().unstack()
+    if counts.isna().any(axis=None) or counts.to_numpy().min() != counts.to_numpy().max():
+        return None
+    if int(counts.to_numpy()[0, 0]) < 2:
+        return None
+    return np.array([[groups.get_group((c, f)) for f in counts.columns] for c in counts.index])
+
+
+def _pooled(rows: Sequence[dict[str, object]], names: Sequence[str]) -> dict[str, object]:
+    """Return all speeds together: variances relative to the squared mean, by degrees of freedom."""
+    table = pd.DataFrame(rows)
+    weight = table["degrees_of_freedom"].to_numpy(dtype=float)
+    columns = [c for c in map(str, table) if c.endswith(("_std", "_limit"))]
+    relative = table[columns].fillna(0.0).div(table["mean"].abs(), axis=0) ** 2
+    pooled = np.sqrt(relative.mul(weight, axis=0).sum() / weight.sum())
+    return {
+        SPEED_COLUMN: np.nan,
+        "speed": _POOLED,
+        "mean": 1.0,
+        **{name: float(pooled[name]) for name in columns},
+        "runs": int(table["runs"].sum()),
+        "degrees_of_freedom": int(weight.sum()),
+    }
+
+
+def _mandel(runs: pd.DataFrame, name: str) -> pd.DataFrame:
+    """Return h and k of each level of a factor, where it has two runs or more in a condition."""
+    rows = []
+    conditions = runs[["condition", "level"]].drop_duplicates().sort_values(["condition", "level"])
+    for condition, speed in conditions.itertuples(index=False, name=None):
+        mine = runs[(runs["condition"] == condition) & (runs["level"] == speed)]
+        groups = mine.groupby(name)[VALUE]
+        count = groups.size()
+        if len(count) < 3 or count.min() < 2:
+            continue
+        h, k = mandel(groups.mean().to_numpy(), groups.std().to_numpy())
+        limits = mandel_limits(len(count), int(count.min()))
+        for level, one_h, one_k in zip(count.index, h, k, strict=True):
+            rows.append((condition, speed, str(level), one_h, one_k, *limits))
+    heads = ["condition", SPEED_COLUMN, name, "h", "k", "h_limit", "k_limit"]
+    return pd.DataFrame(rows, columns=heads)
+
+
+def repeatability_verdict(told: Repeatability) -> str:
+    """Return what came of it in one sentence."""
+    last = told.table.iloc[-1]
+    parts = [f"within {100 * last.repeatability_std:.2g} %"]
+    for name in told.by:
+        parts.append(f"between levels of {name} {100 * last[f'between_{name}_std']:.2g} %")
+    odd = 0 if told.mandel.empty else int(_is_odd(told.mandel).sum())
+    marked = f"; {many(odd, 'result')} beyond Mandel's limits" if odd else ""
+    return f"standard deviations relative to the mean: {', '.join(parts)}{marked}"
+
+
+def _is_odd(table: pd.DataFrame) -> pd.Series:
+    return (table["h"].abs() > table["h_limit"]) | (table["k"] > table["k_limit"])

@@ -1,0 +1,69 @@
+"""Modules that have moved: their old import paths work for one release, with a warning."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.abc
+import importlib.util
+import sys
+import warnings
+from collections.abc import Sequence
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+
+MOVED = {
+    "tribolab.across": "tribolab.comparison",
+    "tribolab.conditions": "tribolab.arrays.conditions",
+    "tribolab.deposit": "tribolab.archive",
+    "tribolab.errors": "tribolab.core.errors",
+    "tribolab.mode": "tribolab.regime",
+    "tribolab.several": "tribolab.arrays.broadcasting",
+    "tribolab.stamping": "tribolab.units.stamping",
+    "tribolab.surface.abel": "tribolab.surface.spectra.abel",
+    "tribolab.surface.psd": "tribolab.surface.spectra.psd",
+    "tribolab.validity": "tribolab.core.validity",
+    "tribolab.quantities": "tribolab.units.quantities",
+}
+
+
+class _MovedModules(importlib.abc.MetaPathFinder, importlib.abc.Loader):
+    """Answer an import of an old path with the module at its new one."""
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        return importlib.util.spec_from_loader(fullname, self) if new_path(fullname) else None
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        new = new_path(spec.name)
+        warnings.warn(f"{spec.name} is now {new}", FutureWarning, stacklevel=2)
+        self._spec = importlib.import_module(new).__spec__
+        return sys.modules[new]
+
+    def exec_module(self, module: ModuleType) -> None:
+        module.__spec__ = self._spec  # the import system has just set that of the old path
+
+
+def new_path(old: str) -> str:
+    """Return where a module is now, "" if it has not moved.
+
+    Examples
+    --------
+    >>> new_path("tribolab.across.compare")
+    'tribolab.comparison.compare'
+    >>> new_path("tribolab.friction")
+    ''
+    """
+    for before, now in MOVED.items():
+        if old == before or old.startswith(f"{before}."):
+            return now + old.removeprefix(before)
+    return ""
+
+
+def accept_old_paths() -> None:
+    """Let old import paths lead to the modules that have moved.
+
+    First in line: the parent of an old path has the folder of the new one.
+    """
+    if not any(isinstance(finder, _MovedModules) for finder in sys.meta_path):
+        sys.meta_path.insert(0, _MovedModules())

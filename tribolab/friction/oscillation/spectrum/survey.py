@@ -1,0 +1,149 @@
+"""A record's spectrum in bands beside what noise would have been: what stands out of it."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import special
+
+from tribolab.arrays.medians import median
+from tribolab.friction.oscillation.spectrum.background import false_alarm, red_noise
+from tribolab.friction.oscillation.spectrum.mains import Mains, find_mains
+from tribolab.friction.oscillation.spectrum.spectra import EvenRecord, Spectrum, bands, spectrum
+
+PER_DECADE = 24  # bands of the spectrum: a tenth wide, as stick-slip lines are
+_RISE = 1e-2  # chance of a spectrum without a peak to stand so far above its slower part
+_TALLER = 1.5  # a peak is so many times its background: the model of that is no better
+CHANCE = 1e-3  # of the significance level that comes with a spectrum
+
+
+class Survey(NamedTuple):
+    """A spectrum and what noise is in it.
+
+    Parameters
+    ----------
+    fine
+        The spectrum in its own bins, without the mains.
+    middle, power, width, freedom, first
+        Bands: frequency [Hz], power density, width [Hz], degrees of freedom, first bin.
+    background
+        Power density of red and white noise (band).
+    chance
+        Probability that noise shows as much, `rise` over all slower bands (band).
+    duration
+        Of the record [s].
+    mains
+        Lines of the mains.
+    """
+
+    fine: Spectrum
+    middle: np.ndarray
+    power: np.ndarray
+    width: np.ndarray
+    freedom: np.ndarray
+    first: np.ndarray
+    background: np.ndarray
+    chance: np.ndarray
+    rise: np.ndarray
+    duration: float
+    mains: tuple[Mains, ...]
+
+    @property
+    def cycles(self) -> np.ndarray:
+        """How many periods of each band's frequency the record holds."""
+        return self.middle * self.duration
+
+    @property
+    def excess(self) -> np.ndarray:
+        """Variance above the background (band)."""
+        return np.maximum(self.power - self.background, 0) * self.width
+
+    @property
+    def significant(self) -> np.ndarray:
+        """Which bands noise does not explain.
+
+        Where many bins are averaged, less than the background's own shape is significant.
+        """
+        tall = self.power > _TALLER * self.background
+        return (self.chance < CHANCE) & (self.rise < _RISE) & tall
+
+    def without(self, part: np.ndarray) -> Survey:
+        """Return the survey with the background in the place of some bins (bin)."""
+        level = np.interp(self.fine.frequency, self.middle, self.background)
+        fine = self.fine._replace(power=np.where(part, level, self.fine.power))
+        return _seen(fine, self.duration, self.mains, self.background)
+
+
+def survey(record: EvenRecord) -> Survey | None:
+    """Take the spectrum of a record and fit its noise; None if it is too short.
+
+    Parameters
+    ----------
+    record
+        From `tribolab.friction.oscillation.spectrum.spectra.make_record`.
+    """
+    if record.values.size < 16:
+        return None
+    mains = find_mains(record)
+    fine = _without(spectrum(record), mains)
+    middle, power = bands(fine, PER_DECADE)[:2]
+    if middle.size < 4 or not power.max() > 0:
+        return None
+    return _seen(fine, record.values.size * record.spacing, mains)
+
+
+def _seen(
+    fine: Spectrum,
+    duration: float,
+    mains: tuple[Mains, ...],
+    background: np.ndarray | None = None,
+) -> Survey:
+    middle, power, width, freedom, first = bands(fine, PER_DECADE)
+    if background is None:
+        background = red_noise(middle, power, freedom)
+    chance = false_alarm(power, background, freedom)
+    rise = above_lower(fine, middle, power, freedom)
+    return Survey(
+        fine, middle, power, width, freedom, first, background, chance, rise, duration, mains
+    )
+
+
+def above_lower(
+    fine: Spectrum, middle: np.ndarray, power: np.ndarray, freedom: np.ndarray
+) -> np.ndarray:
+    """Probability that a spectrum that does not rise anywhere shows so high a band.
+
+    Parameters
+    ----------
+    fine
+        The spectrum in its own bins.
+    middle, power, freedom
+        The same in bands.
+
+    Returns
+    -------
+    ndarray
+        Tail of the F distribution of each band's power over the mean of that from a quarter to two
+        thirds of its frequency (band). However red a noise is, its spectrum falls: what stands
+        above everything slower is no slow wander.
+    """
+    sums = np.concatenate([[0.0], np.cumsum(fine.power * fine.freedom)])
+    count = np.concatenate([[0.0], np.cumsum(fine.freedom)])
+    first = np.maximum(np.searchsorted(fine.frequency, middle / 4), 2)
+    last = np.searchsorted(fine.frequency, middle / 1.5)
+    below = count[np.maximum(last, first)] - count[first]
+    usual = (sums[np.maximum(last, first)] - sums[first]) / np.maximum(below, 1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        chance = special.fdtrc(freedom, below / 1.5, power / usual)
+    return np.where((below > 0) & (usual > 0), np.nan_to_num(chance, nan=1.0), 1.0)
+
+
+def _without(spectrum: Spectrum, mains: tuple[Mains, ...]) -> Spectrum:
+    """Put the median of the surroundings where a line of the mains stands."""
+    power = spectrum.power.copy()
+    for line in mains:
+        at = int(np.argmin(np.abs(spectrum.frequency - line.frequency)))
+        near = power[max(at - 30, 0) : at + 31]
+        power[max(at - 3, 0) : at + 4] = median(near) / np.log(2)
+    return spectrum._replace(power=power)

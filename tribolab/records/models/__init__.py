@@ -1,0 +1,1 @@
+"""What a model leaves: fits, budgets, regimes, and the words for them."""

@@ -1,0 +1,80 @@
+"""All that is recorded of how one measured contact slides."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated
+
+from tribolab.records.annotations import one_of
+from tribolab.records.parts import CurveOutcome, ModelOutcome, Row
+
+
+@dataclass(frozen=True)
+class EvidenceRow:
+    """One piece of evidence: for or against an adhesion-controlled mode, or neutral."""
+
+    side: Annotated[str, one_of("for", "against", "neutral")]
+    text: str
+    topic: str
+
+
+@dataclass(frozen=True)
+class ModeRecord:
+    """The sliding mode of one measured curve.
+
+    Parameters
+    ----------
+    curve
+        Name of the measured curve; "" where the mode could not be judged.
+    condition
+        Its surface, medium and load in words.
+    verdict, text, paragraph, decide
+        See `tribolab.regime.verdict.SlidingMode`.
+    evidence
+        What it rests on.
+    numbers
+        By name, with their unit in it.
+    segments, segments_oscillating
+        How many were looked at, and how many oscillate.
+    scaling, scaling_exponent, scaling_error
+        Whether the frequency goes with the speed.
+    speeds
+        A row per sliding speed.
+    moves
+        Whether stick-slip is claimed at any speed.
+    """
+
+    curve: str
+    condition: str
+    verdict: str
+    text: str
+    paragraph: str
+    decide: tuple[str, ...]
+    evidence: tuple[EvidenceRow, ...]
+    numbers: Row = field(default_factory=dict)
+    segments: int = 0
+    segments_oscillating: int = 0
+    scaling: str = ""
+    scaling_exponent: float | None = None
+    scaling_error: float | None = None
+    speeds: tuple[Row, ...] = ()
+    moves: bool = False
+
+
+_MOST_NAMED = 3  # runs
+
+
+def condition(curve: CurveOutcome | ModelOutcome) -> str:
+    """Name a curve or its model by its surface, medium and load.
+
+    A curve whose runs name neither surface nor medium is called by them.
+    """
+    words = curve.surface
+    if curve.medium:
+        words += f" {curve.medium}" if curve.medium == "dry" else f" in {curve.medium}"
+    if not words.strip():
+        runs = curve.run_names if isinstance(curve, CurveOutcome) else ()
+        words = ", ".join(runs) if 0 < len(runs) <= _MOST_NAMED else curve.name
+    if curve.normal_force is not None:
+        words += f" at {curve.normal_force:g} N"
+    return words.strip()

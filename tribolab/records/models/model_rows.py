@@ -1,0 +1,127 @@
+"""Rows of one model: its fit, its curve, and what moves it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from tribolab.core.wording import is_dry
+from tribolab.records.frames import frame, plain_rows
+from tribolab.records.models.model_words import judgement
+from tribolab.records.part_records import ModelRows
+from tribolab.records.parts import Row
+from tribolab.records.wording import plain_value, validity_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+MODEL_LABELS = ("surface", "medium", "normal_force_N")
+
+
+FITTED = {  # columns of a fit, and what they mean where the name does not say it
+    "shear_stress_Pa": "effective, for the contact area by `area` and `adhesion`",
+    "shear_stress_error_Pa": "standard error from those of the points",
+    "shear_stress_common_error_Pa": "standard error that all points share: repeatability of a "
+    "run's level",
+    "shear_stress_total_error_Pa": "standard error: of the points, with their misfit and "
+    "correlation; of the common level; of the spectrum where spectrum_error_from says whence",
+    "shear_stress_statistical_half_interval_Pa": "half the 95 % interval for the spectrum as it "
+    "is: statistical only",
+    "area_enhancement": "real contact area with adhesion over that of the model",
+    "area_enhancement_error": "standard error that reaches the farther of the two bounds with 95 %",
+    "area_enhancement_low": "least value within the bounds of spectrum and work of adhesion",
+    "area_enhancement_high": "greatest value within the bounds of spectrum and work of adhesion",
+    "corrected_shear_stress_Pa": "shear stress in the area that adhesion makes",
+    "corrected_shear_stress_error_Pa": "",
+    "area": "theory of the contact area that shear_stress_Pa is for",
+    "adhesion": 'whether the area that shear_stress_Pa is for is "with" or "without" adhesion',
+    "other_area": "the theory beside it",
+    "shear_stress_other_area_Pa": "effective, for the contact area of that theory",
+    "chi_square": "",
+    "degrees_of_freedom": "",
+    "chi_square_p_value": "",
+    "birge_ratio": "",
+    "runs_p_value": "probability of so few changes of the residuals' sign by chance",
+    "valid_speed_low_m_s": "ends of the widest range of speeds that one shear stress describes",
+    "valid_speed_high_m_s": "",
+    "residual_correlation": "of the errors of neighbouring speeds, as the residuals tell it",
+    "interval_says": "what the 95 % interval holds, and which quantiles it was made with",
+}
+
+
+def model_rows(
+    groups: Mapping[str, xr.Dataset],
+    medium: str,
+    normal_force: float,
+    adhesion: xr.Dataset | None,
+) -> ModelRows:
+    """Return the rows of a model from the groups of its data file.
+
+    Parameters
+    ----------
+    groups
+        ``curve``; where there: ``fit``, ``uncertainty``.
+    medium, normal_force
+        In which, and at which load [N].
+    adhesion
+        Adhesion of the surface at the loads (medium, load); None if it is not known.
+    """
+    # late: starting stays quick
+    from tribolab.fit.spectrum_error import shear_stress_shift
+
+    curve = frame(groups["curve"], "sliding_speed").assign(cells=groups["curve"].attrs["cells"])
+    rows = ModelRows(None, plain_rows(curve), validity=validity_of(groups.values()))
+    if "fit" in groups:
+        attrs = groups["fit"].attrs
+        fit = {key: attrs[key] for key in FITTED}
+        fit["area_dry_over_wet"] = _dry_over_wet(adhesion, medium, normal_force)
+        fit["judgement"] = judgement(groups["fit"])
+        rows = replace(rows, fit=plain_value(fit))
+    if "uncertainty" in groups:
+        varied = groups["uncertainty"]
+        rows = replace(
+            rows,
+            sensitivity=tuple(plain_value(_sensitivity(varied))),
+            not_varied=str(varied.attrs["not_varied"]),
+            shift=shear_stress_shift(varied),
+        )
+    return rows
+
+
+def _dry_over_wet(adhesion: xr.Dataset | None, medium: str, normal_force: float) -> float | None:
+    """Real contact area dry over that in the medium, at the same load; None if not known."""
+    if adhesion is None:
+        return None
+    dry = [name for name in adhesion.medium.values.tolist() if is_dry(name)]
+    if not dry or medium not in adhesion.medium.values:
+        return None
+    forces = adhesion["normal_force"].values.ravel()
+    at = int(np.argmin(np.abs(forces - normal_force)))
+    area = adhesion["contact_area_ratio"].isel(load=at)
+    return float(area.sel(medium=dry[0]) / area.sel(medium=medium))
+
+
+def _sensitivity(band: xr.Dataset) -> list[Row]:
+    rows = []
+    for name in band["variation"].values.tolist():
+        varied = band.sel(variation=name)
+        rows.append(
+            {
+                "variation": name,
+                "low": str(varied["variation_low"].values),
+                "high": str(varied["variation_high"].values),
+                "largest_change": float(varied["largest_change"]),
+                "largest_change_speed_m_s": float(varied["largest_change_speed"]),
+                "largest_relative_change": float(varied["largest_relative_change"]),
+                "largest_relative_change_speed_m_s": float(varied["largest_relative_change_speed"]),
+                "shear_stress_change_low": float(varied["shear_stress_change_low"]),
+                "shear_stress_change_high": float(varied["shear_stress_change_high"]),
+                "reason": str(varied["variation_reason"].values),
+            }
+        )
+    rows.sort(key=lambda row: -row["largest_change"])
+    return rows

@@ -1,0 +1,160 @@
+"""Where measurement and model part, said in words from the residuals."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribolab.core.wording import aligned, number, percent, speed_text
+from tribolab.records.wording import NORMAL
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_UNLIKELY = 0.05  # probability under which the order of the residuals' signs is no chance
+_LARGE = 0.10  # of the measured friction: a miss that any reader sees
+_CLOSE = 0.02  # of the curve's height
+_FAR = 0.3
+_APART = 2.0  # as a factor: what is off by more no reader calls described
+_BEYOND = 3.0  # standard errors
+_NOT_DESCRIBED = "the model does not describe this curve"
+_NO_STRESS = "no shear stress describes this curve"
+
+
+def has_shear_stress(fit: xr.Dataset) -> bool:
+    """Whether the fit found a shear stress; one that is not positive is none."""
+    return bool(fit.attrs["shear_stress_Pa"] > 0)
+
+
+def stress_interval(low: float | None, high: float | None) -> str:
+    """Return the 95 % interval [Pa] of a shear stress in MPa; a shear stress is never negative.
+
+    Examples
+    --------
+    >>> stress_interval(0.8e6, 0.88e6), stress_interval(-0.092e6, 0.335e6)
+    ('0.800 to 0.880', 'up to 0.335: it may be zero')
+    """
+    if low is None or high is None:
+        return "–"
+    if low <= 0:
+        return f"up to {aligned(1e-6 * high)}: it may be zero"
+    return f"{aligned(1e-6 * low)} to {aligned(1e-6 * high)}"
+
+
+def shear_stress_u95(fit: Mapping[str, Any], error: float) -> float:
+    """Return U95 [Pa] of a shear stress, or of what is computed from it, with a standard error.
+
+    The coverage factor is that of the fitted stress: half its 95 % interval, at the wider side,
+    over its standard error; 1.96 if there is no interval.
+
+    Examples
+    --------
+    >>> fit = {"shear_stress_Pa": 5.0, "shear_stress_total_error_Pa": 1.0}
+    >>> shear_stress_u95(fit | {"shear_stress_low_Pa": 2.5, "shear_stress_high_Pa": 8.0}, 2.0)
+    6.0
+    """
+    low, high = fit.get("shear_stress_low_Pa"), fit.get("shear_stress_high_Pa")
+    own, stress = fit["shear_stress_total_error_Pa"], fit["shear_stress_Pa"]
+    if low is None or high is None or not own:
+        return NORMAL * error
+    return max(high - stress, stress - low) / own * error
+
+
+def is_described(words: str) -> bool:
+    """Whether a `judgement` says that the model describes the curve, be it beyond the errors.
+
+    Examples
+    --------
+    >>> is_described("the model does not describe this curve: off by up to 85 % of its height")
+    False
+    """
+    return not words.startswith((_NOT_DESCRIBED, _NO_STRESS))
+
+
+def judgement(fit: xr.Dataset) -> str:
+    """Return a sentence on how well one shear stress describes the measured curve.
+
+    Parameters
+    ----------
+    fit
+        The group "fit" of a model's data file.
+
+    Notes
+    -----
+    Whether the two part is told by chi-square and by the order of the residuals' signs; where,
+    by the range of speeds that one shear stress describes within the errors, and by the points
+    that are off by more than a tenth of the friction.
+    """
+    if not has_shear_stress(fit):
+        why = "the fitted one is not positive, so no model is drawn"
+        return f"{_NO_STRESS}: {why}; see stick-slip and sliding mode"
+    used = fit["used"].values > 0
+    speed = fit["sliding_speed"].values[used]
+    mu, off = (
+        fit[name].values[used] for name in ("friction_coefficient", "friction_coefficient_residual")
+    )
+    share = np.abs(off) / np.maximum(np.abs(mu), 1e-12)
+    worst = int(np.argmax(np.abs(off)))
+    error = fit["friction_coefficient_residual_u"].values[used]
+    told = (mu > 0) & (mu - off > 0) & ~(np.abs(off) <= _BEYOND * error)
+    factor = float(np.exp(np.abs(np.log(mu[told] / (mu - off)[told])).max(initial=0.0)))
+    parts = [_verdict(fit.attrs, np.abs(off).max() / np.abs(mu).max(), factor)]
+    low, high = fit.attrs["valid_speed_low_m_s"], fit.attrs["valid_speed_high_m_s"]
+    if np.isfinite(low) and (low > 1.01 * speed[0] or high < 0.99 * speed[-1]):
+        parts.append(
+            f"within the errors one shear stress describes {speed_text(low)} to {speed_text(high)}"
+        )
+    elif not np.isfinite(low):
+        parts.append("no range of speeds is described within the errors")
+    far = (share > _LARGE) & ~((speed >= 0.99 * low) & (speed <= 1.01 * high))
+    if far.any():
+        beyond = "beyond these " if np.isfinite(low) else ""
+        parts.append(
+            f"{beyond}the two differ by more than {percent(_LARGE)} of the friction at "
+            f"{_stretches(speed, far)}"
+        )
+    side = "above" if off[worst] > 0 else "below"
+    parts.append(
+        f"largest at {speed_text(speed[worst])}, where the measurement lies "
+        f"{number(abs(off[worst]), 2)} {side} the model's {number(mu[worst] - off[worst])}"
+    )
+    return "; ".join(parts)
+
+
+def _stretches(speed: np.ndarray, chosen: np.ndarray) -> str:
+    """Say at which speeds [m/s] something holds, without those between at which it does not."""
+    ends = np.flatnonzero(np.diff(np.r_[False, chosen, False].astype(int)))
+    words = []
+    for first, beyond in ends.reshape(-1, 2):
+        last = beyond - 1
+        at = speed_text(speed[first])
+        words.append(at if first == last else f"{at} to {speed_text(speed[last])}")
+    return " and at ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+
+
+def _verdict(attrs: Mapping[str, Any], largest: float, factor: float) -> str:
+    """Say first whether the two agree, then whether what is left has an order.
+
+    The largest miss is a share of the curve's height, or, where friction is low, a factor.
+    """
+    ordered = attrs["runs_p_value"] < _UNLIKELY
+    if attrs["chi_square_p_value"] >= _UNLIKELY and not ordered:
+        return "the model describes the curve within the errors"
+    if attrs["chi_square_p_value"] >= _UNLIKELY:
+        return "within the errors, but the residuals follow one another: the shape differs slightly"
+    if largest > _FAR:
+        return f"{_NOT_DESCRIBED}: off by up to {percent(largest)} of its height"
+    if factor > _APART:
+        return f"{_NOT_DESCRIBED}: off by up to a factor of {number(factor, 2)}"
+    alike = ": neighbouring points err alike" if ordered else ""
+    if largest < _CLOSE:
+        return (
+            f"the model follows the curve to within {percent(_CLOSE)} of its height, though not to "
+            f"within the still smaller errors of its points{alike}"
+        )
+    return (
+        f"the model follows the curve to within {percent(largest)} of its height, though not to "
+        f"within the errors of its points{alike}"
+    )

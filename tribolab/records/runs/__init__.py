@@ -1,0 +1,1 @@
+"""What a run leaves: facts, traces, trends, decisions and notices."""

@@ -1,0 +1,197 @@
+"""What a reader should know of one run: decisions, objections of its checks, oddities."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tribolab.arrays.medians import median
+from tribolab.core.wording import duration, many, percent
+from tribolab.friction.coefficient.steadiness import chance_limit
+from tribolab.friction.oscillation.critical_stiffness import MASS_COUNTS, STEEPER, STIFFNESS
+from tribolab.friction.oscillation.waveform import CLASSES, NOT_LOOKED_AT
+from tribolab.friction.segments.find import why_no_segment
+from tribolab.records.parts import Notice
+from tribolab.records.runs.decision_rows import decision_notices
+from tribolab.records.runs.notice_words import (
+    DOUBTFUL_COLUMNS,
+    RUNNING_IN,
+    STEPS,
+    STICK_SLIP,
+    STROKE_ENDS,
+)
+from tribolab.records.runs.run_facts import (
+    counting,
+    drift_of,
+    findings_of,
+    inertia_said,
+    left_out,
+    main_quantity,
+    position_range,
+    times_of_strokes,
+    values_of,
+)
+from tribolab.records.runs.run_record import DecisionRow
+from tribolab.records.runs.run_steps import steps_that_differ
+from tribolab.records.runs.running_in_record import RunningIn
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+_NUMBER = re.compile(r"\d[\d.]*")
+_RESULTS = (
+    "each row is a result of the instrument's own at one speed: no error is known within the run, "
+    "only from repeats"
+)
+
+
+def notices_of(
+    name: str,
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    friction: xr.Dataset,
+    decisions: Sequence[DecisionRow] = (),
+    slip: xr.Dataset | None = None,
+    running_in: Sequence[RunningIn] = (),
+) -> list[Notice]:
+    """Return what a reader should know of a run, from decisions, its checks and its results."""
+    notices = decision_notices(name, decisions)
+    notices += [
+        _of_check(name, row)
+        for row in findings_of(run)
+        if row["status"] not in ("pass", "skipped") or row.get("noted")
+    ]
+
+    def say(severity: str, where: str, message: str) -> None:
+        notices.append(Notice(severity, name, where, message))
+
+    friction = counting(friction)
+    count = friction.sizes["segment"]
+    told = any(row["check"] == "segments" for row in findings_of(run))
+    if not told and (why := why_no_segment(segments)):
+        say("suspect", "segments", f"{why}.")
+    quantity = main_quantity(friction)
+    values = values_of(friction, quantity, count)
+    if quantity in friction and count:
+        if missing := int(np.isnan(values).sum()):
+            say("suspect", "friction", f"{many(missing, 'segment')} of {count} without a number")
+        if quantity == "friction_coefficient" and (against := int((values < 0).sum())):
+            text = f"{many(against, 'segment')} of {count} with friction along the motion (µ < 0)"
+            say("suspect", "friction", text + "; is the sign of the force or the offset right?")
+    # as the check on steadiness and the page's table count them
+    limit = chance_limit(values_of(friction, "effective_samples", count))
+    drift = int((values_of(friction, "trend_p_value", count) < limit).sum())
+    if drift:
+        text = f"{many(drift, 'segment')} of {count} with a significant trend"
+        largest = drift_of(friction, values) if quantity in friction else None
+        if largest:
+            text += f", at most {percent(largest)} of the typical friction"
+        say("note", "friction", text)
+    for each in running_in:
+        if each.text:
+            say("suspect" if each.is_unsteady else "note", RUNNING_IN, f"{each.text}.")
+    if quantity == "friction_coefficient" and quantity in friction:
+        if differ := steps_that_differ(friction, values):
+            say("suspect", STEPS, differ)
+    for text in _remarks(friction):
+        say("note", "friction", text)
+    if str(friction.attrs.get("offset", "")).startswith("none"):
+        say("note", "friction", f"offset of the force: {friction.attrs['offset']}")
+    if (track := position_range(segments)) is not None:
+        low, high = (f"{1e3 * end:.4g}" for end in track)
+        text = f"what lies outside positions {low} to {high} mm of each stroke"
+        say("note", STROKE_ENDS, text)
+    if (share := segments.attrs.get("stroke_middle")) is not None and segments.sizes["segment"]:
+        share = float(share)
+        whole, used = times_of_strokes(segments)
+        strokes = many(segments.sizes["segment"], "stroke")
+        text = f"what lies outside the middle {percent(share)} of the way of each of {strokes}"
+        slow = " (at the ends the contact is slow)" if (whole - used) / whole > 1 - share else ""
+        say("note", STROKE_ENDS, f"{text}: {duration(whole - used)} of {duration(whole)}{slow}")
+    for entry in left_out(segments):
+        text = f"{many(entry.intervals, 'interval')}, {duration(entry.duration_s)}"
+        say("note", "left out", f"{entry.reason}: {text}")
+    if inertia := inertia_said(run.attrs):
+        say("note", "inertia", inertia)
+    if slip is not None and (distance := distance_to_critical(slip)):
+        say("note", STICK_SLIP, distance)
+    if unused := str(run.attrs.get("columns_not_used", "")):
+        say("note", "columns", f"not used: {unused}")
+    if doubtful := str(run.attrs.get("left_out", "")):
+        say("note", DOUBTFUL_COLUMNS, f"left out, as no result needs them: {doubtful}")
+    if segments.attrs.get("rows_are") == "points":
+        say("note", "rows", _RESULTS)
+    return notices
+
+
+def _remarks(friction: xr.Dataset) -> list[str]:
+    """Return what is remarked of single segments, what differs by its numbers alone once."""
+    if "remark" not in friction:
+        return []
+    alike: dict[str, list[tuple[int, str]]] = {}
+    remarks = friction["remark"].values.astype(str)
+    numbers = friction["segment"].values if "segment" in friction.coords else range(remarks.size)
+    for number, said in zip(numbers, remarks, strict=True):
+        for text in filter(None, said.split("; ")):
+            alike.setdefault(_NUMBER.sub("", text), []).append((int(number) + 1, text))
+    return [
+        f"segment {first}: {text}" + (f" (and {many(count, 'more segment')})" if count else "")
+        for (first, text), count in ((rows[0], len(rows) - 1) for rows in alike.values())
+    ]
+
+
+def _of_check(name: str, row: Mapping[str, Any]) -> Notice:
+    where = f"{row['check']} {row['variable']}".strip()
+    if decision := row.get("decision", ""):
+        return Notice("note", name, where, f"{decision}: {row['status']}: {row['message']}.")
+    severity = "note" if row["status"] in ("pass", "skipped") else row["status"]
+    return Notice(severity, name, where, f"{row['message']}. {row['cure']}".strip(". ") + ".")
+
+
+def distance_to_critical(slip: xr.Dataset) -> str:
+    """Say how far the stated stiffness of the rig is from the critical one; "" if none is stated.
+
+    Parameters
+    ----------
+    slip
+        From `tribolab.friction.oscillation.stick_slip.stick_slip`, with the attributes of the run.
+
+    Notes
+    -----
+    Bounds are medians over the segments. With a moving mass m, ``k_c`` is higher by up to
+    ``2 m v^2/D_c^2`` (b up to 3 a): the memory length D_c [m] below which this matters is stated.
+    """
+    rig = float(slip.attrs.get(STIFFNESS, np.nan))
+    kinds = slip["waveform"].values.astype(str)
+    kinds = kinds[kinds != NOT_LOOKED_AT]
+    if np.isnan(rig) or not kinds.size:
+        return ""
+    said = f"stiffness of the rig {rig:.4g} N/m"
+    if (kinds == CLASSES[0]).all():
+        return f"{said}: above the critical stiffness, as friction is steady at all speeds"
+    steepest = slip["loading_stiffness"].values
+    if (steepest > STEEPER.value * rig).any():
+        return (
+            f"{said}, but the force rises by {np.nanmax(steepest):.4g} N/m during sticks, which no "
+            "rig so soft allows. Check stiffness, and the gain of the force"
+        )
+    low, high = (slip[f"critical_stiffness_{end}"].values for end in ("low", "high"))
+    known = np.isfinite(low)
+    if not known.any():
+        return f"{said}; too few cycles of regular stick-slip to compare it with the critical one"
+    ends = float(median(low[known])), float(median(high[known]))
+    if np.isfinite(ends[1]):
+        shares, upper = f"{rig / ends[1]:.2g} to {rig / ends[0]:.2g}", f"to {ends[1]:.3g} N/m"
+    else:
+        shares, upper = f"less than {rig / ends[0]:.2g}", "N/m or more"
+    text = f"{said}: {shares} of the critical stiffness ({ends[0]:.3g} {upper})"
+    mass = float(slip.attrs.get("moving_mass_kg", np.nan))
+    if np.isnan(mass):
+        return text
+    fastest = float(slip["sliding_speed"].values[known].max())
+    length = 1e6 * fastest * np.sqrt(2 * mass / (MASS_COUNTS.value * ends[0]))
+    return f"{text}; {mass:.3g} kg raise it if the memory length is below {length:.2g} um"

@@ -1,0 +1,349 @@
+"""What is said of one run in numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from tribolab.arrays.medians import median
+from tribolab.core.wording import many, percent
+from tribolab.friction.coefficient.steadiness import chance_limit
+from tribolab.friction.decisions.rejected import kept
+from tribolab.friction.oscillation.waveform import NOT_CLEAR, NOT_LOOKED_AT, oscillating
+from tribolab.friction.points.strokes import run_means
+from tribolab.friction.statistics import NORMAL
+from tribolab.friction.zero.of_run import PAIRED
+from tribolab.records.frames import friction_columns, plain_rows
+from tribolab.records.runs.decision_rows import decision_rows
+from tribolab.records.runs.run_record import CheckRow, Highlight, LeftOut, RunFacts, Waveform
+from tribolab.records.runs.same_speed import of_one_speed
+from tribolab.records.runs.traces import flagged_spans
+from tribolab.records.runs.trends import not_decided
+from tribolab.records.wording import SPREAD_OF, plain_value
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from tribolab.qc.findings import FindingRow
+
+_SPEED_FROM = {
+    "stroke": "stroke and frequency",
+    "rotation": "rotation and radius",
+    "stated": "what the file states, not measured",
+}
+
+
+def facts_of(
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    friction: xr.Dataset,
+    slip: xr.Dataset,
+    as_found: xr.Dataset | None = None,
+) -> RunFacts:
+    """Return the numbers of a run.
+
+    Parameters
+    ----------
+    run, segments, friction, slip
+        The run with the flags and the findings of its checks (time), and its results (segment).
+    as_found
+        Its friction without a person's decisions, where there are any.
+    """
+    decided = () if as_found is None else decision_rows(friction, as_found, findings_of(run))
+    return replace(
+        _of_record(run, friction_facts(friction)),
+        decisions=decided,
+        position_range_m=position_range(segments),
+        stick_slip=stick_slip_of(slip),
+        omitted=(*left_out(segments), *ends_of_strokes(segments)),
+        segments=plain_rows(friction_columns(friction)),
+        uncertainty_says=str(friction.attrs.get("uncertainty_says", "")),
+        flagged=tuple(flagged_spans(run)),
+    )
+
+
+def position_range(segments: xr.Dataset) -> tuple[float, float] | None:
+    """Return the part of the track that counts [m], where the campaign file names one."""
+    low, high = (segments.attrs.get(f"position_{end}_m") for end in ("low", "high"))
+    return None if low is None or high is None else (float(low), float(high))
+
+
+def main_quantity(friction: xr.Dataset) -> str:
+    """Return the quantity that the report speaks of: mu, else the half loop, else the force."""
+    for name in ("friction_coefficient", "half_loop", "friction_force"):
+        if name in friction and np.isfinite(np.asarray(friction[name], float)).any():
+            return name
+    return "friction_coefficient"
+
+
+def _of_record(run: xr.Dataset, facts: RunFacts) -> RunFacts:
+    """Add what the run itself says."""
+    time = np.asarray(run["time"], float)
+    attrs = run.attrs
+    shift = {k: float(v) for k, v in attrs.items() if k in _SHIFT and not isinstance(v, str)}
+    return replace(
+        facts,
+        instrument=str(attrs.get("instrument", "")),
+        quality=str(attrs.get("quality", "")),
+        checks=tuple(
+            CheckRow(
+                row["check"],
+                row["status"],
+                row["variable"],
+                row["message"],
+                plain_value(row["value"]),
+                row["unit"],
+                row.get("decision", ""),
+            )
+            for row in findings_of(run)
+        ),
+        recorded_at=str(attrs.get("recorded_at", "")),
+        duration_s=float(time[-1] - time[0]) if time.size else 0.0,
+        samples=int(time.size),
+        signals=tuple(sorted(str(n) for n in run.data_vars if run[n].dims == ("time",))),
+        columns_not_used=tuple(filter(None, str(attrs.get("columns_not_used", "")).split("; "))),
+        clock_shift_s=shift.get("clock_shift_s"),
+        clock_shift_uncertainty_s=shift.get("clock_shift_uncertainty_s"),
+        clock_shift_source=str(attrs.get("clock_shift_source", "")),
+        inertia=inertia_said(attrs),
+        history=str(attrs.get("history", "")),
+    )
+
+
+def findings_of(run: xr.Dataset) -> list[FindingRow]:
+    """Return what the checks said of a run, in plain rows."""
+    rows: list[FindingRow] = run.attrs.get("findings", [])
+    return rows
+
+
+_SHIFT = ("clock_shift_s", "clock_shift_uncertainty_s")
+
+
+def friction_facts(friction: xr.Dataset) -> RunFacts:
+    """Return what a run's friction says of it; the other facts are not known yet.
+
+    Of segments that a person rejected it says nothing, unless all of them are.
+    """
+    friction = counting(friction)
+    name = main_quantity(friction)
+    value = np.asarray(friction[name], float) if name in friction else np.array([])
+    of = SPREAD_OF.get(name, name)
+    std = values_of(friction, f"{of}_std", value.size)
+    speed = values_of(friction, "sliding_speed", value.size)
+    finite = np.isfinite(value)
+    scatter = std[finite] / np.abs(value[finite])
+    scatter = scatter[np.isfinite(scatter)]
+    strokes = _Strokes(
+        speed,
+        value,
+        std,
+        wider_error(friction, of, "sem"),
+        wider_error(friction, of, "U95"),
+        values_of(friction, f"{of}_shared_sem", value.size),
+        pairs_of(friction),
+    )
+    middle = friction.attrs.get("stroke_middle")
+    told = value[finite]
+    if middle is not None:  # one of hundreds of strokes tells little
+        told = np.array([value[part].mean() for part in of_one_speed(speed, finite)])
+    return RunFacts(
+        quantity=name,
+        offset=str(friction.attrs.get("offset", "")),
+        trim=plain_value(friction.attrs.get("trim")) if middle is None else None,
+        velocity_source=_speed_told(friction.attrs),
+        sliding_speed_min_m_s=plain_value(np.nanmin(speed, initial=np.inf)),
+        sliding_speed_max_m_s=plain_value(np.nanmax(speed, initial=-np.inf)),
+        value_min=plain_value(told.min()) if told.size else None,
+        value_max=plain_value(told.max()) if told.size else None,
+        relative_scatter=float(median(scatter)) if scatter.size else None,
+        relative_drift=plain_value(drift_of(friction, value)),
+        unsteady_segments=int((values_of(friction, "steady", value.size) == 0).sum()),
+        highlights=tuple(_highlights(strokes)),
+    )
+
+
+def _speed_told(attrs: Mapping[str, Any]) -> str:
+    """Say what the speed is from, and which part of each stroke was used where that was chosen."""
+    source = str(attrs.get("velocity_source", ""))
+    if source == "recorded":
+        source = _SPEED_FROM.get(str(attrs.get("speed_from", "")), source)
+    middle = attrs.get("stroke_middle")
+    used = f"; of each whole stroke the middle {float(middle):.0%} is used" if middle else ""
+    return f"{source}{used}"
+
+
+def inertia_said(attrs: Mapping[str, Any]) -> str:
+    """Say what of a run's friction force was the inertia of a moving mass; "" if none is known.
+
+    Parameters
+    ----------
+    attrs
+        Attributes of the run.
+    """
+    if "moving_mass_kg" not in attrs:
+        return ""
+    error = attrs.get("moving_mass_sem_kg")
+    sure = f"; the mass has a standard error of {error:.2g} kg" if error is not None else ""
+    largest = f"{attrs['inertial_force_largest_N']:.3g}"
+    mass = f"{attrs['moving_mass_kg']:.4g} kg ({attrs['moving_mass_source']})"
+    return f"that of {mass} is taken out: up to {largest} N{sure}"
+
+
+def stick_slip_of(slip: xr.Dataset) -> Waveform:
+    """Return the class of waveform of a run and where it is seen, for the table of runs.
+
+    Parameters
+    ----------
+    slip
+        From `tribolab.friction.oscillation.stick_slip.stick_slip`.
+    """
+    # late: starting stays quick
+    from tribolab.friction.oscillation.slip_curve import STEADY_SLIDING, stick_slip_curve
+
+    curve = stick_slip_curve([slip])
+    over_speed = bool(curve.sizes["sliding_speed"])
+    kind = (curve if over_speed else slip)["waveform"].values.astype(str)
+    kind = kind[kind != NOT_LOOKED_AT]
+    if not kind.size:
+        return Waveform(NOT_LOOKED_AT, "")
+    moving = oscillating(kind)
+    if not moving.any() and (kind == NOT_CLEAR).any():
+        what = "speed" if over_speed else "segment"
+        count = f"{(kind == NOT_CLEAR).sum()} of {many(kind.size, what)}"
+        return Waveform(NOT_CLEAR, f"{'at' if over_speed else 'in'} {count}")
+    if not moving.any():  # without a speed, standing still may be among the sliding
+        return Waveform(STEADY_SLIDING, "" if over_speed else "if it slides: speed not known")
+    names, counts = np.unique(kind[moving], return_counts=True)
+    ordered = [str(name) for name in names[np.argsort(-counts, kind="stable")]]
+    detail = f"at {moving.sum()} of {many(kind.size, 'speed')}"
+    if not over_speed:
+        detail = f"in {moving.sum()} of {many(kind.size, 'segment')}"
+    if ordered[1:]:
+        detail += f"; also {', '.join(ordered[1:])}"
+    return Waveform(ordered[0], detail)
+
+
+def counting(friction: xr.Dataset) -> xr.Dataset:
+    """Return the segments of which the numbers of a run are made."""
+    left = kept(friction)
+    return left if left.sizes["segment"] else friction
+
+
+def drift_of(friction: xr.Dataset, value: np.ndarray) -> float | None:
+    """Return the largest significant change along a segment, of the run's typical friction.
+
+    Measured as the check on steadiness does: at high speed in a liquid hardly any friction is
+    left to divide by. None where there may be one that could not be told from chance.
+    """
+    size = friction.sizes["segment"]
+    change = values_of(friction, "trend_change", size)
+    if "force_trend" in friction and "trend_change" not in friction:
+        lasted = values_of(friction, "trimmed_stop", size) - values_of(
+            friction, "trimmed_start", size
+        )
+        change = values_of(friction, "force_trend", size) * lasted
+    typical = np.abs(value[np.isfinite(value)])
+    if not np.isfinite(change).any() or not (typical > 0).any():
+        return None
+    change = change / typical.mean()
+    chance, samples = (values_of(friction, n, size) for n in ("trend_p_value", "effective_samples"))
+    sure = chance < chance_limit(samples)
+    if not sure.any() and not_decided(change, chance, samples).any():
+        return None
+    return float(np.nanmax(np.abs(change[sure]), initial=0.0))
+
+
+def values_of(data: xr.Dataset, name: str, size: int) -> np.ndarray:
+    """Return a variable as floats; NaN where there is none."""
+    return np.asarray(data[name], float) if name in data else np.full(size, np.nan)
+
+
+def wider_error(friction: xr.Dataset, name: str, ending: str) -> np.ndarray:
+    """Return the error of each segment over the path or beyond it, whichever is wider (segment)."""
+    size = friction.sizes["segment"]
+    own, beyond = (values_of(friction, f"{name}{end}_{ending}", size) for end in ("", "_beyond"))
+    return np.fmax(own, beyond)
+
+
+def pairs_of(friction: xr.Dataset) -> np.ndarray:
+    """Return the number of the pair that each segment is one observation with; -1 for none."""
+    if "pair" not in friction or friction.attrs.get("offset") not in PAIRED:
+        return np.full(friction.sizes["segment"], -1.0)
+    return np.asarray(friction["pair"], float)
+
+
+class _Strokes(NamedTuple):
+    """A run's strokes in the order of time; the value in the unit of its quantity."""
+
+    speed: np.ndarray
+    value: np.ndarray
+    std: np.ndarray
+    sem: np.ndarray
+    u95: np.ndarray
+    shared: np.ndarray
+    pairs: np.ndarray
+
+
+def _highlights(strokes: _Strokes) -> list[Highlight]:
+    """Mean at the slowest, the middle and the fastest speed, over the strokes at that speed."""
+    u95 = np.where(np.isfinite(strokes.u95), strokes.u95, NORMAL * strokes.sem)
+    speed, known = strokes.speed, np.isfinite(strokes.value)
+    if not (known & (speed > 0)).any():  # one group of all that there is
+        speed = np.ones(speed.size)
+    means = run_means(speed, strokes.value, strokes.sem, u95, strokes.pairs, shared=strokes.shared)
+    if not means:
+        return []
+    chosen = {0: "slowest", len(means) - 1: "fastest"}
+    if len(means) > 2:
+        chosen[len(means) // 2] = "middle"
+    chosen[0] = "all" if speed is not strokes.speed else "slowest"
+    return [
+        Highlight(
+            where=word,
+            sliding_speed_m_s=plain_value(float(np.mean(strokes.speed[means[k].strokes]))),
+            value=plain_value(means[k].mean),
+            std=plain_value(float(np.sqrt(np.mean(strokes.std[means[k].strokes] ** 2)))),
+            sem=plain_value(means[k].sem),
+            U95=plain_value(means[k].u95),
+            segments=int(means[k].strokes.size),
+        )
+        for k, word in sorted(chosen.items())
+    ]
+
+
+def times_of_strokes(segments: xr.Dataset) -> tuple[float, float]:
+    """Return how long all strokes last, and the parts of them that count [s]."""
+    whole, used = (
+        float((segments[f"{part}stop"] - segments[f"{part}start"]).sum())
+        for part in ("", "trimmed_")
+    )
+    return whole, used
+
+
+def ends_of_strokes(segments: xr.Dataset) -> list[LeftOut]:
+    """Return what a chosen middle part leaves of the strokes, in a row of its own."""
+    share = segments.attrs.get("stroke_middle")
+    if share is None or not segments.sizes["segment"]:
+        return []
+    whole, used = times_of_strokes(segments)
+    reason = f"ends of strokes, outside the middle {percent(float(share))} of the way"
+    return [LeftOut(reason, 2 * segments.sizes["segment"], whole - used)]
+
+
+def left_out(segments: xr.Dataset) -> list[LeftOut]:
+    """Return what was left out of a run, a row for each reason."""
+    if "omitted_reason" not in segments:
+        return []
+    reasons = np.asarray(segments["omitted_reason"]).astype(str)
+    lengths = np.asarray(segments["omitted_stop"], float) - np.asarray(segments["omitted_start"])
+    return [
+        LeftOut(
+            reason=reason,
+            intervals=int((reasons == reason).sum()),
+            duration_s=plain_value(float(lengths[reasons == reason].sum())),
+        )
+        for reason in dict.fromkeys(reasons.tolist())
+    ]

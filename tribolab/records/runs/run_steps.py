@@ -1,0 +1,51 @@
+"""Whether friction at one speed differs from step to step of a run, as at several temperatures."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from tribolab.core.wording import many, percent
+from tribolab.records.runs.same_speed import of_one_speed
+
+_FEWEST = 3  # speeds that several steps have in common
+_DIFFERS = 0.1  # of the friction, from step to step
+
+
+def steps_that_differ(friction: xr.Dataset, values: np.ndarray) -> str:
+    """Say that the mean over steps is one of different conditions; "" where it is not.
+
+    Parameters
+    ----------
+    friction
+        From `friction_coefficient`: ``sliding_speed`` and ``step`` (segment).
+    values
+        Friction coefficient of each (segment); NaN where it is not known.
+
+    Examples
+    --------
+    >>> cold = xr.Dataset({"sliding_speed": ("segment", [1.0, 2.0, 4.0] * 2)})
+    >>> cold["step"] = "segment", [1, 1, 1, 2, 2, 2]
+    >>> steps_that_differ(cold, np.array([0.10, 0.08, 0.06, 0.13, 0.10, 0.08]))[:47]
+    'friction at one speed differs from step to step'
+    >>> steps_that_differ(cold, np.array([0.10, 0.08, 0.06, 0.10, 0.08, 0.06]))
+    ''
+    """
+    if "step" not in friction:
+        return ""
+    speed, step = (np.asarray(friction[name], float) for name in ("sliding_speed", "step"))
+    apart = []
+    for part in of_one_speed(speed, np.isfinite(values) & np.isfinite(step)):
+        means = [values[part][step[part] == each].mean() for each in np.unique(step[part])]
+        if len(means) > 1:
+            apart.append(float(np.ptp(means)) / abs(float(np.mean(means))))
+    if len(apart) < _FEWEST or np.median(apart) < _DIFFERS:
+        return ""
+    steps = np.unique(step[np.isfinite(step)]).size
+    usual = percent(float(np.median(apart)))
+    return (
+        "friction at one speed differs from step to step (temperature, surface?), usually by "
+        f"{usual}, at "
+        f"{many(len(apart), 'speed')} of {many(steps, 'step')}: the curve is a mean "
+        "of them, tables/friction.csv has each"
+    )

@@ -1,0 +1,135 @@
+"""Running-in of a run as report.json, its table and the page have it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from tribolab.core.wording import number
+from tribolab.friction.running_in.kinds import (
+    CYCLES,
+    NONE,
+    NOT_FINISHED,
+    RUN_IN,
+    STEP,
+    STRETCHES,
+    STROKES,
+)
+from tribolab.records.annotations import Natural, means, one_of
+from tribolab.records.parts import Row
+from tribolab.records.wording import with_error
+
+_MATTERS = 0.02  # change of friction over its mean: repeats scatter as much
+_COUNTED = "what friction is averaged over: cycles, single strokes, or stretches of equal time"
+_WEAR = "displacement normal to the contact at the end, from that at the beginning"
+
+
+@dataclass(frozen=True)
+class RunningIn:
+    """Running-in and steady state of a run at one speed.
+
+    Distances, times and numbers are counted from the beginning of sliding at this speed.
+    """
+
+    sliding_speed_m_s: float | None
+    counted: Annotated[str, one_of(CYCLES, STROKES, STRETCHES, meaning=_COUNTED)]
+    verdict: Annotated[str, one_of(NONE, RUN_IN, STEP, NOT_FINISHED)]
+    values: Annotated[Natural, means("cycles, strokes or stretches")]
+    start_m: Annotated[float | None, means("where the steady part starts; null without one")]
+    start_U95_m: float | None
+    start_s: float | None
+    start_number: int | None
+    stop_m: Annotated[float | None, means("where it stops: before the end if friction changes")]
+    stop_s: float | None
+    stop_number: int | None
+    end_m: float | None
+    end_s: float | None
+    first_friction_coefficient: float | None
+    last_friction_coefficient: float | None
+    steady_friction_coefficient: float | None
+    steady_friction_coefficient_sem: Annotated[
+        float | None, means("standard error of the mean over the steady part, within the run")
+    ]
+    steady_friction_coefficient_U95: float | None
+    mean_friction_coefficient: Annotated[float | None, means("mean over the whole run")]
+    mean_friction_coefficient_U95: float | None
+    more_than_exponential: Annotated[bool, means("whether one exponential does not describe it")]
+    work_per_cycle_J: Annotated[float | None, means("mean over the steady part, else over all")]
+    wear_depth_m: Annotated[float | None, means(_WEAR)]
+
+    @property
+    def is_unsteady(self) -> bool:
+        """Whether the run never becomes steady: its mean depends on its length."""
+        return self.verdict == NOT_FINISHED
+
+    @property
+    def changes(self) -> bool:
+        """Whether friction changes along the run by as much as matters."""
+        return self._moves(self.first_friction_coefficient) or self._changes_at_end
+
+    @property
+    def _changes_at_end(self) -> bool:
+        early = self.stop_m is not None and self.end_m is not None and self.stop_m < self.end_m
+        return early and self._moves(self.last_friction_coefficient)
+
+    def _moves(self, end: float | None) -> bool:
+        settled = self.steady_friction_coefficient
+        if self.verdict == NOT_FINISHED:
+            settled = self.last_friction_coefficient
+        if self.verdict == NONE and not (self.stop_m is not None and self.stop_m != self.end_m):
+            return False
+        if settled is None or end is None:
+            return False
+        return abs(end - settled) > _MATTERS * abs(settled)
+
+    @property
+    def text(self) -> str:
+        """What a reader has to know; "" if friction does not change."""
+        if not self.changes:
+            return ""
+        first, last = self.first_friction_coefficient, self.last_friction_coefficient
+        steady = self.steady_friction_coefficient
+        whole = length_text(self.end_m)
+        if self.verdict == NOT_FINISHED:
+            return (
+                f"friction {_verb(first, last)} along the run, from {number(first or 0.0)} to "
+                f"{number(last or 0.0)} over {whole}, and does not become steady. Its mean depends "
+                "on the length of the run"
+            )
+        said = with_error(steady, self.steady_friction_coefficient_U95)
+        parts = []
+        if self._moves(first):
+            parts.append(
+                f"friction {_verb(first, steady)} along the run in its first "
+                f"{length_text(self.start_m)} of {whole}, from {number(first or 0.0)} to {said}"
+            )
+        if self._changes_at_end:
+            begin = "and" if parts else f"friction {_verb(steady, last)} along the run:"
+            parts.append(
+                f"{begin} from {length_text(self.stop_m)} of {whole} on from {said} to "
+                f"{number(last or 0.0)}"
+            )
+        mean = number(self.mean_friction_coefficient or 0.0)
+        cure = 'State steady = "auto" in [segments] to leave the rest out'
+        return f"{' '.join(parts)}; the mean over all is {mean}. {cure}"
+
+    def row(self) -> Row:
+        """Return it as a row of a table."""
+        return {name: getattr(self, name) for name in self.__dataclass_fields__}
+
+
+def _verb(before: float | None, after: float | None) -> str:
+    return "rises" if abs(after or 0.0) > abs(before or 0.0) else "falls"
+
+
+def length_text(metres: float | None) -> str:
+    """Return a sliding distance in words.
+
+    Examples
+    --------
+    >>> length_text(172.3), length_text(0.0124)
+    ('172 m', '12.4 mm')
+    """
+    if metres is None:
+        return "–"
+    return f"{number(metres)} m" if abs(metres) >= 1 else f"{number(1e3 * metres)} mm"

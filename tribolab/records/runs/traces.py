@@ -1,0 +1,312 @@
+"""The traces that the page zooms into: few points, no spike lost, packed as text."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from functools import partial
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from tribolab.arrays.chunks import one_by_one, samples_where
+from tribolab.arrays.scratch import let_go
+from tribolab.core.untyped import Json
+from tribolab.core.wording import speed_text
+from tribolab.figures.envelope import envelope_index
+from tribolab.figures.signals import Signal, main_signal
+from tribolab.qc.flags import FAIL, SUSPECT
+from tribolab.records.packed import Clock, clock_of, packed_points
+from tribolab.records.parts import FlaggedSpan, PageTrace
+from tribolab.units.quantities import quantity
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_MOTION = {"sliding_velocity": "velocity", "set_speed": "set speed", "position": "position"}
+_LABELS = {**_MOTION, "inertial_force": "inertia"}
+_MOST_SPANS = 400
+_FINE_CHARACTERS = 4.0  # of a point of two noisy signals, compressed, or somewhat more
+_FEWER = 1.3  # power of the share of points that fits: fewer of them compress worse
+_FINEST = 24_000  # points of a signal that the page zooms into
+_POINT_BYTES = 8.0  # of a point of two signals, compressed and as text
+_BYTES, _FEW = 1.25e6, 32  # of all traces together, of so many runs or fewer
+_COARSE_SHARE = 0.3  # of that for what is shown at once
+
+
+def page_trace(
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    friction: xr.Dataset | None,
+    points: int,
+    fine_size: int,
+) -> PageTrace:
+    """Return what the page draws of a run; parameters as of `decimated_trace` and `finer_trace`."""
+    shared = shared_by_signals(run, friction)
+    return PageTrace(
+        script_json(decimated_trace(run, segments, friction, points, shared)),
+        finer_trace(run, segments, friction, points, fine_size, shared),
+    )
+
+
+class SharedTrace(NamedTuple):
+    """What a trace and its finer one share, as long as the run: clock and main signal."""
+
+    clock: Clock
+    main: Signal
+
+
+def shared_by_signals(run: xr.Dataset, friction: xr.Dataset | None) -> SharedTrace:
+    """Return what all traces of a run share.
+
+    Raises
+    ------
+    AnalysisError
+        If the run has neither a friction force nor a friction coefficient.
+    """
+    return SharedTrace(clock_of(np.asarray(run["time"], float)), main_signal(run, friction))
+
+
+def trace_size(runs: int) -> tuple[int, int]:
+    """Return how many points a signal of a run has at once, and how long its finer trace may be.
+
+    The page of many runs shall stay one that can be sent.
+
+    Returns
+    -------
+    points
+        Of each signal, to be shown when a run is opened.
+    size
+        Of the finer trace, in characters of the page.
+
+    Notes
+    -----
+    The number of runs counts as the next power of two, so that one run more does not change what
+    is kept of the others.
+
+    Examples
+    --------
+    >>> trace_size(5), trace_size(200), trace_size(2000)
+    ((2000, 109375), (517, 9667), (300, 3417))
+    """
+    runs = 1 << max(runs - 1, 0).bit_length()
+    # of many runs the page grows, but more slowly than their number
+    each = _BYTES * max(1.0, (runs / _FEW) ** 0.5) / runs
+    points = _COARSE_SHARE * each / _POINT_BYTES
+    return int(np.clip(points, 300, 2000)), int((1 - _COARSE_SHARE) * each)
+
+
+def decimated_trace(
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    friction: xr.Dataset | None,
+    points: int,
+    shared: SharedTrace | None = None,
+) -> Json:
+    """Return a run's trace for the page: signals over time, segments and flagged spans.
+
+    Parameters
+    ----------
+    run, segments, friction
+        A run (time) and its results (segment).
+    points
+        About so many points of each signal are kept. Half of them are the extremes of equal
+        parts of the record, half those of equal parts of each segment, so that a fast stroke
+        can be zoomed into as a slow one can.
+    shared
+        What is known of the run already.
+
+    Returns
+    -------
+    dict
+        Ready for JSON; `assets/trace.js` reads it. ``complete`` says that nothing was left out.
+
+    Raises
+    ------
+    AnalysisError
+        If the run has neither a friction force nor a friction coefficient.
+    """
+    time = np.asarray(run["time"], float)
+    shared = shared or shared_by_signals(run, friction)
+    return {
+        "length_s": float(time[-1] - time[0]) if time.size else 0.0,
+        "samples": int(time.size),
+        "clock": [shared.clock.knots, shared.clock.at_s],
+        **_signals(run, segments, shared, points),
+        "segments": _segments(segments, friction, shared.main.name),
+        "flags": [asdict(span) for span in flagged_spans(run)],
+    }
+
+
+def finer_trace(
+    run: xr.Dataset,
+    segments: xr.Dataset,
+    friction: xr.Dataset | None,
+    points: int,
+    size: int,
+    shared: SharedTrace | None = None,
+) -> str:
+    """Return the signals of a run with as many points as fit, for the page to zoom into.
+
+    Parameters
+    ----------
+    run, segments, friction
+        As for `decimated_trace`.
+    points
+        What the trace has that the page shows at once: with no more there is nothing to zoom into.
+    size
+        Length of the text [characters]; there are fewer points until it is met.
+    shared
+        What is known of the run already.
+
+    Returns
+    -------
+    str
+        ``complete`` and ``signals`` as of `decimated_trace`, compressed, as JSON that may stand in
+        a script element; "" if that trace is complete or no finer one fits.
+    """
+    shared = shared or shared_by_signals(run, friction)
+    finer = min(_FINEST, int(size / _FINE_CHARACTERS)) if run.sizes["time"] > points else 0
+    while finer > points:
+        text = script_json(_signals(run, segments, shared, finer))
+        if len(text) <= size:
+            return text
+        finer = int(finer * (size / len(text)) ** _FEWER)
+    return ""
+
+
+def _signals(run: xr.Dataset, segments: xr.Dataset, shared: SharedTrace, points: int) -> Json:
+    time = np.asarray(run["time"], float)
+    bounds = np.c_[np.asarray(segments["start"], float), np.asarray(segments["stop"], float)]
+    clock, main = shared
+    signals = [(main.name, main.values)]
+    for name in _MOTION:
+        if name in run and _varies(np.asarray(run[name], float)):
+            signals.append((name, np.asarray(run[name], float)))
+            break
+    if "inertial_force" in run:
+        signals.append(("inertial_force", np.asarray(run["inertial_force"], float)))
+    let_go()
+    packed = []
+    for name, values in one_by_one(signals):
+        chosen = _chosen(time, values, bounds, points)
+        known = quantity(name)
+        # speeds span decades: packed as they are drawn, linear only below the slowest segment
+        below = _slowest(segments) if name in ("sliding_velocity", "set_speed") else None
+        levels = values[chosen] if below is None else np.arcsinh(values[chosen] / below)
+        packed.append(
+            {
+                "name": name,
+                "label": _LABELS.get(name, known.long_name),
+                "unit": "" if known.unit == "1" else known.unit,
+                "linear_below": below,
+                **packed_points(clock.places(chosen), levels, deflate=True),
+            }
+        )
+    return {
+        "complete": all(signal["points"] == time.size for signal in packed),
+        "signals": packed,
+    }
+
+
+def _varies(values: np.ndarray) -> bool:
+    """Whether a signal has more than one value; gaps are none."""
+    return bool(np.fmax.reduce(values) > np.fmin.reduce(values))
+
+
+def _chosen(time: np.ndarray, values: np.ndarray, bounds: np.ndarray, points: int) -> np.ndarray:
+    if time.size <= points:
+        return np.arange(time.size)
+    parts = [envelope_index(time, values, points // 4)]
+    first = np.searchsorted(time, bounds[:, 0], "left")
+    last = np.searchsorted(time, bounds[:, 1], "right")
+    columns = max(2, points // 4 // max(len(bounds), 1))
+    for a, b in zip(first, last, strict=True):
+        if b - a > 1:
+            parts.append(a + envelope_index(time[a:b], values[a:b], columns))
+    chosen = np.sort(np.concatenate([*parts, [0, time.size - 1]]))
+    return chosen[np.diff(chosen, prepend=-1) > 0]  # each once: `numpy.unique` would hash them
+
+
+def _slowest(segments: xr.Dataset) -> float | None:
+    speed = np.asarray(segments["sliding_speed"], float)
+    speed = speed[np.isfinite(speed) & (speed > 0)]
+    return float(speed.min()) if speed.size else None
+
+
+def _segments(segments: xr.Dataset, friction: xr.Dataset | None, name: str) -> list[list[Any]]:
+    """Start, stop, both after trimming, direction, mean where the trace runs, and the speed."""
+    names = ("start", "stop", "trimmed_start", "trimmed_stop")
+    bounds = np.column_stack([np.asarray(segments[n], float) for n in names])
+    direction = np.asarray(segments["direction"], int)
+    mean = np.full(direction.size, np.nan)
+    if friction is not None and name in friction:
+        mean = np.asarray(friction[name], float)
+        if name == "friction_coefficient":
+            mean = mean * np.where(direction == 0, 1, direction)
+    speeds = np.asarray(segments["sliding_speed"], float)
+    return [
+        [*map(_short, ends), int(sign), _short(value), speed_text(speed)]
+        for ends, sign, value, speed in zip(bounds, direction, mean, speeds, strict=True)
+    ]
+
+
+def _short(value: float) -> float | None:
+    return float(f"{value:.9g}") if np.isfinite(value) else None
+
+
+def flagged_spans(run: xr.Dataset) -> list[FlaggedSpan]:
+    """Return where checks objected to a run's signals.
+
+    Parameters
+    ----------
+    run
+        A run with ``<signal>_qc`` flags.
+
+    Returns
+    -------
+    list of FlaggedSpan
+        ``signal``, ``severity`` (suspect or fail), ``start_s``, ``stop_s`` and ``checks``. Spans
+        nearer to each other than a thousandth of the record are one, and of very many only the
+        longest are kept.
+    """
+    time = np.asarray(run["time"], float)
+    if time.size < 2:
+        return []
+    near = (time[-1] - time[0]) / 1000
+    spans: list[FlaggedSpan] = []
+    for name in one_by_one(sorted(str(n) for n in run.data_vars if f"{n}_qc" in run)):
+        flags = np.asarray(run[f"{name}_qc"])
+        tests = np.asarray(run[f"{name}_qc_tests"]) if f"{name}_qc_tests" in run else None
+        for severity, code in (("suspect", SUSPECT), ("fail", FAIL)):
+            hit = samples_where(partial(np.equal, code), flags)
+            if not hit.size:
+                continue
+            breaks = np.flatnonzero(np.diff(time[hit]) > near)
+            for part in np.split(hit, breaks + 1):
+                spans.append(
+                    FlaggedSpan(
+                        signal=name,
+                        severity=severity,
+                        start_s=float(f"{time[part[0]]:.9g}"),
+                        stop_s=float(f"{time[part[-1]]:.9g}"),
+                        checks=() if tests is None else _checks(run, name, tests[part]),
+                    )
+                )
+    longest = sorted(spans, key=lambda span: span.start_s - span.stop_s)[:_MOST_SPANS]
+    return sorted(longest, key=lambda span: span.start_s)
+
+
+def _checks(run: xr.Dataset, name: str, tests: np.ndarray) -> tuple[str, ...]:
+    attrs = run[f"{name}_qc_tests"].attrs
+    masks = np.atleast_1d(np.asarray(attrs.get("flag_masks", [])))
+    words = str(attrs.get("flag_meanings", "")).split()
+    seen = np.bitwise_or.reduce(tests)
+    pairs = zip(masks, words, strict=False)
+    return tuple(word for mask, word in pairs if int(mask) & int(seen))
+
+
+def script_json(data: Any) -> str:
+    """Return data as JSON that may stand in a script element: nothing in it can end that."""
+    text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")

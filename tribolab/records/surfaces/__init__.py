@@ -1,0 +1,1 @@
+"""What a surface leaves: its scans, its roughness, and the words for them."""

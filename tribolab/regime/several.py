@@ -1,0 +1,160 @@
+"""Sliding modes of several surfaces, media or loads, weighed at once."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Hashable, Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from tribolab.arrays.conditions import ConditionLabels, Conditions, labels_along
+from tribolab.core.errors import AnalysisError, Cure
+from tribolab.regime.model import Mode
+from tribolab.regime.verdict import SlidingMode, sliding_mode
+
+_CURVES = ("friction_coefficient", "waveform", "friction_coefficient_low")
+
+
+class SlidingModes(Conditions[SlidingMode]):
+    """How several contacts slide: a `SlidingMode` for each condition."""
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return a table with a row for each piece of evidence, and for what would decide."""
+        rows = [
+            {**labels, "verdict": mode.verdict, "side": side, "text": text}
+            for labels, mode in self
+            for side, text in (
+                *((piece.side, piece.text) for piece in mode.evidence),
+                *(("would decide", text) for text in mode.decide),
+            )
+        ]
+        return pd.DataFrame(rows, columns=[*self.results.dims, "verdict", "side", "text"])
+
+    def __repr__(self) -> str:
+        """Return each verdict in a sentence, with what speaks for and against it."""
+        lines = []
+        for labels, mode in self:
+            lines.append(f"{_words(labels)}: {mode.text}")
+            lines += [f"  {piece.side:8s}{piece.text}" for piece in mode.evidence]
+            lines += [f"  decide  {text}" for text in mode.decide]
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        """Each verdict in a sentence; below it what speaks for and against it."""
+        parts = []
+        for labels, mode in self:
+            rows = [(piece.side, piece.text) for piece in mode.evidence]
+            rows += [("would decide", text) for text in mode.decide]
+            lines = "".join(
+                f"<li><b>{html.escape(side)}</b> {html.escape(text)}</li>" for side, text in rows
+            )
+            head = f"<b>{html.escape(_words(labels))}</b>: {html.escape(mode.text)}"
+            parts.append(f"<p>{head}</p><ul>{lines}</ul>")
+        return "".join(parts)
+
+
+def sliding_modes(
+    measured: xr.Dataset,
+    model: xr.Dataset | None = None,
+    slip: xr.Dataset | None = None,
+    known: Mode | None = None,
+    *,
+    adhesion: xr.Dataset | None = None,
+    band: xr.Dataset | None = None,
+) -> SlidingModes:
+    """Weigh how each of several contacts slides.
+
+    Parameters
+    ----------
+    measured, model, slip, band
+        As for `sliding_mode`, over further dims such as ``surface``; what lacks a dim holds for
+        all along it.
+    known
+        What else is known, and the same for all.
+    adhesion
+        From `adhesion_uncertainty`, at the load: of each contact gamma_eff(1) with its bounds, and
+        the contact area; they stand in place of what `known` says.
+
+    Returns
+    -------
+    SlidingModes
+
+    Raises
+    ------
+    AnalysisError
+        If there is one curve only.
+
+    Examples
+    --------
+    >>> v = np.geomspace(1e-6, 1e-3, 4)
+    >>> mu = xr.DataArray(np.ones((2, 4)), {"surface": ["a", "b"], "sliding_speed": v})
+    >>> slip = xr.Dataset({"waveform": mu.copy(data=np.full((2, 4), "smooth sliding"))})
+    >>> slip["drop"] = mu * np.nan
+    >>> modes = sliding_modes(mu.to_dataset(name="friction_coefficient"), None, slip)
+    >>> modes.sel(surface="a").verdict
+    'no stick-slip'
+    """
+    holder = measured["friction_coefficient"]
+    dims = [dim for dim in holder.dims if dim != "sliding_speed"]
+    if not dims:
+        raise AnalysisError(
+            "measured: there is one curve, and no further dim",
+            function="sliding_modes",
+            cure=Cure(notebook="weigh it with sliding_mode"),
+        )
+
+    def weighed(labels: ConditionLabels) -> SlidingMode | None:
+        if (curve := _cut(measured, labels)) is None:
+            return None
+        return sliding_mode(
+            curve,
+            _cut(model, labels),
+            _cut(slip, labels),
+            _known(known or Mode(), adhesion, labels),
+            band=_cut(band, labels),
+            name=_words(labels),
+        )
+
+    return SlidingModes.of({dim: labels_along(holder, dim) for dim in dims}, weighed)
+
+
+def _known(known: Mode, adhesion: xr.Dataset | None, labels: Mapping[Hashable, object]) -> Mode:
+    mine = _cut(adhesion, labels)
+    if mine is None:
+        return known
+    work = "macroscopic_work_of_adhesion"
+    return replace(
+        known,
+        work_of_adhesion=float(mine[work]),
+        work_of_adhesion_range=(float(mine[f"{work}_low"]), float(mine[f"{work}_high"])),
+        area_ratio=float(mine["contact_area_ratio"]),
+    )
+
+
+def _cut(data: xr.Dataset | None, labels: Mapping[Hashable, object]) -> xr.Dataset | None:
+    """Return what belongs to one condition; None where nothing is known of it."""
+    if data is None:
+        return None
+    for dim, label in labels.items():
+        if dim in data.dims:
+            if label not in data[dim].values:
+                return None
+            data = data.sel({dim: label}, drop=True)
+    curve = next((name for name in _CURVES if name in data), None)
+    if curve is None or "sliding_speed" not in data.dims:
+        return data
+    data = data.isel(sliding_speed=_told(data[curve]))
+    return data if data.sizes["sliding_speed"] else None
+
+
+def _told(values: xr.DataArray) -> np.ndarray:
+    """Where curves on common axes have a value, or a text."""
+    return values.to_numpy() != "" if values.dtype.kind in "OU" else values.notnull().to_numpy()
+
+
+def _words(labels: Mapping[Any, object]) -> str:
+    return ", ".join(str(label) for label in labels.values())

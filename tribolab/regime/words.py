@@ -1,0 +1,196 @@
+"""The verdict on the sliding mode in words: sentences made from the evidence, nothing beyond."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from tribolab.core.wording import Count, speed_text
+from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR, oscillating
+from tribolab.regime.misfit import SUFFICIENT, is_sufficient
+from tribolab.regime.model import LOCAL, SUSPECTED, UNEXPLAINED
+
+if TYPE_CHECKING:
+    from tribolab.regime.model import Evidence, Mode
+
+_STEADY, SAW, SINE, REVERSED = CLASSES
+_LONG = 0.5e-3  # m: shorter waves are no turn of a track and no pitch of a screw
+_APART, _ALIKE = 1.5, 1.15  # times, of the speeds at which a wavelength is the same, and of those
+
+
+def friction_text(value: float) -> str:
+    """Friction coefficient, or a change of it, to two digits."""
+    return f"{value:.2g}"
+
+
+def percent_text(share: float) -> str:
+    """Part as a percentage."""
+    return f"{100 * share:.2g} %"
+
+
+def rig_wave_text(slip: xr.Dataset | None) -> str:
+    """Say what repeats with each turn of the rig, at how many speeds, how large; "" if nothing."""
+    if slip is None or "rig_wave" not in slip:
+        return ""
+    kinds = slip["rig_wave"].values.astype(str)
+    seen = kinds != ""
+    if not seen.any():
+        return ""
+    names, counts = np.unique(kinds[seen], return_counts=True)
+    what = str(names[np.argmax(counts)]).replace("run-out: ", "run-out of the disc: friction ")
+    text = f"{what} at {seen.sum()} of {Count(kinds.size):speed|speeds}"
+    swing = slip["rig_swing"].values if "rig_swing" in slip else np.full(kinds.size, np.nan)
+    if np.isfinite(swing).any():  # of forces alone it has another unit
+        text += f", by up to {friction_text(float(np.nanmax(swing)))}"
+    return text
+
+
+def verdict_text(
+    verdict: str, numbers: dict[str, float], slip: xr.Dataset | None, modelled: bool
+) -> str:
+    """Return the verdict as one sentence."""
+    text = _verdict_text(verdict, numbers, slip, modelled)
+    return f"{text}; {wave}" if (wave := rig_wave_text(slip)) else text
+
+
+def _verdict_text(
+    verdict: str, numbers: dict[str, float], slip: xr.Dataset | None, modelled: bool
+) -> str:
+    speeds = np.zeros(0)
+    if slip is not None and "waveform" in slip:
+        speeds = slip["sliding_speed"].values[oscillating(slip["waveform"].values)]
+    where = ""
+    if speeds.size == 1:
+        where = f" at {speed_text(speeds[0])}"
+    elif speeds.size:
+        where = f" from {speed_text(speeds.min())} to {speed_text(speeds.max())}"
+    if verdict == "no stick-slip":
+        off = numbers["model_misfit"]
+        steady = "steady sliding, no stick-slip at any speed"
+        if slip is not None and (count := int((slip["waveform"].values == NOT_CLEAR).sum())):
+            steady = f"steady sliding where it is decided; {count} of "
+            steady += f"{Count(slip.sizes['sliding_speed']):speed|speeds} not decided"
+        if not modelled or np.isnan(off):
+            return steady
+        enough = is_sufficient(numbers)
+        if enough is None:
+            return (
+                f"{steady}; the errors are too large to tell whether mixed lubrication explains it"
+            )
+        if enough:
+            within = f"to within {percent_text(SUFFICIENT)} of its height"
+            return f"{steady}; mixed lubrication explains it {within}"
+        return (
+            f"{steady}; mixed lubrication alone does not explain it, "
+            "and the traces do not say what else would"
+        )
+    low, high = numbers["forced_wetting_low_m_s"], numbers["forced_wetting_high_m_s"]
+    end = ""
+    if np.isfinite(high):
+        end = (
+            f"; from a speed between {speed_text(low)} and {speed_text(high)} on the motion would "
+            "drag liquid in (forced wetting)"
+        )
+    if verdict == "not known":
+        looked = slip is not None and slip.sizes.get("sliding_speed", 0)
+        what = "most traces do not decide it" if looked else "no trace was looked at"
+        return f"not known: {what}"
+    head = f"stick-slip{where}, {verdict}" if verdict == SUSPECTED else f"{verdict}{where}"
+    return f"{head}{end}"
+
+
+def suggestions(
+    verdict: str, numbers: dict[str, float], known: Mode, slip: xr.Dataset | None
+) -> tuple[str, ...]:
+    """Return what measurement would decide."""
+    length = _fixed_wavelength(slip)
+    compare: tuple[str, ...] = ()
+    if verdict in (SUSPECTED, LOCAL, UNEXPLAINED) and length > _LONG:
+        compare = (
+            f"compare the wavelength, {1e3 * length:.3g} mm at every speed, with the "
+            "circumference of the track (2 π times its radius), the pitch of the drive's screw and "
+            "the spacing of its teeth or rollers: if it is one of these, or a whole part of one, "
+            "it is the rig's and no stick-slip",
+        )
+    return (*compare, *_measurements(verdict, known, slip))
+
+
+def _fixed_wavelength(slip: xr.Dataset | None) -> float:
+    """Return the wavelength [m] that the traces share at several speeds; NaN if they do not."""
+    if slip is None or "dominant_wavelength" not in slip:
+        return np.nan
+    moving = oscillating(slip["waveform"].values)
+    length, speed = slip["dominant_wavelength"].values[moving], slip["sliding_speed"].values[moving]
+    good = np.isfinite(length)
+    length, speed = length[good], speed[good]
+    if (
+        length.size < 2
+        or speed.max() < _APART * speed.min()
+        or length.max() > _ALIKE * length.min()
+    ):
+        return np.nan
+    return float(np.median(length))
+
+
+def _measurements(verdict: str, known: Mode, slip: xr.Dataset | None) -> tuple[str, ...]:
+    if verdict == SUSPECTED:
+        advice = [
+            "watch the contact through the transparent body: detached folds that cross it would "
+            "show the instability, a still picture would refute it",
+            "measure the pull-off force: it has to be finite where γ_eff(1) > 0",
+        ]
+        if known.fluid:
+            advice.append(
+                "change the viscosity: forced wetting would move with viscosity times speed, "
+                "an instability of the rig would not"
+            )
+        else:
+            advice.append(
+                "change the stiffness of the rig: stick-slip of the rig would change its "
+                "wavelength, folds in the contact would not"
+            )
+        return tuple(advice)
+    if verdict == UNEXPLAINED:
+        if known.work_of_adhesion is not None:
+            return ("change stiffness or mass of the rig: its own vibration would move with them",)
+        return (
+            "give what γ_eff(1) is computed from: scans of the surface, the rubber's modulus, the "
+            "medium's work of adhesion",
+        )
+    if verdict == "local stick-slip":
+        return (
+            "change the stiffness of the rig: stick-slip of the rig as a whole would change",
+            "measure the pull-off force: it has to vanish where γ_eff(1) = 0",
+        )
+    if verdict == "not known":
+        if slip is not None and slip.sizes.get("sliding_speed", 0):
+            return ("slide further at each speed: few periods are not told from a wander",)
+        return ("record the friction force itself, not only its mean",)
+    if known.work_of_adhesion is not None and known.work_of_adhesion > 0:
+        return ("slide more slowly: adhesion would allow an instability at lower speeds",)
+    return ()
+
+
+def paragraph(
+    name: str,
+    text: str,
+    evidence: Sequence[Evidence],
+    decide: Sequence[str],
+    numbers: dict[str, float],
+) -> str:
+    """Return verdict, evidence and what would decide as a short paragraph."""
+    parts = [f"{name[:1].upper()}{name[1:]}: {text}."]
+    for side, opening in (
+        ("for", "For an adhesion-controlled mode:"),
+        ("against", "Against it:"),
+        ("neutral", "Beside it:"),
+    ):
+        mine = [told.text for told in evidence if told.side == side]
+        if mine:
+            parts.append(f"{opening} {'; '.join(mine)}.")
+    if decide:
+        parts.append(f"What would decide: {'; '.join(decide)}.")
+    return " ".join(parts)

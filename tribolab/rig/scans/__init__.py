@@ -1,0 +1,1 @@
+"""Simulated scans of rough surfaces, sound and faulty."""

@@ -1,0 +1,1 @@
+"""Power spectra of profiles and maps, their reliable range and their error."""

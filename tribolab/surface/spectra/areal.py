@@ -1,0 +1,157 @@
+"""Power spectrum of a topography map: two-dimensional transform and mean over annuli."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from tribolab.core.errors import AnalysisError
+from tribolab.surface.character import why_not_self_affine
+from tribolab.surface.form import remove_form
+from tribolab.surface.gaps import (
+    bridged,
+    gap_effect,
+    gaps_in,
+    logarithm,
+    lost_from,
+    still_worth,
+)
+from tribolab.surface.level import level_map, refuse_level
+from tribolab.surface.limits import MIN_WAVES_OF_MAP
+from tribolab.surface.spectra.annuli import confidence_band
+from tribolab.surface.spectra.binning import correlation, log_bins, window
+from tribolab.units.stamping import stamp
+
+_FEWEST = 16
+
+
+def _power(maps: np.ndarray, taper: np.ndarray) -> np.ndarray:
+    """Mean power of maps (scan, y, x) at each line; one transform at a time: maps are large."""
+    power = np.zeros(taper.shape)
+    for heights in maps:
+        power += np.abs(np.fft.fft2(heights * taper)) ** 2 / len(maps)
+    return power
+
+
+def psd_2d_of_map(
+    scan: xr.Dataset, *, form: str = "auto", bins_per_decade: float = 12
+) -> xr.Dataset:
+    """Radially averaged power spectrum of a map of heights, or of several alike.
+
+    Parameters
+    ----------
+    scan
+        ``height`` [m] (y, x) or (scan, y, x), evenly spaced. Missing heights (NaN) are bridged,
+        and the spectrum is corrected for them.
+    form
+        What to take away first: ``"auto"`` (a polynomial of second order unless form was removed
+        before), ``"none"`` (the mean), ``"mean"``, ``"tilt"`` or ``"polynomial"``.
+    bins_per_decade
+        Width of the annuli.
+
+    Returns
+    -------
+    xarray.Dataset
+        As from `psd_2d`; ``anisotropy`` in the attributes is the ratio of the power along y to
+        that along x, and both it and the mean hide what a lay of the surface does. Of several
+        maps the spectra are averaged. Where heights are missing, the band holds ``gap_error`` too,
+        the relative standard error that the gaps bring; wavenumbers from which on they took half
+        of the power are left out, and ``gaps_hide_above_1_m`` says so.
+
+    Raises
+    ------
+    AnalysisError
+        If the map is too small, more than half of it is missing, or it does not vary.
+
+    Notes
+    -----
+    ``C(q) = |FT(w h)|^2 dx dy / (4 pi^2 N_x N_y <w^2>)`` with a Hann window along both axes, so
+    that ``<h^2> = int C d^2q = 2 pi int q C dq``. Wavenumbers beyond the smaller of the two
+    Nyquist wavenumbers, in the corners of the plane, are left out of the annuli. Half of the
+    Fourier lines of an annulus mirror the other half.
+    """
+    if form == "auto":
+        form = "none" if "form_removed" in scan.attrs else "polynomial"
+    scan = remove_form(scan, "mean" if form == "none" else form)
+    height = scan.height.transpose(..., "y", "x").values
+    size = height.shape[-2:]
+    height = height.reshape(-1, *size)
+    if min(size) < _FEWEST:
+        raise AnalysisError(
+            f"a map of {size} points is too small for a spectrum", function="psd_2d"
+        )
+    missing = gaps_in(scan.transpose(..., "y", "x"))
+    if missing is not None:
+        missing = missing.reshape(height.shape)
+        height = bridged(height, missing, is_map=True)
+    refuse_level("psd_2d", scan, [level_map(row) for row in height])
+    steps = [float(np.ptp(scan[d].values) / (scan.sizes[d] - 1)) for d in ("y", "x")]
+    taper = np.outer(window(size[0]), window(size[1]))
+    power, whole = _power(height, taper), float(np.mean((height * taper) ** 2))
+    scale = steps[0] * steps[1] / (4 * np.pi**2 * taper.size)
+    ky, kx = (2 * np.pi * np.fft.fftfreq(n, d) for n, d in zip(size, steps, strict=True))
+    q = np.hypot(ky[:, None], kx)
+    spacing = max(2 * np.pi / (n * d) for n, d in zip(size, steps, strict=True))
+    waves = int(min(np.pi / d for d in steps) / spacing)
+    if waves < MIN_WAVES_OF_MAP.value:
+        across, along = (f"{1e6 * d:.3g} um" for d in steps)
+        raise AnalysisError(
+            f"the map's points are {along} apart along x and {across} along y, so both sides "
+            f"share {waves} wavenumbers, and {MIN_WAVES_OF_MAP.value:.0f} are the least; are the "
+            "units of x and y right?",
+            function="psd_2d",
+        )
+    bins = log_bins(waves, 3, bins_per_decade, 1)
+    edges = bins.edges * spacing
+    index = np.digitize(q.ravel(), edges) - 1
+    inside = (index >= 0) & (index < bins.starts.size)
+    index = index[inside]
+    lines = np.bincount(index, minlength=bins.starts.size)
+    per_line = scale / lines
+
+    def annuli(values: np.ndarray) -> np.ndarray:
+        return np.bincount(index, values.ravel()[inside], bins.starts.size) * per_line
+
+    mean = annuli(power)
+    node = np.exp(np.bincount(index, np.log(q.ravel()[inside]), bins.starts.size) / lines)
+    correlated = (1 + 2 * (correlation(1) + correlation(2))) ** 2
+    independent = len(height) * np.maximum(0.5 * lines / correlated, 1.0)
+    known = np.arange(node.size) > 0  # the first annulus is what form and window take
+    lost, effect = float("inf"), None
+    if missing is not None:
+
+        def powers(maps: np.ndarray) -> np.ndarray:
+            return logarithm(annuli(_power(maps, taper)))
+
+        effect = gap_effect(height, missing, powers, is_map=True, joint=True)
+        mean, independent = mean * np.exp(-effect.shift), still_worth(independent, effect)
+        lost = lost_from(node, effect)
+        known &= node < max(lost, node[min(4, node.size - 1)])
+    low, high = confidence_band(mean, independent)
+    cell = (2 * np.pi) ** 2 / (taper.size * steps[0] * steps[1])
+    along_x, along_y = (power * kx**2).sum(), (power * ky[:, None] ** 2).sum()
+    data = xr.Dataset(
+        {
+            "psd_2d": ("wavenumber", mean[known]),
+            "psd_2d_low": ("wavenumber", low[known]),
+            "psd_2d_high": ("wavenumber", high[known]),
+            "independent_values": ("wavenumber", independent[known]),
+            "origin": ("wavenumber", np.zeros(int(known.sum()), np.int8)),
+        },
+        {"wavenumber": node[known]},
+    )
+    if effect is not None:
+        data["gap_error"] = ("wavenumber", effect.error[known])
+    attrs = {
+        **scan.attrs,
+        "convention": "<h^2> = 2 pi int q C dq",
+        "scans": len(height),
+        "mean_square_height_m2": whole,
+        "anisotropy": float(np.sqrt(along_y / along_x)),
+        "parseval_error": abs(float(power.sum() * scale * cell) / whole - 1),
+    }
+    if why := why_not_self_affine(scan):
+        attrs["not_self_affine"] = why
+    if np.isfinite(lost):
+        attrs["gaps_hide_above_1_m"] = lost
+    return stamp(data.assign_attrs(attrs))

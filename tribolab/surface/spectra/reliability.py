@@ -1,0 +1,122 @@
+"""Which wavenumbers of a measured spectrum can be trusted, and what limits them."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from tribolab.units.conversion import to_si
+
+# A sphere that traces profiles of the reference surfaces loses less than 5 % of C_1D as long as
+# the rms curvature of this wave and all longer ones stays below this share of the tip's.
+TIP_SHARE = 0.15
+_NOISE_MARGIN = 20.0  # C_1D stands so far above the floor: noise adds at most 5 %
+_FLOOR = 0.7  # the floor is read between this share of the Nyquist wavenumber and its end
+_FILTER_LOSS = 0.05  # largest share of the power that a profile filter may have taken
+_GAUSS = np.log(2) / (2 * np.pi) ** 2  # ISO 16610-21: transmission exp(-_GAUSS (q cutoff)^2)
+
+
+def tip_cutoff(
+    wavenumber: np.ndarray, psd_1d: np.ndarray, widths: np.ndarray, tip_radius: float
+) -> float:
+    """Wavenumber [1/m] above which a spherical tip no longer follows the profile.
+
+    Parameters
+    ----------
+    wavenumber, psd_1d, widths
+        Bins of the two-sided C_1D [1/m], [m3], [1/m].
+    tip_radius
+        Radius R of the tip [m].
+
+    Returns
+    -------
+    float
+        Upper end of the last bin where ``R h''_rms(q) <= 0.15``; infinite if no bin passes it.
+
+    Notes
+    -----
+    ``h''_rms(q)^2 = 2 int_0^q k^4 C_1D dk``: a tip blunts a summit when the summit's curvature is
+    no longer small against its own [1]_. The criterion is a pure number: units play no part.
+
+    References
+    ----------
+    .. [1] A. Sanner, W. G. Noehring, L. A. Thimons, T. D. B. Jacobs, L. Pastewka,
+       Scale-dependent roughness parameters for topography analysis, Appl. Surf. Sci. Adv. 7
+       (2022) 100190, doi:10.1016/j.apsadv.2021.100190.
+    """
+    curvature = np.sqrt(np.cumsum(2 * wavenumber**4 * psd_1d * widths))
+    beyond = curvature * tip_radius > TIP_SHARE
+    if not beyond.any():
+        return float("inf")
+    first = int(np.argmax(beyond))
+    return float(wavenumber[first] - 0.5 * widths[first])
+
+
+def noise_cutoff(wavenumber: np.ndarray, psd_1d: np.ndarray) -> float:
+    """Wavenumber [1/m] above which the spectrum cannot be told from noise.
+
+    The floor is the median of C_1D near the Nyquist wavenumber, be it noise of the instrument,
+    aliased waves or quantisation; trusted is what stands 20 times above it.
+    """
+    floor = float(np.median(psd_1d[wavenumber >= _FLOOR * wavenumber[-1]]))
+    near = psd_1d < _NOISE_MARGIN * floor
+    return float(wavenumber[np.argmax(near)]) if near.any() else float("inf")
+
+
+def trusted_band(
+    spectrum: xr.Dataset,
+    scans: xr.Dataset,
+    tip_radius: str | float | None,
+    lowest: int,
+    lost: float = float("inf"),
+) -> tuple[np.ndarray, dict[str, float | str]]:
+    """Mark the bins that can be trusted.
+
+    Parameters
+    ----------
+    spectrum
+        ``psd_1d`` (wavenumber) with the edges of its bins.
+    scans
+        The scans; their attributes ``tip_radius_m``, ``lambda_c_m`` and ``lambda_s_m`` count.
+    tip_radius
+        Radius of the tip [m] or text, instead of the scans'.
+    lowest
+        First Fourier line that form removal and window leave untouched.
+    lost
+        Wavenumber [1/m] from which on gaps hide the surface.
+
+    Returns
+    -------
+    tuple of numpy.ndarray and dict
+        1 where the whole bin lies in the trusted band, else 0, and attributes that say what
+        limits the band on either side. In noise no bin can be trusted.
+    """
+    q, c = spectrum.wavenumber.values, spectrum.psd_1d.values
+    left, right = spectrum.wavenumber_low.values, spectrum.wavenumber_high.values
+    first = min(q.size - 1, 1 if lowest > 1 else 0)  # what form removal took is not noise
+    highs = {"Nyquist": float(right[-1]) / 2, "noise floor": noise_cutoff(q[first:], c[first:])}
+    radius = scans.attrs.get("tip_radius_m") if tip_radius is None else tip_radius
+    if radius is not None:
+        radius = to_si(radius, "m", "tip_radius")
+        highs["stylus tip"] = tip_cutoff(q, c, right - left, radius)
+    if lost < highs["Nyquist"]:
+        highs["gaps"] = lost
+    lows = {"form removal": float(left[first])}
+    if "lambda_s_m" in scans.attrs:
+        kept = -0.5 * np.log(1 - _FILTER_LOSS)
+        highs["lambda_s"] = float(np.sqrt(kept / _GAUSS) / scans.attrs["lambda_s_m"])
+    if "lambda_c_m" in scans.attrs:
+        passed = -np.log(1 - np.sqrt(1 - _FILTER_LOSS))
+        lows["lambda_c"] = float(np.sqrt(passed / _GAUSS) / scans.attrs["lambda_c_m"])
+    low_by, high_by = max(lows, key=lambda by: lows[by]), min(highs, key=lambda by: highs[by])
+    low, high = lows[low_by], highs[high_by]
+    trusted = (left >= low * (1 - 1e-9)) & (right <= high * (1 + 1e-9))
+    attrs: dict[str, float | str] = {
+        "trusted_low_1_m": float(left[trusted].min()) if trusted.any() else low,
+        "trusted_high_1_m": float(right[trusted].max()) if trusted.any() else high,
+        "trusted_low_limited_by": low_by,
+        "trusted_high_limited_by": high_by,
+    }
+    if radius is not None:
+        attrs["tip_radius_m"] = radius
+    return trusted.astype(np.int8), attrs

@@ -1,0 +1,1 @@
+"""Units, the register of quantities, and the stamp that every array carries."""

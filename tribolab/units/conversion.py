@@ -1,0 +1,325 @@
+"""Units at the edge: text such as ``"31 N"`` becomes an SI float; inside are only SI floats."""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from typing import TYPE_CHECKING, NamedTuple
+
+from tribolab.core.errors import AnalysisError, UnitError, shown
+from tribolab.units.grammar import parse_unit
+from tribolab.units.reciprocals import (
+    Counted,
+    counts_turns,
+    holds_an_angle,
+    reciprocal,
+    scale_of_reciprocal,
+    usual_reading,
+)
+from tribolab.units.spellings import plain_unit
+
+if TYPE_CHECKING:
+    import pint
+
+_LONGEST = 200  # letters of a number with its unit
+_NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
+
+# How instruments write units that pint reads otherwise or not at all.
+_SPELLINGS = {
+    "microns": "um",
+    "micron": "um",
+    "sec": "s",
+    "secs": "s",
+    "msec": "ms",
+    "mm/sec": "mm/s",
+    "um/sec": "um/s",
+    "g": "gram",
+    "gf": "force_gram",
+    "kgf": "force_kilogram",
+    "-": "",
+    "1": "",
+    "deg": "degree",
+    "°": "degree",
+    "°C": "degC",
+    "C": "degC",
+    "ºC": "degC",
+    "Pa.s": "Pa*s",
+    "Pa s": "Pa*s",
+    "mPa s": "mPa*s",
+    "mPa.s": "mPa*s",
+}
+# torques: pint takes Nm for a count of yarn
+_SPELLINGS |= {
+    f"{prefix}N{sign}{length}": f"{prefix}N*{length}"
+    for prefix in ("", "u", "m", "c", "k")
+    for sign in ("", "-")
+    for length in ("m", "cm", "mm")
+}
+
+
+_PREFIXES = {"p": 1e-12, "n": 1e-9, "u": 1e-6, "\u00b5": 1e-6, "\u03bc": 1e-6, "m": 1e-3}
+_PREFIXES |= {"c": 1e-2, "k": 1e3, "M": 1e6, "G": 1e9}
+# What instruments write most, so that reading a file need not wait half a second for pint; the
+# same numbers as pint's.
+_USUAL = {
+    ("", "1"): (1.0, 0.0),
+    ("-", "1"): (1.0, 0.0),
+    ("%", "1"): (0.01, 0.0),
+    ("percent", "1"): (0.01, 0.0),
+    ("sec", "s"): (1.0, 0.0),
+    ("min", "s"): (60.0, 0.0),
+    ("micron", "m"): (1e-6, 0.0),
+    ("microns", "m"): (1e-6, 0.0),
+    ("gf", "N"): (0.00980665, 0.0),
+    ("bar", "Pa"): (1e5, 0.0),
+    ("dyne/cm²", "Pa"): (0.1, 0.0),
+    ("Pa.s", "Pa s"): (1.0, 0.0),
+    ("mPa.s", "Pa s"): (1e-3, 0.0),
+    ("mPa s", "Pa s"): (1e-3, 0.0),
+    ("°C", "K"): (1.0, 273.15),
+    ("degC", "K"): (1.0, 273.15),
+    ("deg", "rad"): (math.pi / 180, 0.0),
+}
+
+
+@functools.lru_cache(maxsize=1)
+def registry() -> pint.UnitRegistry[float]:
+    """Return the one pint registry, made when first asked for."""
+    # late: pint takes long to load
+    import pint
+
+    return pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
+
+
+# exponents and signs of multiplication as typesetters write them
+_SIGNS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−\u00a0", "0123456789-- ", "")
+_TIMES = re.compile(r"^[x×*·]\s?(?=\d\S*\s+[^\W\d_])")  # "x 1e-4 N", not the x1000 of a name
+_RAISED = re.compile(r"(?<=10)([⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
+_PRODUCT = re.compile(r"(?<!\s)\s*[·⋅・∙•]\s*")  # tried once for each row of blanks
+
+
+def as_pint_writes(unit: str) -> str:
+    """Return a unit, typeset or from netCDF, in the spelling that pint reads."""
+    unit = unit.strip().replace("\u00b5", "u").replace("\u03bc", "u")
+    unit = _RAISED.sub(r"^\1", _TIMES.sub("", unit))
+    unit = _PRODUCT.sub("*", unit.translate(_SIGNS))
+    unit = _SPELLINGS.get(unit, unit)
+    # netCDF writes m2 and s-1; the e of 1e-4 is no name
+    unit = re.sub(r"(?<=[A-Za-z])(?<!\d[eE])(-?\d)", r"**\1", unit)
+    return unit.replace("^", "**")
+
+
+class _Units(NamedTuple):
+    factor: float
+    units: pint.Unit
+
+
+def _units(text: str) -> _Units:
+    """Have pint look up the names of a unit; the text itself is parsed here and never evaluated."""
+    factor, powers = parse_unit(as_pint_writes(text))
+    ureg = registry()
+    product = ureg.Unit("")
+    for name, power in powers.items():
+        product = product * ureg.Unit(name) ** power
+    return _Units(factor, product)
+
+
+def _prefix(unit: str, si_unit: str) -> float | None:
+    """Scale of the SI unit itself with a prefix: mm/s for m/s. Loading pint takes 0.5 s."""
+    unit, si_unit = (text.replace("^2", "2").replace("²", "2") for text in (unit, si_unit))
+    if unit == si_unit:
+        return 1.0
+    # a prefix is raised with its unit: mm2 is not for here
+    if re.fullmatch(r"(m|s|N|Pa|V|J)(/s|/m2| s)?", si_unit) and unit[1:] == si_unit:
+        return _PREFIXES.get(unit[0])
+    return None
+
+
+# what instruments write most, and units that are asked for of which no other measures the same
+_EVERYDAY = re.compile(r"[pnu\u00b5\u03bcmckMG]?(s|m|N|Pa|V|m/s)")
+_ASKED = frozenset(
+    ("", "1", "s", "m", "m2", "m3", "m4", "m/s", "m2/s", "1/m", "1/s", "Hz", "rad", "rad/s", "N")
+    + ("N/m", "N/s", "N m", "N2 m", "J/m2", "Pa", "1/Pa", "Pa s", "V", "ohm", "K", "m/s**2")
+    + ("m**2", "m**3", "m**2/s", "m**3/s", "m**2/N", "W", "W/m**2", "A", "A s", "S", "farad")
+    + ("kg", "kg/m**3", "S/m", "1/K", "T")
+)
+
+
+def _measures_another(unit: str, si_unit: str) -> bool:
+    """Whether an everyday unit is known to measure something else, without asking pint."""
+    everyday = _EVERYDAY.fullmatch(unit)
+    if everyday is None or si_unit not in _ASKED:
+        return False
+    return everyday[1] != si_unit
+
+
+@functools.lru_cache(maxsize=512)
+def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[float, float]:
+    """Scale and offset that turn a number in `unit` into `si_unit`: ``si = scale * x + offset``.
+
+    Parameters
+    ----------
+    unit
+        Unit as an instrument or a person writes it: ``"mm/s"``, ``"µm"``, ``"gf"``, ``"degC"``.
+    si_unit
+        The unit wanted: ``"m/s"``, ``"K"``.
+    bare
+        What a unit per time or length counts that names neither cycles nor radians, like
+        ``"1/min"``; by default as `tribolab.units.reciprocals.usual_reading` says.
+
+    Raises
+    ------
+    UnitError
+        If the unit is unknown or of another dimension, or may be read in two ways.
+
+    Examples
+    --------
+    >>> conversion("mm/s", "m/s")
+    (0.001, 0.0)
+    >>> conversion("1/s", "rad/s", "cycles")
+    (6.28318530717959, 0.0)
+    """
+    if (prefix := _prefix(unit, si_unit)) is not None:
+        return prefix, 0.0
+    if len(unit) > _LONGEST:
+        raise UnitError(f"'{shown(unit)}' is not a unit: it has more than {_LONGEST} letters")
+    if (unit, si_unit) in _USUAL:
+        return _USUAL[unit, si_unit]
+    if (unit, si_unit) == ("mS", "s"):  # nobody times in siemens
+        return 1e-3, 0.0
+    if _measures_another(unit, si_unit):
+        raise UnitError(f"unit '{shown(unit)}' cannot be turned into '{si_unit}'")
+    if (spelt := plain_unit(unit)) != unit.strip() and len(unit) < _LONGEST:
+        return conversion(spelt, si_unit, bare)
+    if si_unit == "1" and bare == "cycles" and counts_turns(unit):
+        return 1.0, 0.0
+    turning = scale_of_reciprocal(unit, si_unit, bare or usual_reading(si_unit))
+    if turning is not None:
+        return float(f"{turning:.15g}"), 0.0
+    counted = reciprocal(si_unit)
+    if (si_unit in ("", "1") or counted) and holds_an_angle(unit):
+        raise UnitError(
+            f"unit '{shown(unit)}' counts an angle or cycles, and cannot become '{si_unit}'"
+        )
+    if counted and si_unit != (plain := f"1/{counted.per}"):  # seldom written, as "mm/s/mm" is
+        scale = conversion(unit, plain, "nothing")[0]
+        return scale * conversion(plain, si_unit, bare)[0], 0.0
+    try:
+        parse_unit(as_pint_writes(unit))  # what is no unit by its grammar is told without pint
+    except UnitError as error:
+        said = shown(unit)
+        raise UnitError(f"'{said}' is not a unit that is known; write e.g. '{si_unit}'") from error
+    # late: pint takes long to load
+    import pint
+
+    ureg = registry()
+    try:
+        source, target = _units(unit), _units(si_unit)
+        zero = ureg.Quantity(0.0, source.units).to(target.units).magnitude
+        size = ureg.Quantity(source.factor, source.units).to(target.units).magnitude
+    except pint.DimensionalityError as error:
+        raise UnitError(f"unit '{shown(unit)}' cannot be turned into '{si_unit}'") from error
+    except Exception as error:  # pint raises many kinds on text that is no unit
+        said = shown(unit)
+        raise UnitError(f"'{said}' is not a unit that is known; write e.g. '{si_unit}'") from error
+    scale = float(size - zero)
+    # a decimal prefix is exact on paper: 1000 um = 1 mm, not 0.9999999999999999
+    return float(f"{scale:.15g}"), float(zero)
+
+
+def base_unit(unit: str) -> str:
+    """Return the SI base units of a unit; "m" where it is no unit.
+
+    Examples
+    --------
+    >>> base_unit("N mm"), base_unit("Н·м")
+    ('kg*m**2/s**2', 'kg*m**2/s**2')
+    """
+    if (spelt := plain_unit(unit)) != unit.strip() and len(unit) < _LONGEST:
+        return base_unit(spelt)
+    # late: pint takes long to load
+    import pint
+
+    try:
+        return f"{registry().Quantity(1.0, _units(unit).units).to_base_units().units:~C}"
+    except (UnitError, pint.PintError, ValueError, TypeError):
+        return "m"
+
+
+def to_si(
+    value: str | float | int, si_unit: str, name: str = "value", bare: Counted | None = None
+) -> float:
+    """Turn ``"31 N"``, or a number that already is SI, into an SI float.
+
+    Parameters
+    ----------
+    value
+        Text with a number and a unit, or a bare number in `si_unit`.
+    si_unit
+        The SI unit wanted.
+    name
+        What the value is called where the user wrote it; the error names it.
+    bare
+        As for `conversion`.
+
+    Raises
+    ------
+    UnitError
+        If the text has no number, no unit, or a unit of another dimension.
+
+    Examples
+    --------
+    >>> to_si("7 cm", "m")
+    0.07
+    >>> to_si(0.07, "m")
+    0.07
+    """
+    if isinstance(value, bool):
+        raise UnitError(f"{name}: a number with a unit is wanted, e.g. '1 {si_unit}'; got {value}")
+    if not isinstance(value, str):
+        try:
+            return float(value)
+        except (TypeError, ValueError) as error:
+            raise UnitError(
+                f"{name}: one number, or text such as '1 {si_unit}', is wanted; got "
+                f"{shown(repr(value), 60)}"
+            ) from error
+    said = shown(value)
+    match = _NUMBER.match(value) if len(value) <= _LONGEST else None
+    if not match:
+        raise UnitError(f"{name}: '{said}' has no number; write e.g. '1 {si_unit}'")
+    number, unit = float(match[1]), match[2]
+    if not math.isfinite(number):
+        raise UnitError(f"{name}: '{said}' is larger than any number; write e.g. '1 {si_unit}'")
+    if not unit and si_unit not in ("", "1"):
+        raise UnitError(f"{name}: '{said}' has no unit; write e.g. '{said} {si_unit}'")
+    if re.match(r",\d", unit):
+        pointed = shown(value.strip().replace(",", ".", 1))
+        raise UnitError(f"{name}: '{said}' has a decimal comma; write '{pointed}'")
+    try:
+        scale, offset = conversion(unit, si_unit, bare)
+    except UnitError as error:
+        raise UnitError(f"{name}: {error}; a value in {si_unit} is wanted") from error
+    return float(f"{number * scale + offset:.15g}")
+
+
+def positive(value: str | float, unit: str, name: str) -> float:
+    """Return text with a unit, or an SI number, as an SI float above zero.
+
+    Raises
+    ------
+    UnitError
+        If the text has no unit or one of the wrong dimension.
+    AnalysisError
+        If the number is not positive and finite.
+
+    Examples
+    --------
+    >>> positive("2 MPa", "Pa", "effective_modulus")
+    2000000.0
+    """
+    number = to_si(value, unit, name=name)
+    if not 0 < number < math.inf:
+        raise AnalysisError(f"{name}: a positive, finite value in {unit} is wanted; got {number:g}")
+    return number

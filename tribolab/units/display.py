@@ -1,0 +1,82 @@
+"""Units in what Jupyter shows of our datasets before anything is opened."""
+
+from __future__ import annotations
+
+import html
+import re
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+_VARIABLE = re.compile(
+    r"(<div class='xr-var-name'><span[^>]*>(.*?)</span></div><div class='xr-var-dims'>.*?</div>"
+    r"<div class='xr-var-dtype'>)"
+)
+_NAME = re.compile(r"(<div class='xr-(?:array|obj)-name'>)(.*?)(</div>)")
+_HOMES = (("xarray.core.dataset", "Dataset"), ("xarray.core.dataarray", "DataArray"))
+
+
+def show_units() -> None:
+    """Let the notebook that runs this name units beside the variables of our datasets.
+
+    Without a notebook nothing happens. `import tribolab` does it. What others made is shown as
+    xarray shows it.
+    """
+    # late: IPython takes long to load
+    from IPython.core.getipython import get_ipython
+
+    shell = get_ipython()
+    formatters = getattr(getattr(shell, "display_formatter", None), "formatters", {})
+    if "text/html" in formatters:
+        for home, name in _HOMES:  # by name: xarray is not loaded for it
+            formatters["text/html"].for_type_by_name(home, name, with_units)
+
+
+def with_units(data: xr.Dataset | xr.DataArray) -> str:
+    """Return xarray's own HTML; of what we made, each variable that has a unit with it.
+
+    Ours is what has a variable with the unit and the name in words that we give it.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> from tribolab.units.stamping import stamp
+    >>> run = stamp(xr.Dataset({"friction_force": ("time", [1.0])}))
+    >>> "N, float64" in run._repr_html_(), "N, float64" in with_units(run)
+    (False, True)
+    >>> other = xr.Dataset({"friction_force": ("time", [1.0], {"units": "N"})})
+    >>> "N, float64" in with_units(other)
+    False
+    """
+    text = data._repr_html_()
+    if not _is_ours(data):
+        return text
+    own = getattr(data, "data_vars", {})
+
+    def beside(match: re.Match[str]) -> str:
+        name = html.unescape(match[2])
+        holder: Any = data.coords if name in data.coords else own
+        unit = holder[name].attrs.get("units") if name in holder else None
+        return f"{match[1]}{html.escape(str(unit))}, " if unit else match[1]
+
+    text = _VARIABLE.sub(beside, text)
+    unit = "" if hasattr(data, "data_vars") else data.attrs.get("units", "")
+    if unit:
+        text = _NAME.sub(rf"\g<1>\g<2> [{html.escape(str(unit))}]\g<3>", text, count=1)
+    return text
+
+
+def _is_ours(data: xr.Dataset | xr.DataArray) -> bool:
+    # late: starting stays quick
+    from tribolab.units.quantities import QUANTITIES
+
+    own: Any = data.data_vars if hasattr(data, "data_vars") else {data.name: data}
+    for name, holder in {**data.coords, **own}.items():
+        known = QUANTITIES.get(str(name))
+        if known and (holder.attrs.get("units"), holder.attrs.get("long_name")) == (
+            known.unit,
+            known.long_name,
+        ):
+            return True
+    return False
