@@ -13,7 +13,7 @@ from scipy.stats import norm
 import tribolab as tl
 from tribolab.core.errors import TribolabError
 
-AT_ONCE, DRAFTED, DESCRIBED, NOT = "at once", "after a draft", "with a description", "not"
+AT_ONCE, DRAFTED, DESCRIBED, NOT = "directly", "after questions", "with a dialect", "not"
 CHANCE = 0.00135  # of a number beyond 3 standard errors on one side
 
 

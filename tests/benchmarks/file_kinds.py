@@ -1,10 +1,10 @@
-"""Which kinds of files are read at once, after a draft, or not, and are their numbers right?
+"""Report which kinds of files are read directly, after questions or not, and their accuracy.
 
     python tests/benchmarks/file_kinds.py --seeds 100:103 --write docs/file_kinds.md
 
 Over the rig's files in all its layouts (`layouts`), whose truth is known; over
-measured files with reference numbers that were computed independently; and over sample files that
-ship with a public package. Wrong is a coefficient more than 3 standard errors from the truth (in a
+measured files with independent reference numbers; and over sample files of a public package. An
+error is a coefficient more than 3 standard errors from the truth (in a
 run of several numbers: beyond the bound that is passed by chance as rarely), a speed 1 % off, a
 segment that is missing, a file that is not read. The exit code is 1 then.
 """
@@ -32,30 +32,30 @@ from tribolab.core.errors import TribolabError  # noqa: E402
 SHARED = Path(__file__).parents[3] / "shared" / "data"
 WAYS = (AT_ONCE, DRAFTED, DESCRIBED, NOT)
 READERS = """
-## Kinds that a reader in Python reads
+## Layouts that need a Python reader
 
-No file of a published rig and no manufacturer's documentation shows these layouts. Such a file is
-asked about or refused; the reader named here goes next to the campaign (`instrument =
-"my_reader.py"`, run with `--trust`).
+No published file and no manufacturer's documentation shows these layouts, so tribolab asks about
+such a file or refuses it. Put the reader next to the campaign file (`instrument = "my_reader.py"`,
+run with `--trust`).
 
-| kind | reader |
+| layout | reader |
 |---|---|
-| each number behind its name (`t:1.5 F:2.0`) | the one below |
-| one JSON record a line | `pd.read_json(path, lines=True)` |
-| columns listed one to a line above the numbers | `pd.read_csv(path, skiprows=n, names=names)` |
-| short names explained above, names in two rows | the same |
-| steps or specimens side by side | `pd.read_csv`, then `pd.concat` of its parts |
-| a channel to a row (time, name, number) | `pd.read_csv(path).pivot(index=, columns=, values=)` |
-| a signal to a row | `pd.read_csv(path, header=None, index_col=0).T` |
-| columns with clocks of their own | `np.interp` onto the clock of the friction force |
-| numbers that touch, in columns of fixed width | `pd.read_fwf(path, widths=widths)` |
-| one column that goes on from line to line | `np.fromstring(text, sep=" ")` |
-| volts or counts with a calibration in a sentence, but `Gain Fx: 10 N/V` | multiply by it |
-| two load cells that add up | add the columns |
-| a table of the steps' speeds in the header | one column of the speed of each step |
-| sheets or groups that are steps of one run | `pd.concat(pd.read_excel(path, sheet_name=None))` |
+| each number after its name (`t:1.5 F:2.0`) | the example below |
+| one JSON record per line | `pd.read_json(path, lines=True)` |
+| column names listed in lines above the numbers | `pd.read_csv(path, skiprows=n, names=names)` |
+| abbreviations explained above; names in two rows | the same |
+| steps or specimens side by side | `pd.read_csv`, then `pd.concat` of the parts |
+| one channel per row (time, name, number) | `pd.read_csv(path).pivot(index=, columns=, values=)` |
+| one signal per row | `pd.read_csv(path, header=None, index_col=0).T` |
+| columns with separate clocks | `np.interp` to the clock of the friction force |
+| fixed-width columns without blanks between them | `pd.read_fwf(path, widths=widths)` |
+| one column wrapped over several lines | `np.fromstring(text, sep=" ")` |
+| calibration in a sentence (except `Gain Fx: 10 N/V`) | multiply by the calibration factor |
+| two load cells whose sum is the load | add the columns |
+| a table of step speeds in the header | a column with the speed of each step |
+| sheets or groups as steps of one run | `pd.concat(pd.read_excel(path, sheet_name=None))` |
 | text between the rows of one table | `pd.read_csv(path, comment="#")` |
-| heights of a distance sensor over time | heights and `speed * time` as `height` and `x` |
+| distance sensor readings over time | heights and `speed * time` as `height` and `x` |
 
 ```python
 import re
@@ -162,7 +162,7 @@ MEASURED = (
     Measured(f"{_PAPER}/k168Nm_v1100.mat", "MAT 5; mu 0.33409", 0.33409, 1e-4),
     Measured(f"{_PAPER}/k1002Nm_v4300.mat", "MAT 5; mu 0.2918", 0.2918, 3e-4),
     Measured("cetr_umt2_MIT/*_001.csv", "settings, header at each step, gram-force"),
-    Measured("pcs_mtm_ehd_MIT/demo_5.txt", "names used twice, steps, restarting clock"),
+    Measured("pcs_mtm_ehd_MIT/demo_5.txt", "duplicate names, steps, restarting clock"),
     Measured("tdms_force_MIT/TDMSSample.tdms", "TDMS groups"),
 )
 
@@ -201,7 +201,7 @@ def of_package() -> list[Line]:
 
 def table(lines: list[Line]) -> str:
     """Return the lines as a table in Markdown."""
-    rows = ["| kind | what is peculiar | read | friction coefficient |", "|---|---|---|---|"]
+    rows = ["| kind | peculiarity | read | friction coefficient |", "|---|---|---|---|"]
     rows += [f"| {x.kind} | {x.about} | {x.way} | {x.wrong or x.numbers} |" for x in lines]
     return "\n".join(rows) + "\n"
 
@@ -212,22 +212,22 @@ def page(rig: list[Line], others: list[Line], seeds: range) -> str:
     told = ", ".join(f"{count} {way}" for way, count in counts.items() if count)
     return f"""# Which files are read
 
-Made by `tests/benchmarks/file_kinds.py --write docs/file_kinds.md`; do not edit.
+Generated by `tests/benchmarks/file_kinds.py --write docs/file_kinds.md`; do not edit.
 
-*At once*: `tl.read(file)` and the friction coefficient, without a word. *After a draft*: what
-`tribolab info --write` asks has been answered. *With a description*: a dialect was written by
-hand, because the file does not say what its columns are or how they are scaled.
+*Directly*: `tl.read(file)` gives the friction coefficient without questions. *After questions*: the
+questions of `tribolab info --write` were answered. *With a dialect*: a dialect was written by hand,
+because the file does not state what its columns are or how they are scaled.
 
-## Simulated files, whose truth is known
+## Simulated files with known results
 
-{len(rig)} kinds, {len(seeds)} runs of each: {told}. "Right" is within 3 standard errors (in a
-run of several numbers within the bound that is passed by chance as rarely), "error" the largest
-standard error, relative to the truth.
+{len(rig)} kinds, {len(seeds)} runs of each: {told}. A
+coefficient is right within 3 standard errors of the true value (for several coefficients in a run,
+within the bound with the same chance). "Error": the largest relative standard error.
 
 {table(rig)}
-## Measured files, and those of a package
+## Measured files, and sample files of a package
 
-The numbers to compare with were computed independently; files without friction are refused.
+References were computed independently. Files without friction are refused.
 
 {table(others)}{READERS}"""
 

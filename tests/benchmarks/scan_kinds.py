@@ -1,10 +1,10 @@
-"""Which files of profiles and maps are read, how, and are their heights and positions right?
+"""Report which files of profiles and maps are read, how, and the accuracy of their heights.
 
     python tests/benchmarks/scan_kinds.py [--write docs/scan_kinds.md]
 
 Over files that are written here with known heights, by SurfaceTopography's own writers where it
 has some, and over the measured files of ``../shared/data``, whose heights and pitch a few plain
-lines take off each file anew, by no reader of scans (`plain`). Wrong is a file that is not read
+lines parse independently of the scan readers (`plain`). An error is a file that is not read
 (or not refused) as the table says, a height that is off by more than its last digit, a pitch that
 is off by 1e-6. The exit code is 1 then.
 """
@@ -29,7 +29,7 @@ import tribolab as tl
 from tribolab.core.errors import TribolabError
 
 SHARED = Path(__file__).parents[3] / "shared" / "data"
-AT_ONCE, DRAFTED, DESCRIBED, REFUSED = "at once", "by its header", "named or described", "refused"
+AT_ONCE, DRAFTED, DESCRIBED, REFUSED = "directly", "by its header", "with a dialect", "refused"
 LINE = np.round(1e-6 * np.sin(np.arange(240) / 9.0), 10)  # m
 AREA = np.round(1e-6 * np.add.outer(np.sin(np.arange(7)), np.cos(np.arange(12))), 10)
 PITCH = 0.25e-6
@@ -68,15 +68,14 @@ def texts() -> Iterable[Kind]:
     rows = "".join(f"{n * 0.00025:.5f},{1e6 * z:.4f}\n" for n, z in enumerate(LINE))
     said = {
         "x and heights, units in brackets": f"X [mm],Z [um]\n{rows}",
-        "x and heights, units in a line of their own": f"Export\nX,Z\nmm,um\n{rows}",
-        "a table of results before that of the profile": "Name,Value\nRa,0.5\n\n"
-        f"X [mm],Z [um]\n{rows}",
-        "three traces, one below the other": "\n".join(
+        "x and heights, units in a separate line": f"Export\nX,Z\nmm,um\n{rows}",
+        "a table of results before the profile": f"Name,Value\nRa,0.5\n\nX [mm],Z [um]\n{rows}",
+        "three traces below each other": "\n".join(
             f"Trace {n}\nX [mm],Z [um]\n{rows}" for n in (1, 2, 3)
         ),
-        "heights alone, pitch and count before them": "Spacing: 0.25 um\nPoints: 240\n"
+        "heights only, pitch and count above": "Spacing: 0.25 um\nPoints: 240\n"
         f"Z [um]\n{column(LINE)}",
-        "heights alone, length of the traverse and count": "Traverse length: 0.06 mm\nNumber of "
+        "heights only, traverse length and count above": "Traverse length: 0.06 mm\nNumber of "
         f"points: 240\nZ [um]\n{column(LINE)}",
         "heights with decimal commas, German names": "Messpunktabstand: 0,25 µm\nHöhe [µm]\n"
         + column(LINE).replace(".", ","),
@@ -105,7 +104,7 @@ def matrices() -> Iterable[Kind]:
     rows = "\n".join(",".join(row) for row in cells) + "\n"
     keyence = '"Model","VK-X"\n"Horizontal","12"\n"Vertical","7"\n"XY Calibration","250.0","nm"\n'
     text = f'{keyence}"Unit","um"\n\n"Height"\n{rows}'
-    yield Kind("matrix below lines of names and values (Keyence)", "a.csv", text.encode(), AREA)
+    yield Kind("matrix below a header (Keyence)", "a.csv", text.encode(), AREA)
     cells = [[f"{1e6 * z:.4f}" if np.isfinite(z) else "NaN" for z in row] for row in holes]
     rows = "\n".join("\t".join(row) for row in cells) + "\n"
     text = f"Pixel Size X: 0.25 µm\nPixel Size Y: 0.25 µm\nZ unit: µm\n{rows}"
@@ -313,11 +312,9 @@ MEASURED = (
         5e-6,
         2.25427e-5,
     ),
+    Measured("nanovea_map_MIT/test1.txt", "x, y, z, no header", {}, 0, 0.0, 0.0, "states no units"),
     Measured(
-        "nanovea_map_MIT/test1.txt", "x, y, z, nothing said", {}, 0, 0.0, 0.0, "states no units"
-    ),
-    Measured(
-        "surfacetopography_MIT/xy-4.txt", "x, z, nothing said", {}, 0, 0.0, 0.0, "states no units"
+        "surfacetopography_MIT/xy-4.txt", "x, z, no header", {}, 0, 0.0, 0.0, "states no units"
     ),
     Measured(
         "mitutoyo_sj410_res_MIT/12A11003.TXT",
@@ -338,8 +335,7 @@ def of_measured(known: Measured) -> Row:
         scan = tl.read_scans(SHARED / known.file, **known.given)
     except TribolabError as error:
         told = known.refused and known.refused in str(error)
-        why = f"says that it {known.refused}" if "states" in known.refused else "says so"
-        return Row(about, REFUSED, why, "" if told else str(error))
+        return Row(about, REFUSED, known.refused, "" if told else str(error))
     way = DESCRIBED if known.given else AT_ONCE
     if known.refused:
         return Row(about, way, "", "it was to be refused")
@@ -386,24 +382,24 @@ def table(lines: list[Row]) -> str:
 
 PAGE = """# Files of profiles and maps
 
-Made by `tests/benchmarks/scan_kinds.py` over files with known heights and over measured ones.
-*At once*: `tl.read_scans(file)` reads it; *by its header*: as an unknown text that says all itself;
-*named or described*: with `instrument=`; *refused*: in one sentence that says what is missing.
-Heights and pitch of the measured profiles are those that a few plain lines take off the files.
+Generated by `tests/benchmarks/scan_kinds.py` from files with known heights and measured files.
+*Directly*: `tl.read_scans(file)` reads it. *By its header*: an unknown text file whose header
+states everything. *With a dialect*: needs `instrument=`. *Refused*: one sentence says what is
+missing. Reference heights and pitch of the measured profiles are parsed by independent code.
 
 {table}
 
-Formats of some forty profilometers are read by SurfaceTopography (1.27.1 was the newest release).
-Where it reads in part or not at all, tribolab reads itself: x3p whose `main.xml` lies in a folder,
-of another revision, of profiles, with positions for each point or heights as a list; Surf files
-that are packed or have a UTF-8 micro sign; XML, SMD and PRF text; matrices of heights as text. No
-sample files ship inside its packages, nor inside surfalize's. Written by surfalize 0.19 and read
-back, AL3D, SDF (text and binary) and x3p agree to the last digit, Surf files but for the constant
-that surfalize adds; TMD files differ by the factor 1000 by which that writer takes the format's
-millimetres for micrometres.
+SurfaceTopography (tested: 1.27.1) reads the formats of some forty profilometers. tribolab itself
+reads what that library does not, or only in part: x3p with `main.xml` in a folder, of other
+revisions, of profiles, with positions for each point, or with heights as a list; Surf files that
+are packed or contain a UTF-8 micro sign; XML, SMD and PRF text; matrices of heights as text.
+Neither this library nor surfalize ships sample files. Files written by surfalize 0.19 were read
+back: AL3D, SDF (text and binary) and x3p agree to the last digit; Surf files agree except for a
+constant that surfalize adds; TMD files differ by a factor of 1000, because surfalize writes
+micrometres where the format requires millimetres.
 
-Not seen: files of national laboratories in SMD, PRF and XML (their layouts are from published
-descriptions and examples), x3p of makers other than through the two libraries named.
+Not seen: SMD, PRF and XML files of national laboratories (their layouts are from published
+descriptions and examples), and x3p files from manufacturers, except through these two libraries.
 """
 
 

@@ -138,7 +138,7 @@ for _kind in (
     ),
     LayoutKind("counter", "row counter that wraps, rate in the header", there_and_back, _counter),
     LayoutKind("rate", "no time, rate in the header", there_and_back, _rate),
-    LayoutKind("intervals", "intervals to be summed", there_and_back, _intervals),
+    LayoutKind("intervals", "time intervals to be summed", there_and_back, _intervals),
     LayoutKind("time_of_day", "time of day, over midnight", there_and_back, _time_of_day),
     LayoutKind("iso", "ISO dates with zone", there_and_back, _iso),
     LayoutKind("german_dates", "German dates", there_and_back, _german_dates),

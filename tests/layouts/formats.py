@@ -132,9 +132,7 @@ _BINARY = _dialect(
     units=True,
 )
 add_kind(
-    LayoutKind(
-        "settings_sheet", "Excel, settings in a sheet of their own", on_disc, _settings_sheet
-    )
+    LayoutKind("settings_sheet", "Excel, settings in a separate sheet", on_disc, _settings_sheet)
 )
 _SHEET = _dialect("excel", '[header]\nline = 1\nsheet = "Data"\n')
 for _name, _about, _write, _known in (
@@ -144,6 +142,6 @@ for _name, _about, _write, _known in (
     ("parquet", "Parquet", _parquet, _dialect("parquet")),
     ("feather", "Feather", _feather, _dialect("feather")),
     ("zipped", "Parquet in a zip", _zipped, _dialect("parquet")),
-    ("records", "records of bytes behind a header", _records, _BINARY),
+    ("records", "binary records after a header", _records, _BINARY),
 ):
     add_kind(LayoutKind(_name, _about, there_and_back, _write, dialect=_known))

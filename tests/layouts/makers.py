@@ -55,6 +55,6 @@ def _tribox(record: MeasuredRecord, folder: Path) -> Path:
 
 
 add_kind(LayoutKind("optimol_srv", "SRV: stroke, frequency in the header", by_crank, _srv))
-_SAID = "HFRR: a row a second, settings as in the standard"
+_SAID = "HFRR: one row per second, settings as in the standard"
 add_kind(LayoutKind("pcs_hfrr", _SAID, _by_rig_of_high_frequency, _hfrr))
 add_kind(LayoutKind("tribox", "TriboX: names Ft and Fn", there_and_back, _tribox))

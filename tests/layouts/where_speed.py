@@ -230,21 +230,15 @@ for _name, _about, _run, _write in (
     ("two_load_channels", "two load channels, one filled", on_disc, _two_load_channels),
     ("mini_traction", "rolling speed, slide-to-roll ratio", on_disc, _mini_traction),
     ("stroke_settings", "stroke, frequency in the header", by_crank, _stroke_settings),
-    ("crank_position", "crank with position", by_crank, _crank_position),
-    ("sled", "sled, its mass in the header", pulled, _sled),
-    ("stresses", "stresses in place of forces", there_and_back, _stresses),
+    ("crank_position", "crank, position recorded", by_crank, _crank_position),
+    ("sled", "sled, mass in the header", pulled, _sled),
+    ("stresses", "stresses instead of forces", there_and_back, _stresses),
 ):
     add_kind(LayoutKind(_name, _about, _run, _write))
-add_kind(
-    LayoutKind(
-        "radius_unsaid", "disc, radius not in the file", on_disc, _unsaid, typed=_RADIUS_TYPED
-    )
-)
+add_kind(LayoutKind("radius_unsaid", "disc, radius missing", on_disc, _unsaid, typed=_RADIUS_TYPED))
 add_kind(
     LayoutKind("bridges", "strain bridges with gains", there_and_back, _voltages, dialect=_BRIDGES)
 )
-add_kind(LayoutKind("counts", "counts of a board", there_and_back, _counts, dialect=_COUNTS))
+add_kind(LayoutKind("counts", "ADC counts", there_and_back, _counts, dialect=_COUNTS))
 _FROM = "file blank.csv"
-add_kind(
-    LayoutKind("blank_run", "zero in a file of its own", on_disc_under_load, _blank, zero=_FROM)
-)
+add_kind(LayoutKind("blank_run", "zero in a separate file", on_disc_under_load, _blank, zero=_FROM))
