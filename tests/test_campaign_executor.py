@@ -121,7 +121,7 @@ def test_a_worker_that_is_stopped_within_its_answer_keeps_nobody_waiting():
     pool = LastingPool(1)
     assert pool.submit(pow, 2, 3).result(timeout=60) == 8
     # the beginning of an answer of a thousand bytes, of which no more comes
-    os.write(pool._main._pool._result_queue._writer.fileno(), struct.pack("!i", 1000) + b"half")
+    os.write(pool._main._context.results.writer.fileno(), struct.pack("!i", 1000) + b"half")
     ending = threading.Thread(target=pool.end, daemon=True)
     ending.start()
     ending.join(30)

@@ -87,8 +87,7 @@ NO_SENTENCES = {
     "figures/look/style.py",
     "figures/page/marks.py",
     "figures/page/still.py",
-    "trials.py",
-    "unit_display.py",
+    "units/display.py",
 }
 
 

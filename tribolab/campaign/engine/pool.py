@@ -199,11 +199,10 @@ class _Lane:
     def kill(self) -> None:
         self.killed = True
         self._context.kill()
-        if self._pool is not None:
-            # who died within an answer leaves its reader waiting for the rest: with the last hand
-            # off the pipe, ours, it sees that nothing more comes
-            with contextlib.suppress(AttributeError, OSError):
-                self._pool._result_queue._writer.close()  # type: ignore[attr-defined]
+        if self._context.results is not None:
+            # a worker that died while it returned a result leaves the reader waiting for the rest:
+            # when the last writing end, ours, is closed, the reader sees that nothing more comes
+            self._context.results.close_writer()
         self.close()
 
 

@@ -10,8 +10,9 @@ import signal
 import threading
 import warnings
 from collections.abc import Iterator, Mapping
-from multiprocessing.context import SpawnContext, SpawnProcess
+from multiprocessing.context import BaseContext, SpawnContext, SpawnProcess
 from multiprocessing.process import BaseProcess
+from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
 # Two BLAS threads in each of many workers are slower than one, by up to fifty times.
@@ -30,11 +31,44 @@ ONE_THREAD = {
 MASKS = hasattr(signal, "pthread_sigmask")
 
 
+class ResultPipe:
+    """The pipe by which the workers of a pool return results, with a writing end we can close.
+
+    Has what `ProcessPoolExecutor` uses of a `multiprocessing.SimpleQueue`.
+    """
+
+    def __init__(self, context: BaseContext) -> None:
+        self._reader, self.writer = context.Pipe(duplex=False)
+        self._write_lock = context.Lock()
+
+    def put(self, result: object) -> None:
+        """Send a result; workers take turns."""
+        data = ForkingPickler.dumps(result)
+        with self._write_lock:
+            self.writer.send_bytes(data)
+
+    def close(self) -> None:
+        """Close both ends in this process."""
+        self._reader.close()
+        self.close_writer()
+
+    def close_writer(self) -> None:
+        """Close the writing end in this process: a reader of an unfinished result sees its end."""
+        self.writer.close()
+
+
 class Fresh(SpawnContext):
-    """Fresh interpreters (safe beside threads), with BLAS on one thread, that can be ended."""
+    """Fresh interpreters with BLAS on one thread: safe beside threads, and can be ended."""
 
     def __init__(self) -> None:
         self.started: list[BaseProcess] = []
+        self.results: ResultPipe | None = None
+
+    # multiprocessing's name: the pool asks its context for the queue of its results
+    def SimpleQueue(self) -> ResultPipe:  # type: ignore[override]  # noqa: N802
+        """Return the pipe of the pool's results, and remember it."""
+        self.results = ResultPipe(self)
+        return self.results
 
     # multiprocessing's name, and there a class; whoever calls it wants a process and no more
     def Process(  # type: ignore[override]  # noqa: N802
