@@ -45,9 +45,7 @@ def test_axes_are_what_the_text_says_and_not_what_their_names_usually_mean(
 def test_axes_whose_explanation_is_not_known_are_asked_about(tmp_path: Path) -> None:
     head = "Fx = kwaad; Fz = blorp\nSliding speed: 20 mm/s"
     file = written(tmp_path, head, "Time [s]\tFx [N]\tFz [N]", TIME, FRICTION, LOAD)
-    with pytest.raises(
-        ReadError, match="the text says what it is: 'kwaad', in words that are not known"
-    ):
+    with pytest.raises(ReadError, match="the text names it: 'kwaad', in words that are not known"):
         tl.read(file)
     plain = written(
         tmp_path, "Sliding speed: 20 mm/s", "Time [s]\tFx [N]\tFz [N]", TIME, FRICTION, LOAD

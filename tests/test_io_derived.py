@@ -134,9 +134,9 @@ def test_units_that_do_not_fit_are_told(tmp_path, formula, said):
     ("formula", "said"),
     [
         ("torque / radius", "called 'radius'"),
-        ("torque / ", "its end stands where"),
-        ("__import__('os')", "stands where"),
-        ("torque ** 2", "stands where"),
+        ("torque / ", "its end is where"),
+        ("__import__('os')", "is where"),
+        ("torque ** 2", "is where"),
         ("torque / '3 parsnips'", "parsnips"),
         ("(" * 40 + "torque" + ")" * 40, "nested deeper"),
     ],

@@ -432,7 +432,7 @@ def test_two_surfaces_share_their_liquid(curves):
 def test_models_are_told_apart_where_the_data_tell(curves):
     fixed = replace(PRIORS, speed_exponent=0.0, load_exponent=0.0)
     for n, m, wanted in (
-        (N, M, "the data speak against constant"),
+        (N, M, "the data contradict constant"),
         (0.0, 0.0, "constant is enough"),
     ):
         parts = load_curves(curves, n=n, m=m, loads=LOADS)

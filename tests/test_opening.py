@@ -55,7 +55,7 @@ def test_numbers_and_texts_come_back_from_another_process(file):
     [
         (cases.crash, "crashed \\(signal 11\\)"),
         (cases.fill_memory, "more memory than a sound file"),
-        (cases.never_end, "did not come to an end"),
+        (cases.never_end, "did not finish"),
     ],
 )
 def test_a_library_that_ends_badly_costs_one_error_and_the_next_file_is_read(

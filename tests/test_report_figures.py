@@ -126,7 +126,7 @@ def test_every_figure_is_a_pdf_too_if_that_is_asked_for(made):
 
 def test_an_unknown_choice_of_figures_is_refused_with_those_that_there_are():
     assert [wanted(word) for word in ("all", "curves", "none")] == ["all", "curves", "none"]
-    with pytest.raises(ConfigError, match="figures: 'some' is none of all, curves, none"):
+    with pytest.raises(ConfigError, match="figures: 'some' is not all, curves or none"):
         wanted("some")
 
 

@@ -281,7 +281,7 @@ def test_soft_gauges_as_text(tmp_path, form, scale):
     assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
     assert scan.attrs.get("tip_radius_m") == (None if scale == 1 else pytest.approx(2e-6))
     path.write_bytes(form.format("\n".join(map(str, numbers[:30]))).encode())
-    with pytest.raises(ReadError, match="30 heights stand in the file"):
+    with pytest.raises(ReadError, match="30 heights are in the file"):
         read_scans(path)
 
 

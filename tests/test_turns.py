@@ -72,7 +72,7 @@ def test_every_quantity_per_time_or_length_says_what_it_counts():
     for known in QUANTITIES.values():
         counted = reciprocal(known.unit) is not None or known.name == "cycle"
         assert (known.bare is not None) == counted, known.name
-    with pytest.raises(TribolabError, match="does not say what it counts"):
+    with pytest.raises(TribolabError, match="does not name what it counts"):
         dictionary([("spin", "n", "1/s", "spin")])
     assert quantity("rotation_speed_std").bare == "cycles"
 

@@ -11,7 +11,7 @@ processes, comes at a moment that is uniform over the duration of a run. After i
   the tables are those of the campaign before the change or after it, to the byte;
 - the raw files are as they were, and no process is left;
 - the next run, undisturbed, gives the tables that a run in a fresh folder gives, to the byte,
-  and leaves nothing beside the results.
+  and leaves nothing next to the results.
 
 A run that was done before its kill came is looked at as well, and is no kill.
 """
@@ -120,7 +120,7 @@ class Bench:
         return killed, "processes are left"
 
     def beside(self) -> set[str]:
-        """Return what lies beside the results and is none of the campaign's."""
+        """Return what lies next to the results and is none of the campaign's."""
         return {path.name for path in self.file.parent.iterdir()} - OWN
 
     def faults(self) -> list[str]:

@@ -211,7 +211,7 @@ def where_to_look(outcome: Outcome) -> list[str]:
     lines = []
     if any(curve.done for curve in outcome.curves):
         file = from_here(outcome.folder / "tables" / "stribeck.csv")
-        lines.append(f"friction at each speed: {file}; of each segment: friction.csv beside it")
+        lines.append(f"friction at each speed: {file}; of each segment: friction.csv next to it")
     return [*lines, f"report: {from_here(outcome.folder / 'report.html')}"]
 
 
@@ -351,7 +351,7 @@ def failure_lines(outcome: Outcome) -> list[str]:
     failed += [f"no model of {condition(m)}: {m.reason or m.error}" for m in outcome.failed_models]
     lines = failed[:_SHOWN]
     if len(failed) > _SHOWN:
-        lines.append(f"... and {len(failed) - _SHOWN} more; all stand in the report")
+        lines.append(f"... and {len(failed) - _SHOWN} more; the report has all")
     return lines
 
 
@@ -390,8 +390,8 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
         "",
         f"look at   {from_here(results / 'report.html')}        the page: open it in a browser",
         f"          {tables}/friction.csv  every segment, a row each",
-        f"          {tables}/truth.csv     every segment beside its truth",
-        f"          {tables}/paper.csv     the paper's numbers beside computed ones",
+        f"          {tables}/truth.csv     every segment with its true value",
+        f"          {tables}/paper.csv     the paper's numbers next to the computed ones",
         f"then try  tribolab info {from_here(folder)}/raw/friction/*_force.csv",
         f"          tribolab run {from_here(folder)}/campaign.toml  after changing something in it",
     ]

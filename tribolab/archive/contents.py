@@ -54,7 +54,7 @@ def campaign_of(results: Path, report: Json, stated: Path | None = None) -> Camp
     there = next((place for place in places if place.is_file()), None)
     if there is None:
         raise ConfigError(
-            f"{results}: the campaign file {file} is not beside the results; say --campaign"
+            f"{results}: the campaign file {file} is not next to the results; say --campaign"
         )
     if sha256_of_file(there) != report["campaign"]["sha256"]:
         raise ConfigError(

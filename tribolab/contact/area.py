@@ -62,7 +62,7 @@ def check_area(area: str) -> None:
     """Raise an AnalysisError unless it is an `AreaTheory`."""
     known = list(get_args(AreaTheory))
     if area not in known:
-        raise AnalysisError(f"area: '{shown(area)}' is none{nearest(area, known)}")
+        raise AnalysisError(f"area: '{shown(area)}' is not one{nearest(area, known)}")
 
 
 def other_area(area: AreaTheory) -> AreaTheory:

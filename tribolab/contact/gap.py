@@ -131,7 +131,7 @@ def gap_distributions(
     for variant in variants:
         if variant not in ("flow", "plain"):
             known = nearest(variant, ["flow", "plain"])
-            raise AnalysisError(f"variant: '{shown(variant)}' is none{known}")
+            raise AnalysisError(f"variant: '{shown(variant)}' is not one{known}")
     modulus = positive(effective_modulus, "Pa", "effective_modulus")
     over = labelled(pressure, "pressure")
     values = pressure_values(over).ravel()

@@ -84,7 +84,7 @@ LIMITS = {
         "and capillary or large-strain theories apply",
     ),
     "frequency": ValidityLimit(
-        "share of rubber friction or stiffness that rests on frequencies outside the modulus table",
+        "share of rubber friction or stiffness from frequencies outside the modulus table",
         0.05,
         0.98,
         "outside its table the modulus is a guess",

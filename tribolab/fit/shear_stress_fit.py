@@ -172,7 +172,7 @@ class ShearStressFit:
         slowest, fastest = self.valid_speed_range
         rows = [
             ("shear_stress", self.shear_stress, "Pa", "shear stress in the real contact"),
-            ("total_error", self.total_error, "Pa", "its standard error but for the spectrum's"),
+            ("total_error", self.total_error, "Pa", "its standard error without the spectrum's"),
             *ends,
             ("common_error", self.common_error, "Pa", "what all points share of the error"),
             ("chi_square", self.chi_square, "1", "sum of squares of residual / error"),

@@ -47,21 +47,21 @@ class StatedRange:
 VISCOSITY = StatedRange(
     "viscosity",
     "viscosity",
-    "that of a liquid hangs on temperature and on the water it takes up",
+    "that of a liquid depends on temperature and on the water it takes up",
     lambda value: f"{value:.3g} Pa s",
     lambda base, value: {"viscosity": value},
 )
 YOUNGS_MODULUS = StatedRange(
     "Young's modulus",
     "youngs_modulus",
-    "that of an elastomer hangs on batch, cure, age and frequency",
+    "that of an elastomer depends on batch, cure, age and frequency",
     lambda value: f"{value / 1e6:.3g} MPa",
     lambda base, value: {"contact": replace(base.contact, youngs_modulus=value)},
 )
 LOAD_RANGE = StatedRange(
     "load",
     "load",
-    "it hangs on the force cell and on the length that carries it",
+    "it depends on the force cell and on the length that carries it",
     lambda value: f"{value:.4g} N/m",
     lambda base, value: {"load": value},
 )
@@ -75,7 +75,7 @@ RADIUS_RANGE = StatedRange(
 WORK_OF_ADHESION = StatedRange(
     "work of adhesion",
     "work_of_adhesion",
-    "it hangs on surface energies and contact angles, which differ between sources",
+    "it depends on surface energies and contact angles, which differ between sources",
     lambda value: f"{1e3 * value:.3g} mJ/m²",
     lambda base, value: {"work_of_adhesion": value},
 )

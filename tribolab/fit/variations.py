@@ -51,7 +51,7 @@ def percolation(base: Base) -> Variation:
     ends = [_factors(base, percolation=value) for value in (_OPEN, _SHUT)]
     return Variation(
         "percolation threshold",
-        "0.415 to 0.42 by numerics on large isotropic surfaces, less beside grooves; 0.5 in "
+        "0.415 to 0.42 by numerics on large isotropic surfaces, less with grooves; 0.5 in "
         "effective-medium theory of two equal phases",
         (f"A/A0 = {_OPEN:.2f}", f"A/A0 = {_SHUT:.2f}"),
         (ends[0], ends[1]),

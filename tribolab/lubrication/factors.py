@@ -398,5 +398,5 @@ def check_rough_body(rough_body: str) -> None:
     known = ["stationary", "moving"]
     if rough_body not in known:
         raise AnalysisError(
-            f"rough_body: '{shown(rough_body)}' is none{nearest(rough_body, known)}"
+            f"rough_body: '{shown(rough_body)}' is not one{nearest(rough_body, known)}"
         )

@@ -309,8 +309,8 @@ def _lost(problem: Problem, viscosity: float, speed: float, error: Exception) ->
     load = problem.load * problem.pressure * problem.half_width
     rigid = 2.45 * viscosity * speed * radius / load
     if rigid > radius / 10:
-        cure = f"its film of about {rigid:.2g} m is not thin beside the radius: leave it out"
+        cure = f"its film of about {rigid:.2g} m is not thin compared with the radius: leave it out"
     else:
-        cure = "take more cells, add speeds beside it, or leave it out"
+        cure = "take more cells, add neighbouring speeds, or leave it out"
     cells = problem.mesh.x.size
     return AnalysisError(f"no solution at {speed:.4g} m/s on {cells} cells ({error}); {cure}")

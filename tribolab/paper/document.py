@@ -91,7 +91,7 @@ _ABOUT = {
     "it is taken. The drawing of the contact is left "
     "out.",
     "setup": "Forces and lengths are the paper's. Its measurements are not public: the virtual "
-    "rig stands in for the laboratory, with the noise, clocks and loggers of a real one, and its "
+    "rig replaces the laboratory, with the noise, clocks and loggers of a real one, and its "
     "raw files go through the same analysis as any.",
     "dry": "The drawing of bonds in the contact is left out.",
     "discussion": "The drawing of a Schallamach wave is left out.",

@@ -31,8 +31,8 @@ _BARS = (
 )
 _RIG = "What the authors measured is published as a picture without numbers."
 _TRACES = (
-    "Traces of the virtual rig. Beside each stands by how much it was shifted, up or down, to be "
-    "told apart; without a word it stands where it is."
+    "Traces of the virtual rig, shifted up or down by the amount next to each for clarity; those "
+    "without an amount are not shifted."
 )
 _SLIP = (
     f"{_TRACES} That Smooth sticks and slips is the authors' observation, how far and how often is "
@@ -151,7 +151,7 @@ FIGURES = (
         "dry_shear_stress", "dry", "Dry shear stress over speed", (SIMULATED, COMPUTED),
         "Simulated friction times nominal pressure over the computed dry contact area with "
         "adhesion; bars: standard deviation while sliding. The ratio is what the rig was given, "
-        "but for the areas, which are computed:",
+        "except for the areas, which are computed:",
         drawing.dry_shear_stress, (("effective_shear_stress_ratio", "", ""),), told=True,
     ),
     PlannedFigure(
@@ -179,7 +179,7 @@ FIGURES = (
         "shear_stress", "stribeck", "Shear stress over load", (COMPUTED, SIMULATED),
         "Open: fitted to the simulated points, for the area without adhesion; filled: divided by "
         "the computed growth of the area by adhesion in glycerol. Bars: 95 %. The authors' own "
-        "fits, which the rig was given, stand in the table.",
+        "fits, which the rig was given, are in the table.",
         drawing.paper_shear_stress,
         (
             ("contact_area_ratio", "", "0.1 MPa"),

@@ -25,5 +25,5 @@ def schema_folder() -> Path:
         if (folder / "instruments").is_dir():
             return folder
     raise ConfigError(
-        f"{package}: the folder raw_data_schema is missing from this installation; install anew"
+        f"{package}: the folder raw_data_schema is missing from this installation; reinstall"
     )

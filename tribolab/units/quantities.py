@@ -38,7 +38,7 @@ _ROWS = [
     ("normal_stress", "\\sigma_0", "Pa", "nominal normal stress"),
     ("shear_stress", "\\sigma_f", "Pa", "shear stress"),
     ("temperature", "T", "K", "temperature"),
-    ("ambient_pressure", "p_a", "Pa", "pressure beside the contact"),
+    ("ambient_pressure", "p_a", "Pa", "ambient pressure at the contact"),
     ("set_speed", "v_set", "m/s", "set-point of the sliding speed"),
     ("set_normal_force", "F_set", "N", "set-point of the normal force"),
     ("rolling_speed", "u", "m/s", "rolling (entrainment) speed"),
@@ -128,7 +128,7 @@ _ROWS = [
     ("wear_depth", "z", "m", "displacement normal to the contact since the beginning"),
     ("stroke_length", "L", "m", "length of a stroke"),
     ("omitted_reason", "", "1", "why a stretch is no segment"),
-    ("zero_from", "", "1", "what the zero of the friction signal rests on"),
+    ("zero_from", "", "1", "what the zero of the friction signal depends on"),
     ("half_loop", "", "N", "half the difference of the friction force between the strokes"),
     ("pair", "", "1", "number of the pair of strokes"),
     ("rejected", "", "1", "whether a person rejected the segment: 1"),
@@ -352,7 +352,7 @@ def dictionary(rows: Iterable[tuple[Any, ...]]) -> dict[str, Quantity]:
     Raises
     ------
     TribolabError
-        If a name stands there twice, or a quantity per time or length does not say what it counts.
+        If a name stands there twice, or a quantity per time or length does not name what it counts.
 
     Examples
     --------
@@ -369,7 +369,7 @@ def dictionary(rows: Iterable[tuple[Any, ...]]) -> dict[str, Quantity]:
             )
         if entry.bare is None and reciprocal(entry.unit):
             raise TribolabError(
-                f"the quantity '{entry.name}' [{entry.unit}] does not say what it counts: add "
+                f"the quantity '{entry.name}' [{entry.unit}] does not name what it counts: add "
                 '"cycles", "radians", "nothing" or "ask"'
             )
         known[entry.name] = entry

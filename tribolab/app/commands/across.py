@@ -163,7 +163,9 @@ def plan(
         float,
         typer.Option(min=0.5, max=0.999, help="Chance to find it that small, of a sure plan."),
     ] = 0.8,
-    setup_time: Annotated[str, typer.Option(help="What each run costs beside sliding.")] = "10 min",
+    setup_time: Annotated[
+        str, typer.Option(help="What each run costs in addition to sliding.")
+    ] = "10 min",
     output: Annotated[
         Path, typer.Option("--output", "-o", help="Folder of the page and its table.")
     ] = Path("lab"),

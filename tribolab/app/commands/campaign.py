@@ -104,7 +104,7 @@ def run(
             "--output",
             "-o",
             help="Folder of the results; files of yours in it stay.",
-            show_default="as the campaign file says, else results/ beside it",
+            show_default="as the campaign file says, else results/ next to it",
         ),
     ] = None,
     jobs: Jobs = None,
@@ -147,7 +147,7 @@ def run(
         bool,
         typer.Option(
             "--verify",
-            help="Read every raw file and result to tell what changed, not by size and time.",
+            help="Read every raw file and result to find what changed, not by size and time.",
         ),
     ] = False,
     quiet: Quiet = False,
@@ -334,9 +334,9 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
     nothing = bool(outcome.campaign.run) and not outcome.segments
     if nothing and len(outcome.failed) < len(outcome.runs):  # else it is told why none was read
         say(
-            "tribolab: no segment of constant speed was found in any run; in [segments], `drift` "
-            "and `min_samples` say what is constant, and `stroke_middle = 0.5` takes half of each "
-            "stroke that a crank drives",
+            "tribolab: no run contains a segment of constant speed; in [segments], `drift` and "
+            "`min_samples` define constant, and `stroke_middle = 0.5` takes the middle half of "
+            "each stroke that a crank drives",
             to_stderr=True,
         )
     spoilt = (

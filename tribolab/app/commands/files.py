@@ -54,7 +54,9 @@ def check(
     ] = False,
     repeats: Annotated[
         bool | None,
-        leaving("--repeats/--no-repeats", "names but for the last number say what is repeated"),
+        leaving(
+            "--repeats/--no-repeats", "files whose names differ only in the last number are repeats"
+        ),
     ] = None,
     notes: Annotated[bool, leaving("--notes", "write --verbose")] = False,
     everything: Annotated[bool, leaving("--all", "write --verbose")] = False,

@@ -18,7 +18,7 @@ def pack(
     output: Annotated[
         Path | None,
         typer.Option(
-            "--output", "-o", help="The .zip file.", show_default="the campaign's title, beside"
+            "--output", "-o", help="The .zip file.", show_default="the campaign's title, next to"
         ),
     ] = None,
     raw: Annotated[
@@ -26,7 +26,7 @@ def pack(
     ] = False,
     campaign: Annotated[
         Path | None,
-        typer.Option(help="The campaign file.", show_default="beside the results"),
+        typer.Option(help="The campaign file.", show_default="next to the results"),
     ] = None,
     author: Annotated[str, typer.Option(help="Who deposits.")] = "",
     publisher: Annotated[str, typer.Option(help="Where it is published.")] = "",
@@ -76,7 +76,7 @@ def verify(
     ] = False,
     campaign: Annotated[
         Path | None,
-        typer.Option(help="The campaign file.", show_default="beside the results"),
+        typer.Option(help="The campaign file.", show_default="next to the results"),
     ] = None,
     trust: Annotated[
         bool,

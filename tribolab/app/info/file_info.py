@@ -193,7 +193,7 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
         f"{' x '.join(str(scan.sizes[axis]) for axis in axes)} points",
     ]
     if len(traces) > 1:
-        lines.append(f"  {len(traces)} traces stand in the file, of the first:")
+        lines.append(f"  {len(traces)} traces are in the file, of the first:")
     for axis in axes:
         values = scan[axis].values
         length = float(values[-1] - values[0])

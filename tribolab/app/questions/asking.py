@@ -103,9 +103,9 @@ def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
         question += "itself: 20 N, 2 kg, 10 x 2 kg on a lever; "
         draft = _ask_for(draft, _LOAD, f"{question}{_NONE} for none)", ask, say, amount="load")
     question = (
-        "which column tells how it moves: a speed, turns, an angle or a position? (its number; or "
+        "which column gives the motion: a speed, turns, an angle or a position? (its number; or "
     )
-    question += "the sliding speed itself: 6 mm/min, 8 rpm at 20 mm radius; or strokes to and fro: "
+    question += "the sliding speed itself: 6 mm/min, 8 rpm at 20 mm radius; or reversing strokes: "
     question += f"8 mm at 2 Hz; {_NONE} for none)"
     if not _told_by_settings(draft):
         draft = _ask_for(draft, _MOTION, question, ask, say, amount="speed")

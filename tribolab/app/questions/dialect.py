@@ -66,9 +66,9 @@ def _run_said(file: Path, dialect: Path) -> str:
     turned = reversals(run[signal].values) if _undirected(run, segments) else 0
     if turned:
         return (
-            f"{said}; friction changes its sign {turned} times while nothing tells the way: it "
-            "looks like motion to and fro, whose mean is no friction coefficient; state stroke and "
-            'frequency under [speed], with source = "stroke"'
+            f"{said}; friction changes its sign {turned} times, but no column gives the "
+            "direction: it looks like reversing motion, whose mean is no friction coefficient; "
+            'state stroke and frequency under [speed], with source = "stroke"'
         )
     return f"{said}{_coefficients(friction)}"
 

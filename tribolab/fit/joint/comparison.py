@@ -233,7 +233,7 @@ def _said(
     >>> _said(("b", 4), ("a", 3), 6.0, -4.0), _said(("b", 3), ("a", 3), 2.0, 6.0)
     ('the data do not tell b from a', 'the data lean to b')
     >>> _said(("b", 2), ("a", 3), -6.0, -4.0), _said(("b", 3), ("a", 3), -2.0, -6.0)
-    ('the data speak against b', 'the data lean to a')
+    ('the data contradict b', 'the data lean to a')
     """
     tellers = np.array([evidence, prediction])
     tellers = tellers[np.isfinite(tellers)]
@@ -245,7 +245,7 @@ def _said(
         return f"{wanted[0]} is enough"
     if strength < _STRONG:
         return f"the data lean to {wanted[0]}"
-    return f"the data need {model[0]}" if wanted == model else f"the data speak against {model[0]}"
+    return f"the data need {model[0]}" if wanted == model else f"the data contradict {model[0]}"
 
 
 def _odds(value: float) -> str:

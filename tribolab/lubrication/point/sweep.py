@@ -263,6 +263,6 @@ def _ball(system: System) -> PointContact:
 
 def _lost(speed: float, error: Exception) -> AnalysisError:
     return AnalysisError(
-        f"no solution at {speed:.4g} m/s ({error}); take more cells, add speeds beside it, or "
+        f"no solution at {speed:.4g} m/s ({error}); take more cells, add neighbouring speeds, or "
         "leave it out"
     )

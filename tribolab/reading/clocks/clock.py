@@ -164,7 +164,7 @@ def _in_words(faults: Faults, time: np.ndarray) -> list[str]:
     anew = [start.row + 1 for start in faults.starts if not start.period]
     if anew:
         rows = ", ".join(str(row) for row in anew[:5]) + (" ..." if len(anew) > 5 else "")
-        said.append(f"the clock starts anew within the table, {_times(len(anew))}, at row {rows}")
+        said.append(f"the clock restarts within the table, {_times(len(anew))}, at row {rows}")
     periods = [start.period for start in faults.starts if start.period]
     if periods:
         said.append(f"the clock wraps after {periods[0]:.9g} s, {_times(len(periods))}")
@@ -257,7 +257,7 @@ def _reasons(time: np.ndarray, good: np.ndarray, faults: Faults) -> dict[str, in
     lost &= ~faults.missing
     if faults.starts:
         anew = lost & (np.arange(len(time)) >= faults.starts[0].row)
-        counts["after the clock started anew (restart = 'continue' would keep them)"] = int(
+        counts["after the clock restarted (restart = 'continue' would keep them)"] = int(
             np.count_nonzero(anew)
         )
         lost &= ~anew
@@ -286,7 +286,7 @@ def _refusal(time: np.ndarray, row: int, faults: Faults, where: str, dialect: Di
         what += ", as of a counter that wraps" if period else ", and goes on from there"
         what += f" every {period:.9g} s" if period else ""
     return (
-        f"{where}: {what}; the dialect '{dialect.name}' can say what to do: [time] restart = "
-        "'continue' joins parts whose clock starts anew or wraps; for single rows, on_repeat = "
+        f"{where}: {what}; the dialect '{dialect.name}' can define what to do: [time] restart = "
+        "'continue' joins parts whose clock restarts or wraps; for single rows, on_repeat = "
         "'interpolate' gives them times between their neighbours', 'drop' leaves them out"
     )

@@ -104,7 +104,7 @@ def _shift(
         raise ReadError(
             f"{run.attrs['source']} was recorded at {run.attrs['recorded_at']}, its companion "
             f"{motion.attrs['source']} at {motion.attrs['recorded_at']}: another run's log; put "
-            "the right one beside it",
+            "the right one next to it",
             cure=_say_shift("if the dates are wrong, give"),
         )
     expected = 0.0 if apart is None else apart + force_clock[0] - motion_clock[0]

@@ -155,7 +155,7 @@ def _scaled(path: Path, signal: ReadColumn, values: np.ndarray) -> np.ndarray:
     if values.dtype.kind in "Mm":
         values = seconds_of(values)
     if values.dtype.kind not in "fiub":
-        odd = f": '{shown(str(values[0]), 40)}' is none" if values.size else ""
+        odd = f": '{shown(str(values[0]), 40)}' is not one" if values.size else ""
         raise ReadError(f"column '{shown(signal.label)}' holds no numbers{odd}", where=path)
     with np.errstate(over="ignore", invalid="ignore"):  # damaged numbers may be anything
         return np.asarray(values, dtype=float) * signal.scale + signal.offset

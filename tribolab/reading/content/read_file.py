@@ -162,7 +162,7 @@ def _pressed(content: Content, dialect: Dialect) -> Content:
     if min(-low, high) > _UNCLEAR * max(-low, high):
         raise ReadError(
             f"column '{shown(content.labels['normal_force'])}' (normal_force) is as far below zero "
-            f"as above, so that its sign cannot be told; say sign = 1 or sign = -1 in a copy of "
+            f"as above, so that its sign is unknown; say sign = 1 or sign = -1 in a copy of "
             f"the dialect '{dialect.name}'",
             where=content.path,
         )

@@ -57,7 +57,7 @@ class Column(Strict):
     zero: ZeroText | None = Field(
         None,
         description="where its zero is read and taken off: 'first 200 samples', 'first 2 s', "
-        "'1.5 s to 3 s', 'file blank.csv' for a run without contact beside it, 'table zero' for "
+        "'1.5 s to 3 s', 'file blank.csv' for a run without contact next to it, 'table zero' for "
         "such a table in the file, 'table zero to table after' for one before and one after it",
     )
     rectified: bool | None = Field(

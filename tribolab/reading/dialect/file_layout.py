@@ -40,7 +40,9 @@ class Text(Strict):
     thousands: Literal["", ".", ",", "'", " ", "\u00a0", "\u202f"] = Field(
         "", description="mark between the thousands of a number, as the comma of '1,234.5'"
     )
-    missing: tuple[str, ...] = Field((), description="texts that stand for no value, error codes")
+    missing: tuple[str, ...] = Field(
+        (), description="texts that mean no value, such as error codes"
+    )
     arrangement: Literal["below names", "json", "declared records"] = Field(
         "below names",
         description="'json', or the 'declared records' of binary numbers behind text, where the "
@@ -88,7 +90,7 @@ class Header(Strict):
     units_line: PositiveInt = Field(
         1, description="for units = 'row': in which line below the names, from 1"
     )
-    repeats: bool = Field(False, description="a header block stands at each step")
+    repeats: bool = Field(False, description="each step begins with a header block")
     only: Pattern | None = Field(
         None, description="profiles only: of several tables those whose title matches this"
     )

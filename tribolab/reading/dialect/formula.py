@@ -4,7 +4,7 @@
     term    = factor { ("*" | "/") factor }
     factor  = number | name | "'" number unit "'" | "-" factor | "(" formula ")"
 
-Names are those of columns, of values and ``pi``; a number with a unit stands in quotes. Every part
+Names are those of columns, of values and ``pi``; put a number with a unit in quotes. Every part
 has a dimension, and sums of different ones are refused.
 """
 
@@ -216,8 +216,8 @@ class _Reader:
         """Say what should stand where something else does."""
         there = f"'{shown(self.word, 20)}'" if self.word else "its end"
         return UnitError(
-            f"formula '{shown(self.text)}': {there} stands where {wanted} should; a number with a "
-            "unit stands in quotes, e.g. \"rotation_speed * '25 mm'\""
+            f"formula '{shown(self.text)}': {there} is where {wanted} should be; put a number "
+            "with a unit in quotes, e.g. \"rotation_speed * '25 mm'\""
         )
 
     def sum_of_terms(self, depth: int) -> Node:

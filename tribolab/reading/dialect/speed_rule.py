@@ -25,7 +25,7 @@ class Speed(Strict):
     stroke_value: str | None = Field(
         None, description="the [[value]], or symbol of a column, that holds the stroke"
     )
-    frequency: str | None = Field(None, description="strokes to and fro per time, e.g. '5 Hz'")
+    frequency: str | None = Field(None, description="cycles of two strokes per time, e.g. '5 Hz'")
     frequency_value: str | None = Field(
         None, description="the [[value]], or symbol of a column, that holds the frequency"
     )

@@ -18,7 +18,7 @@ class Time(Strict):
 
     source: Literal["column", "period", "rate", "position", "none"] = Field(
         "column",
-        description="'period': the column of 'time' holds what has passed since the row before, "
+        description="'period': the column of 'time' contains the time since the row before, "
         "and is summed; 'position': the way over the speed at which a machine goes on, which rate "
         "(or rate_pattern) states; 'none': rows are counted as seconds, and the run says so",
     )
@@ -47,11 +47,11 @@ class Time(Strict):
     )
     restart: Literal["error", "continue"] = Field(
         "error",
-        description="'continue': where the clock starts anew (in a table, at a step, in a file), "
+        description="'continue': where the clock restarts (in a table, at a step, in a file), "
         "time goes on",
     )
     wrap: str | None = Field(
-        None, description="the clock's counter begins anew after this time, e.g. '65.536 s'"
+        None, description="the clock's counter restarts after this time, e.g. '65.536 s'"
     )
     on_repeat: Literal["error", "drop", "interpolate"] = Field(
         "error",

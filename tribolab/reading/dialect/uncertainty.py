@@ -100,7 +100,7 @@ class StatedUncertainty(_Strict):
                 )
             return _difference(self.value, "1") * _difference(self.full_scale, "N")
         if unit == "N" and self.value.strip().endswith("%"):
-            raise UnitError('value: a share of what? state full_scale = "100 N" beside it')
+            raise UnitError('value: a share of what? add full_scale = "100 N" to it')
         return _difference(self.value, unit)
 
     def known(self, unit: str, usual: str) -> Known:

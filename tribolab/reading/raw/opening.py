@@ -194,7 +194,7 @@ def _here() -> str:
 
 def _ending(ended: Ended) -> str:
     if ended.code is None:
-        return "the library that reads it did not come to an end"
+        return "the library that reads it did not finish"
     if ended.code == 4:
         return "reading it takes more memory than a sound file of this size"
     if ended.code == 5:

@@ -203,6 +203,6 @@ def _companion(path: Path, dialect: Dialect) -> LogDialects:
             f"the companion log {shown(other.name)} is a link to {other.resolve()}; tribolab reads "
             "no data from elsewhere unless you name them",
             where=path,
-            cure="copy that log beside this one, or name both",
+            cure="copy that log next to this one, or name both",
         )
     return [(other, load_dialect(dialect.pair.instrument))]

@@ -6,7 +6,7 @@ MIN_DISTANCE_OF_MARK = Limit(
     1.0,
     "1",
     "distance to the nearest other height over the range of all others, from which on a height "
-    "that is repeated exactly stands for no data: steps and pores are no such gap",
+    "that is repeated exactly means no data: steps and pores are no such gap",
     "judgement",
 )
 MIN_DISTANCE_OF_SINGLE_MARK = Limit(
@@ -20,7 +20,7 @@ MAX_DIGITS_OF_MARK = Limit(
 )
 MAX_SHARE_OF_MARK = Limit(0.5, "1", "beyond it the number is a level of the surface", "judgement")
 MIN_OTHER_HEIGHTS = Limit(
-    16.0, "1", "different heights beside the mark: a scan of fewer is a drawing", "judgement"
+    16.0, "1", "different heights besides the mark: a scan of fewer is a drawing", "judgement"
 )
 SAME_RANGE = Limit(
     1e-3,

@@ -294,7 +294,7 @@ def _stated_pitch(
     if said is None or not float(said) > 0:
         what = "distance of its points" if dialect.pitch_value else "length of the profile"
         raise ReadError(
-            f"{path}: the {what} does not stand in the file as the dialect "
+            f"{path}: the {what} is not in the file as the dialect "
             f"'{dialect.name}' expects it ([[value]] '{shown(value.name)}')"
         )
     return float(said) if dialect.pitch_value else _rounder(float(said), points)

@@ -101,7 +101,7 @@ class _Results:
     def dataset(self, path: Path) -> xr.Dataset:
         """Return them; a file without any is refused."""
         if not self.values:
-            raise ReadError(f"{path}: no roughness parameter (Ra, Rq, Rz ...) stands in the file")
+            raise ReadError(f"{path}: no roughness parameter (Ra, Rq, Rz ...) is in the file")
         self.attrs["instrument_errors"] = "; ".join(self.errors) or "none"
         data = xr.Dataset({name: ((), value) for name, value in self.values.items()})
         return stamp(data, **provenance([path], "read roughness results"), **self.attrs)

@@ -54,7 +54,7 @@ def traces_of(path: Path, pieces: list[Piece], dialect: Dialect) -> list[Piece]:
         return meant
     if len(pieces) > 1 and not _alike(pieces):
         raise ReadError(
-            f"{len(pieces)} tables of heights stand in the file, which are no traces of one scan "
+            f"{len(pieces)} tables of heights are in the file, which are no traces of one scan "
             f"by what is written above them: {_told(pieces)}; say which are meant with only = "
             f"'{shown(_title(pieces[0]) or '...', 30)}' in [header] of a description of it",
             where=path,

@@ -29,7 +29,7 @@ report.reviewing = (() => {
     document.documentElement.classList.toggle("deciding", !bar.hidden);
     bar.classList.toggle("unsaved", unsaved > 0);
     bar.querySelector(".count").textContent = unsaved ? `${many(unsaved, "decision")} not yet downloaded` : `${many(own.length, "decision")} downloaded`;
-    const next = `Put ${file} beside ${campaign} in place of the one there, and run the campaign again.`;
+    const next = `Put ${file} next to ${campaign} in place of the one there, and run the campaign again.`;
     const kept = book.stored ? "Kept in this browser until then." : "This browser keeps nothing of it: it is lost when the page is closed.";
     bar.querySelector(".next").textContent = [book.trouble, unsaved ? kept : next].filter(Boolean).join(" ");
     bar.classList.toggle("unkept", !book.stored);

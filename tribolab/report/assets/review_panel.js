@@ -1,7 +1,7 @@
 "use strict";
 // Under the trace of a run: what is chosen of it, what is decided on that, and the form for a decision.
 report.ReviewPanel = (() => {
-  const WORDS = { reject: "rejected", accept: "accepted", bounds: "bounded anew", note: "noted" };
+  const WORDS = { reject: "rejected", accept: "accepted", bounds: "new bounds", note: "noted" };
   const SIGNS = { reject: "✕", accept: "✓", bounds: "↔", note: "✎" };
   const STATES = { applied: "", waiting: "not in these results", pending: "pending", withdrawn: "to be taken out" };
   const brief = (time) => String(Number(time.toPrecision(6)));
@@ -39,7 +39,7 @@ report.ReviewPanel = (() => {
       this.render();
     }
 
-    // The segments as they were found, which decisions look for: what is bounded anew was elsewhere.
+    // The segments as they were found, which decisions look for: what is new bounds was elsewhere.
     get found() {
       const moved = report.book.of(this.run, []).filter((one) => one.action === "bounds" && one.applied);
       const places = new Map(moved.map((one) => [one.segment, [one.start_s, one.stop_s]]));
@@ -133,7 +133,7 @@ report.ReviewPanel = (() => {
       if (![start, stop].every(Number.isFinite)) return "Bounds are numbers of seconds.";
       if (start >= stop) return "A segment ends after it begins.";
       if (start < low || stop > high) return `Bounds lie between ${brief(low)} and ${brief(high)} s: the run and the other segments.`;
-      if (start >= to || stop <= from) return "The new bounds lie beside the segment.";
+      if (start >= to || stop <= from) return "The new bounds lie outside the segment.";
       return start === from && stop === to ? "Nothing was moved." : "";
     }
 

@@ -27,7 +27,7 @@ def curve_notices(curve: CurveRecord) -> list[Notice]:
         )
     if lost:
         parts.append(f"leave {many(lost, 'speed')} without µ")
-    what = f"decisions {' and '.join(parts)}" if parts else "decisions change what it rests on"
+    what = f"decisions {' and '.join(parts)}" if parts else "decisions change what it depends on"
     members = "; ".join(curve.outcome.run_names)
     text = f"{what}; the curve without them: tables/{CURVES_AS_FOUND}"
     return [Notice("note", members, curve.outcome.name, text)]

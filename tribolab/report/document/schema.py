@@ -29,8 +29,8 @@ from tribolab.report.tables import SEVERITIES
 
 REPORT_SCHEMA_FILE = "report.schema.json"
 _DESCRIPTION = (
-    "report.json: everything that report.html says. Numbers are in SI units, which stand in the "
-    "names; what is not a number is null."
+    "report.json: everything that report.html contains. Numbers are in SI units, which are part "
+    "of the names; what is not a number is null."
 )
 _FIT_TEXTS = (
     *("area", "adhesion", "other_area", "interval_says", "judgement", "spectrum_error_from"),
@@ -38,7 +38,7 @@ _FIT_TEXTS = (
 )
 _CHECK = ("scan", "check", "status", "variable", "message", "value", "unit", "where")
 _VALIDITY = "limits of the theory that the results leave, and what to do; empty if none"
-_QUALITY = "gravest finding of the checks on the scans that were used; empty if there are none"
+_QUALITY = "gravest finding of the checks on the scans that were used; empty without any"
 _ROUGHNESS = (
     "a row of tables/roughness.csv: ISO parameters are means over the scans, *_sem their "
     "standard errors from the scatter of the scans (of a single profile, of its sampling lengths), "
@@ -153,14 +153,14 @@ class ReportedSurface(ReportedPart):
     adhesion: tuple[AdhesionRow, ...]
     modulus: Annotated[str, means("where the modulus of the rubber comes from")]
     validity: Annotated[str, means(_VALIDITY)]
-    area: Annotated[str, means("theory of the contact area; empty if there is none")]
+    area: Annotated[str, means("theory of the contact area; empty without one")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReportedModel(ReportedPart):
     """The mixed-lubrication model beside a measured curve in a fluid."""
 
-    curve: Annotated[str, means("the measured curve beside which it is computed")]
+    curve: Annotated[str, means("the measured curve for which it is computed")]
     surface: str
     medium: str
     normal_force_N: float | None

@@ -22,4 +22,4 @@ def wanted(word: str) -> Wanted:
     """
     if word in _WANTED:
         return _WANTED[word]
-    raise ConfigError(f"figures: '{shown(word)}' is none of all, curves, none")
+    raise ConfigError(f"figures: '{shown(word)}' is not all, curves or none")

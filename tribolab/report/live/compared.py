@@ -58,7 +58,7 @@ def _falling(known: FrictionOverSpeed, colours: Mapping[str, int]) -> list[Figur
         id="curves-compared",
         section="curves",
         title="At which speed friction falls",
-        note="Each curve over its own highest friction, so that plateaus of different height stand "
+        note="Each curve over its own highest friction, so that all plateaus are "
         "at 1. Bars: U95 of the point. "
         + told_apart([curve.outcome.medium for curve in known.curves], "filled", "open"),
         alt=f"Friction relative to its highest value over sliding speed of "
@@ -123,8 +123,8 @@ def _every_run(known: FrictionOverSpeed, colours: Mapping[str, int]) -> FigureSp
         id="curves-runs",
         section="curves",
         title="Every run of the repeats",
-        note="A point for each run and speed. Bars: U95 within the run, which says "
-        "nothing of the next run. "
+        note="A point for each run and speed. Bars: U95 within the run, without "
+        "the scatter between runs. "
         + told_apart([curve.medium for curve in series], "filled", "open"),
         alt=f"Friction coefficient over sliding speed of {many(len(series), 'run')}, "
         f"µ {span(mu for drawn in series for mu in drawn.y)}.",

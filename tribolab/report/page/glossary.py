@@ -27,8 +27,8 @@ GLOSSARY: dict[str, str] = {
     "the segments of a run.",
     "Drift": "Largest significant change of friction along a segment, divided by the mean friction "
     "of the run.",
-    "Left out": "Time of the record that no number rests on: at rest, while the speed changes, or "
-    "too short.",
+    "Left out": "Time of the record that no number uses: at rest, while the speed changes, or too "
+    "short.",
     "Half loop": "Half the difference of the forces of a stroke forward and a stroke back: the "
     "friction force without the offset of the sensor.",
     "Shear stress σ": "Friction force divided by the real contact area, fitted to the measured "
@@ -59,7 +59,7 @@ GLOSSARY: dict[str, str] = {
     "Sliding mode": "Whether a contact slides steadily, slips because of the rig's spring, or "
     "because adhesion folds the surface.",
     "Rejected": "A run whose checks failed, or that a person rejected (by hand): its numbers are "
-    "shown, struck through, and no curve rests on them.",
+    "shown, struck through, and no curve uses them.",
     "Failed": "A run that could not be read or computed: there are no numbers of it.",
     "Suspect": "A check found something that may spoil the numbers; they are used.",
 }

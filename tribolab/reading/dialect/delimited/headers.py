@@ -42,7 +42,7 @@ def header_starts(file: File, content: bytes | mmap.mmap, dialect: Dialect) -> l
         position = content.find(b"\n", position) + 1
         if position == 0:
             raise ReadError(
-                f"{file.path}: the header should stand in line {header.line}, but the file (or "
+                f"{file.path}: the header should be in line {header.line}, but the file (or "
                 "its first megabyte) has fewer lines"
             )
     return [position]

@@ -153,11 +153,11 @@ class RowParser:
                 if str(signal.place) in self._dates:
                     continue
                 if cell not in missing and not _is_number(cell, self._dialect.text.table_decimal):
-                    told = f"'{shown(cell, 40)}'" if is_table else "what stands there"
+                    told = f"'{shown(cell, 40)}'" if is_table else "the text there"
                     word = shown(cell, 40) if is_table else "..."
                     return (
                         f"{where}, column '{shown(signal.label)}': {told} is not a number; if it "
-                        f"stands for a missing value, say so in the dialect: [text] missing = "
+                        f"marks a missing value, state it in the dialect: [text] missing = "
                         f"['{word}']"
                     )
             is_table = True

@@ -69,7 +69,7 @@ def read_gauge(path: Path) -> xr.Dataset:
         ) from error
     if heights.size < number or number < 2:
         raise ReadError(
-            f"{path}: {heights.size} heights stand in the file, but it says that they are "
+            f"{path}: {heights.size} heights are in the file, but it says that they are "
             f"{number}; is it whole?"
         )
     if not pitch > 0:

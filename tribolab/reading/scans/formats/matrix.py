@@ -268,7 +268,7 @@ def _refuse(path: Path, matrix: _Matrix, header: MapHeader) -> None:
         raise NotSaidError(what, where=path, cure=cures.either(write, cure))
     if not matrix.alone:
         raise ReadError(
-            f"{path}: several matrices of numbers stand in the file; leave only the heights"
+            f"{path}: the file contains several matrices of numbers; leave only the heights"
         )
     if matrix.ragged:
         raise ReadError(
@@ -276,6 +276,6 @@ def _refuse(path: Path, matrix: _Matrix, header: MapHeader) -> None:
         )
     if header.rows not in (None, rows) or header.columns not in (None, columns):
         raise ReadError(
-            f"{path}: {rows} rows of {columns} numbers stand in the file, but it says that they "
+            f"{path}: {rows} rows of {columns} numbers are in the file, but it says that they "
             f"are {header.rows or rows} rows of {header.columns or columns}; is it whole?"
         )

@@ -64,7 +64,7 @@ def read_surfer(
         raise ReadError(f"{columns} x {rows} points, as it says, are no map", where=path)
     if heights.size != rows * columns:
         raise ReadError(
-            f"{heights.size} heights stand in the file, but it says that they are {columns} x "
+            f"{heights.size} heights are in the file, but it says that they are {columns} x "
             f"{rows}; is it whole?",
             where=path,
         )

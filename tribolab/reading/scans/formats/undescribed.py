@@ -108,7 +108,7 @@ def _of_arrays(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Da
     scan = read_scan_arrays(path, x_unit, height_unit)
     if scan is None and is_npz(path):
         raise ReadError(
-            "no array of this archive is named as heights are, such as 'z_um' beside 'x_mm'",
+            "no array of this archive is named as heights are, such as 'z_um' next to 'x_mm'",
             where=path,
         )
     return read_foreign(path, x_unit, height_unit) if scan is None else scan

@@ -212,7 +212,7 @@ def _shape(path: Path, root: ElementTree.Element) -> tuple[int, int]:
     if nx < 1 or ny < 1 or nx * ny > _MOST:
         raise ReadError(f"{path}: {nx} x {ny} points, as the file says, are no profile and no map")
     if layers != 1:
-        raise ReadError(f"{path}: {layers} layers of heights stand in the file, one is wanted")
+        raise ReadError(f"{path}: {layers} layers of heights are in the file, one is wanted")
     return (ny, nx) if nx == 1 else (nx, ny)
 
 
@@ -243,7 +243,7 @@ def _columns(
     elif listed is not None:
         columns = _listed(path, listed, given, number)
     else:
-        raise ReadError(f"{path}: no heights stand in the file, neither as a list nor as a member")
+        raise ReadError(f"{path}: the file contains no heights, neither as a list nor as a member")
     valid = _text(root, "Record3/DataLink/ValidPointsLink")
     if valid:
         with contextlib.suppress(KeyError):  # named, but not there: every point is valid

@@ -66,7 +66,7 @@ def read_xml_values(
     root = parsed(path, path.read_bytes())
     lists = sorted(_lists(root), key=lambda some: -some.values.size)
     if not lists:
-        raise ReadError(f"{path}: no list of numbers stands in this XML, so it holds no profile")
+        raise ReadError(f"{path}: this XML contains no list of numbers, so it holds no profile")
     longest = [some for some in lists if some.values.size == lists[0].values.size]
     places = [some for some in longest if _PLACE.match(some.name)]
     heights = next((some for some in longest if some not in places), longest[0])

@@ -60,7 +60,7 @@ def read_zygo_xyz(path: Path, x_unit: str | None = None) -> xr.Dataset:
         raise ReadError(f"the map is damaged: {brief(error)}", where=path) from error
     if not mark or len(points) != rows * columns or not len(points):
         raise ReadError(
-            f"{len(points)} points stand in the file, but it says that they are {columns} x "
+            f"{len(points)} points are in the file, but it says that they are {columns} x "
             f"{rows}; is it whole?",
             where=path,
         )

@@ -117,7 +117,7 @@ def _run(
     unit = time_unit(part[:, time])
     rises = "it rises in every row"
     if (np.diff(part[:, time]) <= 0).any():
-        rises = "it rises by even steps, and starts anew now and then"
+        rises = "it rises by even steps, and restarts now and then"
     why = f"it is time in {unit}: {rises}"
     result = list(columns)
     result[time] = columns[time]._replace(quantity="time", unit=unit, used=True, guessed=(why,))
@@ -131,7 +131,7 @@ def _run(
         note = f"the same signal as column {', '.join(same)}" if same else "without a name"
         result[i] = columns[i]._replace(note=note)
     if position is not None:
-        why = "it is the position in mm: it runs smoothly to and fro"
+        why = "it is the position in mm: it reverses smoothly"
         result[position] = columns[position]._replace(
             quantity="position",
             unit="mm",

@@ -104,7 +104,7 @@ def _with_repeats(
     """Say what becomes of rows whose time does not increase; a guess unless one time fits."""
     rows = f"{int(bad.sum())} rows whose time is not later than before"
     if lossless:
-        return column._replace(note=f"{rows} are left out: they say nothing new")
+        return column._replace(note=f"{rows} are left out: they add nothing")
     note = f"{rows} get times between the others'"
     if _fill_one_interval(time, bad):
         return column._replace(note=note)

@@ -56,7 +56,7 @@ def legend_evidence(layout: Layout) -> Rule:
             about = _explanation(facts.bare[place][0], lines) if _is_axis(facts, place) else ""
             if not about:
                 continue
-            said = f"the text says what it is: '{shown(about, 40)}'"
+            said = f"the text names it: '{shown(about, 40)}'"
             named = _explained_force(about)
             if named in BOTH_FORCES:
                 yield Evidence(place, named, _STATED, said, proposes=True, sure=True)

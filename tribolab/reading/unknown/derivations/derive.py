@@ -94,7 +94,7 @@ def _add_load(result: Follows, layout: Layout, understood: Understood, known: Kn
     if set_to is not None and load is not None and wanted:
         out = stated is not None and "position" in names and lifted_on_return(layout)
         about = f"nothing measures it: {_quoted(set_to)} is taken for all of the run"
-        about += ", but for ways back, on which it is lifted" if out else ""
+        about += ", except for return strokes, on which it is lifted" if out else ""
         return result.with_derivation(load, about, "out" if out else "")
     measured = names & {"normal_force", "normal_stress", "set_normal_force"}
     if stated is not None and (not measured or _is_held(stated, understood)):

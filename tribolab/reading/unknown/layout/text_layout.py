@@ -191,7 +191,7 @@ def find_layout(file: File) -> Layout:
     grammar = find_grammar(lines)
     if grammar is None:
         raise ReadError(
-            f"{file.path}: no table of numbers stands in the file; a dialect describes text with "
+            f"{file.path}: the file contains no table of numbers; a dialect describes text with "
             "at least one row of numbers"
         )
     blocks = find_blocks(lines, grammar)

@@ -232,7 +232,7 @@ def _answer(file: File, understood: Understood) -> str:
         except TribolabError:
             return (
                 "numbers without names, of which no column proceeds like time or a position; say "
-                "in a dialect what stands at which position: raw_data_schema/README.md shows how"
+                "in a dialect what is at which position: raw_data_schema/README.md shows how"
             )
         sizes = " x ".join(str(size) for size in scan.sizes.values())
         return (

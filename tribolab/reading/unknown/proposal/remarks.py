@@ -57,7 +57,7 @@ def _lines(texts: Iterable[str]) -> tuple[str, ...]:
 def _about_file(described: Described) -> list[str]:
     layout, understood = described.layout, described.understood
     said = [f"guessed: {g}" for g in (*layout.notes, *layout.guesses, *understood.guesses)]
-    more = f"{layout.others} more tables stand in the file; they are not read"
+    more = f"{layout.others} more tables are in the file; they are not read"
     return [*said, more] if layout.others else said
 
 
@@ -78,7 +78,7 @@ def _behind(described: Described) -> dict[str, str]:
         "length_value": "its heights have no positions",
         "time.epoch": "tells when it was recorded",
         "time.on_repeat": _ON_REPEAT.get(understood.on_repeat, ""),
-        "time.restart": "the clock starts anew, or wraps",
+        "time.restart": "the clock restarts or wraps",
         "rows.are": "each row is the mean at one speed, its error unknown",
         "time.source": _source_of_time(described),
     }
@@ -86,7 +86,7 @@ def _behind(described: Described) -> dict[str, str]:
 
 def _source_of_time(described: Described) -> str:
     if described.understood.period:
-        return "the column holds what has passed since the row before"
+        return "the column contains the time since the row before"
     return "guessed: rows are counted as seconds" if _rows_are_counted(described) else ""
 
 
