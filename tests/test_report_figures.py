@@ -198,7 +198,7 @@ def test_results_open_by_name_with_every_digit(made):
 
 
 def test_an_option_that_does_not_exist_is_refused_before_anything_is_read(tmp_path):
-    with pytest.raises(ConfigError, match="is none of"):
+    with pytest.raises(ConfigError, match="is not all"):
         run_campaign(tmp_path / "nowhere.toml", figures="some")
 
 
