@@ -13,7 +13,7 @@ import pytest
 import tribolab as tl
 from tribolab.studies import xu2026
 
-PROJECT = Path(__file__).resolve().parents[1]
+PROJECT = Path(__file__).resolve().parents[2]
 
 
 def public():
