@@ -245,16 +245,49 @@ def _circle(
 
 def _flatten_map(scans: xr.Dataset, order: int) -> xr.Dataset:
     height = scans.height.transpose(..., "y", "x")
-    x, y = ((c - c.mean()) / max(np.ptp(c) / 2, 1e-300) for c in (scans.x.values, scans.y.values))
     vander = np.polynomial.legendre.legvander
-    terms = [
-        np.outer(vander(y, order)[:, i], vander(x, order)[:, j]).ravel()
-        for i in range(order + 1)
-        for j in range(order + 1 - i)
-    ]
-    basis, rows = np.stack(terms, axis=-1), height.values.reshape(-1, y.size * x.size)
-    flat = _without_rounding(rows - _least_squares(rows, basis) @ basis.T, rows)
-    which = "the map" if len(rows) == 1 else f"{len(rows)} maps"
+    along_x, along_y = (
+        vander((c - c.mean()) / max(np.ptp(c) / 2, 1e-300), order)
+        for c in (scans.x.values, scans.y.values)
+    )
+    maps = height.values.reshape(-1, *height.shape[-2:])
+    flat = np.empty(maps.shape)
+    for heights, left in zip(maps, flat, strict=True):
+        np.matmul(along_y, _map_coefficients(heights, along_y, along_x) @ along_x.T, out=left)
+        np.subtract(heights, left, out=left)
+        if rounding_only(left.reshape(1, -1), heights.reshape(1, -1))[0]:
+            left[np.isfinite(left)] = 0.0
+    which = "the map" if len(maps) == 1 else f"{len(maps)} maps"
     history = _with(scans, f"removed a polynomial of order {order} from {which}")
     result = scans.assign(height=height.copy(data=flat.reshape(height.shape)))
     return result.assign_attrs(history=history)
+
+
+def _map_coefficients(heights: np.ndarray, along_y: np.ndarray, along_x: np.ndarray) -> np.ndarray:
+    """Legendre coefficients (term of y, term of x) of least squares, up to the total degree.
+
+    The sums over a map of products of polynomials are sums over y of sums over x, so that no basis
+    as large as the map is needed; missing heights (NaN) have no weight.
+    """
+    terms = along_x.shape[1]
+    i, j = np.nonzero(np.add.outer(np.arange(terms), np.arange(terms)) < terms)
+    present = np.isfinite(heights)
+    if present.all():
+        over_y, over_x = along_y.T @ along_y, along_x.T @ along_x
+        normal = over_y[np.ix_(i, i)] * over_x[np.ix_(j, j)]
+    else:
+        if (number := int(present.sum())) < i.size + 1:
+            raise AnalysisError(
+                f"a map has {number} heights that are numbers, too few for the form; leave that "
+                "map out",
+                function="remove_form",
+            )
+        pairs_y, pairs_x = (
+            (v[:, :, None] * v[:, None, :]).reshape(len(v), -1) for v in (along_y, along_x)
+        )
+        sums = (pairs_y.T @ (present.astype(float) @ pairs_x)).reshape((terms,) * 4)
+        normal = sums[i[:, None], i, j[:, None], j]
+        heights = np.where(present, heights, 0.0)
+    coefficients = np.zeros((terms, terms))
+    coefficients[i, j] = np.linalg.solve(normal, (along_y.T @ (heights @ along_x))[i, j])
+    return coefficients

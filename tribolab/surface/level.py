@@ -36,10 +36,17 @@ def rounding_only(deviation: np.ndarray, heights: np.ndarray) -> np.ndarray:
     >>> rounding_only(heights - heights.mean(1, keepdims=True), heights).tolist()
     [True, False]
     """
-    largest, left = (
-        np.where(np.isfinite(z), np.abs(z), 0.0).max(axis=-1) for z in (heights, deviation)
-    )
-    return (left <= _ROUNDING * largest) & np.isfinite(deviation).any(axis=-1)
+    largest, left = _largest(heights), _largest(deviation)
+    return (np.nan_to_num(left) <= _ROUNDING * np.nan_to_num(largest)) & ~np.isnan(left)
+
+
+def _largest(rows: np.ndarray) -> np.ndarray:
+    """Largest magnitude of the finite values of each row; NaN without any."""
+    largest = np.maximum(np.fmax.reduce(rows, axis=-1), -np.fmin.reduce(rows, axis=-1))
+    for row in np.flatnonzero(np.isinf(largest)):
+        finite = rows[row][np.isfinite(rows[row])]
+        largest[row] = np.abs(finite).max() if finite.size else np.nan
+    return np.asarray(largest)
 
 
 def level_rows(height: np.ndarray) -> np.ndarray:
@@ -63,7 +70,10 @@ def level_rows(height: np.ndarray) -> np.ndarray:
 
 def level_map(height: np.ndarray) -> bool:
     """Tell whether the heights (y, x) of a map are equal or on one plane."""
-    return bool(level_rows(height).all() and level_rows(height.T).all())
+    first = slice(0, 8)  # of most maps these rows suffice: they are not level
+    return bool(
+        level_rows(height[first]).all() and level_rows(height).all() and level_rows(height.T).all()
+    )
 
 
 def refuse_level(who: str, scans: xr.Dataset, level: Sequence[bool] | np.ndarray) -> None:

@@ -25,12 +25,17 @@ from tribolab.units.stamping import stamp
 _FEWEST = 16
 
 
-def _power(maps: np.ndarray, taper: np.ndarray) -> np.ndarray:
-    """Mean power of maps (scan, y, x) at each line; one transform at a time: maps are large."""
-    power = np.zeros(taper.shape)
-    for heights in maps:
-        power += np.abs(np.fft.fft2(heights * taper)) ** 2 / len(maps)
-    return power
+def _power(maps: np.ndarray) -> tuple[np.ndarray, float]:
+    """Mean power of windowed maps (scan, y, x) at the lines of half a plane, and mean square."""
+    rows, columns = maps.shape[-2:]
+    power, square = np.zeros((rows, columns // 2 + 1)), 0.0
+    for heights in maps:  # one transform at a time: maps are large
+        windowed = heights * window(columns)
+        windowed *= window(rows)[:, None]
+        square += float(np.vdot(windowed, windowed)) / maps.size
+        lines = np.fft.rfft2(windowed)
+        power += (lines.real**2 + lines.imag**2) / len(maps)
+    return power, square
 
 
 def psd_2d_of_map(
@@ -86,11 +91,17 @@ def psd_2d_of_map(
         height = bridged(height, missing, is_map=True)
     refuse_level("psd_2d", scan, [level_map(row) for row in height])
     steps = [float(np.ptp(scan[d].values) / (scan.sizes[d] - 1)) for d in ("y", "x")]
-    taper = np.outer(window(size[0]), window(size[1]))
-    power, whole = _power(height, taper), float(np.mean((height * taper) ** 2))
-    scale = steps[0] * steps[1] / (4 * np.pi**2 * taper.size)
-    ky, kx = (2 * np.pi * np.fft.fftfreq(n, d) for n, d in zip(size, steps, strict=True))
+    power, whole = _power(height)
+    scale = steps[0] * steps[1] / (4 * np.pi**2 * size[0] * size[1])
+    ky, kx = (
+        2 * np.pi * np.fft.fftfreq(size[0], steps[0]),
+        2 * np.pi * np.fft.rfftfreq(size[1], steps[1]),
+    )
     q = np.hypot(ky[:, None], kx)
+    mirrored = np.full(kx.size, 2.0)  # half of the lines of the plane mirror the other half
+    mirrored[0] = 1.0
+    if size[1] % 2 == 0:
+        mirrored[-1] = 1.0
     spacing = max(2 * np.pi / (n * d) for n, d in zip(size, steps, strict=True))
     waves = int(min(np.pi / d for d in steps) / spacing)
     if waves < MIN_WAVES_OF_MAP.value:
@@ -103,17 +114,19 @@ def psd_2d_of_map(
         )
     bins = log_bins(waves, 3, bins_per_decade, 1)
     edges = bins.edges * spacing
-    index = np.digitize(q.ravel(), edges) - 1
-    inside = (index >= 0) & (index < bins.starts.size)
-    index = index[inside]
-    lines = np.bincount(index, minlength=bins.starts.size)
-    per_line = scale / lines
+    annulus = np.digitize(q.ravel(), edges)  # 0 and the last are outside all annuli
+
+    def sums(values: np.ndarray) -> np.ndarray:
+        return np.bincount(annulus, (values * mirrored).ravel(), bins.starts.size + 2)[1:-1]
+
+    lines = sums(np.ones(q.shape))
 
     def annuli(values: np.ndarray) -> np.ndarray:
-        return np.bincount(index, values.ravel()[inside], bins.starts.size) * per_line
+        return sums(values) * (scale / lines)
 
     mean = annuli(power)
-    node = np.exp(np.bincount(index, np.log(q.ravel()[inside]), bins.starts.size) / lines)
+    q[0, 0] = 1.0  # of no annulus
+    node = np.exp(sums(np.log(q)) / lines)
     correlated = (1 + 2 * (correlation(1) + correlation(2))) ** 2
     independent = len(height) * np.maximum(0.5 * lines / correlated, 1.0)
     known = np.arange(node.size) > 0  # the first annulus is what form and window take
@@ -121,15 +134,16 @@ def psd_2d_of_map(
     if missing is not None:
 
         def powers(maps: np.ndarray) -> np.ndarray:
-            return logarithm(annuli(_power(maps, taper)))
+            return logarithm(annuli(_power(maps)[0]))
 
         effect = gap_effect(height, missing, powers, is_map=True, joint=True)
         mean, independent = mean * np.exp(-effect.shift), still_worth(independent, effect)
         lost = lost_from(node, effect)
         known &= node < max(lost, node[min(4, node.size - 1)])
     low, high = confidence_band(mean, independent)
-    cell = (2 * np.pi) ** 2 / (taper.size * steps[0] * steps[1])
-    along_x, along_y = (power * kx**2).sum(), (power * ky[:, None] ** 2).sum()
+    cell = (2 * np.pi) ** 2 / (size[0] * size[1] * steps[0] * steps[1])
+    power *= mirrored
+    along_x, along_y = (power @ kx**2).sum(), (ky**2 @ power).sum()
     data = xr.Dataset(
         {
             "psd_2d": ("wavenumber", mean[known]),
