@@ -202,7 +202,7 @@ def test_a_campaign_without_motion_finds_nothing_and_says_so(campaign, tmp_path)
     campaign.write_text(text, encoding="utf-8")
     done = told("run", campaign, "-o", tmp_path / "new", "-j", 1, *BARE)
     assert done.returncode == 3
-    assert "no segment of constant speed was found" in done.stderr
+    assert "no run contains a segment of constant speed" in done.stderr
 
 
 @pytest.mark.slow
