@@ -1,4 +1,4 @@
-"""Roughness of a map as a whole: Sq and Sa of ISO 25178."""
+"""Roughness of a whole map: Sq and Sa of ISO 25178."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from tribolab.units.stamping import stamp
 
 
 def areal_roughness(scans: xr.Dataset) -> xr.Dataset:
-    """Root mean square and mean size of all heights of a map, of waves of every length: Sq, Sa.
+    """Sq and Sa of a map: rms and mean absolute height over all wavelengths.
 
     Parameters
     ----------
     scans
-        ``height`` [m] (..., y, x) without form. Missing heights, and those that were filled in
-        (``dropout``), are left out.
+        ``height`` [m] (..., y, x) without form. Missing and filled heights (``dropout``) are
+        ignored.
 
     Returns
     -------
     xarray.Dataset
-        ``Sq`` and ``Sa`` [m], with the dims of the heights but x and y. Heights count from their
+        ``Sq`` and ``Sa`` [m], with the dims of the heights except x and y. Heights count from their
         mean; no waves are filtered out.
 
     Raises

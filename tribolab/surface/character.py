@@ -1,4 +1,4 @@
-"""Whether a surface can be self-affine: waves that repeat, and a lay, speak against it."""
+"""Tests whether a surface can be self-affine: periodic waves and a lay contradict it."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ import xarray as xr
 
 from tribolab.surface.gaps import bridged, gaps_in
 
-_MOST_POINTS = 8192  # of a profile that are looked at: a wave that rules has some points a period
-_MOST_ROWS = 512  # of a map: their mean power is known to 6 % at each line
-_PERIODS = 12  # fewer of them in a scan are no wave that repeats: chance makes six
-_LOBE = 2  # lines on either side that a Hann window spreads a wave over
-_RULES = 0.55  # share of the mean square height that one wave holds on no random surface
-_BESIDE, _NEAR = 24, 4  # lines on either side that tell what is usual, but for the nearest
-_CHANCE = 1e-6  # that one of all lines of random heights stands out so far
-_LAY = 0.4  # slopes along a lay over those across; chance makes 0.6 of smooth small maps
+_MOST_POINTS = 8192  # of a profile; a dominant wave must be sampled by several points a period
+_MOST_ROWS = 512  # of a map: the mean power of each line is then accurate to 6 %
+_PERIODS = 12  # fewer periods in a scan can arise by chance, which makes up to six
+_LOBE = 2  # lines on either side over which a Hann window spreads a wave
+_RULES = 0.55  # share of the mean square height that no single wave of a random surface reaches
+_BESIDE, _NEAR = 24, 4  # lines on either side that define the usual level, without the nearest ones
+_CHANCE = 1e-6  # chance that any line of random heights exceeds its neighbours so far
+_LAY = 0.4  # ratio of the slopes along and across the lay; chance gives 0.6 on smooth small maps
 
 
 def why_not_self_affine(scans: xr.Dataset) -> str:
-    """Say why no self-affine law carries on the spectrum of these scans; nothing if it may.
+    """Reason why the spectrum of these scans cannot be extrapolated as self-affine, or "".
 
     Parameters
     ----------
@@ -28,11 +28,11 @@ def why_not_self_affine(scans: xr.Dataset) -> str:
     Returns
     -------
     str
-        Words for a sentence; empty if nothing speaks against it.
+        Part of a sentence; empty if the surface can be self-affine.
 
     Notes
     -----
-    One wave of at least twelve periods that holds more than half of the mean square height is a
+    A single wave of at least twelve periods with more than half of the mean square height is a
     groove, a gauge, or marks of a tool. The lay of a map is the ratio of the rms slopes along the
     main axes of ``<grad h grad h>``, which no rotation of the map changes.
 
@@ -69,7 +69,7 @@ def why_not_self_affine(scans: xr.Dataset) -> str:
 
 
 def dominant_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
-    """Return the share of the mean square height that one wave holds, and its length [m].
+    """Share of the mean square height in the strongest single wave, and its wavelength [m].
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def dominant_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
 
 
 def repeating_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
-    """Return the share of the mean square height and the length [m] of a wave that stands out.
+    """Share of the mean square height in a significant periodic wave, and its wavelength [m].
 
     Parameters
     ----------
@@ -103,13 +103,13 @@ def repeating_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
     Returns
     -------
     tuple
-        0 and NaN where none does: marks of a feed and chatter repeat, and roughness does not.
+        0 and NaN if there is none. Feed marks and chatter repeat; roughness does not.
 
     Notes
     -----
     A line of the spectrum, of at least 48 periods, over the medians on both sides. Of random
     heights a line exceeds their mean r times with the chance exp(-r); of all lines together it is
-    held below 1e-6. Of simulated self-affine profiles, whose spectra fall, some 2 in 1000 are told.
+    kept below 1e-6. Some 2 in 1000 simulated self-affine profiles are reported.
     """
     power, length = _power_of(rows, pitch)
     total = float(power.sum())
@@ -119,7 +119,7 @@ def repeating_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
     windows = np.lib.stride_tricks.sliding_window_view(power, _BESIDE - _NEAR)
     middle = np.median(windows, axis=1)
     left, right = middle[inner - _BESIDE], middle[inner + _NEAR + 1]
-    # of a spectrum that falls their geometric mean; where it begins, the right alone
+    # geometric mean for a falling spectrum; at its start only the right side
     usual = np.where(left >= right, np.sqrt(left * right), right) / np.log(2)
     ratio = power[inner] / np.where(usual > 0, usual, np.inf)
     best = int(np.argmax(ratio))
@@ -131,7 +131,7 @@ def repeating_wave(rows: np.ndarray, pitch: float) -> tuple[float, float]:
 
 
 def _power_of(rows: np.ndarray, pitch: float) -> tuple[np.ndarray, float]:
-    """Return the mean power of rows under a Hann window, and the length [m] of the first line."""
+    """Mean power of rows under a Hann window, and the wavelength [m] of the first line."""
     joined = -(-rows.shape[-1] // _MOST_POINTS)
     number = rows.shape[-1] // joined
     rows = rows[:: -(-len(rows) // _MOST_ROWS), : joined * number]
@@ -143,7 +143,7 @@ def _power_of(rows: np.ndarray, pitch: float) -> tuple[np.ndarray, float]:
 
 
 def slope_ratio(height: np.ndarray, step_y: float, step_x: float) -> float:
-    """Rms slope along the lay of maps (..., y, x) over that across it; 1 if there is none."""
+    """Ratio of the rms slopes along and across the lay of maps (..., y, x); 1 without a lay."""
     height = height.reshape(-1, *height.shape[-2:])
     along_x = np.diff(height, axis=-1)[..., :-1, :] / step_x
     along_y = np.diff(height, axis=-2)[..., :, :-1] / step_y

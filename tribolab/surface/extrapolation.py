@@ -1,4 +1,4 @@
-"""Carry a measured spectrum on to the wavenumbers that the contact asks for."""
+"""Extrapolation of a measured spectrum to the wavenumbers that the contact needs."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from tribolab.units.stamping import stamp
 
 AS_MEASURED, TO_SMALL, TO_LARGE = 0, 1, 2
 _PER_DECADE = 20
-_ABOVE_ROLLOFF = 1.5  # the fit keeps so far above the roll-off
-_NORMAL = 1.959963984540054  # 95 % of a normal distribution
+_ABOVE_ROLLOFF = 1.5  # the fit starts this far above the roll-off
+_NORMAL = 1.959963984540054  # two-sided 95 % quantile of the normal distribution
 
 
 class PowerLaw(NamedTuple):
@@ -36,11 +36,11 @@ class PowerLaw(NamedTuple):
 
     @property
     def hurst_error(self) -> float:
-        """Its standard error."""
+        """Standard error of the Hurst exponent."""
         return 0.5 * self.slope_error
 
     def at(self, wavenumber: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return ln C and its standard error."""
+        """Return ln C and its standard error at a wavenumber."""
         x = np.log(wavenumber) - self.centre
         return self.level + self.slope * x, np.hypot(self.level_error, self.slope_error * x)
 
@@ -49,7 +49,7 @@ _UNKNOWN = PowerLaw(*[float("nan")] * 5)
 
 
 class _Part(NamedTuple):
-    """A stretch of a spectrum; the band is relative to the values (2, wavenumber)."""
+    """Part of a spectrum; the band is relative to the values (2, wavenumber)."""
 
     wavenumber: np.ndarray
     value: np.ndarray
@@ -57,7 +57,7 @@ class _Part(NamedTuple):
     origin: int
 
     def between(self, low: float, high: float) -> _Part:
-        """Cut at two wavenumbers, with nodes there if they lie inside."""
+        """Cut the part at two wavenumbers, with nodes at the cuts."""
         q = self.wavenumber
         ends = np.array([end for end in (low, high) if q[0] < end < q[-1] and end not in q])
         nodes = np.unique(np.concatenate([q[(q >= low) & (q <= high)], ends]))
@@ -73,7 +73,7 @@ def extrapolate(
     q_high: str | float = np.pi / 1e-9,
     fit_decade: tuple[str | float, str | float] | None = None,
 ) -> xr.Dataset:
-    """Extrapolate a 2D spectrum: a plateau to small wavenumbers, a power law to large ones.
+    """Extrapolate a 2D spectrum: constant at small wavenumbers, a power law at large ones.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def extrapolate(
         ``psd_2d`` with its band from `q_low` to `q_high`, and ``origin``: 0 measured, 1
         extrapolated to small, 2 to large wavenumbers. Attributes ``hurst_exponent`` and its
         standard error, ``fit_low_1_m``, ``fit_high_1_m``, ``rolloff_wavenumber_1_m`` and
-        ``rolloff`` (what is known of it); ``not_self_affine`` says what speaks against the law.
+        ``rolloff`` (found or not); ``not_self_affine`` gives a reason against the power law.
 
     Raises
     ------
@@ -164,7 +164,7 @@ def extrapolate(
     kept = {k: v for k, v in psd.attrs.items() if k != "origin"}
     kept["history"] = "\n".join(filter(None, [kept.get("history", ""), history_line(action)]))
     seen = rolloff > 1.05 * q[0]
-    rough = _is_of_a_surface(law)  # else nothing was led on by it
+    rough = _is_of_a_surface(law)  # otherwise nothing was extrapolated
     attrs = {
         **kept,
         "hurst_exponent": law.hurst if rough else float("nan"),
@@ -183,14 +183,14 @@ def extrapolate(
 
 
 def _is_of_a_surface(law: PowerLaw) -> bool:
-    """Whether a rough surface may have such an exponent, within its error."""
+    """Whether a rough surface can have this Hurst exponent, within its error."""
     hurst, error = law.hurst, law.hurst_error
     sure = hurst - _NORMAL * error
     return bool(MIN_HURST.value <= hurst <= MAX_FITTED_HURST.value and sure <= MAX_SURE_HURST.value)
 
 
 def _refuse_no_surface(law: PowerLaw, decade: tuple[float, float], why: str) -> None:
-    """Refuse a fall that no rough surface has."""
+    """Raise an error if the spectrum falls in a way that no rough surface has."""
     if _is_of_a_surface(law):
         return
     if law.hurst < MIN_HURST.value:
@@ -213,7 +213,7 @@ def _refuse_no_surface(law: PowerLaw, decade: tuple[float, float], why: str) -> 
 
 
 def origin_flags() -> dict[str, str | list[int]]:
-    """Attributes that say what the values of ``origin`` mean (CF flags)."""
+    """CF flag attributes that explain the values of ``origin``."""
     return {
         "flag_values": [AS_MEASURED, TO_SMALL, TO_LARGE],
         "flag_meanings": "measured extrapolated_to_small_q extrapolated_to_large_q",
@@ -227,7 +227,7 @@ def _grid(low: float, high: float) -> np.ndarray:
 
 
 def _relative_band(psd: xr.Dataset, c: np.ndarray) -> np.ndarray:
-    """Lower and upper end of the band over C; 1 where there is none."""
+    """Lower and upper end of the band relative to C; 1 without a band."""
     if "psd_2d_low" not in psd:
         return np.ones((2, c.size))
     band = np.stack([psd.psd_2d_low.values, psd.psd_2d_high.values])
@@ -235,7 +235,7 @@ def _relative_band(psd: xr.Dataset, c: np.ndarray) -> np.ndarray:
 
 
 def _log_error(psd: xr.Dataset) -> np.ndarray | None:
-    """Read the standard error of ln C from the width of the 95 % band."""
+    """Return the standard error of ln C from the width of the 95 % band."""
     if "psd_2d_low" not in psd:
         return None
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -250,7 +250,7 @@ def _fit(
     error: np.ndarray | None,
     fit_decade: tuple[str | float, str | float] | None,
 ) -> tuple[PowerLaw, tuple[float, float], float]:
-    """Power law over the decade, the decade, and the wavenumber where it meets the plateau."""
+    """Power law over the fitted decade, that decade, and where it meets the plateau [1/m]."""
     if fit_decade is not None:
         low, high = (to_si(value, "1/m", "fit_decade") for value in fit_decade)
         law = _regress(q, c, error, low, high)
@@ -261,7 +261,7 @@ def _fit(
     for _ in range(20):
         law = _regress(q, c, error, low, high)
         rolloff = _crossing(law, c[0])
-        # at least four points stay in the fit, whatever the roll-off
+        # at least four points stay in the fit, wherever the roll-off is
         new = min(max(floor, float(q[0]), _ABOVE_ROLLOFF * rolloff), float(q[-min(4, q.size)]))
         if abs(new - low) <= 1e-9 * low:
             break

@@ -9,12 +9,12 @@ from tribolab.core.errors import AnalysisError
 from tribolab.units.conversion import to_si
 from tribolab.units.stamping import stamp
 
-# alpha = sqrt(ln 2 / pi): a wave as long as the cut-off keeps half of its amplitude
+# alpha = sqrt(ln 2 / pi): a wave at the cut-off keeps half of its amplitude
 _ALPHA = float(np.sqrt(np.log(2) / np.pi))
 
 
 def transmission(wavelength: np.ndarray | float, cutoff: float) -> np.ndarray:
-    """Amplitude that the Gaussian low-pass leaves to a wave of this length [m]: half at `cutoff`.
+    """Amplitude transmission [1] of the Gaussian low-pass at a wavelength [m]; 0.5 at `cutoff`.
 
     >>> round(float(transmission(0.8e-3, 0.8e-3)), 12)
     0.5
@@ -45,9 +45,9 @@ def gaussian_filter(scans: xr.Dataset, cutoff: str | float) -> xr.Dataset:
     Notes
     -----
     Weight function ``exp(-pi (x / (alpha cutoff))^2) / (alpha cutoff)`` with
-    ``alpha = sqrt(ln 2 / pi)``. Towards the ends of the profile the weights that are left are
-    normalised to one, which keeps a level profile level; within half a cut-off of the ends a
-    tilted one is bent, and `roughness_parameters` leaves that part out.
+    ``alpha = sqrt(ln 2 / pi)``. Near the ends the remaining weights are normalised to one, so a
+    level profile stays level. Within half a cut-off of the ends a tilted profile is bent;
+    `roughness_parameters` ignores that part.
 
     References
     ----------
@@ -61,7 +61,7 @@ def gaussian_filter(scans: xr.Dataset, cutoff: str | float) -> xr.Dataset:
     >>> round(float(abs(mean_line).max()), 4)
     0.5
     """
-    # late: scipy takes long to load
+    # imported late: scipy loads slowly
     from scipy import fft
 
     cutoff = to_si(cutoff, "m", "cutoff")
@@ -74,12 +74,13 @@ def gaussian_filter(scans: xr.Dataset, cutoff: str | float) -> xr.Dataset:
             function="gaussian_filter",
         )
     height = scans.height.transpose(..., "x")
-    reach = min(int(np.ceil(1.5 * cutoff / pitch)), x.size - 1)  # weight 5e-14 of its middle there
+    # the weight there is 5e-14 of its maximum
+    reach = min(int(np.ceil(1.5 * cutoff / pitch)), x.size - 1)
     at = pitch * np.arange(-reach, reach + 1)
     weights = np.exp(-np.pi * (at / (_ALPHA * cutoff)) ** 2)
     weights /= weights.sum()
     rows = height.values.reshape(-1, x.size)
-    length = fft.next_fast_len(x.size + 2 * reach, real=True)  # nothing comes round to the start
+    length = fft.next_fast_len(x.size + 2 * reach, real=True)  # padding prevents wrap-around
     transfer, here = fft.rfft(weights, length), slice(reach, reach + x.size)
     share = fft.irfft(fft.rfft(np.ones(x.size), length) * transfer, length)[here]
     smooth = fft.irfft(fft.rfft(rows, length) * transfer, length)[:, here] / share

@@ -1,4 +1,4 @@
-"""Take form away from scans (tilt, circle, polynomial), and say what was taken."""
+"""Removal of form (tilt, circle, polynomial) from scans."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tribolab.surface.gaps import bridged
 from tribolab.surface.level import rounding_only
 from tribolab.units.stamping import stamp
 
-# Polynomial order that a form uses up: so many of the longest waves go with it.
+# Polynomial order that each form corresponds to: removing it removes so many of the longest waves.
 _FORMS = {"mean": 0, "tilt": 1, "circle": 2, "polynomial": None}
 _STEPS = 60
 _NO_CIRCLE = Cure(
@@ -19,11 +19,11 @@ _NO_CIRCLE = Cure(
     terminal="check the units of the heights and of x",
     campaign='check the units of the heights and of x, or say form = "polynomial" in [roughness]',
 )
-_CHUNK = 1 << 20  # heights that are worked on at a time
+_CHUNK = 1 << 20  # heights processed at a time
 
 
 def fill_dropouts(scans: xr.Dataset) -> xr.Dataset:
-    """Fill dropouts (NaN) from the heights beside them, and count them.
+    """Fill dropouts (NaN) by interpolation, and count them.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def fill_dropouts(scans: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        The scans without NaN; where there were any, ``dropout`` (1 where a height was filled).
+        The scans without NaN; if there were any, ``dropout`` (1 where a height was filled).
         Attributes ``dropouts`` (their number) and ``dropout_share``.
 
     Raises
@@ -71,7 +71,7 @@ def fill_dropouts(scans: xr.Dataset) -> xr.Dataset:
 
 
 def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> xr.Dataset:
-    """Take the form away from scans and say what was taken.
+    """Remove form from scans and record what was removed.
 
     Parameters
     ----------
@@ -87,8 +87,8 @@ def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> 
     Returns
     -------
     xarray.Dataset
-        The scans without form, exactly zero where only rounding is left, and for each scan what
-        was removed: ``form_tilt`` [1] and ``form_curvature`` [1/m] at the middle of the scan
+        The scans without form (exactly zero where only rounding remains) and the form of each
+        scan: ``form_tilt`` [1] and ``form_curvature`` [1/m] at the middle of the scan
         (positive: hollow). Dropouts are left as they are and do not count in the fit. Attributes
         ``form_removed``, ``form_order``, ``form_radius_m`` (mean radius, for a circle).
 
@@ -167,7 +167,7 @@ def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> 
 
 
 def removed_order(scans: xr.Dataset) -> int:
-    """Polynomial order of the form that was removed before; the mean alone is 0."""
+    """Polynomial order of the form already removed; 0 if only the mean was."""
     return int(scans.attrs.get("form_order", 0))
 
 
@@ -176,7 +176,7 @@ def _with(scans: xr.Dataset, action: str) -> str:
 
 
 def _without_rounding(left: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """Make what is left of a perfect form zero, so that nobody takes rounding for roughness."""
+    """Set the residual of a perfect form to zero, so that rounding is not read as roughness."""
     level = rounding_only(left, rows)[:, None]
     return np.where(level & np.isfinite(left), 0.0, left) if level.any() else left
 
@@ -184,7 +184,8 @@ def _without_rounding(left: np.ndarray, rows: np.ndarray) -> np.ndarray:
 def _least_squares(rows: np.ndarray, basis: np.ndarray) -> np.ndarray:
     """Coefficients (row, term) of the basis in each row; NaN has no weight."""
     if np.isfinite(rows).all():
-        return np.linalg.solve(basis.T @ basis, (rows @ basis).T).T  # Legendre: well conditioned
+        # Legendre polynomials: well conditioned
+        return np.linalg.solve(basis.T @ basis, (rows @ basis).T).T
     present = np.isfinite(rows)
     if present.sum(1).min() < basis.shape[1] + 1:
         raise AnalysisError(
@@ -213,7 +214,7 @@ def _polynomial(
 def _circle(
     rows: np.ndarray, x: np.ndarray, scale: float, basis: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    # in the basis of Legendre polynomials: z0 + s x + c x^2 / 2
+    # in Legendre polynomials: z0 + s x + c x^2 / 2
     to_circle = np.array([[1, 0, -0.5], [0, 1 / scale, 0], [0, 0, 3 / scale**2]])
     known = _least_squares(rows, basis) @ to_circle.T
     known[:, 1] /= np.hypot(1, known[:, 1])

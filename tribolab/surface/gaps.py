@@ -1,7 +1,7 @@
-"""Scans with missing heights: how gaps are bridged, and what they do to a result.
+"""Scans with missing heights: interpolation across gaps, and the effect of gaps on a result.
 
-What a gap takes from a result is found out on the scan itself: the same gaps are laid over other
-places of it, bridged there, too, and the result computed anew.
+The effect of a gap is estimated from the scan itself: the same gaps are placed elsewhere on it and
+bridged, and the result is computed again.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ import xarray as xr
 
 from tribolab.core.errors import AnalysisError
 
-_TRIALS = 16  # places where the gaps are laid
-_MOST = 0.5  # share of missing heights from which on a scan says too little
-_FEW = 8  # heights at an end: they are bridged by the nearest one
+_TRIALS = 16  # positions at which the gaps are placed
+_MOST = 0.5  # share of missing heights above which a scan cannot be evaluated
+_FEW = 8  # missing heights at an end are bridged by the nearest height
 _STUDENT = 1.087  # 97.5 % quantile of Student's t with 15 degrees of freedom over the normal's
 _NORMAL = 1.96
-_DOUBT = 0.3  # share of a correction that it may be wrong by: gaps are where they are for a reason
-_LOST = float(np.log(2.0))  # a correction by this factor is more gap than measurement
+_DOUBT = 0.3  # share of the correction that is added to its error: gaps are not at random places
+_LOST = float(np.log(2.0))  # a larger correction factor rests more on gaps than on the measurement
 
 
 class GapEffect(NamedTuple):
-    """What gaps did to a result: its mean shift, and the standard error that is left.
+    """Effect of gaps on a result: mean shift, and standard error after correction.
 
-    The result less the shift is what the whole scan would have shown, within 1.96 errors in 95 %
-    of cases. What of the shift comes from bridges hides the surface, if it is large.
+    The result minus the shift is the result of the complete scan, within 1.96 errors in 95 % of
+    cases. A large share of the shift from bridges hides the surface.
     """
 
     shift: np.ndarray
@@ -36,9 +36,9 @@ class GapEffect(NamedTuple):
 
 
 def gaps_in(scans: xr.Dataset) -> np.ndarray | None:
-    """Where heights are missing, or were filled by `fill_dropouts`: truth like ``height``.
+    """Mask of missing heights, including those filled by `fill_dropouts`, like ``height``.
 
-    Returns None where there are none.
+    Returns None if no height is missing.
     """
     missing = ~np.isfinite(scans.height)
     if "dropout" in scans:
@@ -48,10 +48,10 @@ def gaps_in(scans: xr.Dataset) -> np.ndarray | None:
 
 
 def without_ends(scans: xr.Dataset) -> xr.Dataset:
-    """Cut profiles to the stretch between the first and last height that all of them have.
+    """Cut profiles to the range between the first and last height that all of them have.
 
-    A map stays as it is, and so do profiles of which less than half would be left, or that lack a
-    few heights only.
+    Maps are unchanged, and so are profiles that lack only a few heights or would lose more than
+    half.
     """
     missing = gaps_in(scans)
     if missing is None or "y" in scans.height.dims:
@@ -69,12 +69,12 @@ def without_ends(scans: xr.Dataset) -> xr.Dataset:
 
 
 def bridged(height: np.ndarray, missing: np.ndarray, *, is_map: bool) -> np.ndarray:
-    """Fill gaps: in profiles (..., x) by straight lines, in maps (..., y, x) from four sides.
+    """Heights with gaps interpolated: linearly in profiles, from four sides in maps (..., y, x).
 
     Parameters
     ----------
     height
-        Heights [m]; what stands in a gap does not count.
+        Heights [m]; values inside gaps are ignored.
     missing
         Truth, like the heights.
     is_map
@@ -107,7 +107,7 @@ def bridged(height: np.ndarray, missing: np.ndarray, *, is_map: bool) -> np.ndar
                 "a profile has no height that is a number; leave that scan out",
                 function="fill_dropouts",
             )
-        alone = missing & (weights == 0)  # the corner of two strips
+        alone = missing & (weights == 0)  # the corner where two strips meet
         total[alone], weights[alone] = float(np.mean(height[~missing])), 1.0
     return np.where(missing, np.divide(total, weights, where=missing, out=total), height)
 
@@ -115,7 +115,7 @@ def bridged(height: np.ndarray, missing: np.ndarray, *, is_map: bool) -> np.ndar
 def _nearest(
     height: np.ndarray, missing: np.ndarray, axis: int, *, backwards: bool
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Nearest height that is there, in one direction, and its distance in points."""
+    """Nearest measured height in one direction, and its distance in points."""
     if backwards:
         height, missing = np.flip(height, axis), np.flip(missing, axis)
     number = height.shape[axis]
@@ -138,7 +138,7 @@ def gap_effect(
     joint: bool = False,
     own: np.ndarray | None = None,
 ) -> GapEffect:
-    """Say what gaps did to a result, by laying the same gaps over other places of the scan.
+    """Effect of gaps on a result, from placing the same gaps elsewhere on the scan.
 
     Parameters
     ----------
@@ -147,14 +147,14 @@ def gap_effect(
     missing
         Truth, like the heights.
     measure
-        Computes the result of heights; what errs by a factor gives its logarithm.
+        Computes the result from heights; results with a relative error give their logarithm.
     is_map
         Whether the scans are maps.
     joint
-        Whether all scans have one result together; the gaps of one are then laid over others, too.
+        Whether all scans share one result; the gaps of one are then placed on others too.
     own
-        Where every profile, or every row of a map, has results of its own, (result, scan) or
-        (result, scan, y): which of them are logarithms.
+        Whether each result is a logarithm, if every profile or map row has its own results,
+        (result, scan) or (result, scan, y).
 
     Returns
     -------
@@ -193,7 +193,7 @@ def gap_effect(
         laid = missing[rng.permutation(len(missing))] if joint else missing
         gaps, row = _elsewhere(laid, rng, (-2, -1) if is_map else (-1,))
         change = measure(bridged(height, gaps, is_map=is_map)) - whole
-        if own is not None and is_map:  # of the row whose gaps these are
+        if own is not None and is_map:  # of the row that these gaps come from
             back = np.broadcast_to(np.argsort(row, axis=-1), change.shape)
             change = np.take_along_axis(change, back, axis=-1)
         changes.append(change)
@@ -205,7 +205,7 @@ def gap_effect(
         else (np.array(1.0 / (1.0 - share)), np.array(1.0))
     )
     shift = every.mean(axis=0) * grow
-    # gaps that hit the one highest peak make tails longer than the normal distribution's
+    # gaps at the single highest peak give longer tails than the normal distribution
     farthest = np.abs(every - every.mean(axis=0)).max(axis=0) / _NORMAL
     scatter = np.maximum(_STUDENT * every.std(axis=0, ddof=1), farthest)
     error = np.hypot(np.sqrt(1.0 + 1.0 / _TRIALS) * widen * scatter, _DOUBT * shift)
@@ -213,12 +213,12 @@ def gap_effect(
 
 
 def logarithm(power: np.ndarray) -> np.ndarray:
-    """Logarithm of what is a factor; of nothing that of the smallest number."""
+    """Natural logarithm of positive values; zeros give that of the smallest float."""
     return np.log(np.maximum(power, np.finfo(float).tiny))
 
 
 def still_worth(independent: np.ndarray, effect: GapEffect) -> np.ndarray:
-    """Return how many independent values have the error of these and that of the gaps together.
+    """Return the number of independent values with the error of these and the gaps combined.
 
     >>> effect = GapEffect(shift=np.zeros(1), error=np.array([0.1]), bridges=np.zeros(1))
     >>> round(float(still_worth(np.array([100.0]), effect)[0]), 9)
@@ -228,7 +228,7 @@ def still_worth(independent: np.ndarray, effect: GapEffect) -> np.ndarray:
 
 
 def lost_from(wavenumber: np.ndarray, effect: GapEffect) -> float:
-    """Wavenumber [1/m] from which on bridges took, or added, half of all power; else infinite.
+    """Wavenumber [1/m] above which bridges changed the power by more than half; else infinite.
 
     >>> effect = GapEffect(np.zeros(4), np.ones(4), bridges=np.array([0.9, 0.1, 0.8, 0.9]))
     >>> lost_from(np.array([1.0, 2.0, 3.0, 4.0]), effect)
@@ -241,7 +241,7 @@ def lost_from(wavenumber: np.ndarray, effect: GapEffect) -> float:
 def _of_windows(
     missing: np.ndarray, left: np.ndarray, logarithms: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """How much more the gaps do than the same gaps laid again, which fall on some bridges.
+    """Factors by which gaps change a result more than the same gaps placed partly on bridges.
 
     Parameters
     ----------
@@ -271,13 +271,13 @@ def _of_windows(
 def _elsewhere(
     missing: np.ndarray, rng: np.random.Generator, axes: tuple[int, ...]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the gaps of each scan, moved and mirrored at random along some axes.
+    """Gaps of each scan, moved and mirrored at random along some axes.
 
-    And of each row of a map which row's gaps it has now, (scan, y).
+    Also returns the row from which each row of a map takes its gaps, (scan, y).
     """
     moved = np.empty_like(missing)
     came = np.empty(missing.shape[:2], dtype=int)
-    for scan, gaps in enumerate(missing):  # a loop over scans
+    for scan, gaps in enumerate(missing):  # loop over scans
         row = np.arange(missing.shape[1])
         for axis in axes:
             by = _shift(gaps, rng, axis)
@@ -292,7 +292,7 @@ def _elsewhere(
 
 
 def _shift(gaps: np.ndarray, rng: np.random.Generator, axis: int) -> int:
-    """Return by how much gaps are moved along; no gap of a profile is parted at the ends."""
+    """Distance by which gaps are moved; no gap of a profile is split at the ends."""
     if gaps.ndim > 1:
         return int(rng.integers(gaps.shape[axis]))
     starts = np.flatnonzero(~(gaps & np.roll(gaps, 1)))

@@ -1,4 +1,4 @@
-"""Heights that hold no roughness: equal, or on a perfect line or plane, but for rounding."""
+"""Heights without roughness: equal, or on a perfect line or plane apart from rounding."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ import xarray as xr
 
 from tribolab.core.errors import AnalysisError
 
-# Share of the largest height below which a deviation is rounding: floats carry 16 digits, of
-# which a fit of the form spoils a few; the best gauges resolve 8 and are never meant.
+# A deviation below this share of the largest height is rounding: floats carry 16 digits, of
+# which a form fit loses a few; the best gauges resolve 8.
 _ROUNDING = 1e-12
 _CHUNK = 1 << 20
 
 
 def rounding_only(deviation: np.ndarray, heights: np.ndarray) -> np.ndarray:
-    """Tell for each row whether what is left of its heights is rounding.
+    """Mask of rows whose residual heights are rounding errors only.
 
     Parameters
     ----------
     deviation
-        What is left [m] (row, ...) of the heights when the form is gone; NaN does not count.
+        Heights [m] (row, ...) after form removal; NaN is ignored.
     heights
         The heights [m] (row, x) themselves.
 
     Returns
     -------
     numpy.ndarray
-        Truth (row). Rows without any height are not said to be level.
+        Mask (row). Rows without any height are not level.
 
     Examples
     --------
@@ -50,7 +50,7 @@ def _largest(rows: np.ndarray) -> np.ndarray:
 
 
 def level_rows(height: np.ndarray) -> np.ndarray:
-    """Tell for each row (row, x) whether all its heights are equal or on one straight line.
+    """Mask of rows (row, x) whose heights are all equal or on one straight line.
 
     Examples
     --------
@@ -69,20 +69,20 @@ def level_rows(height: np.ndarray) -> np.ndarray:
 
 
 def level_map(height: np.ndarray) -> bool:
-    """Tell whether the heights (y, x) of a map are equal or on one plane."""
-    first = slice(0, 8)  # of most maps these rows suffice: they are not level
+    """Whether the heights (y, x) of a map are all equal or on one plane."""
+    first = slice(0, 8)  # these rows are enough for most maps, which are not level
     return bool(
         level_rows(height[first]).all() and level_rows(height).all() and level_rows(height.T).all()
     )
 
 
 def refuse_level(who: str, scans: xr.Dataset, level: Sequence[bool] | np.ndarray) -> None:
-    """Raise an error that names the first scan that is level, if one is.
+    """Raise an error that names the first scan without roughness.
 
     Parameters
     ----------
     who
-        The function that asks.
+        Name of the calling function.
     scans
         The scans, for their names.
     level

@@ -1,4 +1,4 @@
-"""Numbers that decide about spectra of surfaces, with their reasons."""
+"""Numbers that decide on spectra of surfaces, with their reasons."""
 
 from tribolab.core.limit import Limit
 

@@ -1,4 +1,4 @@
-"""Moments of a power spectrum, exact for spectra that are power laws between their nodes.
+"""Moments of a power spectrum, exact if it is a power law between its nodes.
 
 Between two nodes C(q) is the straight line in log-log that joins them, so the integral over a bin
 is a closed form: with g = q^(n+1) C, int q^n C dq = ln(q_b/q_a) (g_b - g_a) / ln(g_b/g_a). No bin
@@ -15,7 +15,7 @@ from tribolab.core.errors import AnalysisError
 
 
 def spectrum_arrays(psd: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return wavenumbers [rad/m] and C [m4] of a power spectrum after checking them.
+    """Wavenumbers [rad/m] and C [m4] of a power spectrum after checking them.
 
     Parameters
     ----------
@@ -93,12 +93,12 @@ def _integral(
     order: float,
     linear: np.ndarray,
 ) -> np.ndarray:
-    """Integrals of q^order C from a to b, where C is a power law or, if `linear`, a line."""
+    """Integrals of q^order C from a to b, with C a power law or, if `linear`, a straight line."""
     width = np.log(b / a)
     g = a ** (order + 1) * left
     with np.errstate(divide="ignore", invalid="ignore"):
-        z = np.log(right / left) + (order + 1) * width  # growth of the integrand, in log-log
-        small = np.abs(z) < 1e-5  # exponent -1: the closed form is 0/0, its series is not
+        z = np.log(right / left) + (order + 1) * width  # log-log slope of the integrand
+        small = np.abs(z) < 1e-5  # exponent -1: the closed form is 0/0, so a series is used
         result = width * g * np.where(small, 1 + z / 2 + z * z / 6, np.expm1(z) / z)
         if linear.any():
             slope = np.where(b > a, (right - left) / (b - a), 0.0)
@@ -216,10 +216,10 @@ def rms_slope(psd: xr.Dataset) -> float:
 def refined(
     q: np.ndarray, spectrum: np.ndarray, per_decade: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Insert nodes on the straight log-log lines until bins are narrower than 1/per_decade.
+    """Spectrum with extra nodes on its log-log lines, until bins are narrower than 1/per_decade.
 
-    The moments do not change; what is evaluated at the nodes (a gap, a modulus) becomes finer.
-    Bins beside a zero, where C is linear in q, stay whole.
+    The moments do not change; quantities at the nodes (a gap, a modulus) are resolved better.
+    Bins next to a zero, where C is linear in q, are not divided.
     """
     pieces = np.ceil(np.diff(np.log10(q)) * per_decade - 1e-9).astype(int).clip(1)
     pieces[(spectrum[:-1] == 0) | (spectrum[1:] == 0)] = 1
@@ -231,7 +231,7 @@ def refined(
 
 
 def at_wavenumber(wavenumber: np.ndarray, q: np.ndarray, spectrum: np.ndarray) -> np.ndarray:
-    """C at any wavenumber inside the spectrum: a power law between nodes, linear beside a zero."""
+    """C at any wavenumber inside the spectrum: power law between nodes, linear next to a zero."""
     wavenumber = np.asarray(wavenumber, dtype=float)
     if (spectrum > 0).all():
         return np.exp(np.interp(np.log(wavenumber), np.log(q), np.log(spectrum)))
@@ -246,7 +246,7 @@ def at_wavenumber(wavenumber: np.ndarray, q: np.ndarray, spectrum: np.ndarray) -
 
 
 def band(psd: xr.Dataset, q_low: float, q_high: float) -> xr.Dataset:
-    """Return the part of a power spectrum between two wavenumbers, with nodes at both.
+    """Part of a power spectrum between two wavenumbers, with nodes at both.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Roughness as numbers: profile parameters of ISO 21920 (ISO 4287), and moments of a spectrum."""
+"""Roughness parameters of profiles (ISO 21920, ISO 4287), and moments of a spectrum."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from tribolab.surface.spectra.tails import long_holes, tails
 from tribolab.units.conversion import positive, to_si
 from tribolab.units.stamping import stamp
 
-STANDARD_CUTOFF = 0.8e-3  # m, the cut-off of most surfaces (ISO 21920-3)
-_LENGTHS = 5  # cut-offs that a shorter profile is long
-_FEWEST_LENGTHS = 3  # sampling lengths whose scatter says how well their mean is known
+STANDARD_CUTOFF = 0.8e-3  # m, cut-off of most surfaces (ISO 21920-3)
+_LENGTHS = 5  # length of a shorter profile in cut-offs
+_FEWEST_LENGTHS = 3  # sampling lengths needed to estimate the standard error of their mean
 
 
 def roughness_parameters(
@@ -31,7 +31,7 @@ def roughness_parameters(
     lambda_s: str | float | None = "auto",
     sampling_lengths: bool = True,
 ) -> xr.Dataset:
-    """Ra, Rq, Rz, Rsk, Rku and Rdq of profiles, after the standard Gaussian filter.
+    """Ra, Rq, Rz, Rsk, Rku and Rdq of profiles after the standard Gaussian filter.
 
     Parameters
     ----------
@@ -53,10 +53,10 @@ def roughness_parameters(
     -------
     xarray.Dataset
         ``Ra``, ``Rq``, ``Rz`` [m], ``Rsk``, ``Rku``, ``Rdq`` [1], with the dims of the heights
-        but x. The attributes say which cut-offs were applied and over which length. Of profiles of
-        three sampling lengths or more, ``Ra_sem`` and so on are the standard errors of the means
-        over these, from their scatter. Where heights are missing, ``Ra_gap_error`` and so on are
-        the standard errors that the gaps bring.
+        except x. The attributes give the cut-offs and the length evaluated. With three sampling
+        lengths or more, ``Ra_sem`` and so on are the standard errors of the means over these.
+        If heights are missing, ``Ra_gap_error`` and so on are the standard errors due to the
+        gaps.
 
     Raises
     ------
@@ -67,11 +67,10 @@ def roughness_parameters(
     Notes
     -----
     The roughness profile is heights minus their Gaussian mean line. Half a cut-off at each end,
-    where the filter runs in, is left out. Heights count from the mean line; only without
-    lambda_c from their mean. Rz is the mean over sampling lengths of the height from the deepest
-    valley to the highest peak. Rdq is taken from the seven-point formula of ISO 4287. Where a hole
-    takes more than half of a sampling length, Rsk and Rku are those of the measured heights in the
-    lengths that are left.
+    where the filter runs in, is left out. Heights count from the mean line, or without lambda_c
+    from their mean. Rz is the mean over sampling lengths of the height from the deepest valley to
+    the highest peak. Rdq uses the seven-point formula of ISO 4287. If a hole covers more than half
+    of a sampling length, Rsk and Rku use the measured heights of the other lengths.
 
     References
     ----------
@@ -102,7 +101,7 @@ def roughness_parameters(
     data = xr.Dataset({name: (dims, value) for name, value in values.items()})
     if missing is not None:
         data = _corrected(data, scans.assign(height=given), missing, evaluation)
-    if not is_map:  # the rows of a map are not independent of each other
+    if not is_map:  # rows of a map are not independent of each other
         data = data.assign(
             {f"{name}_sem": (dims, error) for name, error in _errors(by_length).items()}
         )
@@ -119,7 +118,7 @@ def roughness_parameters(
 
 
 def primary_roughness(scans: xr.Dataset) -> xr.DataArray:
-    """Root mean square of all heights of each profile, of waves of every length: Pq.
+    """Pq: rms height of each profile over all wavelengths.
 
     Parameters
     ----------
@@ -146,7 +145,7 @@ def primary_roughness(scans: xr.Dataset) -> xr.DataArray:
 
 
 class _Evaluation(NamedTuple):
-    """How roughness is evaluated: pitch, cut-offs [m], who filtered, over which lengths."""
+    """Settings of the roughness evaluation: pitch, cut-offs [m], prior filter, lengths."""
 
     pitch: float
     cut: float | None
@@ -156,11 +155,11 @@ class _Evaluation(NamedTuple):
 
     @property
     def edge(self) -> int:
-        """Points at each end in which the filter runs in."""
+        """Number of points at each end where the filter runs in."""
         return int(round(0.5 * self.cut / self.pitch)) if self.cut and not self.filtered else 0
 
     def lengths(self, points: int) -> tuple[float, int]:
-        """Return the evaluation length [m] of profiles of so many points, and its parts."""
+        """Return the evaluation length [m] of so many points, and its sampling lengths."""
         length = (points - 2 * self.edge) * self.pitch
         return length, 5 if self.cut is None else max(1, int(round(length / self.cut - 0.25)))
 
@@ -171,7 +170,7 @@ class _Evaluation(NamedTuple):
         return rows[..., : lengths * size].reshape(*rows.shape[:-1], lengths, size)
 
     def profile(self, scans: xr.Dataset) -> np.ndarray:
-        """Return the roughness profile [m] (..., x) over the evaluation length."""
+        """Roughness profile [m] (..., x) over the evaluation length."""
         pitch, cut, points = self.pitch, self.cut, scans.sizes["x"]
         profile = scans if self.fine is None else gaussian_filter(scans, self.fine)
         height = profile.height.transpose(..., "x")
@@ -187,12 +186,12 @@ class _Evaluation(NamedTuple):
         return np.asarray(height.values)
 
     def parameters(self, scans: xr.Dataset) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-        """Return the parameters of profiles without gaps, and those of each sampling length."""
+        """Parameters of profiles without gaps, overall and for each sampling length."""
         pitch, cut, points = self.pitch, self.cut, scans.sizes["x"]
         rows = self.profile(scans)
         parts = self.parts(rows)
         deviation = parts if self.sampling and cut is not None else rows[..., None, :]
-        if cut is None:  # else the filter's mean line is the zero of the profile
+        if cut is None:  # otherwise the filter's mean line is the zero of the profile
             deviation = deviation - deviation.mean(-1, keepdims=True)
         slope = _slope(rows, pitch)
         given = scans.height.transpose(..., "x").values.reshape(-1, points)
@@ -219,7 +218,7 @@ class _Evaluation(NamedTuple):
 
 
 def _errors(by_length: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the standard errors of means over the sampling lengths, where there are enough."""
+    """Return the standard errors of means over the sampling lengths, given enough of them."""
     return {
         name: of.std(-1, ddof=1) / np.sqrt(of.shape[-1])
         for name, of in by_length.items()
@@ -230,11 +229,11 @@ def _errors(by_length: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
 def _corrected(
     data: xr.Dataset, scans: xr.Dataset, missing: np.ndarray, evaluation: _Evaluation
 ) -> xr.Dataset:
-    """Take the shift by gaps off, and say the standard error that is left (``Ra_gap_error``)."""
+    """Results corrected for gaps, with their remaining standard error (``Ra_gap_error``)."""
     shape = scans.height.shape
     is_map = "y" in scans.height.dims
     grid = shape[-2:] if is_map else shape[-1:]
-    # a mean over sampling lengths loses a share of itself with each, and so does a skewness
+    # the mean over sampling lengths loses its share with each missing one; so does the skewness
     added = {"Rsk", "Rku"} if evaluation.sampling and evaluation.cut else {"Rsk"}
     factors = np.array([not is_map and name not in added for name in data])
 
@@ -254,7 +253,7 @@ def _corrected(
     rows = data["Ra"].shape
     for number, name in enumerate(list(data)):
         shift, error = effect.shift[number].reshape(rows), effect.error[number].reshape(rows)
-        if name == "Rz":  # few gaps hide a highest peak, but those that do hide much
+        if name == "Rz":  # gaps rarely hide the highest peak, but then they change the result a lot
             error = np.full_like(error, error.max())
         if factors[number]:
             data[name] = data[name] * np.exp(-shift)
@@ -270,7 +269,7 @@ def _corrected(
 def _tails_of_holes(
     data: xr.Dataset, scans: xr.Dataset, missing: np.ndarray, evaluation: _Evaluation
 ) -> xr.Dataset:
-    """Take Rsk and Rku from measured heights where a hole spans half a sampling length."""
+    """Replace Rsk and Rku by those of measured heights if a hole spans half a sampling length."""
     rows = evaluation.profile(scans)
     edge, points = evaluation.edge, missing.shape[-1]
     parts = evaluation.parts(rows.reshape(-1, rows.shape[-1]))
@@ -288,7 +287,7 @@ def _tails_of_holes(
 def _long_cutoff(
     lambda_c: str | float | None, scans: xr.Dataset, length: float
 ) -> tuple[float | None, bool]:
-    """Cut-off [m], and whether the instrument applied it already."""
+    """Long-wave cut-off [m], and whether the instrument applied it already."""
     if lambda_c is None:
         return None, False
     if lambda_c != "auto":
@@ -299,7 +298,7 @@ def _long_cutoff(
 
 
 def _slope(rows: np.ndarray, pitch: float) -> np.ndarray:
-    """Local slope by the seven-point formula of ISO 4287 (4.4.1)."""
+    """Local slope from the seven-point formula of ISO 4287 (4.4.1)."""
     if rows.shape[-1] < 7:
         raise AnalysisError("seven points are the least", function="roughness_parameters")
     ahead = 45 * rows[..., 4:-2] - 9 * rows[..., 5:-1] + rows[..., 6:]
@@ -309,13 +308,13 @@ def _slope(rows: np.ndarray, pitch: float) -> np.ndarray:
 
 @over_dims(psd=("wavenumber",))
 def spectral_roughness(psd: xr.Dataset) -> xr.Dataset:
-    """Roughness, slope and curvature of the surface from its spectrum, cumulative in q.
+    """Rms roughness, slope and curvature of a spectrum, cumulative in q.
 
     Parameters
     ----------
     psd
-        ``psd_2d`` [m4] (wavenumber), with its band if known; of several surfaces with further
-        dims, which the result has, too.
+        ``psd_2d`` [m4] (wavenumber), with its band if known. Further dims, for several surfaces,
+        are kept in the result.
 
     Returns
     -------

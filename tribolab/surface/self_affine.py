@@ -1,4 +1,4 @@
-"""Self-affine roughness with a roll-off: flat up to a wavenumber, a power law above it."""
+"""Self-affine roughness with a roll-off: constant below it, a power law above."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tribolab.units.stamping import stamp
 
 @dataclass(frozen=True)
 class SelfAffine:
-    """Isotropic 2D power spectrum: `plateau` up to the roll-off, then q to the -2(1+H).
+    """Isotropic 2D power spectrum: `plateau` below the roll-off, q^(-2(1+H)) above.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class SelfAffine:
     high: float
 
     def __post_init__(self) -> None:
-        """Refuse what has no meaning."""
+        """Raise an error for parameters without physical meaning."""
         if not 0 < self.low < self.rolloff < self.high:
             raise AnalysisError(
                 "self-affine spectrum: 0 < low < rolloff < high is wanted; got "
@@ -66,7 +66,7 @@ def psd_2d(spectrum: SelfAffine, wavenumber: ArrayLike) -> np.ndarray:
 
 
 def psd_1d(spectrum: SelfAffine, wavenumber: ArrayLike) -> np.ndarray:
-    """One-dimensional power spectrum of a straight profile, two-sided, in closed form.
+    """Two-sided 1D power spectrum of a straight profile, in closed form.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def psd_1d(spectrum: SelfAffine, wavenumber: ArrayLike) -> np.ndarray:
     ``t = k^2/q^2``. Between 0 and `low` it is not zero: waves that run askew to the profile look
     longer along it than they are.
     """
-    # late: scipy takes long to load
+    # imported late: scipy loads slowly
     from scipy.special import beta, betainc
 
     k = np.abs(np.asarray(wavenumber, dtype=float))
@@ -138,7 +138,7 @@ def self_affine_psd(
     high: str | float,
     points: int = 1201,
 ) -> xr.Dataset:
-    """Power spectrum of a self-affine surface of a given roughness, flat below a roll-off.
+    """Power spectrum of a self-affine surface of given rms roughness, constant below a roll-off.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def self_affine_psd(
 
 
 def tabulate(spectrum: SelfAffine, points: int = 1201) -> xr.Dataset:
-    """Put the spectrum on a logarithmic grid from `low` to `high`, with the roll-off on a node.
+    """Spectrum on a logarithmic grid from `low` to `high`, with a node at the roll-off.
 
     Returns
     -------

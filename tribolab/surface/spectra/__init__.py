@@ -1,1 +1,1 @@
-"""Power spectra of profiles and maps, their reliable range and their error."""
+"""Power spectra of profiles and maps, with their reliable range and error."""

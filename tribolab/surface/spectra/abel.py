@@ -1,4 +1,4 @@
-"""From the spectrum of profiles to that of the isotropic surface: the inverse Abel transform."""
+"""Inverse Abel transform: spectrum of the isotropic surface from that of its profiles."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(20)
 
 @dataclass(frozen=True)
 class PowerLaws:
-    """A two-sided C_1D that is a power law in each bin; it may jump from one bin to the next.
+    """Two-sided C_1D that is a power law in each bin and may jump between bins.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ class Annuli:
 
 
 def through_nodes(wavenumber: ArrayLike, psd_1d: ArrayLike) -> PowerLaws:
-    """Power laws between the nodes of a two-sided C_1D [m3]; they meet at the nodes."""
+    """Power laws between the nodes of a two-sided C_1D [m3], continuous at the nodes."""
     k, c = np.asarray(wavenumber, dtype=float), np.asarray(psd_1d, dtype=float)
     slope = np.diff(np.log(c)) / np.diff(np.log(k))
     return PowerLaws(k, 2 * bin_integrals(k, c, 0), slope)
@@ -170,11 +170,11 @@ def invert(profile: PowerLaws, edges: ArrayLike | None = None) -> Annuli:
 
 
 def _pieces(profile: PowerLaws, at: np.ndarray) -> np.ndarray:
-    """M(q) from each bin (at, bin); the constant below the first bin counts with it."""
+    """Contribution of each bin to M(q) (at, bin); the first includes the constant below it."""
     left = np.concatenate([[0.0], profile.edges[:-1]])
     right, level = profile.edges, np.append(profile.level[:1], profile.level)
     slope = np.append(0.0, profile.slope)
-    zero = at == 0  # there the substitution fails, and the integrand is C_1D itself
+    zero = at == 0  # the substitution fails there; the integrand is C_1D itself
     start = np.where(zero, right[0], at)[:, None]
     starts = np.arccosh(np.maximum(left / start, 1.0))
     stops = np.arccosh(np.maximum(right / start, 1.0))
@@ -194,13 +194,13 @@ def _pieces(profile: PowerLaws, at: np.ndarray) -> np.ndarray:
 def _tail(
     end: float, level: float, exponent: float, at: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """M(q) from the power law beyond the last bin, and its derivative by the exponent."""
+    """Contribution of the power law above the last bin to M(q), and its exponent derivative."""
 
     def mean_square(s: float) -> np.ndarray:
-        # late: scipy takes long to load
+        # imported late: scipy loads slowly
         from scipy.special import beta, betainc
 
-        a, ratio = 0.5 * (s - 1), np.maximum(at / end, 1e-4)  # below, M is flat to 1e-8
+        a, ratio = 0.5 * (s - 1), np.maximum(at / end, 1e-4)  # below, M is constant to 1e-8
         scale = level * end * ratio ** (1 - s) * beta(a, 0.5)
         return scale * betainc(a, 0.5, np.minimum(ratio, 1.0) ** 2)
 

@@ -1,4 +1,4 @@
-"""Annuli of the wavenumber plane: joined where they know too little, and put on nodes."""
+"""Annuli of the wavenumber plane: merged where they are too uncertain, and reduced to nodes."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from tribolab.surface.spectra.abel import Annuli, PowerLaws
 from tribolab.surface.spectra.smooth_law import FittedLaw, smooth
 
 _CONFIDENCE = 0.95
-_LARGEST_ERROR = 0.25  # relative standard error that an annulus may have
+_LARGEST_ERROR = 0.25  # largest relative standard error of an annulus
 _TAIL_DECADES = 0.5
-_PLATEAU = 3.0  # an annulus wider than this was joined
+_PLATEAU = 3.0  # an annulus wider than this is the result of a merge
 
 
 def confidence_band(value: np.ndarray, independent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Band of a mean power: that of a chi-square variable with two degrees of freedom a value.
+    """Confidence band of a mean power from a chi-square with two degrees of freedom per value.
 
-    Below one value the quantiles run to zero, and so would the power that divides by them: the
-    logarithm of the band then widens with the standard error, from the band of one value on.
+    Below one independent value the quantiles approach zero. There the logarithm of the band widens
+    with the standard error, starting at the band of one value.
     """
-    # late: scipy takes long to load
+    # imported late: scipy loads slowly
     from scipy.special import chdtri
 
     held = np.maximum(np.asarray(independent, dtype=float), MIN_INDEPENDENT_VALUES.value)
@@ -37,14 +37,14 @@ def confidence_band(value: np.ndarray, independent: np.ndarray) -> tuple[np.ndar
 
 
 def bins_of(profile: xr.Dataset, fitted: FittedLaw) -> tuple[PowerLaws, PowerLaws, np.ndarray]:
-    """Bins of a profile's spectrum as power laws that hold each bin's mean square height.
+    """Bins of a profile's spectrum as power laws with the mean square height of each bin.
 
     Parameters
     ----------
     profile
-        Trusted part of what `psd_1d` gave.
+        Trusted part of the result of `psd_1d`.
     fitted
-        Plateau and power law that are nearest to it, from `fitted_law`.
+        Plateau and power law fitted to it by `fitted_law`.
 
     Returns
     -------
@@ -73,7 +73,7 @@ def bins_of(profile: xr.Dataset, fitted: FittedLaw) -> tuple[PowerLaws, PowerLaw
 
 
 def join(measured: Annuli, behind: Annuli, relative: np.ndarray) -> tuple[Annuli, np.ndarray]:
-    """Join neighbouring annuli until each is known well enough.
+    """Merge neighbouring annuli until each is accurate enough.
 
     Parameters
     ----------
@@ -87,15 +87,15 @@ def join(measured: Annuli, behind: Annuli, relative: np.ndarray) -> tuple[Annuli
     Returns
     -------
     tuple of Annuli and numpy.ndarray
-        The annuli that are left (at least one), and their relative standard errors.
+        The remaining annuli (at least one), and their relative standard errors.
 
     Notes
     -----
-    From the lowest one on, an annulus is joined with the fewest neighbours above that bring its
-    standard error below 25 %; if none do, as in a short single scan, to within a fifth of the
-    least that joining can reach. How well an annulus is known is judged by the smooth spectrum:
-    judged by its own power, joining would stop where that happens to be high, which put 20 % on
-    the lowest annulus and made its error too small.
+    Starting with the lowest, an annulus is merged with the fewest neighbours above that bring its
+    standard error below 25 %; if that is impossible, as in a short single scan, to within a fifth
+    of the smallest possible error. The error is computed from the smooth spectrum: with the
+    annulus's own power, merging would stop where that happens to be high, which biased the lowest
+    annulus by 20 % and made its error too small.
     """
     ends, first, number = [0], 0, measured.power.size
     while first < number:
@@ -114,14 +114,14 @@ def join(measured: Annuli, behind: Annuli, relative: np.ndarray) -> tuple[Annuli
             "spectrum is negative; average more scans, or check that the surface is isotropic",
             function="psd_2d",
         )
-    ends[-1] = number  # what is left at the end has no power of its own
+    ends[-1] = number  # the remainder at the end has no power of its own
     joined, smoothed = _joined(measured, ends), _joined(behind, ends)
     error = np.sqrt(((smoothed.sensitivity * relative) ** 2).sum(1)) / np.abs(smoothed.power)
     return joined, error
 
 
 def _joined(annuli: Annuli, ends: list[int]) -> Annuli:
-    """Annuli between every second of whose edges some were left out."""
+    """Return the merged annuli, after some of the edges between them were dropped."""
     starts = ends[:-1]
     return Annuli(
         annuli.edges[ends],
@@ -135,10 +135,10 @@ def _joined(annuli: Annuli, ends: list[int]) -> Annuli:
 def _node_values(
     annuli: Annuli, error: np.ndarray, fitted: FittedLaw
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Carry the mean over each annulus to its rms radius, along the local power law.
+    """Value of C at the rms radius of each annulus, from its mean and the local power law.
 
-    The lowest annulus, where it was joined from several, has a node at either end and one at the
-    roll-off between them, and is shaped as the law; how well that is known counts beside.
+    If the lowest annulus was merged from several, it has a node at both ends and one at the
+    roll-off, and follows the fitted law; the error of that law is added.
 
     Returns
     -------
@@ -171,7 +171,7 @@ def _node_values(
 
 
 def _held(edges: np.ndarray, q: np.ndarray, c: np.ndarray) -> float:
-    """Mean square height [m2] of the power laws between nodes, carried on to the last edge."""
+    """Mean square height [m2] of the power laws between nodes, extended to the last edge."""
     slope = np.log(c[-1] / c[-2]) / np.log(q[-1] / q[-2])
     grid, value = np.append(q, edges[-1]), np.append(c, c[-1] * (edges[-1] / q[-1]) ** slope)
     if edges[0] < q[0]:
@@ -184,11 +184,11 @@ def _held(edges: np.ndarray, q: np.ndarray, c: np.ndarray) -> float:
 def _balanced(
     edges: np.ndarray, q: np.ndarray, c: np.ndarray, error: np.ndarray, whole: float
 ) -> np.ndarray:
-    """Change C, each node as far as its error allows, until the power laws hold `whole` [m2].
+    """Adjust C at the nodes in proportion to their errors to conserve the mean square height [m2].
 
     With factors ``exp(s error^2)``: the smallest change in units of the standard errors.
     """
-    # late: scipy takes long to load
+    # imported late: scipy loads slowly
     from scipy.optimize import brentq
 
     def excess(s: float) -> float:
@@ -201,10 +201,11 @@ def _balanced(
 
 
 def annular_spectrum(annuli: Annuli, error: np.ndarray, fitted: FittedLaw) -> xr.Dataset:
-    """Put the annuli on nodes, with their band.
+    """Spectrum at nodes, one for each annulus, with its band.
 
-    What the power laws between the nodes hold more or less than the annuli, at most some per
-    cent and mostly beside the roll-off, is taken up by all, the least certain most.
+    The mean square height of the power laws between nodes differs from that of the annuli by a few
+    per cent, mostly near the roll-off. The difference is spread over all nodes, most to the least
+    certain ones.
     """
     q, c, error = _node_values(annuli, error, fitted)
     whole = float(annuli.power.sum())

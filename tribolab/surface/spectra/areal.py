@@ -1,4 +1,4 @@
-"""Power spectrum of a topography map: two-dimensional transform and mean over annuli."""
+"""Power spectrum of a topography map: 2D Fourier transform, averaged over annuli."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def _power(maps: np.ndarray) -> tuple[np.ndarray, float]:
 def psd_2d_of_map(
     scan: xr.Dataset, *, form: str = "auto", bins_per_decade: float = 12
 ) -> xr.Dataset:
-    """Radially averaged power spectrum of a map of heights, or of several alike.
+    """Radially averaged power spectrum of one or several maps of heights.
 
     Parameters
     ----------
@@ -58,10 +58,10 @@ def psd_2d_of_map(
     -------
     xarray.Dataset
         As from `psd_2d`; ``anisotropy`` in the attributes is the ratio of the power along y to
-        that along x, and both it and the mean hide what a lay of the surface does. Of several
-        maps the spectra are averaged. Where heights are missing, the band holds ``gap_error`` too,
-        the relative standard error that the gaps bring; wavenumbers from which on they took half
-        of the power are left out, and ``gaps_hide_above_1_m`` says so.
+        that along x; neither it nor the mean shows the direction of a lay. Spectra of several maps
+        are averaged. If heights are missing, the band includes ``gap_error``, the relative standard
+        error due to the gaps. Wavenumbers above ``gaps_hide_above_1_m``, where gaps took half of
+        the power, are left out.
 
     Raises
     ------
@@ -129,7 +129,7 @@ def psd_2d_of_map(
     node = np.exp(sums(np.log(q)) / lines)
     correlated = (1 + 2 * (correlation(1) + correlation(2))) ** 2
     independent = len(height) * np.maximum(0.5 * lines / correlated, 1.0)
-    known = np.arange(node.size) > 0  # the first annulus is what form and window take
+    known = np.arange(node.size) > 0  # form removal and the window affect the first annulus
     lost, effect = float("inf"), None
     if missing is not None:
 

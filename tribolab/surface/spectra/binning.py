@@ -1,4 +1,4 @@
-"""Windows, logarithmic bins of Fourier lines, and how many independent values a bin holds."""
+"""Windows and logarithmic bins of Fourier lines, with their number of independent values."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ class Bins:
 
 
 def log_bins(lines: int, lowest: int, per_decade: float, at_least: int = 4) -> Bins:
-    """Divide lines 1 ... `lines` into bins of equal width on a logarithmic scale.
+    """Divide lines 1 ... `lines` into bins of equal logarithmic width.
 
     Parameters
     ----------
     lines
         Number of the last line.
     lowest
-        First line that can be trusted; what lies below makes a bin of its own.
+        First line that can be trusted; the lines below form one separate bin.
     per_decade
         Bins in a decade where there are lines enough.
     at_least
@@ -80,7 +80,7 @@ def window(points: int, flanks: float = 1.0) -> np.ndarray:
 
 
 def correlation(shift: float, flanks: float = 1.0) -> float:
-    """Squared correlation of two lines of a windowed transform, `shift` lines apart.
+    """Squared correlation of two lines of a windowed transform that are `shift` lines apart.
 
     Notes
     -----
@@ -100,7 +100,7 @@ def correlation(shift: float, flanks: float = 1.0) -> float:
 def shape(
     bins: Bins, slope: np.ndarray, spacing: float, flanks: float = 1.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """How the mean over a bin stands to its node, and how many independent values it holds.
+    """Ratio of each bin's mean to its node value, and its number of independent values.
 
     Parameters
     ----------

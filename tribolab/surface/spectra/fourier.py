@@ -1,4 +1,4 @@
-"""The one place where heights are Fourier transformed: windowed, batched, at a fast length."""
+"""Fourier transform of heights: windowed, in batches, at a fast length."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import numpy as np
 
 from tribolab.surface.spectra.binning import Bins
 
-_CHUNK_BYTES = 1 << 21  # a chunk and its transform stay in the cache
+_CHUNK_BYTES = 1 << 21  # a chunk and its transform fit into the cache
 
 
 class Power(NamedTuple):
-    """Power of each bin, summed over the scans, and the two sides of Parseval's relation."""
+    """Power of each bin, summed over the scans, and both sides of Parseval's relation."""
 
     bins: np.ndarray
     lines: float
@@ -20,7 +20,7 @@ class Power(NamedTuple):
 
 
 def fast_length(points: int) -> int:
-    """Smallest multiple of 16 with no prime factor above 5 that holds `points`.
+    """Smallest multiple of 16, at least `points`, with no prime factor above 5.
 
     Lengths that are merely smooth (50 625 = 15^4) take half as long again per point as those
     with many factors of two.
@@ -62,13 +62,13 @@ def binned_power(
     Scans pass through in chunks, so the memory needed does not grow with their number. Real and
     imaginary parts are squared in place and summed as neighbours.
     """
-    # late: scipy takes long to load
+    # imported late: scipy loads slowly
     import scipy.fft
 
     scans, points = height.shape
     chunk = max(1, min(scans, _CHUNK_BYTES // (8 * length)))
     work = np.zeros((chunk, length))
-    last = 2 * (length // 2)  # where the Nyquist line's real part stands
+    last = 2 * (length // 2)  # position of the real part of the Nyquist line
     total, lines, heights = np.zeros(bins.starts.size), 0.0, 0.0
     for first in range(0, scans, chunk):
         part = np.asarray(height[first : first + chunk], dtype=float)
@@ -80,6 +80,6 @@ def binned_power(
         np.multiply(squares, squares, out=squares)
         lines += float(squares[:, :2].sum()) - float(squares[:, last:].sum())
         total += np.add.reduceat(squares, 2 * bins.starts, axis=-1).sum(0)
-        # the last line stands for itself only, all others for their mirror image too
+        # the last line counts once, all others also for their mirror image
     lines += 2 * float(total.sum())
     return Power(total, lines / length, heights)

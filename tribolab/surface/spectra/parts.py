@@ -1,4 +1,4 @@
-"""Profiles with long gaps: the spectrum of each measured part by itself, and its error."""
+"""Spectrum of profiles with long gaps, from their measured parts."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from tribolab.surface.gaps import GapEffect, gap_effect, logarithm
 from tribolab.surface.spectra.binning import Bins, window
 from tribolab.surface.spectra.fourier import binned_power
 
-_LONG = 1 / 32  # of a profile: a gap as long is no longer bridged but parts the profile
-_WORTH = 0.25  # of the longest part: a shorter one says too little of long waves
+_LONG = 1 / 32  # of a profile; a longer gap splits the profile instead of being bridged
+_WORTH = 0.25  # of the longest part; a shorter part does not resolve long waves
 
 
 class Transform(NamedTuple):
-    """How profiles are transformed.
+    """Settings of the Fourier transform of profiles.
 
-    Bins of lines, length of the transform [points], order of the polynomial that was taken as
+    Bins of lines, length of the transform [points], order of the polynomial that was removed as
     form, flanks of the window (`tribolab.surface.spectra.binning.window`), threads.
     """
 
@@ -32,16 +32,16 @@ class Transform(NamedTuple):
         return binned_power(rows, taper, self.bins, self.length, self.workers).bins
 
     def first(self, points: int) -> int:
-        """Return the first bin whose waves are short against a part of so many points."""
+        """Return the first bin whose waves are short compared with a part of so many points."""
         lowest = (self.order + 2) * self.length / points
         return int(np.searchsorted(self.bins.starts, lowest))
 
 
 class PartsSpectrum(NamedTuple):
-    """Power of profiles by their measured parts.
+    """Power spectrum from the measured parts of profiles.
 
-    Sum over the scans, as of whole profiles (bin,); its relative standard error against those
-    (bin,); number of the first bin whose waves are short against the parts.
+    Sum over the scans, scaled to whole profiles (bin,); its relative standard error (bin,); number
+    of the first bin whose waves are short compared with the parts.
     """
 
     power: np.ndarray
@@ -50,7 +50,7 @@ class PartsSpectrum(NamedTuple):
 
 
 def profile_gap_effect(height: np.ndarray, missing: np.ndarray, how: Transform) -> GapEffect:
-    """Say what gaps did to the logarithm of the power of bridged profiles.
+    """Effect of gaps on the logarithm of the power of bridged profiles.
 
     Parameters
     ----------
@@ -64,8 +64,8 @@ def profile_gap_effect(height: np.ndarray, missing: np.ndarray, how: Transform) 
     Returns
     -------
     GapEffect
-        (bin,). Of waves that are short against the parts between long gaps, what the parts show
-        takes the place of what the bridged profiles show; only short gaps count there.
+        (bin,). For waves that are short compared with the parts between long gaps, the spectrum
+        of the parts replaces that of the bridged profiles; only short gaps count there.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def profile_gap_effect(height: np.ndarray, missing: np.ndarray, how: Transform) 
 
 
 def long_gaps(missing: np.ndarray) -> np.ndarray:
-    """Gaps that are long against the profile: truth like `missing` (scan, x).
+    """Mask of gaps that are long compared with the profile, like `missing` (scan, x).
 
     >>> row = np.zeros((1, 64), bool)
     >>> row[0, [5, 20, 21, 22]] = True
@@ -111,7 +111,7 @@ def long_gaps(missing: np.ndarray) -> np.ndarray:
 
 
 def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> PartsSpectrum | None:
-    """Take the spectrum of the stretches between long gaps, each with a window of its own.
+    """Spectrum of the parts between long gaps, each with its own window.
 
     Parameters
     ----------
@@ -120,20 +120,20 @@ def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> P
     missing
         Where heights are missing, like the heights.
     how
-        How the profiles are transformed; the form is taken from each part anew.
+        Settings of the transform; form is removed from each part separately.
 
     Returns
     -------
     PartsSpectrum or None
-        None where no gap is long, or no wave is short against the parts.
+        None if no gap is long, or no wave is short compared with the parts.
 
     Notes
     -----
-    A window that falls to zero at each gap sees no bridge, so nothing is to be made up for, as
-    long as the wave is short against the part: the same lines are left out below as for a whole
-    profile of the part's length. The powers of one line in two windows ``v`` and ``w`` of unit
+    A window that falls to zero at each gap sees no bridge, so no correction is needed for waves
+    that are short compared with the part. As for a whole profile of the part's length, the lowest
+    lines are left out. The powers of one line in two windows ``v`` and ``w`` of unit
     mean square have the covariance ``<v^2 w^2>`` in units of a bin of many lines; hence the
-    variance of what the parts show about the whole, ``<v^4> + <w^4> - 2 <v^2 w^2>`` over the
+    variance of the parts' spectrum about the whole, ``<v^4> + <w^4> - 2 <v^2 w^2>`` over the
     number of lines [1]_. If the parts of a scan differ by more than this theory of Gaussian
     heights allows, the error is larger by that factor. Of single profiles with one hole of an
     eighth, a quarter and a half, 1.96 errors held the whole profile's value in 94, 95 and 96 % of
@@ -149,7 +149,8 @@ def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> P
         return None
     points = height.shape[1]
     whole = window(points, how.flanks)
-    lines = how.bins.counts * points / how.length  # those of a transform that is not padded
+    # independent values of a transform without padding
+    lines = how.bins.counts * points / how.length
     power, variance = np.zeros(lines.size), np.zeros(lines.size)
     first, unlike = 0, 1.0
     for row, gaps in zip(height, long, strict=True):
@@ -162,7 +163,7 @@ def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> P
         power += np.sum(each, axis=0)
         squares = np.sum(tapers, axis=0) ** 2
         worth = lines / np.mean(squares**2)
-        # the logarithm of a mean of few values scatters more than the mean, and with longer tails
+        # the logarithm of a mean of few values scatters more than the mean and has longer tails
         variance += np.mean((squares - whole**2) ** 2) / lines * (1.0 + 1.5 / worth)
         first = max(first, how.first(min(stop - start for start, stop in parts)))
         unlike = max(unlike, _unlike(np.array(each), np.array(tapers), lines, first))
@@ -172,20 +173,20 @@ def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> P
 
 
 def _stretches(truth: np.ndarray) -> list[tuple[int, int]]:
-    """First and last-but-one index of each stretch where something is true."""
+    """First index and end of each interval where a mask is true."""
     steps = np.diff(np.concatenate([[0], truth.astype(np.int8), [0]]))
     return list(zip(np.flatnonzero(steps > 0), np.flatnonzero(steps < 0), strict=True))
 
 
 def _parts(gaps: np.ndarray) -> list[tuple[int, int]]:
-    """Stretches between gaps, without those that are short against the longest."""
+    """Intervals between gaps, without those that are short compared with the longest."""
     every = _stretches(~gaps)
     longest = max(stop - start for start, stop in every)
     return [(start, stop) for start, stop in every if stop - start >= _WORTH * longest]
 
 
 def _tapers(parts: list[tuple[int, int]], points: int, flanks: float) -> list[np.ndarray]:
-    """Window of each part (x), of unit mean square over the profile all together."""
+    """Window of each part (x), with unit mean square over the whole profile."""
     scale = np.sqrt(points / sum(stop - start for start, stop in parts))
     tapers = []
     for start, stop in parts:
@@ -196,7 +197,7 @@ def _tapers(parts: list[tuple[int, int]], points: int, flanks: float) -> list[np
 
 
 def _without_form(row: np.ndarray, part: tuple[int, int], order: int) -> np.ndarray:
-    """Heights less the polynomial that fits one part of them."""
+    """Heights minus the polynomial fitted to one part."""
     x = np.linspace(-1.0, 1.0, part[1] - part[0])
     basis = np.polynomial.legendre.legvander(x, order)
     here = row[slice(*part)]
@@ -206,7 +207,7 @@ def _without_form(row: np.ndarray, part: tuple[int, int], order: int) -> np.ndar
 
 
 def _unlike(powers: np.ndarray, tapers: np.ndarray, lines: np.ndarray, first: int) -> float:
-    """By what factor the spectra (part, bin) of parts differ more than Gaussian heights'."""
+    """Factor by which the spectra (part, bin) of parts differ more than for Gaussian heights."""
     known = np.arange(lines.size) >= first
     if len(powers) < 2 or not known.any():
         return 1.0

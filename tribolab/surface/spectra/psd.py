@@ -1,4 +1,4 @@
-"""Power spectra of measured roughness: of profiles, and of the isotropic surface behind them."""
+"""Power spectra of measured profiles, and of the isotropic surface they belong to."""
 
 from __future__ import annotations
 
@@ -39,16 +39,16 @@ def psd_1d(
     flanks: float = 0.5,
     workers: int = 1,
 ) -> xr.Dataset:
-    """One-dimensional power spectrum of profiles, averaged over the scans, with its band.
+    """1D power spectrum of profiles, averaged over the scans, with its 95 % band.
 
     Parameters
     ----------
     scans
         ``height`` [m] (scan, x) or (x), evenly spaced. Missing heights (NaN) are bridged, and the
-        spectrum is corrected for them; missing ends are cut off, and long gaps part a profile.
+        spectrum is corrected for them; missing ends are cut off, and long gaps split a profile.
     form
-        What to take away first, see `remove_form`; ``"auto"`` takes a circle from scans whose
-        form was not removed before, ``"none"`` only the mean.
+        Form to remove first, see `remove_form`; ``"auto"`` removes a circle unless form was
+        removed before, ``"none"`` only the mean.
     bins_per_decade
         Width of the bins on the logarithmic axis; at small k a bin holds at least four lines.
     tip_radius
@@ -64,9 +64,9 @@ def psd_1d(
     xarray.Dataset
         ``psd_1d`` [m3] with ``psd_1d_low``, ``psd_1d_high`` (95 % band), the number of
         ``independent_values`` and ``trusted`` (1 or 0), over ``wavenumber`` [1/m] with the bins'
-        edges ``wavenumber_low`` and ``wavenumber_high``. The attributes say what limits the
-        trusted band and how well Parseval's relation holds. Where heights are missing, the band
-        holds ``gap_error`` too, the relative standard error that the gaps bring.
+        edges ``wavenumber_low`` and ``wavenumber_high``. The attributes give the limits of the
+        trusted band and the error of Parseval's relation. If heights are missing, the band
+        includes ``gap_error``, the relative standard error due to the gaps.
 
     Raises
     ------
@@ -166,14 +166,14 @@ def psd_2d(
     bins_per_decade: float = 12,
     tip_radius: str | float | None = None,
 ) -> xr.Dataset:
-    """Two-dimensional power spectrum of the surface, isotropic, with its band.
+    """2D power spectrum of an isotropic surface, with its 95 % band.
 
     Parameters
     ----------
     scans
         Profiles, a map (y, x), maps (scan, y, x), or the 1D spectrum that `psd_1d` gave.
     form, bins_per_decade, tip_radius
-        As for `psd_1d`; from a map a polynomial of second order is taken.
+        As for `psd_1d`; from a map a polynomial of second order is removed.
 
     Returns
     -------
@@ -191,8 +191,8 @@ def psd_2d(
     -----
     Persson's convention, ``<h^2> = 2 pi int q C dq``. From profiles: the inverse Abel transform
     of the averaged, binned C_1D (see `spectra.abel.invert`). Below the roll-off profiles
-    say little about C(q), since most of what they show there comes from shorter, oblique waves:
-    annuli are joined until the standard error of each is below 25 %.
+    determine C(q) poorly, since most of their power there comes from shorter, oblique waves:
+    annuli are merged until the standard error of each is below 25 %.
 
     References
     ----------
@@ -238,7 +238,7 @@ def psd_2d(
 
 
 def _prepared(scans: xr.Dataset, form: str) -> xr.Dataset:
-    """One dimension ``scan``, form removed, and a clear word about what cannot be used."""
+    """Return scans with one dimension ``scan`` and without form, or raise an error."""
     if not isinstance(scans, xr.Dataset):
         raise AnalysisError(
             "one dataset with scans of equal pitch and length is wanted, got a "

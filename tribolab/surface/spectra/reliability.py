@@ -1,4 +1,4 @@
-"""Which wavenumbers of a measured spectrum can be trusted, and what limits them."""
+"""Range of wavenumbers in which a measured spectrum can be trusted, and its limits."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ import xarray as xr
 from tribolab.units.conversion import to_si
 
 # A sphere that traces profiles of the reference surfaces loses less than 5 % of C_1D as long as
-# the rms curvature of this wave and all longer ones stays below this share of the tip's.
+# the rms curvature of all waves up to this one stays below this share of the tip's.
 TIP_SHARE = 0.15
-_NOISE_MARGIN = 20.0  # C_1D stands so far above the floor: noise adds at most 5 %
-_FLOOR = 0.7  # the floor is read between this share of the Nyquist wavenumber and its end
-_FILTER_LOSS = 0.05  # largest share of the power that a profile filter may have taken
+_NOISE_MARGIN = 20.0  # ratio of C_1D to the noise floor: noise adds at most 5 %
+_FLOOR = 0.7  # the floor is taken between this share of the Nyquist wavenumber and its end
+_FILTER_LOSS = 0.05  # largest share of the power that a profile filter may have removed
 _GAUSS = np.log(2) / (2 * np.pi) ** 2  # ISO 16610-21: transmission exp(-_GAUSS (q cutoff)^2)
 
 
@@ -53,10 +53,10 @@ def tip_cutoff(
 
 
 def noise_cutoff(wavenumber: np.ndarray, psd_1d: np.ndarray) -> float:
-    """Wavenumber [1/m] above which the spectrum cannot be told from noise.
+    """Wavenumber [1/m] above which noise dominates the spectrum.
 
-    The floor is the median of C_1D near the Nyquist wavenumber, be it noise of the instrument,
-    aliased waves or quantisation; trusted is what stands 20 times above it.
+    The floor is the median of C_1D near the Nyquist wavenumber, from instrument noise, aliasing or
+    quantisation. The spectrum is trusted where it exceeds 20 times the floor.
     """
     floor = float(np.median(psd_1d[wavenumber >= _FLOOR * wavenumber[-1]]))
     near = psd_1d < _NOISE_MARGIN * floor
@@ -70,7 +70,7 @@ def trusted_band(
     lowest: int,
     lost: float = float("inf"),
 ) -> tuple[np.ndarray, dict[str, float | str]]:
-    """Mark the bins that can be trusted.
+    """Mark the trusted bins of a spectrum.
 
     Parameters
     ----------
@@ -81,19 +81,19 @@ def trusted_band(
     tip_radius
         Radius of the tip [m] or text, instead of the scans'.
     lowest
-        First Fourier line that form removal and window leave untouched.
+        First Fourier line that form removal and window do not affect.
     lost
-        Wavenumber [1/m] from which on gaps hide the surface.
+        Wavenumber [1/m] above which gaps hide the surface.
 
     Returns
     -------
     tuple of numpy.ndarray and dict
-        1 where the whole bin lies in the trusted band, else 0, and attributes that say what
-        limits the band on either side. In noise no bin can be trusted.
+        1 for bins entirely inside the trusted band, else 0; and attributes that name the cause of
+        both limits. A spectrum of noise has no trusted bin.
     """
     q, c = spectrum.wavenumber.values, spectrum.psd_1d.values
     left, right = spectrum.wavenumber_low.values, spectrum.wavenumber_high.values
-    first = min(q.size - 1, 1 if lowest > 1 else 0)  # what form removal took is not noise
+    first = min(q.size - 1, 1 if lowest > 1 else 0)  # power lost to form removal is not noise
     highs = {"Nyquist": float(right[-1]) / 2, "noise floor": noise_cutoff(q[first:], c[first:])}
     radius = scans.attrs.get("tip_radius_m") if tip_radius is None else tip_radius
     if radius is not None:

@@ -1,4 +1,4 @@
-"""The smooth spectrum behind a measured one, by which its scatter is judged."""
+"""Smooth spectrum fitted to a measured one, from which its scatter is estimated."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ import numpy as np
 
 from tribolab.surface.self_affine import SelfAffine, psd_1d
 
-_STIFFNESS = 1e3  # of the smoother: it averages over some ten bins
-_STARTS = (0.25, 0.5, 0.75)  # of the logarithmic axis, where the roll-off is looked for
+_STIFFNESS = 1e3  # stiffness of the smoother: it averages over some ten bins
+_STARTS = (0.25, 0.5, 0.75)  # decades searched for the roll-off
 
 
 class FittedLaw(NamedTuple):
-    """A plateau and power law, with the covariance of ln(roll-off) and the Hurst exponent."""
+    """Fitted plateau and power law, with the covariance of ln(roll-off) and the Hurst exponent."""
 
     law: SelfAffine
     covariance: np.ndarray
 
     def spread(self, quantity: Callable[[SelfAffine], np.ndarray]) -> np.ndarray:
-        """Return the standard error of a quantity that depends on the law's shape."""
+        """Return the standard error of a quantity that depends on the fitted law."""
         steps = []
         for name, scale in (("rolloff", self.law.rolloff), ("hurst", 1.0)):
             at = getattr(self.law, name)
@@ -32,7 +32,7 @@ class FittedLaw(NamedTuple):
 
 
 def fitted_law(wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarray) -> FittedLaw:
-    """Return the plateau and power law whose profiles have the nearest spectrum.
+    """Plateau and power law whose profile spectrum fits a measured C_1D best.
 
     Parameters
     ----------
@@ -43,8 +43,8 @@ def fitted_law(wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarra
 
     Notes
     -----
-    Least squares of the logarithms. That of a mean of m values lies by about 1/(2m) too low on
-    the average, which is undone.
+    Least squares of the logarithms. The logarithm of a mean of m values is too low by about 1/(2m)
+    on average, which is corrected.
 
     Examples
     --------
@@ -54,7 +54,7 @@ def fitted_law(wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarra
     >>> round(law.hurst, 3), float(f"{law.rolloff:.3g}")
     (0.8, 30000.0)
     """
-    # late: scipy takes long to load
+    # imported late: scipy loads slowly
     from scipy.optimize import least_squares
 
     level, weights = _level(measured, relative), relative**-2.0
@@ -78,10 +78,11 @@ def fitted_law(wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarra
     ]
     best = min(tried, key=lambda fit: fit.cost)
     plateau = float(np.exp(np.average(off(best.x), weights=weights)))
-    growth = max(1.0, 2 * best.cost / max(level.size - 3, 1))  # where the surface is another
+    # reached if the surface does not follow the law
+    growth = max(1.0, 2 * best.cost / max(level.size - 3, 1))
     rolloff, hurst = best.x
     jacobian = np.asarray(best.jac)
-    # what the spectrum leaves open is known within the bounds, as of a uniform distribution
+    # parameters that the spectrum does not determine are uniformly distributed within the bounds
     known = np.diag(12 / np.diff(bounds, axis=0)[0] ** 2)
     covariance = np.linalg.inv(jacobian.T @ jacobian / growth + known)
     return FittedLaw(law(rolloff, hurst, plateau), covariance)
@@ -90,20 +91,20 @@ def fitted_law(wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarra
 def smooth(
     wavenumber: np.ndarray, measured: np.ndarray, relative: np.ndarray, law: SelfAffine
 ) -> np.ndarray:
-    """Return the smooth spectrum behind a C_1D that scatters.
+    """Smooth spectrum fitted to a scattering C_1D.
 
     Parameters
     ----------
     wavenumber, measured, relative
         As for `fitted_law`.
     law
-        What that returned.
+        Result of `fitted_law`.
 
     Notes
     -----
-    The law's spectrum times what the surface has beside it, by Whittaker's smoother [1]_, stiff
-    enough to average over some ten bins. C_1D of an isotropic surface never rises with k, so
-    neither does this.
+    The spectrum of the law times the surface's deviation from it, smoothed over some ten bins by
+    Whittaker's smoother [1]_. C_1D of an isotropic surface never rises with k, so neither does
+    the result.
 
     References
     ----------

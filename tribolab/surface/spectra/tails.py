@@ -1,7 +1,7 @@
 """Skewness and kurtosis of profiles with a hole longer than half a sampling length.
 
-A bridge over such a hole is a straight line, beside which every height of the same sampling length
-is an outlier: both are then taken from measured heights alone, of the lengths that hold enough.
+A bridge over such a hole is a straight line, which makes the other heights of that sampling length
+outliers. Both parameters then use measured heights only, from lengths with enough of them.
 """
 
 from __future__ import annotations
@@ -10,19 +10,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-_ENOUGH = 0.5  # share of a sampling length that is measured
-_POWERS = {"Rsk": (3, 6.0), "Rku": (4, 24.0)}  # of a normal process: order, and its variance
+_ENOUGH = 0.5  # share of a sampling length that must be measured
+_POWERS = {"Rsk": (3, 6.0), "Rku": (4, 24.0)}  # for a normal process: order, and its variance
 
 
 class Tails(NamedTuple):
-    """A parameter of profiles (row), and the standard error that the holes bring."""
+    """Rsk or Rku of profiles (row), and its standard error due to holes."""
 
     value: np.ndarray
     error: np.ndarray
 
 
 def long_holes(missing: np.ndarray) -> np.ndarray:
-    """Return which profiles have a sampling length that is missing by more than half.
+    """Mask of profiles with a sampling length of which more than half is missing.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def long_holes(missing: np.ndarray) -> np.ndarray:
 
 
 def tails(deviation: np.ndarray, missing: np.ndarray) -> dict[str, Tails]:
-    """Skewness and kurtosis from what was measured, with the error of what was not.
+    """Rsk and Rku from the measured heights, with the error due to the missing ones.
 
     Parameters
     ----------
@@ -52,16 +52,16 @@ def tails(deviation: np.ndarray, missing: np.ndarray) -> dict[str, Tails]:
     Returns
     -------
     dict
-        ``Rsk`` and ``Rku``; not a number where no sampling length is measured by half.
+        ``Rsk`` and ``Rku``; NaN if less than half of every sampling length is measured.
 
     Notes
     -----
     The mean of a part that is measured differs from that of the whole by the variance of the
-    moment over windows, ``s**2 (1/n - 1/N)``, with n of N lengths measured. For s the larger is
-    taken of what the lengths differ by and what those of a normal process do,
+    moment over windows, ``s**2 (1/n - 1/N)``, with n of N lengths measured. s is the larger of the
+    scatter between the lengths and that of a normal process,
     ``6 sum(rho**3)/L`` and ``24 sum(rho**4)/L`` with its autocorrelation rho over a length of L
-    points [1]_; of rho without its sign, since part of a profile says little of the lobes where it
-    is negative.
+    points [1]_. The magnitude of rho is used, since part of a profile determines its negative lobes
+    poorly.
 
     References
     ----------
@@ -83,7 +83,7 @@ def tails(deviation: np.ndarray, missing: np.ndarray) -> dict[str, Tails]:
         each = np.divide(
             moment, square ** (order / 2), where=square > 0, out=np.zeros(square.shape)
         )
-        with np.errstate(invalid="ignore"):  # of profiles that nothing is measured of
+        with np.errstate(invalid="ignore"):  # profiles without measured heights
             value = (weight * each).sum(axis=-1) / np.where(number > 0, number, np.nan)
             spread = (weight * (each - value[:, None]) ** 2).sum(axis=-1)
             spread /= np.where(number > 1.0, number - 1.0, np.nan)
@@ -94,7 +94,7 @@ def tails(deviation: np.ndarray, missing: np.ndarray) -> dict[str, Tails]:
 
 
 def _autocorrelation(height: np.ndarray, there: np.ndarray) -> np.ndarray:
-    """Autocorrelation of profiles over the lags of one length, both ways (row, lag)."""
+    """Autocorrelation of profiles at both positive and negative lags (row, lag)."""
     size = height.shape[-1]
     rows = height.reshape(len(height), -1)
     every = there.reshape(len(there), -1).astype(float)
