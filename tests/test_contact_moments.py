@@ -10,15 +10,15 @@ from scipy.integrate import quad
 
 from tribolab.core.errors import AnalysisError
 from tribolab.surface.moments import (
-    at_wavenumber,
     band,
     bin_integrals,
     cumulative_at,
     cumulative_moment,
-    refined,
+    refine_nodes,
     rms_roughness,
     rms_slope,
     spectral_moment,
+    spectrum_at,
 )
 
 
@@ -92,7 +92,7 @@ def test_refining_changes_no_moment(seed, per_decade):
     rng = np.random.default_rng(seed)
     q = np.geomspace(1e3, 1e9, 9) * rng.uniform(0.8, 1.2, 9)
     c = rng.lognormal(size=9, sigma=3) * (rng.random(9) > 0.2)
-    fine, fine_c = refined(q, c, per_decade)
+    fine, fine_c = refine_nodes(q, c, per_decade)
     assert np.isin(q, fine).all()
     wide = np.diff(np.log10(fine)) > 1 / per_decade * (1 + 1e-9)
     assert not (wide & (fine_c[1:] > 0) & (fine_c[:-1] > 0)).any()
@@ -111,7 +111,7 @@ def test_the_cumulative_moment_between_nodes_is_that_of_the_band():
         for stop, value in zip(where[1:-1], found[1:-1], strict=True):
             edges = np.append(q[q < stop], stop)
             exact = sum(
-                quad(lambda t, n=order: t**n * at_wavenumber(t, q, c), a, b, epsrel=1e-11)[0]
+                quad(lambda t, n=order: t**n * spectrum_at(t, q, c), a, b, epsrel=1e-11)[0]
                 for a, b in zip(edges[:-1], edges[1:], strict=True)
             )
             assert value == pytest.approx(exact, rel=1e-9)
@@ -127,7 +127,7 @@ def test_two_bands_make_the_whole():
         for order in (1, 3):
             whole = spectral_moment(psd, order)
             assert sum(spectral_moment(p, order) for p in parts) == pytest.approx(whole, rel=1e-12)
-    assert at_wavenumber(1e3, q, psd.psd_2d.values) == pytest.approx(10**-15.5, rel=1e-12)
+    assert spectrum_at(1e3, q, psd.psd_2d.values) == pytest.approx(10**-15.5, rel=1e-12)
 
 
 def test_rms_values_of_the_published_surfaces(shared):

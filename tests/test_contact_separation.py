@@ -13,7 +13,7 @@ from scipy.integrate import quad
 from tribolab.contact.persson import mean_separation
 from tribolab.contact.separation import separation_table
 from tribolab.core.errors import AnalysisError
-from tribolab.surface.moments import at_wavenumber, cumulative_at, spectrum_arrays
+from tribolab.surface.moments import cumulative_at, spectrum_arrays, spectrum_at
 
 TABLES = {name: separation_table(reference_psd(name), E_STAR) for name in SURFACES}
 
@@ -138,7 +138,7 @@ def test_noise_on_a_measured_spectrum_does_not_spoil_the_table():
     p = np.geomspace(1, 1e6, 60)
     np.testing.assert_allclose(table.separation(p), mean_separation(p, noisy, E_STAR), rtol=1e-4)
     q, c = spectrum_arrays(noisy)
-    assert at_wavenumber(q, q, c).min() == 0
+    assert spectrum_at(q, q, c).min() == 0
 
 
 def test_separations_of_what_is_not_a_number_are_none_and_of_lists_of_text_are_values():

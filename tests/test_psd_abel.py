@@ -8,7 +8,7 @@ from scipy.special import erf, gamma
 
 from tribolab.core.errors import AnalysisError
 from tribolab.surface import self_affine
-from tribolab.surface.spectra.abel import PowerLaws, invert, through_nodes
+from tribolab.surface.spectra.abel import PowerLaws, invert, power_laws_between
 
 NOMINAL, MODULUS = 0.0417e6, 2e6  # Pa
 
@@ -36,7 +36,7 @@ def exact_moment(spectrum, low, high, order):
 def test_rolled_off_spectra_come_back_within_1_percent_in_contact_area(hurst, per_decade):
     spectrum = self_affine.SelfAffine(hurst, 5e4, 1e-22, 423.0, np.pi / 1e-9)
     q = np.geomspace(423, np.pi / 1e-9 * 0.9999, round(6.9 * per_decade))
-    found = invert(through_nodes(q, self_affine.psd_1d(spectrum, q)))
+    found = invert(power_laws_between(q, self_affine.psd_1d(spectrum, q)))
     low, high = q[:-1], q[1:]
     # the mean over each annulus, in the moment of Eq. (7); the spectrum's own end is cut off
     weight = exact_moment(spectrum, low, high, 3) / exact_moment(spectrum, low, high, 1)
@@ -52,7 +52,7 @@ def test_a_pure_power_law_is_exact(hurst):
     factor = np.sqrt(np.pi) * gamma(hurst + 0.5) / gamma(hurst + 1)
     k = np.geomspace(1e3, 1e7, 25)
     edges = np.geomspace(2e3, 5e6, 17)
-    found = invert(through_nodes(k, factor * k ** (-1 - 2 * hurst)), edges)
+    found = invert(power_laws_between(k, factor * k ** (-1 - 2 * hurst)), edges)
     exact = np.pi / hurst * -np.diff(edges ** (-2 * hurst))
     np.testing.assert_allclose(found.power, exact, rtol=1e-8)
 
@@ -94,4 +94,4 @@ def test_sensitivities_are_derivatives():
 def test_a_tail_that_no_surface_has_is_refused():
     k = np.geomspace(1e3, 1e6, 20)
     with pytest.raises(AnalysisError, match="noise floor"):
-        invert(through_nodes(k, k**-0.8))
+        invert(power_laws_between(k, k**-0.8))

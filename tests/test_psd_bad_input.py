@@ -11,7 +11,7 @@ from tribolab.surface.extrapolation import extrapolate
 from tribolab.surface.form import remove_form
 from tribolab.surface.roughness import roughness_parameters
 from tribolab.surface.spectra.abel import Annuli
-from tribolab.surface.spectra.annuli import join
+from tribolab.surface.spectra.annuli import merge_annuli
 from tribolab.surface.spectra.psd import psd_1d, psd_2d
 from tribolab.surface.synthesis import synthesise_profiles
 
@@ -73,7 +73,7 @@ def test_profiles_of_no_isotropic_surface_are_named():
     edges = np.array([1e3, 2e3, 4e3])
     found = Annuli(edges, np.array([-2.0, -1.0]), np.eye(2), 1.0, 1.0)
     with pytest.raises(AnalysisError, match="isotropic"):
-        join(found, found, np.array([0.1, 0.1]))
+        merge_annuli(found, found, np.array([0.1, 0.1]))
 
 
 ONE_D = xr.Dataset({"psd_2d": ("wavenumber", [1.0, 2.0])}, {"wavenumber": [1.0, 2.0]})

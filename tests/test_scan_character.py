@@ -7,7 +7,7 @@ import xarray as xr
 from tribolab.core.errors import AnalysisError
 from tribolab.qc.scan.checks import check_scans
 from tribolab.qc.scan.profiles import steps
-from tribolab.surface.character import dominant_wave, slope_ratio, why_not_self_affine
+from tribolab.surface.character import dominant_wave, self_affinity_objection, slope_ratio
 from tribolab.surface.extrapolation import extrapolate
 from tribolab.surface.self_affine import SelfAffine
 from tribolab.surface.spectra.psd import psd_1d, psd_2d
@@ -67,7 +67,7 @@ def test_a_ground_map_is_suspect_for_its_lay(turn):
 
 def test_random_surfaces_are_not_accused():
     for seed in range(5):
-        assert why_not_self_affine(random_map(seed)) == ""
+        assert self_affinity_objection(random_map(seed)) == ""
         line = synthesise_profiles(ROUGH, points=X.size, pitch=0.25e-6, rng=seed)
         found = check_scans(profile(line.height.values.ravel())).table
         assert found.query("check == 'self_affine'").status.item() == "pass"

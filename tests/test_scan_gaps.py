@@ -6,7 +6,7 @@ import xarray as xr
 
 from tribolab.core.errors import AnalysisError
 from tribolab.surface.form import fill_dropouts
-from tribolab.surface.gaps import bridged, gaps_in, without_ends
+from tribolab.surface.gaps import bridge_gaps, cut_ends, gaps_in
 from tribolab.surface.roughness import roughness_parameters
 from tribolab.surface.self_affine import SelfAffine
 from tribolab.surface.spectra.binning import log_bins
@@ -37,8 +37,8 @@ def test_a_plane_is_bridged_exactly_by_straight_lines():
     plane = 2 * x - 3 * y
     missing = np.zeros(plane.shape, bool)
     missing[3:6, 4:7] = True
-    np.testing.assert_allclose(bridged(plane, missing, is_map=False), plane, atol=1e-12)
-    inside = bridged(plane, missing, is_map=True)
+    np.testing.assert_allclose(bridge_gaps(plane, missing, is_map=False), plane, atol=1e-12)
+    inside = bridge_gaps(plane, missing, is_map=True)
     assert inside[~missing].tolist() == plane[~missing].tolist()
     np.testing.assert_allclose(inside[4, 5], plane[4, 5], atol=1e-12)  # by symmetry
     ring = plane[2:7, 3:8][~missing[2:7, 3:8]]
@@ -129,7 +129,7 @@ def test_the_parts_beside_a_hole_see_nothing_of_its_bridge():
 def test_missing_ends_are_cut_off_and_are_no_gaps():
     height = LINES.height.values.copy()
     height[0, :200] = height[1, -100:] = np.nan
-    cut = without_ends(LINES.assign(height=(("scan", "x"), height)))
+    cut = cut_ends(LINES.assign(height=(("scan", "x"), height)))
     assert cut.sizes["x"] == 4096 - 300 and gaps_in(cut) is None
     spectrum = psd_1d(LINES.assign(height=(("scan", "x"), height)))
     same = psd_1d(LINES.isel(x=slice(200, -100)))

@@ -21,7 +21,7 @@ from tribolab.contact.persson import contact_area_ratio, mean_separation
 from tribolab.contact.separation import separation_table
 from tribolab.rubber.friction import viscoelastic_friction
 from tribolab.rubber.modulus import PDMS_STAND_IN
-from tribolab.surface.moments import at_wavenumber, cumulative_at, spectrum_arrays
+from tribolab.surface.moments import cumulative_at, spectrum_arrays, spectrum_at
 
 PRESSURES = np.geomspace(1e3, 1e5, 50)
 SPEEDS = np.geomspace(1e-6, 1e-2, 13)
@@ -42,7 +42,7 @@ def area_by_quad(q: np.ndarray, c: np.ndarray) -> np.ndarray:
     """A/A0 the plain way: adaptive quadrature of Eq. (7) in ln q, once for all pressures."""
 
     def integrand(log_q: float) -> float:
-        return np.exp(4 * log_q) * float(at_wavenumber(np.exp(log_q), q, c))
+        return np.exp(4 * log_q) * float(spectrum_at(np.exp(log_q), q, c))
 
     edges = np.log(q)
     slope = sum(
@@ -66,7 +66,7 @@ def separation_by_quad(pressure: float, q: np.ndarray, c: np.ndarray) -> float:
             stop,
             epsrel=1e-7,
         )[0]
-        return np.sqrt(np.pi) * at**3 * float(at_wavenumber(at, q, c)) * w * E_STAR * inner
+        return np.sqrt(np.pi) * at**3 * float(spectrum_at(at, q, c)) * w * E_STAR * inner
 
     edges = np.log([q[0] * (1 + 1e-9), 1.1 * q[0], 10 * q[0], *q[1:]])
     return sum(

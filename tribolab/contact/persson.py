@@ -19,12 +19,12 @@ from tribolab.contact.area import AreaTheory, area_of
 from tribolab.core.errors import AnalysisError
 from tribolab.core.validity import examine
 from tribolab.surface.moments import (
-    at_wavenumber,
     cumulative,
     cumulative_at,
-    refined,
+    refine_nodes,
     rms_slope,
     spectrum_arrays,
+    spectrum_at,
 )
 from tribolab.units.conversion import positive
 from tribolab.units.quantities import si_values
@@ -223,7 +223,7 @@ def slope_quadrature(q: np.ndarray, spectrum: np.ndarray) -> tuple[np.ndarray, n
         )
     first = int(np.argmax(moments > 0)) - 1
     q, spectrum = q[first:], spectrum[first:]
-    nodes = np.log(refined(q, spectrum, per_decade=25)[0])
+    nodes = np.log(refine_nodes(q, spectrum, per_decade=25)[0])
     t, weight = np.polynomial.legendre.leggauss(4 if nodes.size < 400 else 2)
     half = np.diff(nodes)[1:, None] / 2
     rest = nodes[1:-1, None] + half * (1 + t)
@@ -234,7 +234,7 @@ def slope_quadrature(q: np.ndarray, spectrum: np.ndarray) -> tuple[np.ndarray, n
     steps = np.concatenate([2 * start * t1 * weight1, (half * weight).ravel()])
     wavenumber = np.exp(logs).clip(q[0], q[-1])
     slope = np.sqrt(cumulative_at(wavenumber, q, spectrum, 3))
-    return slope, wavenumber**3 * at_wavenumber(wavenumber, q, spectrum) / slope * steps
+    return slope, wavenumber**3 * spectrum_at(wavenumber, q, spectrum) / slope * steps
 
 
 def rough_band(psd: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:

@@ -16,7 +16,7 @@ from tribolab.rubber.temperature import flash_temperature
 from tribolab.surface.moments import (
     bin_integrals,
     cumulative,
-    refined,
+    refine_nodes,
     rms_slope,
     spectrum_arrays,
 )
@@ -152,7 +152,7 @@ def _solved(
     theory: AreaTheory,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Friction coefficient and area at the largest wavenumber (pressures, speed)."""
-    q, spectrum = refined(*spectrum_arrays(psd), _PER_DECADE)
+    q, spectrum = refine_nodes(*spectrum_arrays(psd), _PER_DECADE)
     stored, lost = _turn_averages(np.atleast_1d(speed.values)[:, None] * q, modulus)
     # pressures first, then speeds and wavenumbers
     relative = 1 / ((1 - poisson_ratio**2) * over.values.reshape(*over.shape, 1, 1))
@@ -181,7 +181,7 @@ def _heating(
 
 def _growth(over: xr.DataArray, psd: xr.Dataset, stiffness: float, work: float) -> np.ndarray:
     """P(q) with adhesion over that without, at rest (pressures, 1, wavenumber)."""
-    q, spectrum = refined(*spectrum_arrays(psd), _PER_DECADE)
+    q, spectrum = refine_nodes(*spectrum_arrays(psd), _PER_DECADE)
     bound = adhesion(over.values.ravel(), psd, stiffness, work)
     nodes = bound["wavenumber"].values
     with np.errstate(divide="ignore"):

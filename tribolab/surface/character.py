@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.surface.gaps import bridged, gaps_in
+from tribolab.surface.gaps import bridge_gaps, gaps_in
 
 _MOST_POINTS = 8192  # of a profile; a dominant wave must be sampled by several points a period
 _MOST_ROWS = 512  # of a map: the mean power of each line is then accurate to 6 %
@@ -17,7 +17,7 @@ _CHANCE = 1e-6  # chance that any line of random heights exceeds its neighbours 
 _LAY = 0.4  # ratio of the slopes along and across the lay; chance gives 0.6 on smooth small maps
 
 
-def why_not_self_affine(scans: xr.Dataset) -> str:
+def self_affinity_objection(scans: xr.Dataset) -> str:
     """Reason why the spectrum of these scans cannot be extrapolated as self-affine, or "".
 
     Parameters
@@ -40,7 +40,7 @@ def why_not_self_affine(scans: xr.Dataset) -> str:
     --------
     >>> x = 1e-6 * np.arange(4000)
     >>> wave = xr.Dataset({"height": ("x", 1e-6 * np.sin(2 * np.pi * x / 8e-5))}, {"x": x})
-    >>> why_not_self_affine(wave)
+    >>> self_affinity_objection(wave)
     'one wave of 80 um holds 100 % of the mean square height: a gauge, a groove or marks of a tool'
     """
     is_map = "y" in scans.height.dims
@@ -48,7 +48,7 @@ def why_not_self_affine(scans: xr.Dataset) -> str:
     height = scans.height.transpose(..., *dims)
     values, missing = height.values, gaps_in(scans.assign(height=height))
     if missing is not None:
-        values = bridged(values, missing, is_map=is_map)
+        values = bridge_gaps(values, missing, is_map=is_map)
     if not np.isfinite(values).all() or min(values.shape[-len(dims) :]) < 2 * _PERIODS:
         return ""
     steps = {dim: float(np.ptp(scans[dim].values)) / (scans.sizes[dim] - 1) for dim in dims}

@@ -10,7 +10,7 @@ import xarray as xr
 from tribolab.core.errors import AnalysisError, Cure
 from tribolab.core.provenance import history_line
 from tribolab.surface.limits import MAX_FITTED_HURST, MAX_SURE_HURST, MIN_HURST
-from tribolab.surface.moments import at_wavenumber, spectrum_arrays
+from tribolab.surface.moments import spectrum_arrays, spectrum_at
 from tribolab.units.conversion import to_si
 from tribolab.units.stamping import stamp
 
@@ -39,7 +39,7 @@ class PowerLaw(NamedTuple):
         """Standard error of the Hurst exponent."""
         return 0.5 * self.slope_error
 
-    def at(self, wavenumber: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def log_value(self, wavenumber: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return ln C and its standard error at a wavenumber."""
         x = np.log(wavenumber) - self.centre
         return self.level + self.slope * x, np.hypot(self.level_error, self.slope_error * x)
@@ -56,13 +56,13 @@ class _Part(NamedTuple):
     spread: np.ndarray
     origin: int
 
-    def between(self, low: float, high: float) -> _Part:
+    def cut(self, low: float, high: float) -> _Part:
         """Cut the part at two wavenumbers, with nodes at the cuts."""
         q = self.wavenumber
         ends = np.array([end for end in (low, high) if q[0] < end < q[-1] and end not in q])
         nodes = np.unique(np.concatenate([q[(q >= low) & (q <= high)], ends]))
         near = np.minimum(np.searchsorted(q, nodes), q.size - 1)
-        value = np.where(q[near] == nodes, self.value[near], at_wavenumber(nodes, q, self.value))
+        value = np.where(q[near] == nodes, self.value[near], spectrum_at(nodes, q, self.value))
         return _Part(nodes, value, self.spread[:, near], self.origin)
 
 
@@ -136,7 +136,7 @@ def extrapolate(
     if high > q[-1]:
         _refuse_no_surface(law, decade, str(psd.attrs.get("not_self_affine", "")))
     measured = _Part(q, c, _relative_band(psd, c), AS_MEASURED)
-    parts = [measured.between(low, high)]
+    parts = [measured.cut(low, high)]
     if low < q[0]:
         grid = _grid(low, min(high, float(q[0])))
         grid = grid[:-1] if high >= q[0] else grid
@@ -145,7 +145,7 @@ def extrapolate(
     if high > q[-1]:
         grid = _grid(max(low, float(q[-1])), high)
         grid = grid[1:] if low <= q[-1] else grid
-        log_c, log_error = law.at(grid)
+        log_c, log_error = law.log_value(grid)
         spread = np.exp(_NORMAL * np.stack([-log_error, log_error]))
         parts.append(_Part(grid, np.exp(log_c), spread, TO_LARGE))
     value = np.concatenate([part.value for part in parts])

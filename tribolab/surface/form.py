@@ -7,7 +7,7 @@ import xarray as xr
 
 from tribolab.core.errors import AnalysisError, Cure, nearest, shown
 from tribolab.core.provenance import history_line
-from tribolab.surface.gaps import bridged
+from tribolab.surface.gaps import bridge_gaps
 from tribolab.surface.level import rounding_only
 from tribolab.units.stamping import stamp
 
@@ -30,7 +30,7 @@ def fill_dropouts(scans: xr.Dataset) -> xr.Dataset:
     scans
         Profiles, ``height`` [m] (..., x), which straight lines fill; at the ends the nearest
         height is repeated. Maps (..., y, x) are filled from four sides, see
-        `tribolab.surface.gaps.bridged`.
+        `tribolab.surface.gaps.bridge_gaps`.
 
     Returns
     -------
@@ -65,7 +65,7 @@ def fill_dropouts(scans: xr.Dataset) -> xr.Dataset:
             "leave that scan out",
             function="fill_dropouts",
         )
-    values = bridged(height.values, missing.values, is_map="y" in dims)
+    values = bridge_gaps(height.values, missing.values, is_map="y" in dims)
     filled = height.copy(data=values)
     return stamp(result.assign(height=filled, dropout=missing.astype("int8")))
 
@@ -152,7 +152,7 @@ def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> 
         part = slice(first, first + step)
         fit = _circle if form == "circle" else _polynomial
         left, taken[part] = fit(rows[part], x, scale, basis)
-        residual[part] = _without_rounding(left, rows[part])
+        residual[part] = _remove_rounding(left, rows[part])
     dims, shape = height.dims[:-1], height.shape[:-1]
     result = scans.assign(
         height=height.copy(data=residual.reshape(height.shape)),
@@ -162,7 +162,9 @@ def remove_form(scans: xr.Dataset, form: str = "circle", *, degree: int = 2) -> 
     if form == "circle":
         curvature = float(np.mean(np.abs(taken[:, 1])))
         attrs["form_radius_m"] = 1 / curvature if curvature > 0 else float("inf")
-    attrs["history"] = _with(scans, f"removed the {form} (order {order}) from {len(rows)} scans")
+    attrs["history"] = _extended_history(
+        scans, f"removed the {form} (order {order}) from {len(rows)} scans"
+    )
     return stamp(result, **attrs)
 
 
@@ -171,11 +173,11 @@ def removed_order(scans: xr.Dataset) -> int:
     return int(scans.attrs.get("form_order", 0))
 
 
-def _with(scans: xr.Dataset, action: str) -> str:
+def _extended_history(scans: xr.Dataset, action: str) -> str:
     return "\n".join([*filter(None, [scans.attrs.get("history", "")]), history_line(action)])
 
 
-def _without_rounding(left: np.ndarray, rows: np.ndarray) -> np.ndarray:
+def _remove_rounding(left: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """Set the residual of a perfect form to zero, so that rounding is not read as roughness."""
     level = rounding_only(left, rows)[:, None]
     return np.where(level & np.isfinite(left), 0.0, left) if level.any() else left
@@ -259,7 +261,7 @@ def _flatten_map(scans: xr.Dataset, order: int) -> xr.Dataset:
         if rounding_only(left.reshape(1, -1), heights.reshape(1, -1))[0]:
             left[np.isfinite(left)] = 0.0
     which = "the map" if len(maps) == 1 else f"{len(maps)} maps"
-    history = _with(scans, f"removed a polynomial of order {order} from {which}")
+    history = _extended_history(scans, f"removed a polynomial of order {order} from {which}")
     result = scans.assign(height=height.copy(data=flat.reshape(height.shape)))
     return result.assign_attrs(history=history)
 

@@ -47,7 +47,7 @@ def gaps_in(scans: xr.Dataset) -> np.ndarray | None:
     return values if values.any() else None
 
 
-def without_ends(scans: xr.Dataset) -> xr.Dataset:
+def cut_ends(scans: xr.Dataset) -> xr.Dataset:
     """Cut profiles to the range between the first and last height that all of them have.
 
     Maps are unchanged, and so are profiles that lack only a few heights or would lose more than
@@ -68,7 +68,7 @@ def without_ends(scans: xr.Dataset) -> xr.Dataset:
     return scans.isel(x=slice(first, last))
 
 
-def bridged(height: np.ndarray, missing: np.ndarray, *, is_map: bool) -> np.ndarray:
+def bridge_gaps(height: np.ndarray, missing: np.ndarray, *, is_map: bool) -> np.ndarray:
     """Heights with gaps interpolated: linearly in profiles, from four sides in maps (..., y, x).
 
     Parameters
@@ -89,7 +89,7 @@ def bridged(height: np.ndarray, missing: np.ndarray, *, is_map: bool) -> np.ndar
     Examples
     --------
     >>> row = np.array([0.0, np.nan, np.nan, 3.0, np.nan])
-    >>> bridged(row, np.isnan(row), is_map=False).tolist()
+    >>> bridge_gaps(row, np.isnan(row), is_map=False).tolist()
     [0.0, 1.0, 2.0, 3.0, 3.0]
     """
     if not missing.any():
@@ -192,7 +192,7 @@ def gap_effect(
     for _ in range(_TRIALS):
         laid = missing[rng.permutation(len(missing))] if joint else missing
         gaps, row = _elsewhere(laid, rng, (-2, -1) if is_map else (-1,))
-        change = measure(bridged(height, gaps, is_map=is_map)) - whole
+        change = measure(bridge_gaps(height, gaps, is_map=is_map)) - whole
         if own is not None and is_map:  # of the row that these gaps come from
             back = np.broadcast_to(np.argsort(row, axis=-1), change.shape)
             change = np.take_along_axis(change, back, axis=-1)
@@ -200,7 +200,7 @@ def gap_effect(
         left.append(1.0 - (missing | gaps).reshape(len(missing), -1).mean(axis=1))
     every = np.stack(changes)
     grow, widen = (
-        _of_windows(missing, np.stack(left), own)
+        _window_factors(missing, np.stack(left), own)
         if own is not None and not is_map
         else (np.array(1.0 / (1.0 - share)), np.array(1.0))
     )
@@ -217,28 +217,28 @@ def logarithm(power: np.ndarray) -> np.ndarray:
     return np.log(np.maximum(power, np.finfo(float).tiny))
 
 
-def still_worth(independent: np.ndarray, effect: GapEffect) -> np.ndarray:
+def effective_values(independent: np.ndarray, effect: GapEffect) -> np.ndarray:
     """Return the number of independent values with the error of these and the gaps combined.
 
     >>> effect = GapEffect(shift=np.zeros(1), error=np.array([0.1]), bridges=np.zeros(1))
-    >>> round(float(still_worth(np.array([100.0]), effect)[0]), 9)
+    >>> round(float(effective_values(np.array([100.0]), effect)[0]), 9)
     50.0
     """
     return np.asarray(1.0 / (1.0 / independent + effect.error**2))
 
 
-def lost_from(wavenumber: np.ndarray, effect: GapEffect) -> float:
+def gap_cutoff(wavenumber: np.ndarray, effect: GapEffect) -> float:
     """Wavenumber [1/m] above which bridges changed the power by more than half; else infinite.
 
     >>> effect = GapEffect(np.zeros(4), np.ones(4), bridges=np.array([0.9, 0.1, 0.8, 0.9]))
-    >>> lost_from(np.array([1.0, 2.0, 3.0, 4.0]), effect)
+    >>> gap_cutoff(np.array([1.0, 2.0, 3.0, 4.0]), effect)
     3.0
     """
     lost = np.logical_and.accumulate(np.abs(effect.bridges[::-1]) > _LOST)[::-1]
     return float(wavenumber[np.argmax(lost)]) if lost.any() else float("inf")
 
 
-def _of_windows(
+def _window_factors(
     missing: np.ndarray, left: np.ndarray, logarithms: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Factors by which gaps change a result more than the same gaps placed partly on bridges.

@@ -125,7 +125,7 @@ def cumulative_at(
     """Integral of q^order C from the first node to any wavenumber inside the spectrum."""
     left = np.clip(np.searchsorted(q, wavenumber, side="right") - 1, 0, q.size - 2)
     low, high = spectrum[left], spectrum[left + 1]
-    here = at_wavenumber(wavenumber, q, spectrum)
+    here = spectrum_at(wavenumber, q, spectrum)
     part = _integral(q[left], wavenumber, low, here, order, (low == 0) | (high == 0))
     return cumulative(q, spectrum, order)[left] + part
 
@@ -213,7 +213,7 @@ def rms_slope(psd: xr.Dataset) -> float:
     return float(np.sqrt(2 * np.pi * spectral_moment(psd, 3)))
 
 
-def refined(
+def refine_nodes(
     q: np.ndarray, spectrum: np.ndarray, per_decade: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Spectrum with extra nodes on its log-log lines, until bins are narrower than 1/per_decade.
@@ -227,10 +227,10 @@ def refined(
     step = np.arange(start.size) - np.repeat(np.cumsum(pieces) - pieces, pieces)
     part = step / np.repeat(pieces, pieces)
     fine = np.append(q[start] * (q[start + 1] / q[start]) ** part, q[-1])
-    return fine, at_wavenumber(fine, q, spectrum)
+    return fine, spectrum_at(fine, q, spectrum)
 
 
-def at_wavenumber(wavenumber: np.ndarray, q: np.ndarray, spectrum: np.ndarray) -> np.ndarray:
+def spectrum_at(wavenumber: np.ndarray, q: np.ndarray, spectrum: np.ndarray) -> np.ndarray:
     """C at any wavenumber inside the spectrum: power law between nodes, linear next to a zero."""
     wavenumber = np.asarray(wavenumber, dtype=float)
     if (spectrum > 0).all():
@@ -279,7 +279,7 @@ def band(psd: xr.Dataset, q_low: float, q_high: float) -> xr.Dataset:
     inside = q[(q > q_low) & (q < q_high)]
     nodes = np.concatenate([[q_low], inside, [q_high]])
     part = psd[["psd_2d"]].isel(wavenumber=0, drop=True)
-    part["psd_2d"] = ("wavenumber", at_wavenumber(nodes.clip(q[0], q[-1]), q, spectrum))
+    part["psd_2d"] = ("wavenumber", spectrum_at(nodes.clip(q[0], q[-1]), q, spectrum))
     part = part.assign_coords(wavenumber=nodes)
     for name in ("psd_2d", "wavenumber"):
         part[name].attrs.update(psd[name].attrs)

@@ -12,7 +12,7 @@ from tribolab.arrays.broadcasting import over_dims
 from tribolab.core.errors import AnalysisError, Cure
 from tribolab.core.provenance import history_line
 from tribolab.surface.filters import gaussian_filter
-from tribolab.surface.gaps import bridged, gap_effect, gaps_in, without_ends
+from tribolab.surface.gaps import bridge_gaps, cut_ends, gap_effect, gaps_in
 from tribolab.surface.level import level_rows, refuse_level, rounding_only
 from tribolab.surface.moments import cumulative, spectrum_arrays
 from tribolab.surface.spectra.tails import long_holes, tails
@@ -84,7 +84,7 @@ def roughness_parameters(
     >>> round(float(found.Rq) * 1e6, 4), round(float(found.Ra) * 1e6, 4)
     (0.7071, 0.6366)
     """
-    scans = without_ends(scans)
+    scans = cut_ends(scans)
     x = scans.x.values
     pitch, points = float((x[-1] - x[0]) / (x.size - 1)), x.size
     cut, filtered = _long_cutoff(lambda_c, scans, pitch * points)
@@ -94,13 +94,13 @@ def roughness_parameters(
     missing = gaps_in(xr.Dataset({**scans.data_vars, "height": given}, attrs=scans.attrs))
     is_map = "y" in given.dims
     if missing is not None:
-        given = given.copy(data=bridged(given.values, missing, is_map=is_map))
+        given = given.copy(data=bridge_gaps(given.values, missing, is_map=is_map))
     evaluation = _Evaluation(pitch, cut, filtered, fine, sampling_lengths)
     values, by_length = evaluation.parameters(scans.assign(height=given))
     dims = given.dims[:-1]
     data = xr.Dataset({name: (dims, value) for name, value in values.items()})
     if missing is not None:
-        data = _corrected(data, scans.assign(height=given), missing, evaluation)
+        data = _correct_gaps(data, scans.assign(height=given), missing, evaluation)
     if not is_map:  # rows of a map are not independent of each other
         data = data.assign(
             {f"{name}_sem": (dims, error) for name, error in _errors(by_length).items()}
@@ -226,7 +226,7 @@ def _errors(by_length: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     }
 
 
-def _corrected(
+def _correct_gaps(
     data: xr.Dataset, scans: xr.Dataset, missing: np.ndarray, evaluation: _Evaluation
 ) -> xr.Dataset:
     """Results corrected for gaps, with their remaining standard error (``Ra_gap_error``)."""

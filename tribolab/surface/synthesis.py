@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.core.errors import AnalysisError
-from tribolab.surface.moments import at_wavenumber, cumulative, spectrum_arrays
+from tribolab.surface.moments import cumulative, spectrum_arrays, spectrum_at
 from tribolab.surface.self_affine import SelfAffine, psd_1d, psd_2d, rms_roughness
 from tribolab.units.stamping import stamp
 
@@ -138,7 +138,7 @@ def synthesise_map(
     else:
         nodes, values = spectrum_arrays(spectrum)
         inside = (q >= nodes[0]) & (q <= nodes[-1])
-        c = np.where(inside, at_wavenumber(np.clip(q, nodes[0], nodes[-1]), nodes, values), 0.0)
+        c = np.where(inside, spectrum_at(np.clip(q, nodes[0], nodes[-1]), nodes, values), 0.0)
         variance = 2 * np.pi * float(cumulative(nodes, values, 1)[-1])
     step = 2 * np.pi / (points * pitch)
     white = np.fft.rfft2(rng.standard_normal((points, points)))

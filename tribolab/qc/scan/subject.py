@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.core.errors import AnalysisError
-from tribolab.surface.character import repeating_wave, why_not_self_affine
+from tribolab.surface.character import repeating_wave, self_affinity_objection
 from tribolab.surface.form import fill_dropouts, remove_form
 from tribolab.surface.level import level_rows
 from tribolab.surface.spectra.psd import psd_1d
@@ -124,9 +124,9 @@ class ScanSubject:
         if not self.is_map:
             _, profiles = self.form
             rows = np.stack([profile.height.values for profile in profiles])
-            return why_not_self_affine(xr.Dataset({"height": (("scan", "x"), rows)}, {"x": x}))
+            return self_affinity_objection(xr.Dataset({"height": (("scan", "x"), rows)}, {"x": x}))
         scans = self.map_without_form
-        return "" if scans is None else why_not_self_affine(scans)
+        return "" if scans is None else self_affinity_objection(scans)
 
     @cached_property
     def map_without_form(self) -> xr.Dataset | None:

@@ -92,7 +92,7 @@ class Annuli:
         return self.power / (np.pi * np.diff(self.edges**2))
 
 
-def through_nodes(wavenumber: ArrayLike, psd_1d: ArrayLike) -> PowerLaws:
+def power_laws_between(wavenumber: ArrayLike, psd_1d: ArrayLike) -> PowerLaws:
     """Power laws between the nodes of a two-sided C_1D [m3], continuous at the nodes."""
     k, c = np.asarray(wavenumber, dtype=float), np.asarray(psd_1d, dtype=float)
     slope = np.diff(np.log(c)) / np.diff(np.log(k))
@@ -136,7 +136,7 @@ def invert(profile: PowerLaws, edges: ArrayLike | None = None) -> Annuli:
 
     >>> k = np.geomspace(1e3, 1e6, 61)
     >>> edges = np.array([1e4, 1.1e4])
-    >>> power = invert(through_nodes(k, k**-3.0), edges).power
+    >>> power = invert(power_laws_between(k, k**-3.0), edges).power
     >>> expected = 2 * (edges[0]**-2.0 - edges[1]**-2.0)
     >>> bool(abs(power[0] / expected - 1) < 1e-9)
     True

@@ -72,7 +72,9 @@ def bins_of(profile: xr.Dataset, fitted: FittedLaw) -> tuple[PowerLaws, PowerLaw
     return measured, behind, relative
 
 
-def join(measured: Annuli, behind: Annuli, relative: np.ndarray) -> tuple[Annuli, np.ndarray]:
+def merge_annuli(
+    measured: Annuli, behind: Annuli, relative: np.ndarray
+) -> tuple[Annuli, np.ndarray]:
     """Merge neighbouring annuli until each is accurate enough.
 
     Parameters
@@ -115,12 +117,12 @@ def join(measured: Annuli, behind: Annuli, relative: np.ndarray) -> tuple[Annuli
             function="psd_2d",
         )
     ends[-1] = number  # the remainder at the end has no power of its own
-    joined, smoothed = _joined(measured, ends), _joined(behind, ends)
+    joined, smoothed = _merged_annuli(measured, ends), _merged_annuli(behind, ends)
     error = np.sqrt(((smoothed.sensitivity * relative) ** 2).sum(1)) / np.abs(smoothed.power)
     return joined, error
 
 
-def _joined(annuli: Annuli, ends: list[int]) -> Annuli:
+def _merged_annuli(annuli: Annuli, ends: list[int]) -> Annuli:
     """Return the merged annuli, after some of the edges between them were dropped."""
     starts = ends[:-1]
     return Annuli(
@@ -170,7 +172,7 @@ def _node_values(
     return node, value, error
 
 
-def _held(edges: np.ndarray, q: np.ndarray, c: np.ndarray) -> float:
+def _mean_square(edges: np.ndarray, q: np.ndarray, c: np.ndarray) -> float:
     """Mean square height [m2] of the power laws between nodes, extended to the last edge."""
     slope = np.log(c[-1] / c[-2]) / np.log(q[-1] / q[-2])
     grid, value = np.append(q, edges[-1]), np.append(c, c[-1] * (edges[-1] / q[-1]) ** slope)
@@ -181,7 +183,7 @@ def _held(edges: np.ndarray, q: np.ndarray, c: np.ndarray) -> float:
     return float(2 * np.pi * bin_integrals(grid, value, 1).sum())
 
 
-def _balanced(
+def _balance_power(
     edges: np.ndarray, q: np.ndarray, c: np.ndarray, error: np.ndarray, whole: float
 ) -> np.ndarray:
     """Adjust C at the nodes in proportion to their errors to conserve the mean square height [m2].
@@ -192,7 +194,7 @@ def _balanced(
     from scipy.optimize import brentq
 
     def excess(s: float) -> float:
-        return _held(edges, q, c * np.exp(s * error**2)) / whole - 1
+        return _mean_square(edges, q, c * np.exp(s * error**2)) / whole - 1
 
     most = 1.6 / float(error.max() ** 2)  # at most a factor of five
     if excess(-most) > 0 or excess(most) < 0:
@@ -210,7 +212,7 @@ def annular_spectrum(annuli: Annuli, error: np.ndarray, fitted: FittedLaw) -> xr
     q, c, error = _node_values(annuli, error, fitted)
     whole = float(annuli.power.sum())
     if q.size > 2:
-        c = _balanced(annuli.edges, q, c, error, whole)
+        c = _balance_power(annuli.edges, q, c, error, whole)
     low, high = confidence_band(c, 1 / error**2)
     result = xr.Dataset(
         {
@@ -221,5 +223,5 @@ def annular_spectrum(annuli: Annuli, error: np.ndarray, fitted: FittedLaw) -> xr
         },
         {"wavenumber": q},
     )
-    held = _held(annuli.edges, q, c) if q.size > 1 else whole
+    held = _mean_square(annuli.edges, q, c) if q.size > 1 else whole
     return result.assign_attrs(parseval_error_binned=abs(held / whole - 1))

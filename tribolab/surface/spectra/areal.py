@@ -6,15 +6,15 @@ import numpy as np
 import xarray as xr
 
 from tribolab.core.errors import AnalysisError
-from tribolab.surface.character import why_not_self_affine
+from tribolab.surface.character import self_affinity_objection
 from tribolab.surface.form import remove_form
 from tribolab.surface.gaps import (
-    bridged,
+    bridge_gaps,
+    effective_values,
+    gap_cutoff,
     gap_effect,
     gaps_in,
     logarithm,
-    lost_from,
-    still_worth,
 )
 from tribolab.surface.level import level_map, refuse_level
 from tribolab.surface.limits import MIN_WAVES_OF_MAP
@@ -88,7 +88,7 @@ def psd_2d_of_map(
     missing = gaps_in(scan.transpose(..., "y", "x"))
     if missing is not None:
         missing = missing.reshape(height.shape)
-        height = bridged(height, missing, is_map=True)
+        height = bridge_gaps(height, missing, is_map=True)
     refuse_level("psd_2d", scan, [level_map(row) for row in height])
     steps = [float(np.ptp(scan[d].values) / (scan.sizes[d] - 1)) for d in ("y", "x")]
     power, whole = _power(height)
@@ -137,8 +137,8 @@ def psd_2d_of_map(
             return logarithm(annuli(_power(maps)[0]))
 
         effect = gap_effect(height, missing, powers, is_map=True, joint=True)
-        mean, independent = mean * np.exp(-effect.shift), still_worth(independent, effect)
-        lost = lost_from(node, effect)
+        mean, independent = mean * np.exp(-effect.shift), effective_values(independent, effect)
+        lost = gap_cutoff(node, effect)
         known &= node < max(lost, node[min(4, node.size - 1)])
     low, high = confidence_band(mean, independent)
     cell = (2 * np.pi) ** 2 / (size[0] * size[1] * steps[0] * steps[1])
@@ -164,7 +164,7 @@ def psd_2d_of_map(
         "anisotropy": float(np.sqrt(along_y / along_x)),
         "parseval_error": abs(float(power.sum() * scale * cell) / whole - 1),
     }
-    if why := why_not_self_affine(scan):
+    if why := self_affinity_objection(scan):
         attrs["not_self_affine"] = why
     if np.isfinite(lost):
         attrs["gaps_hide_above_1_m"] = lost

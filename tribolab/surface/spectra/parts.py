@@ -157,7 +157,7 @@ def parts_spectrum(height: np.ndarray, missing: np.ndarray, how: Transform) -> P
         parts = _parts(gaps)
         tapers = _tapers(parts, points, how.flanks)
         each = [
-            how.power(_without_form(row, part, how.order)[None], taper)
+            how.power(_remove_form(row, part, how.order)[None], taper)
             for part, taper in zip(parts, tapers, strict=True)
         ]
         power += np.sum(each, axis=0)
@@ -196,7 +196,7 @@ def _tapers(parts: list[tuple[int, int]], points: int, flanks: float) -> list[np
     return tapers
 
 
-def _without_form(row: np.ndarray, part: tuple[int, int], order: int) -> np.ndarray:
+def _remove_form(row: np.ndarray, part: tuple[int, int], order: int) -> np.ndarray:
     """Heights minus the polynomial fitted to one part."""
     x = np.linspace(-1.0, 1.0, part[1] - part[0])
     basis = np.polynomial.legendre.legvander(x, order)

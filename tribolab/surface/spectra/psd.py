@@ -7,18 +7,18 @@ import xarray as xr
 
 from tribolab.core.errors import AnalysisError, Cure
 from tribolab.core.provenance import history_line
-from tribolab.surface.character import why_not_self_affine
+from tribolab.surface.character import self_affinity_objection
 from tribolab.surface.form import remove_form, removed_order
 from tribolab.surface.gaps import (
-    bridged,
+    bridge_gaps,
+    cut_ends,
+    effective_values,
+    gap_cutoff,
     gaps_in,
-    lost_from,
-    still_worth,
-    without_ends,
 )
 from tribolab.surface.level import level_rows, refuse_level
 from tribolab.surface.spectra import abel
-from tribolab.surface.spectra.annuli import annular_spectrum, bins_of, confidence_band, join
+from tribolab.surface.spectra.annuli import annular_spectrum, bins_of, confidence_band, merge_annuli
 from tribolab.surface.spectra.areal import psd_2d_of_map
 from tribolab.surface.spectra.binning import log_bins, shape, window
 from tribolab.surface.spectra.fourier import binned_power, fast_length
@@ -98,7 +98,7 @@ def psd_1d(
     >>> bool(white.attrs["parseval_error"] < 1e-10)
     True
     """
-    scans = _prepared(scans, form)
+    scans = _prepare_scans(scans, form)
     heights = scans.height.transpose("scan", "x")
     pitch, (number, points) = _pitch(scans), heights.shape
     length = fast_length(points)
@@ -106,7 +106,7 @@ def psd_1d(
     bins = log_bins(length // 2, taken + 2, bins_per_decade)
     taper, missing = window(points, flanks), gaps_in(scans)
     if missing is not None:
-        heights = heights.copy(data=bridged(heights.values, missing, is_map=False))
+        heights = heights.copy(data=bridge_gaps(heights.values, missing, is_map=False))
     power = binned_power(heights.data, taper, bins, length, workers)
     refuse_level("psd_1d", scans, level_rows(heights.data))
     spacing = 2 * np.pi / (length * pitch)
@@ -119,7 +119,7 @@ def psd_1d(
         effect = profile_gap_effect(
             heights.values, missing, Transform(bins, length, taken, flanks, workers)
         )
-        mean, worth = mean * np.exp(-effect.shift), still_worth(worth, effect)
+        mean, worth = mean * np.exp(-effect.shift), effective_values(worth, effect)
     value = mean / ratio
     low, high = confidence_band(value, worth)
     edges = bins.edges * spacing
@@ -139,12 +139,12 @@ def psd_1d(
     )
     if effect is not None:
         data["gap_error"] = ("wavenumber", effect.error)
-    lost = float("inf") if effect is None else lost_from(q, effect)
+    lost = float("inf") if effect is None else gap_cutoff(q, effect)
     trusted, limits = trusted_band(data, scans, tip_radius, taken + 2, lost)
     data["trusted"] = ("wavenumber", trusted)
     whole = power.heights / (number * points)
     attrs = {
-        **_inherited(scans, f"1D power spectrum of {number} scans"),
+        **_inherited_attributes(scans, f"1D power spectrum of {number} scans"),
         **limits,
         "convention": "two-sided: <h^2> = 2 int_0^inf C_1D dk",
         "scans": number,
@@ -154,7 +154,7 @@ def psd_1d(
         "mean_square_height_m2": whole,
         "parseval_error": abs(power.lines / power.heights - 1),
     }
-    if why := why_not_self_affine(scans):
+    if why := self_affinity_objection(scans):
         attrs["not_self_affine"] = why
     return stamp(data.assign_attrs(attrs))
 
@@ -229,15 +229,15 @@ def psd_2d(
         1 / np.sqrt(profile.independent_values.values),
     )
     bins, behind, relative = bins_of(profile, fitted)
-    annuli, error = join(abel.invert(bins), abel.invert(behind), relative)
-    inherited = _inherited(scans, "2D power spectrum by the inverse Abel transform")
+    annuli, error = merge_annuli(abel.invert(bins), abel.invert(behind), relative)
+    inherited = _inherited_attributes(scans, "2D power spectrum by the inverse Abel transform")
     result = annular_spectrum(annuli, error, fitted)
     return stamp(
         result.assign_attrs({**inherited, **result.attrs, "convention": "<h^2> = 2 pi int q C dq"})
     )
 
 
-def _prepared(scans: xr.Dataset, form: str) -> xr.Dataset:
+def _prepare_scans(scans: xr.Dataset, form: str) -> xr.Dataset:
     """Return scans with one dimension ``scan`` and without form, or raise an error."""
     if not isinstance(scans, xr.Dataset):
         raise AnalysisError(
@@ -273,7 +273,7 @@ def _prepared(scans: xr.Dataset, form: str) -> xr.Dataset:
         )
     if form == "auto":
         form = "none" if "form_removed" in scans.attrs else "circle"
-    scans = without_ends(scans)
+    scans = cut_ends(scans)
     scans = scans if form == "none" else remove_form(scans, form)
     return scans.rename({others[0]: "scan"}) if others else scans.expand_dims("scan")
 
@@ -291,7 +291,7 @@ def _pitch(scans: xr.Dataset) -> float:
     return pitch
 
 
-def _inherited(scans: xr.Dataset, action: str) -> dict[str, str | float]:
+def _inherited_attributes(scans: xr.Dataset, action: str) -> dict[str, str | float]:
     kept = {k: v for k, v in scans.attrs.items() if k not in ("convention", "title")}
     history = [scans.attrs["history"]] if scans.attrs.get("history") else []
     return {**kept, "history": "\n".join([*history, history_line(action)])}

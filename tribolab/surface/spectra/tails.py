@@ -99,11 +99,11 @@ def _autocorrelation(height: np.ndarray, there: np.ndarray) -> np.ndarray:
     rows = height.reshape(len(height), -1)
     every = there.reshape(len(there), -1).astype(float)
 
-    def lagged(values: np.ndarray) -> np.ndarray:
+    def lag_products(values: np.ndarray) -> np.ndarray:
         power = np.abs(np.fft.rfft(values, 2 * values.shape[-1])) ** 2
         return np.asarray(np.fft.irfft(power)[:, :size])
 
-    together = np.maximum(np.rint(lagged(every)), 1.0)
-    covariance = lagged(rows) / together
+    together = np.maximum(np.rint(lag_products(every)), 1.0)
+    covariance = lag_products(rows) / together
     rho = np.clip(covariance / np.maximum(covariance[:, :1], np.finfo(float).tiny), -1.0, 1.0)
     return np.concatenate([rho[:, :0:-1], rho], axis=-1)
