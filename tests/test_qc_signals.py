@@ -175,7 +175,7 @@ def test_mains_is_recognised_also_when_folded():
 
 def test_values_beyond_belief_and_beyond_physics_are_told_apart():
     kelvin = schema.ranges()["temperature"]
-    assert schema.in_range(np.array([293.0, 20.0, -3.0, np.nan]), kelvin).tolist() == [
+    assert schema.flag_range(np.array([293.0, 20.0, -3.0, np.nan]), kelvin).tolist() == [
         GOOD,
         SUSPECT,
         FAIL,
@@ -190,15 +190,15 @@ def test_the_check_and_the_schema_believe_the_same():
         for value, wrong in ((span.low, False), (span.high, False), (1.01 * span.high, True)):
             table = pd.DataFrame({"time": [0.0], name: [value]})
             assert bool(validate(table)) == wrong, (name, value)
-            flag = schema.in_range(np.array([value]), span)[0]
+            flag = schema.flag_range(np.array([value]), span)[0]
             assert (flag != GOOD) == wrong, (name, value)
 
 
 def test_a_load_of_the_wrong_sign_is_seen_and_a_short_pull_is_not():
     load = np.concatenate([np.zeros(100), np.full(400, 31.0), [-5.0, -6.0]])
-    assert schema.pulled_share(load) < 0.01
-    assert schema.pulled_share(-load) > 0.99
-    assert schema.pulled_share(np.zeros(10)) == 0
+    assert schema.tensile_share(load) < 0.01
+    assert schema.tensile_share(-load) > 0.99
+    assert schema.tensile_share(np.zeros(10)) == 0
 
 
 @pytest.mark.parametrize("rows", [100, 900])

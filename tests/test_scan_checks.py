@@ -150,9 +150,9 @@ def test_gaussian_roughness_has_no_steps():
 
 def test_a_range_cut_off_is_found_at_top_and_bottom():
     height = 1e-9 * np.round(1e3 * np.sin(np.linspace(0, 50, 5000)))
-    assert not (profiles.clipped(np.round(rough(), 9), 8) == SUSPECT).any()
+    assert not (profiles.flag_clipping(np.round(rough(), 9), 8) == SUSPECT).any()
     top = np.minimum(height + np.round(1e-1 * rough(1, 5000), 9), 0.8e-6)
-    assert (profiles.clipped(top, 8) == SUSPECT).sum() == (top == 0.8e-6).sum() > 100
+    assert (profiles.flag_clipping(top, 8) == SUSPECT).sum() == (top == 0.8e-6).sum() > 100
 
 
 def test_of_two_scans_that_differ_none_is_blamed_alone():

@@ -19,7 +19,7 @@ from tribolab.campaign.engine.stage import Progress, Stage, perform
 from tribolab.core.errors import ConfigError, TribolabError, told
 from tribolab.core.untyped import Json
 from tribolab.core.wording import explain
-from tribolab.qc.findings import FindingRow, Findings, exit_code, told_of
+from tribolab.qc.findings import FindingRow, Findings, exit_code, finding_texts
 from tribolab.qc.run.checks import check_run
 from tribolab.reading.kinds import kind_of, repeats_by_name
 from tribolab.reading.runs.logs import group_files
@@ -256,7 +256,7 @@ def checked_table(
     table.add_column(no_wrap=True)
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
-    for status, check, message, cure in told_of(rows, notes=notes, everything=everything):
+    for status, check, message, cure in finding_texts(rows, notes=notes, everything=everything):
         text = escape(message) + (f"\n[dim]{escape(cure)}[/dim]" if cure else "")
         table.add_row(status, check, text, style=_STYLES[status])
     return table

@@ -1,4 +1,4 @@
-"""All checks with their limits as a page to read: raw_data_schema/CHECKS.md."""
+"""Catalogue of all checks and their limits (raw_data_schema/CHECKS.md)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ keeps the two equal.
 
 
 def catalogue() -> str:
-    """Return the page: what each check asks, its limits with units and reasons, and the cure.
+    """Page of all checks: question, limits with units and reasons, and what to do.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Findings: what the checks said, as rows for a table, a terminal, a report or a program."""
+"""Findings of the checks as rows for a table, the terminal, the report or a program."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _FAIL_ON = ("suspect", "fail", "never")
 
 
 class FindingRow(TypedDict):
-    """One result as a row; `value` is None where there is no number, limits are in SI.
+    """Result of one check as a row, limits in SI; `value` is None if there is no number.
 
-    `decision` is there where a person settled an objection.
+    `decision` is present if a person settled an objection.
     """
 
     name: str
@@ -48,20 +48,20 @@ def _gravest(statuses: Iterable[str]) -> str:
 
 @dataclass(frozen=True, repr=False)
 class Findings:
-    """What every check said about one run or one set of scans.
+    """Results of all checks on one run or one set of scans.
 
     Attributes
     ----------
     name
-        What was checked, usually the file's name.
+        Name of the checked run or scans, usually the file's name.
     results
         ``(check, result)`` pairs, at least one for every known check.
     flagged
-        The data with their quality flags, where the checks set any.
+        The data with their quality flags, if the checks set any.
     limits
-        The limits that held, SI, by check and name.
+        The limits used, SI, by check and name.
     verdict
-        "accepted" or "rejected" where a person decided on the run; else empty.
+        "accepted" or "rejected" if a person decided on the run; else empty.
     """
 
     name: str
@@ -72,12 +72,12 @@ class Findings:
 
     @property
     def marked(self) -> xr.Dataset:
-        """The data with their quality flags.
+        """Checked data with quality flags.
 
         Raises
         ------
         LookupError
-            If these checks set none: of an instrument's own results there are only the findings.
+            If the checks set no flags, as for an instrument's own results.
         """
         if self.flagged is None:
             raise LookupError(f"{self.name}: its checks set no flags")
@@ -85,7 +85,7 @@ class Findings:
 
     @property
     def rows(self) -> list[FindingRow]:
-        """One dict for each result, graver ones first; numbers that are unknown are None."""
+        """One dictionary for each result, worst first; unknown numbers are None."""
         rows: list[FindingRow] = [
             {
                 "name": self.name,
@@ -111,7 +111,7 @@ class Findings:
 
     @property
     def table(self) -> pd.DataFrame:
-        """The rows as a table: one line per check and variable."""
+        """Table with one row per check and variable."""
         # late: pandas takes long to load
         import pandas as pd
 
@@ -120,20 +120,20 @@ class Findings:
 
     @property
     def status(self) -> str:
-        """The gravest status; "pass" if at least one check passed and none objected.
+        """Worst status; "pass" if at least one check passed and none objected.
 
-        Where a person decided on the run it is "accepted" or "rejected"; objections that a person
-        settled do not count.
+        If a person decided on the run it is "accepted" or "rejected"; settled objections do not
+        count.
         """
         return self.verdict or _gravest(r.status for _, r in self.results if not r.settled)
 
     @property
     def status_as_found(self) -> str:
-        """The gravest status, whatever a person accepted."""
+        """Worst status, ignoring the decisions of a person."""
         return _gravest(result.status for _, result in self.results)
 
     def count(self) -> Mapping[str, int]:
-        """Return how many results there are of each status."""
+        """Return the number of results of each status."""
         statuses = [result.status for _, result in self.results]
         return {status: statuses.count(status) for status in STATUSES}
 
@@ -152,14 +152,14 @@ class Findings:
         return f"{self.name}: {self.status} ({', '.join(parts)})"
 
     def told(self, everything: bool = False) -> list[tuple[str, str, str, str]]:
-        """Status, check, message and cure of what is worth reading, graver ones first.
+        """Status, check, message and remedy of each objection and note, worst first.
 
-        Objections and notes; with `everything` all that was asked.
+        With `everything`, the results of all checks.
         """
-        return told_of(self.rows, notes=True, everything=everything)
+        return finding_texts(self.rows, notes=True, everything=everything)
 
     def __repr__(self) -> str:
-        """Return what `tribolab check` shows: a summary, and objections and notes with cures."""
+        """Return the text of `tribolab check`: summary, then objections and notes with remedies."""
         lines = [self.summary]
         for status, check, message, cure in self.told():
             lines.append(f"{status}  {check}  {message}")
@@ -167,8 +167,8 @@ class Findings:
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        """Objections and notes; everything that was asked, folded away."""
-        # late: starting stays quick
+        """HTML table of objections and notes, with all results folded below."""
+        # imported late for a quick start
         import html
 
         objections = self.table["status"].isin(("suspect", "fail", "error"))
@@ -191,19 +191,19 @@ class Findings:
         )
 
 
-def told_of(
+def finding_texts(
     rows: Iterable[Mapping[str, Any]], *, notes: bool = False, everything: bool = False
 ) -> list[tuple[str, str, str, str]]:
-    """Return status, check, message and cure of what is worth reading, graver ones first.
+    """Status, check, message and remedy of each objection or note, worst first.
 
     Parameters
     ----------
     rows
-        Of `Findings`.
+        Rows of `Findings`.
     notes
-        Whether notes on what is sound are worth it.
+        Whether to include notes on passed checks.
     everything
-        Whether all is that was asked.
+        Whether to include the results of all checks.
     """
     lines = []
     for row in rows:
@@ -219,14 +219,14 @@ def told_of(
 
 
 def exit_code(statuses: set[str], fail_on: str = "fail") -> int:
-    """Exit code of a program that saw these statuses.
+    """Exit code of a program for these statuses.
 
     Parameters
     ----------
     statuses
         Every status seen.
     fail_on
-        "suspect", "fail" or "never": from which status on the program reports failure.
+        "suspect", "fail" or "never": lowest status for which the program reports failure.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Quality flags: QARTOD severities and the bit mask of tests, as CF flag variables.
+"""Quality flags as CF flag variables: QARTOD severities and the bit mask of checks.
 
 Every variable ``X`` may carry ``X_qc`` (one severity per sample) and ``X_qc_tests`` (a bit per
 check that objected). The convention is stated here and nowhere else:
@@ -6,9 +6,9 @@ check that objected). The convention is stated here and nowhere else:
 ===== ============== =====================================================
 value meaning        when
 ===== ============== =====================================================
-1     good           at least one check looked at the sample, none objected; or
-                     a person accepted it in spite (`tribolab.qc.manual`)
-2     not_evaluated  no check looked at it; never to be read as good
+1     good           at least one check examined the sample, none objected; or
+                     a person accepted it nevertheless (`tribolab.qc.manual`)
+2     not_evaluated  no check examined it; not to be read as good
 3     suspect        a check objected; a person should look
 4     fail           a check objected, or a person rejected it; not to be
                      used as it is
@@ -33,8 +33,8 @@ GOOD, NOT_EVALUATED, SUSPECT, FAIL, MISSING = 1, 2, 3, 4, 9
 _VALUES = np.array([GOOD, NOT_EVALUATED, SUSPECT, FAIL, MISSING], dtype=np.int8)
 _MEANINGS = "good not_evaluated suspect fail missing"
 
-# Which severity wins where several checks spoke about one sample. "Not evaluated" loses to
-# everything: a check that did look knows more.
+# Severity that wins if several checks judged one sample. "Not evaluated" loses to
+# everything else: the other checks did examine the sample.
 _PRECEDENCE = np.zeros(10, dtype=np.int8)
 _PRECEDENCE[[NOT_EVALUATED, GOOD, SUSPECT, FAIL, MISSING]] = [0, 1, 2, 3, 4]
 _BY_PRECEDENCE = np.array([NOT_EVALUATED, GOOD, SUSPECT, FAIL, MISSING], dtype=np.int8)
@@ -77,7 +77,7 @@ def combine(flags: Iterable[np.ndarray]) -> np.ndarray:
 
 
 def uniform(shape: int | tuple[int, ...], severity: int) -> np.ndarray:
-    """One severity for all samples, in the memory of one: read-only.
+    """Read-only array of one severity for all samples, with the memory of one.
 
     Examples
     --------
@@ -88,7 +88,7 @@ def uniform(shape: int | tuple[int, ...], severity: int) -> np.ndarray:
 
 
 def is_uniform(flags: np.ndarray) -> bool:
-    """Whether an array of flags is one of `uniform`, of one sample at least."""
+    """Whether an array of flags was made by `uniform` and has at least one sample."""
     return flags.size > 0 and not any(flags.strides)
 
 
@@ -98,7 +98,7 @@ _Flags = tuple[tuple[Hashable, ...], np.ndarray, dict[str, object]]  # dims, val
 def attach(
     data: xr.Dataset, name: str, flags: Mapping[str, np.ndarray], bits: Mapping[str, int]
 ) -> xr.Dataset:
-    """Return the dataset with ``<name>_qc`` and ``<name>_qc_tests`` from the flags of each check.
+    """Return a dataset with ``<name>_qc`` and ``<name>_qc_tests`` from the flags of each check.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def attach_all(
     flags: Iterable[tuple[str, Mapping[str, np.ndarray]]],
     bits: Mapping[str, int],
 ) -> xr.Dataset:
-    """Return the same as `attach` of several variables, given with the flags of each."""
+    """Return a dataset with the quality flags of several variables, as by `attach`."""
     pairs: dict[str, _Flags] = {}
     names = []
     for name, own in flags:
@@ -140,7 +140,7 @@ def attach_all(
 def _pair(
     name: str, variable: xr.Variable, flags: Mapping[str, np.ndarray], bits: Mapping[str, int]
 ) -> tuple[_Flags, _Flags]:
-    """Give the quality of a variable, and which checks objected to it."""
+    """Return the severity of a variable, and the mask of the checks that objected."""
     shape, called = variable.shape, variable.attrs.get("long_name", name)
     severity = combine([uniform(shape, NOT_EVALUATED), *flags.values()])
     if anywhere(np.isnan, variable.values):
@@ -162,8 +162,8 @@ def _pair(
 
 
 def _objecting(shape: tuple[int, ...], flags: Mapping[int, np.ndarray]) -> np.ndarray:
-    """Which checks, each a bit, objected to each sample."""
-    # suspect, fail and missing are the largest numbers
+    """Bit mask of the checks that objected to each sample."""
+    # suspect, fail and missing have the largest numbers
     flat = {bit: values.reshape(-1) for bit, values in flags.items()}
     flat = {bit: values for bit, values in flat.items() if anywhere(_is_bad, values)}
     if not flat:

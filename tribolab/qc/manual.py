@@ -1,9 +1,8 @@
-"""What a person decided on a run, put upon what its checks said: findings settled, samples marked.
+"""Decisions of a person applied to the findings and the flags of a run.
 
-A finding is settled where the run is accepted or rejected as a whole, or where every sample that
-it objects to lies in segments that are. It stays to be read, and no longer counts. The samples of
-these segments carry the bit ``manual``: of rejected ones the flag is "fail", of accepted ones
-"good" in spite of the other bits.
+A finding is settled if the whole run, or all segments with the samples it objects to, are accepted
+or rejected. It is still listed but no longer counts. The samples of these segments carry the bit
+``manual``; their flag is "fail" if rejected and "good" if accepted, whatever the other bits are.
 """
 
 from __future__ import annotations
@@ -24,27 +23,27 @@ from tribolab.qc.findings import Findings
 from tribolab.qc.flags import FAIL, GOOD, MISSING, SUSPECT
 from tribolab.qc.register import OBJECTIONS, Result
 
-MANUAL, BIT = "manual", 26  # its name and bit in ``<variable>_qc_tests``, as of a check
+MANUAL, BIT = "manual", 26  # name and bit in ``<variable>_qc_tests``, as for a check
 _ACCEPTED, _REJECTED = "accepted", "rejected"
 
 
-class _Heard(NamedTuple):
-    """A decision as the samples hear it: what, by whom, on which pieces of the record."""
+class _Decision(NamedTuple):
+    """Decision on samples: action, author, and intervals of the record."""
 
     action: str
     author: str
     pieces: tuple[slice, ...]
 
 
-class _Reviewed(NamedTuple):
-    """Samples of a run that a person accepted or rejected (rejecting wins), and who did."""
+class _DecidedSamples(NamedTuple):
+    """Masks of accepted and rejected samples (rejecting wins), and the decisions."""
 
     accepted: np.ndarray
     rejected: np.ndarray
-    decisions: tuple[_Heard, ...]
+    decisions: tuple[_Decision, ...]
 
     def who(self, action: str, bad: np.ndarray) -> str:
-        """Names of those whose decisions touch samples."""
+        """Names of the authors whose decisions cover these samples."""
         names = [
             heard.author
             for heard in self.decisions
@@ -53,34 +52,34 @@ class _Reviewed(NamedTuple):
         return ", ".join(dict.fromkeys(names))
 
 
-def reviewed(findings: Findings, segments: xr.Dataset) -> Findings:
-    """Return findings in which a person's decisions are heard.
+def apply_decisions(findings: Findings, segments: xr.Dataset) -> Findings:
+    """Return findings to which the decisions of a person are applied.
 
     Parameters
     ----------
     findings
-        What the checks said.
+        Results of the checks.
     segments
-        From `decide`; without decisions the findings come back as they are.
+        From `decide`; without decisions the findings are returned unchanged.
     """
     rows = segments.attrs.get(DECISIONS, [])
     if not any(row["action"] in (ACCEPT, REJECT) for row in rows):
         return findings
     flagged = findings.marked
     seen = _samples(flagged["time"].values, segments, rows)
-    results = tuple((check, _settled(result, seen)) for check, result in findings.results)
+    results = tuple((check, _settle(result, seen)) for check, result in findings.results)
     objecting = [r for _, r in results if r.status in OBJECTIONS]
     verdict = ""
     if seen.rejected.all() or (segments.sizes["segment"] and rejected(segments).all()):
         verdict = _REJECTED
     elif objecting and all(r.settled for r in objecting):
         verdict = _ACCEPTED if any(r.settled == _ACCEPTED for r in objecting) else ""
-    return replace(findings, results=results, flagged=_marked(flagged, seen), verdict=verdict)
+    return replace(findings, results=results, flagged=_mark_samples(flagged, seen), verdict=verdict)
 
 
 def _samples(
     time: np.ndarray, segments: xr.Dataset, rows: Sequence[Mapping[str, Any]]
-) -> _Reviewed:
+) -> _DecidedSamples:
     masks = {action: np.zeros(time.size, dtype=bool) for action in (ACCEPT, REJECT)}
     decisions = []
     first = np.searchsorted(time, segments["start"].values, "left")
@@ -93,15 +92,15 @@ def _samples(
             parts = (slice(None),)
         for part in parts:
             masks[row["action"]][part] = True
-        decisions.append(_Heard(row["action"], row["author"], parts))
-    return _Reviewed(masks[ACCEPT] & ~masks[REJECT], masks[REJECT], tuple(decisions))
+        decisions.append(_Decision(row["action"], row["author"], parts))
+    return _DecidedSamples(masks[ACCEPT] & ~masks[REJECT], masks[REJECT], tuple(decisions))
 
 
-def _settled(result: Result, seen: _Reviewed) -> Result:
-    """Return a result with who settled it, if a person did."""
+def _settle(result: Result, seen: _DecidedSamples) -> Result:
+    """Return a result marked with the person who settled it, if any."""
     if result.status not in OBJECTIONS:
         return result
-    bad = np.ones(seen.accepted.size, dtype=bool)  # without flags it is about the whole run
+    bad = np.ones(seen.accepted.size, dtype=bool)  # a result without flags concerns the whole run
     if result.flags is not None and (result.flags >= SUSPECT).any():
         bad = result.flags >= SUSPECT
     if seen.rejected[bad].all():
@@ -111,7 +110,7 @@ def _settled(result: Result, seen: _Reviewed) -> Result:
     return result
 
 
-def _marked(flagged: xr.Dataset, seen: _Reviewed) -> xr.Dataset:
+def _mark_samples(flagged: xr.Dataset, seen: _DecidedSamples) -> xr.Dataset:
     result = flagged.copy()
     decided = seen.accepted | seen.rejected
     for name in [str(n) for n in flagged.data_vars if f"{n}_qc" in flagged]:

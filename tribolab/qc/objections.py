@@ -1,4 +1,4 @@
-"""What the checks of several runs or scans object to, in one table."""
+"""Objections of the checks of several runs or scans in one table."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ _OBJECTING = ("suspect", "fail", "error")
 def objections(
     findings: Findings | Sequence[Findings], **labels: Sequence[str | float]
 ) -> pd.DataFrame:
-    """Return all that was objected to, a row for each.
+    """Table of all objections, one row each.
 
     Parameters
     ----------
     findings
-        From `check`, `check_scans` or `check_scan_set`, of one or of several.
+        From `check`, `check_scans` or `check_scan_set`, for one or several runs or scans.
     **labels
-        What tells them apart, one label for each, e.g. ``fault=["spikes", "gaps"]``; by default
-        their ``name``.
+        One label for each set of findings, e.g. ``fault=["spikes", "gaps"]``; by default their
+        ``name``.
 
     Returns
     -------
     pandas.DataFrame
-        The labels, ``check``, ``status``, ``variable``, ``message`` and ``cure``; what nobody
-        objected to has no row.
+        The labels, ``check``, ``status``, ``variable``, ``message`` and ``cure``; checks without
+        objection have no row.
 
     Raises
     ------
     AnalysisError
-        If there is not one label for each.
+        If the number of labels differs from that of the findings.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What a check is, what it answers, and how its limits are set."""
+"""Definition of a check, its result, and its limits."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from tribolab.core.wording import Count
 from tribolab.qc.flags import FAIL, SUSPECT, is_uniform
 from tribolab.units.conversion import to_si
 
-# From harmless to grave; the order decides what a summary shows.
+# From harmless to grave; a summary shows the worst.
 STATUSES = ("pass", "skipped", "suspect", "fail", "error")
 OBJECTIONS = ("suspect", "fail", "error")
 
 Subject = TypeVar("Subject", contravariant=True)  # a run, or scans
 
 
-class Skip(Exception):  # noqa: N818 - not an error: the check has nothing to look at
-    """Raised by a check that has nothing to look at; the text says why."""
+class Skip(Exception):  # noqa: N818 - not an error: the check does not apply
+    """Raised by a check that does not apply; the text gives the reason."""
 
 
 @dataclass(frozen=True)
 class Result:
-    """What one check found on one variable.
+    """Result of one check on one variable.
 
-    `noted` says that a status "pass" or "skipped" is worth a reader's while: something is there,
-    too little to object to or to decide by. `cure` stands instead of the check's, where that
-    would lead astray. `settled` says that a person "accepted" or "rejected" what is objected to,
-    and `settled_by` who: then it no longer counts.
+    `noted` marks a "pass" or "skipped" to be shown: a small effect, or one that could not be
+    tested. `cure` replaces that of the check where it would mislead. `settled` is "accepted" or
+    "rejected" if a person decided on the objection, and `settled_by` the person: it then no longer
+    counts.
     """
 
     status: str
@@ -51,14 +51,14 @@ class Result:
 
     @property
     def decision(self) -> str:
-        """What a person decided on the objection, in words; empty where nobody did."""
+        """Decision of a person on the objection, as text; empty without one."""
         words = {"accepted": "accepted by {} in spite of", "rejected": "lies in what {} rejected"}
         return words[self.settled].format(self.settled_by) if self.settled else ""
 
 
 @dataclass(frozen=True)
 class Check(Generic[Subject]):
-    """A check: its name, the bit it owns in the masks, what it looks for, and its limits.
+    """Check: name, bit in the masks, question, remedy and limits.
 
     Attributes
     ----------
@@ -67,11 +67,11 @@ class Check(Generic[Subject]):
     bit
         Bit number in ``<variable>_qc_tests``; never reused for another check.
     question
-        What it asks, in a sentence for a human.
+        Question that the check answers.
     cure
         What to do when it objects.
     limits
-        By name; each with a unit and a reason.
+        Limits by name, each with a unit and a reason.
     examine
         ``examine(subject, limits) -> list of Result``.
     """
@@ -87,7 +87,7 @@ class Check(Generic[Subject]):
 def resolve_limits(
     checks: Mapping[str, Check[Subject]], settings: Mapping[str, Mapping[str, str | float]]
 ) -> dict[str, dict[str, float]]:
-    """Return the limits of every check: the defaults, with the user's settings over them.
+    """Limits of every check: the defaults, replaced by the user's settings.
 
     Parameters
     ----------
@@ -127,14 +127,14 @@ def results_of_checks(
     limits: Mapping[str, Mapping[str, float]],
     skip: Mapping[str, str],
 ) -> dict[str, list[Result]]:
-    """Run every check on a subject; a check that crashes is a result, never a gap.
+    """Run all checks on a subject; a crash becomes a result with status "error".
 
     Parameters
     ----------
     checks, subject, limits
-        What to run, on what, with which limits.
+        Checks to run, the run or scans to examine, and the limits.
     skip
-        Why a check is left out, by its name.
+        Reasons to skip checks, by their names.
 
     Returns
     -------
@@ -152,7 +152,7 @@ def results_of_checks(
             ]
         except Skip as why:
             results[name] = [Result("skipped", "", str(why))]
-        except Exception as crash:  # any crash becomes a row of status "error", exit code 3
+        except Exception as crash:  # every crash becomes a row of status "error" (exit code 3)
             text = f"the check itself crashed: {type(crash).__name__}: {crash}"
             results[name] = [Result("error", "", text)]
     return results
@@ -167,7 +167,7 @@ def sample_result(
     fail_share: float = float("inf"),
     value: float = float("nan"),
 ) -> Result:
-    """Make a result from the flags of single samples: where they lie, how many, how grave.
+    """Make a result from flags of samples: number, place and severity.
 
     Parameters
     ----------
@@ -183,9 +183,9 @@ def sample_result(
     fail_share
         Share of the samples above which suspect becomes fail.
     value
-        The number [1] that the check measured, if there is one that says more than the share.
+        The number [1] that the check measured, if it is more informative than the share.
     """
-    # one flag of all samples is not looked at for each
+    # a uniform array need not be examined sample by sample
     sound = is_uniform(flags) and not _objects(flags[:1]).any()
     bad = np.zeros(0, int) if sound else samples_where(_objects, flags)
     if bad.size == 0:

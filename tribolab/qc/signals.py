@@ -1,4 +1,4 @@
-"""Checks on one sampled signal: missing, stuck, saturated, quantised, spiked.
+"""Checks on one sampled signal: missing, stuck, clipped, quantised and outlying samples.
 
 Each is a plain function from an array and limits to flags (see :mod:`tribolab.qc.flags`). None
 changes a sample. All are passes of whole-array operations, over long records piece by piece.
@@ -17,15 +17,15 @@ from tribolab.arrays.scratch import filled
 from tribolab.friction.oscillation.spectrum.noise import quantisation_step
 from tribolab.qc.flags import GOOD, MISSING, NOT_EVALUATED, SUSPECT, uniform
 
-_BLOCK = 64  # samples whose noise is one: steps of a run may be as short
-_LOUDER = 1.6  # than the noise of a block, more than chance makes it of so few samples
+_BLOCK = 64  # samples with one noise level; steps of a run may be as short
+_LOUDER = 1.6  # ratio of noise levels that chance does not produce in so few samples
 
-_HELD = 3  # samples of a reading that is held
-_LONGEST_HELD = 1 << 24  # samples: no channel that is refreshed slowly is recorded for longer
+_HELD = 3  # samples per reading of a slowly refreshed channel
+_LONGEST_HELD = 1 << 24  # samples; channels are not recorded much faster than they are refreshed
 
 
 def missing(values: np.ndarray) -> np.ndarray:
-    """Flag what is not a number as missing, the rest as good.
+    """Flag NaN as missing, all other values as good.
 
     Examples
     --------
@@ -38,7 +38,7 @@ def missing(values: np.ndarray) -> np.ndarray:
 
 
 def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
-    """Flag single samples that stand out from what both sides lead to expect.
+    """Flag single samples that deviate from the values expected from both sides.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
     Returns
     -------
     ndarray
-        suspect at spikes, good elsewhere; not evaluated at the ends and beside missing values.
+        suspect at spikes, good elsewhere; not evaluated at the ends and next to missing values.
 
     Notes
     -----
@@ -77,9 +77,9 @@ def spikes(values: np.ndarray, threshold: float = 8.0) -> np.ndarray:
 
 
 def _height(step: np.ndarray) -> np.ndarray:
-    """Height of each sample but two at both ends, from the steps between the samples."""
+    """Height of each sample, except two at both ends, from the steps between samples."""
     bend = np.diff(step)
-    # left of sample i: x[i] - x[i-1], and x[i] - (2 x[i-1] - x[i-2]); right likewise
+    # left of sample i: x[i] - x[i-1] and x[i] - (2 x[i-1] - x[i-2]); right likewise
     sides = (step[1:-2], bend[:-2], -step[2:-1], bend[2:])
     upward = np.minimum(np.minimum(sides[0], sides[1]), np.minimum(sides[2], sides[3]))
     downward = np.maximum(np.maximum(sides[0], sides[1]), np.maximum(sides[2], sides[3]))
@@ -87,7 +87,7 @@ def _height(step: np.ndarray) -> np.ndarray:
 
 
 def _noise_levels(values: np.ndarray, block: int = _BLOCK) -> tuple[np.ndarray, int]:
-    """Noise level of each block, at least that of a quiet quarter of the record; its length.
+    """Noise level of each block, at least that of the quietest quarter, and the block length.
 
     Beside a much louder neighbour a block has its level: where a louder step begins, a block that
     is mostly of the quiet one says nothing of the rest. What is left over at the end belongs to
@@ -110,10 +110,10 @@ def _noise_levels(values: np.ndarray, block: int = _BLOCK) -> tuple[np.ndarray, 
     return np.maximum(levels, quiet) / (0.6745 * np.sqrt(6.0)), length
 
 
-class _Equal(NamedTuple):
-    """Stretches of identical values: lengths, increasing, how often each comes, and the long ones.
+class _EqualRuns(NamedTuple):
+    """Runs of identical values: their lengths, increasing, their counts, and the long runs.
 
-    `long` holds the first sample of each, and that behind its last (stretch, 2).
+    `long` contains the first sample and the end of each run (stretch, 2).
     """
 
     lengths: np.ndarray
@@ -121,11 +121,11 @@ class _Equal(NamedTuple):
     long: np.ndarray
 
 
-def _runs_of_equal(values: np.ndarray, long: int) -> _Equal:
-    """Count the stretches of identical values, and list those of `long` samples or more."""
+def _runs_of_equal(values: np.ndarray, long: int) -> _EqualRuns:
+    """Count the runs of identical values, and list those of `long` samples or more."""
     often: Counter[int] = Counter()
     listed = [np.zeros((0, 2), int)]
-    begun = 0  # first sample of the stretch that the next piece goes on with
+    begun = 0  # first sample of the run that continues in the next piece
     for first, last in pieces(1, values.size):
         change = np.flatnonzero(values[first:last] != values[first - 1 : last - 1]) + first
         if last == values.size:
@@ -139,11 +139,13 @@ def _runs_of_equal(values: np.ndarray, long: int) -> _Equal:
         listed.append(np.stack([change[some] - length[some], change[some]], axis=1))
         begun = int(change[-1])
     lengths = np.array(sorted(often))
-    return _Equal(lengths, np.array([often[k] for k in lengths.tolist()]), np.concatenate(listed))
+    return _EqualRuns(
+        lengths, np.array([often[k] for k in lengths.tolist()]), np.concatenate(listed)
+    )
 
 
 def _quantile(values: np.ndarray, counts: np.ndarray, share: float) -> float:
-    """Quantile of increasing values that come so often, as `numpy.quantile` of all of them."""
+    """Quantile of increasing values with given counts, as `numpy.quantile` of all of them."""
     behind = np.cumsum(counts)
     place = share * (int(behind[-1]) - 1)
     below, above = (
@@ -154,7 +156,7 @@ def _quantile(values: np.ndarray, counts: np.ndarray, share: float) -> float:
 
 
 def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.ndarray:
-    """Flag stretches that repeat one value longer than chance allows.
+    """Flag intervals that repeat one value longer than chance allows.
 
     Parameters
     ----------
@@ -182,9 +184,9 @@ def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.nda
     longest, runs = int(equal.lengths[-1]), int(equal.counts.sum())
     others = max(values.size - longest, 1)
     if runs == 1:
-        return uniform(values.size, SUSPECT)  # one value from start to end
-    # a signal quantised more coarsely than its noise repeats values in health, too: what most
-    # stretches do sets what is usual
+        return uniform(values.size, SUSPECT)  # constant from start to end
+    # a signal quantised more coarsely than its noise repeats values normally; most runs define
+    # the usual length
     usual = _quantile(equal.lengths, equal.counts, 0.99)
     repeat = max((others - (runs - 1)) / others, 1.0 / values.size, 1.0 - 1.0 / usual)
     allowed = 1.0 + np.log(chance / values.size) / np.log(min(repeat, 1.0 - 1e-9))
@@ -192,13 +194,13 @@ def stuck(values: np.ndarray, chance: float = 1e-6, shortest: int = 8) -> np.nda
     if not bad.size:
         return uniform(values.size, GOOD)
     flags = filled(values.size, GOOD, np.int8)
-    for start, stop in bad:  # a loop over stuck stretches, few by their definition
+    for start, stop in bad:  # loop over the few stuck intervals
         flags[start:stop] = SUSPECT
     return flags
 
 
 def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.ndarray:
-    """Flag samples that lie at the end of the range because the signal was cut off there.
+    """Flag samples at the end of the range where the signal is clipped.
 
     Parameters
     ----------
@@ -217,8 +219,8 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
     ndarray
         suspect at saturated samples, good elsewhere.
     """
-    held = _held(values)
-    if held is not None:  # refreshed more slowly than it is recorded: each reading counts once
+    held = _readings(values)
+    if held is not None:  # refreshed more slowly than recorded: each reading counts once
         levels, number = held
         return saturation(levels, excess, fewest)[number]
     known = sum(np.count_nonzero(values[a:b] == values[a:b]) for a, b in pieces(0, values.size))
@@ -227,7 +229,7 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
     step = 1.5 * quantisation_step(values)
     bad = []
     for end, sign in ((np.nanmax(values), 1.0), (np.nanmin(values), -1.0)):
-        count, below, in_a_row = _at_end(values, end, sign, step)
+        count, below, in_a_row = _end_counts(values, end, sign, step)
         enough = max(fewest, excess * below + 5 * np.sqrt(below))
         if count >= enough and (in_a_row or step == 0):
             bad.append(end)
@@ -239,10 +241,10 @@ def saturation(values: np.ndarray, excess: float = 1.5, fewest: int = 5) -> np.n
     return flags
 
 
-def _held(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-    """Return the readings of a signal that holds each for several samples, and which is where.
+def _readings(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return the readings of a slowly refreshed signal, and the reading of each sample.
 
-    None unless most readings are held: of a signal that is cut off, only those at the end are.
+    Returns None unless most readings repeat: in a clipped signal only those at the end do.
     """
     if values.size < 2 or values.size > _LONGEST_HELD:
         return None
@@ -253,8 +255,8 @@ def _held(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
     return values[changes], np.cumsum(changes) - 1
 
 
-def _at_end(values: np.ndarray, end: float, sign: float, step: float) -> tuple[int, int, bool]:
-    """How many samples lie at an end of the range, how many within a step, and whether in a row."""
+def _end_counts(values: np.ndarray, end: float, sign: float, step: float) -> tuple[int, int, bool]:
+    """Return the number of samples at an end of the range, within a step of it, and in a row."""
     count, below, in_a_row, before = 0, 0, False, False
     for start, stop in pieces(0, values.size):
         depth = sign * (end - values[start:stop])

@@ -1,1 +1,1 @@
-"""Checks on a run: its reading, its record, its zero, the rig, the sliding."""
+"""Checks on a run: file, record, zero, rig and sliding."""

@@ -1,4 +1,4 @@
-"""Is this run usable? All checks on a run, one table of findings, flags on the samples."""
+"""All checks on a run, with a table of findings and flags on the samples."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribolab.core.errors import ConfigError, nearest, shown
 from tribolab.friction.decisions.rejected import kept, rejected
 from tribolab.qc.findings import Findings
 from tribolab.qc.flags import GOOD, NOT_EVALUATED, attach_all, combine, uniform
-from tribolab.qc.manual import BIT, MANUAL, reviewed
+from tribolab.qc.manual import BIT, MANUAL, apply_decisions
 from tribolab.qc.register import SWITCHED_OFF, Check, Result, resolve_limits, results_of_checks
 from tribolab.qc.run.reading import READING_CHECKS
 from tribolab.qc.run.record import RECORD_CHECKS
@@ -29,7 +29,7 @@ RUN_CHECKS: dict[str, Check[RunSubject]] = {
 }
 
 _SEGMENTS = "segments"
-# what looks at results as well as at samples
+# checks that apply to results as well as to samples
 _OF_POINTS = {"schema", "rows_left_out", "said_elsewhere", "zero_reference", "friction_sign"}
 _OF_POINTS |= {"normal_force_error", "segments", "missing"}
 _NO_SAMPLES = "its rows are results, not samples"
@@ -49,21 +49,21 @@ def check_run(
     contact_width: str | float | None = None,
     checks: Mapping[str, Check[RunSubject]] = RUN_CHECKS,
 ) -> Findings:
-    """Examine a run: what is wrong with it, where, how badly, and what to do.
+    """Run all checks on a run: faults, their place, their effect, and what to do.
 
     Parameters
     ----------
     run
         The run dataset (dim ``time``).
     segments, friction, slip
-        What `find_segments`, `friction_coefficient` and `stick_slip` gave for it; computed if not
-        given. Segments that a person rejected (`decide`) are not looked at.
+        Results of `find_segments`, `friction_coefficient` and `stick_slip`; computed if not
+        given. Segments that a person rejected (`decide`) are not examined.
     limits
         ``{check: {limit: value}}`` over the defaults; SI numbers or text with a unit.
     skip
         Names of checks to leave out; they appear as skipped.
     normal_force
-        Set-point of the normal force [N], if the file does not tell.
+        Set-point of the normal force [N], if the file does not contain it.
     contact_width
         Width of the contact [m], if known.
     checks
@@ -72,7 +72,7 @@ def check_run(
     Returns
     -------
     Findings
-        ``.table`` shows one row for each check and variable, ``.status`` the gravest,
+        ``.table`` shows one row for each check and variable, ``.status`` the worst status,
         ``.flagged`` the run with ``<name>_qc`` and ``<name>_qc_tests`` on its signals.
 
     Raises
@@ -100,7 +100,7 @@ def check_run(
     unknown = float("nan")
     subject = RunSubject(
         run,
-        *_looked_at(segments, friction, slip),
+        *_drop_rejected(segments, friction, slip),
         set_normal_force=unknown
         if normal_force is None
         else to_si(normal_force, "N", name="normal_force"),
@@ -111,11 +111,11 @@ def check_run(
     unfit = [name for name in checks if subject.is_points and name not in _OF_POINTS]
     left = dict.fromkeys(unfit, _NO_SAMPLES)
     left |= dict.fromkeys(skip, SWITCHED_OFF)
-    answers = _examined(results_of_checks(checks, subject, resolved, left))
+    answers = _object_to_nothing(results_of_checks(checks, subject, resolved, left))
     results = tuple((checks[name], result) for name, rows in answers.items() for result in rows)
     bits = {check.name: check.bit for check in checks.values()} | {MANUAL: BIT}
-    # what is wrong with the time is wrong with every signal; that the time is right says nothing
-    # of a signal's value
+    # an error of the time affects every signal; a correct time says nothing about the values
+    # of a signal
     of_time = [(check, _objections(flags)) for check, flags in _flags_on(results, "time")]
 
     def flags() -> Iterator[tuple[str, dict[str, np.ndarray]]]:
@@ -127,13 +127,13 @@ def check_run(
 
     flagged = attach_all(run, flags(), bits)
     findings = Findings(str(run.attrs.get("source", "run")), results, flagged, resolved)
-    return findings if segments is None else reviewed(findings, segments)
+    return findings if segments is None else apply_decisions(findings, segments)
 
 
-def _looked_at(
+def _drop_rejected(
     segments: xr.Dataset | None, friction: xr.Dataset | None, slip: xr.Dataset | None
 ) -> list[xr.Dataset | None]:
-    """Return results without what a person rejected; all of a run that is rejected as a whole."""
+    """Results without rejected segments, unless the whole run is rejected."""
     parts = [segments, friction, slip]
     if segments is None or rejected(segments).all():
         return parts
@@ -147,15 +147,15 @@ def _flags_on(
 
 
 def _objections(flags: np.ndarray) -> np.ndarray:
-    """Leave of flags what is not good."""
+    """Return the flags of objections only; good samples become not evaluated."""
     good = flags == GOOD
     if good.all():
         return uniform(flags.shape, NOT_EVALUATED)
     return np.where(good, np.int8(NOT_EVALUATED), flags)
 
 
-def _examined(results: dict[str, list[Result]]) -> dict[str, list[Result]]:
-    """Object where every other check was skipped: that segments were found says nothing."""
+def _object_to_nothing(results: dict[str, list[Result]]) -> dict[str, list[Result]]:
+    """Add an objection if every check but that of segments was skipped."""
     others = [result for name, rows in results.items() if name != _SEGMENTS for result in rows]
     own = results.get(_SEGMENTS, [])
     if any(r.status != "skipped" for r in others) or any(r.status == "suspect" for r in own):
@@ -165,7 +165,7 @@ def _examined(results: dict[str, list[Result]]) -> dict[str, list[Result]]:
 
 @of_runs
 def check(run: xr.Dataset, segments: xr.Dataset | None = None, **options: Any) -> Findings:
-    """Examine a run: short for `check_run`, with the same options.
+    """Run all checks on a run; short for `check_run`, with the same options.
 
     Parameters
     ----------

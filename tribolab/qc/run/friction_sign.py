@@ -15,10 +15,10 @@ from tribolab.qc.register import Check, Result, Skip
 from tribolab.qc.run.subject import RunSubject
 
 
-def _sense(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    """Friction that falls slowly and rises sharply belongs to a sensor whose sign is turned."""
+def _reversed_slip(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+    """Report stick-slip that loads fast and slips slowly: the sensor's sign is reversed."""
     kind = subject.slip["waveform"].values
-    # what varies along a track may fall slowly, too, but not again and again alike
+    # friction along a track may fall slowly too, but not periodically
     reversed_ = (kind == CLASSES[3]) & (subject.slip["regularity"].values == SLIP_KINDS[0])
     reversed_ &= ~_follows_load(subject, limits["of_load"])
     if not reversed_.sum() > 0.5 * np.isin(kind, CLASSES[1:]).sum():
@@ -33,7 +33,7 @@ def _sense(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _follows_load(subject: RunSubject, least: float) -> np.ndarray:
-    """Return where friction varies because the load does (segment)."""
+    """Mask of segments in which friction varies because the load does."""
     name = subject.required_friction_signal
     if "normal_force" not in subject.signals or name != "friction_force":
         return np.zeros(len(subject.slices), bool)
@@ -46,8 +46,8 @@ def _follows_load(subject: RunSubject, least: float) -> np.ndarray:
 
 def _sign(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     try:
-        sense = _sense(subject, limits)
-    except Skip:  # a run without friction: the other part says why
+        sense = _reversed_slip(subject, limits)
+    except Skip:  # no friction in the run: the other part of the check reports it
         sense = []
     try:
         return [*_opposes(subject, limits), *sense]
@@ -74,7 +74,7 @@ def _opposes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     moved = np.nan_to_num(np.abs(slope * spans))
     clear = np.maximum(np.maximum(limits["errors"] * error, moved), least)
     wrong, right = values < -clear, values > clear
-    samples = subject.on_samples(np.where(wrong, FAIL, GOOD))
+    samples = subject.sample_flags(np.where(wrong, FAIL, GOOD))
     if not wrong.any():
         return [Result("pass", signal, "friction opposes the motion everywhere", flags=samples)]
     first = int(np.flatnonzero(wrong)[0])
@@ -89,7 +89,7 @@ def _opposes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _cure_of_sign(subject: RunSubject, right: np.ndarray, wrong: np.ndarray) -> str:
-    """Propose another sign only if nothing but the sign can be wrong.
+    """Remedy for a wrong sign; suggests changing it only if nothing else can be wrong.
 
     This needs all clear strokes to be reversed, in both directions, and a loop centred on zero:
     an offset larger than friction reverses strokes as well.
@@ -98,7 +98,7 @@ def _cure_of_sign(subject: RunSubject, right: np.ndarray, wrong: np.ndarray) -> 
     direction = friction["direction"].values
     method = str(friction.attrs.get("offset", ""))
     both = all((direction[wrong] == d).any() for d in (1, -1))
-    if _speed_without_sign(subject) and right.any():
+    if _unsigned_speed(subject) and right.any():
         return (
             "The velocity is nowhere negative, the friction force is: the speed was recorded "
             "without its sign. Name its column `set_speed` in the dialect (the force gives the "
@@ -127,7 +127,7 @@ def _cure_of_sign(subject: RunSubject, right: np.ndarray, wrong: np.ndarray) -> 
     )
 
 
-def _speed_without_sign(subject: RunSubject) -> bool:
+def _unsigned_speed(subject: RunSubject) -> bool:
     """Whether the velocity is never negative, as from a tachometer without direction."""
     velocity = subject.signals.get("sliding_velocity")
     return velocity is not None and not (velocity < 0).any()

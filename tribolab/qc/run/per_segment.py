@@ -1,4 +1,4 @@
-"""One number for each segment: graded by limits, as a result with flags on the samples."""
+"""Results from one number per segment, graded by limits, with flags on the samples."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ def grade(values: np.ndarray, suspect: float, fail: float) -> np.ndarray:
     return flags
 
 
-def by_segment(
+def segment_results(
     subject: RunSubject,
     variable: str,
     values: np.ndarray,
     limits: Mapping[str, float],
     what: str,
 ) -> list[Result]:
-    """Turn one number for each segment into a result whose flags cover the samples."""
+    """Results from one number per segment, with flags on the samples."""
     flags = grade(values, limits["suspect"], limits.get("fail", np.inf))
     if (flags == NOT_EVALUATED).all():
-        raise Skip(f"{what}: nothing to compare with")
-    samples = subject.on_samples(flags)
+        raise Skip(f"{what}: no reference value")
+    samples = subject.sample_flags(flags)
     bad = np.flatnonzero((flags == SUSPECT) | (flags == FAIL))
     worst = int(np.nanargmax(np.abs(values)))
     if bad.size == 0:
@@ -51,7 +51,7 @@ def by_segment(
 
 
 def status_of(value: float, limits: Mapping[str, float]) -> str:
-    """Status of one number by its limits ``suspect`` and ``fail``.
+    """Status of a number by its limits ``suspect`` and ``fail``.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Checks on the reading of a file: whether every row was taken over, and what was not in it."""
+"""Checks on the reading of a file: lost rows, and information that it lacks."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ def _rows_left_out(subject: RunSubject, limits: Mapping[str, float]) -> list[Res
             status = "fail" if share > limits["fail"] else "suspect"
             status = status if share > limits["suspect"] else "pass"
         results.append(Result(status, variable, text, share, count=lost, noted=True))
-    return results + _not_covered(subject, limits)
+    return results + _uncovered_rows(subject, limits)
 
 
-def _not_covered(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+def _uncovered_rows(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     alone = int(subject.run.attrs.get("rows_not_covered", 0))
     if not alone:
         return []
@@ -51,8 +51,8 @@ def _not_covered(subject: RunSubject, limits: Mapping[str, float]) -> list[Resul
     seconds = alone * float(median(np.diff(subject.time)))
     odd = share > limits["suspect"] and seconds > limits["not_covered"]
     text = f"{Count(alone):row|rows} ({share:.2%}, some {seconds:.3g} s) at the ends are left out, "
-    text += "which the companion log does not cover"
-    cure = "See that both logs are of this run, whole, and that the shift of the clocks is right."
+    text += "because the companion log does not cover them"
+    cure = "Check that both logs are complete and of this run, and that the clock shift is right."
     return [
         Result(
             "suspect" if odd else "pass",
@@ -66,26 +66,26 @@ def _not_covered(subject: RunSubject, limits: Mapping[str, float]) -> list[Resul
     ]
 
 
-def _said_elsewhere(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+def _assumed_values(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     attrs = subject.run.attrs
     results = []
     if "forces_left_out" in attrs:
         text = f"left out: {attrs['forces_left_out']}".replace("_", " ")
         results.append(Result("suspect", "friction_force", text))
     if "assumed" in attrs:
-        text = "not in the file, and taken as the instrument's description has it: "
+        text = "not in the file, taken from the instrument's description: "
         text += str(attrs["assumed"]).replace("_", " ")
         results.append(Result("pass", "settings", text, noted=True))
     results += _stated_strokes(subject, limits)
-    with contextlib.suppress(Skip):  # there is no friction of which to speak
-        results += _recorded_coefficient(subject, limits) + _out_of_question(subject)
+    with contextlib.suppress(Skip):  # the run has no friction
+        results += _recorded_coefficient(subject, limits) + _impossible_coefficient(subject)
     if results:
         return results
-    raise Skip("nothing that the file does not say was taken for it")
+    raise Skip("no value was assumed for the file")
 
 
 def _stated_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    """Compare the strokes that a file states with those that its position makes."""
+    """Compare the strokes stated in a file with those of its position signal."""
     attrs = subject.run.attrs
     said = [float(attrs.get(name, np.nan)) for name in _STATED]
     if not np.isfinite(said).any() or "position" not in subject.run:
@@ -109,7 +109,7 @@ def _stated_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
         if not np.isfinite(apart):
             continue
         beyond = apart > limits["apart"] and abs(measured - stated) > (text == words[2])
-        told = f"the file states {text.format(unit * stated)}, its position makes "
+        told = f"the file states {text.format(unit * stated)}, its position signal shows "
         told += text.format(unit * measured)
         results.append(
             Result("suspect" if beyond else "pass", "position", told, apart, cure=_STROKES)
@@ -119,13 +119,13 @@ def _stated_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
 
 _STATED = ("stated_stroke_m", "stated_stroke_frequency_Hz", "stated_cycles")
 _STROKES = (
-    "One of the two has a wrong scale, unit or sampling rate, and the speed with it; or the record "
-    "holds a part of the test only."
+    "One of the two has a wrong scale, unit or sampling rate, which makes the speed wrong; or the "
+    "record contains only part of the test."
 )
 
 
-def _out_of_question(subject: RunSubject) -> list[Result]:
-    """Tell a friction coefficient of a size that no contact has."""
+def _impossible_coefficient(subject: RunSubject) -> list[Result]:
+    """Report a friction coefficient of an impossible size."""
     if not subject.sliding or "friction_coefficient" not in subject.friction:
         return []
     values = np.abs(subject.friction["friction_coefficient"].values)
@@ -133,21 +133,21 @@ def _out_of_question(subject: RunSubject) -> list[Result]:
     size = float(median(known)) if known.size else 0.0
     if size == 0 or SMALLEST <= size <= LARGEST:
         return []
-    text = f"the friction coefficient is {size:.3g}, which no contact has"
-    cure = "See that friction and load are not swapped, that their units are right, and that a "
+    text = f"the friction coefficient is {size:.3g}, which is impossible"
+    cure = "Check that friction and load are not swapped, that their units are right, and that a "
     cure += "recorded coefficient is not in percent."
     return [Result("suspect", "friction_coefficient", text, size, cure=cure)]
 
 
 def _recorded_coefficient(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    """Compare the coefficient that a file records with that of its forces, in the segments."""
+    """Compare the recorded coefficient with the ratio of the forces, in the segments."""
     run = subject.run
     if not ({"friction_coefficient", "friction_force"} <= set(run.variables) and subject.sliding):
         return []
     if "normal_force" not in run or "friction_coefficient" not in subject.friction:
         return []
     recorded = np.abs(subject.segment_means("friction_coefficient"))
-    # neither the zeros that are taken off here nor those that the instrument took off differ
+    # differences due to zeros removed here or by the instrument do not count
     raw = np.abs(subject.segment_means("friction_force"))
     raw = raw / np.abs(subject.segment_means("normal_force"))
     found = np.abs(subject.friction["friction_coefficient"].values)
@@ -191,10 +191,9 @@ READING_CHECKS = (
     Check(
         "said_elsewhere",
         27,
-        "Is what the file does not say itself right for it, and does what it says twice agree?",
-        "State what holds for this machine in a copy of the instrument's description: the default "
-        "of its [[value]].",
+        "Do the values assumed for the file apply, and do values that it states twice agree?",
+        "Correct the default of the [[value]] in a copy of the instrument's description.",
         {"apart": Limit(0.1, "1", "an instrument's own filter and zero make less")},
-        _said_elsewhere,
+        _assumed_values,
     ),
 )

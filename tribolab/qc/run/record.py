@@ -1,4 +1,4 @@
-"""Checks on the record itself: the time axis and each signal, sample by sample."""
+"""Checks on the time axis and on each signal, sample by sample."""
 
 from __future__ import annotations
 
@@ -20,23 +20,23 @@ from tribolab.qc.run import schema, timing
 from tribolab.qc.run.subject import RunSubject
 from tribolab.reading.dialect.formula import names_in, parse_formula
 
-_DEAD_CHANNEL = 0.10  # reason: a tenth of a signal gone takes whole segments with it
+_DEAD_CHANNEL = 0.10  # reason: losing a tenth of a signal removes whole segments
 
 
 def _schema(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     run = subject.run
-    results = [Result("suspect", "", text, cure=cure) for text, cure in schema.lacks(run)]
+    results = [Result("suspect", "", text, cure=cure) for text, cure in schema.missing_signals(run)]
     for name, unit in schema.wrong_units(run).items():
         results.append(Result("fail", name, f"{name} is in '{shown(unit)}', not in SI"))
     for name, span in one_by_one(schema.ranges().items()):
         if name not in run:
             continue
-        flags = schema.in_range(run[name].values, span)
+        flags = schema.flag_range(run[name].values, span)
         text = f"{{count:value|values}} outside {span.low:g} to {span.high:g}: "
         text += f"{span.reason}; {{where}}"
         results.append(sample_result(name, flags, subject.time, text))
     if "normal_force" in run:
-        share = schema.pulled_share(run["normal_force"].values)
+        share = schema.tensile_share(run["normal_force"].values)
         if share > limits["pulled"]:
             text = f"the normal force is negative in {share:.0%} of the loaded samples"
             results.append(Result("fail", "normal_force", text, share))
@@ -45,7 +45,7 @@ def _schema(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 def _time_order(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     flags = timing.time_order(subject.time)
-    text = "time stands still or goes back at {count:sample|samples}, {where}"
+    text = "time does not increase at {count:sample|samples}, {where}"
     return [sample_result("time", flags, subject.time, text)]
 
 
@@ -57,7 +57,7 @@ def _time_gaps(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     lost = timing.lost_time(time, flags)
     longest = float(timing.lengths_of_gaps(time, flags).max())
     text = f"{{count:gap|gaps}} in time, the longest {longest:.4g} s, {{where}}"
-    # what stands between long pauses is whole, and no segment goes across one
+    # the parts between long pauses are complete, and no segment extends across a pause
     parts = np.diff(np.concatenate([[0], np.flatnonzero(flags == SUSPECT), [flags.size]]))
     if lost > limits["lost"] and np.median(parts) < limits["whole"]:
         flags = np.where(flags == SUSPECT, FAIL, flags).astype(np.int8)
@@ -66,7 +66,7 @@ def _time_gaps(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
 
 def _time_jitter(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     flags = timing.time_jitter(subject.time, limits["scatter"])
-    text = "the sampling intervals scatter over {count:sample|samples}, {where}"
+    text = "the sampling interval varies over {count:sample|samples}, {where}"
     return [sample_result("time", flags, subject.time, text)]
 
 
@@ -91,7 +91,7 @@ def _rate_changes(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
     return [Result("pass", "time", text, float(places.size), where=where, flags=flags, noted=seen)]
 
 
-_COUNTER = 0.1  # share of the samples: what changes oftener counts turns, and parts nothing
+_COUNTER = 0.1  # share of the samples; a number that changes more often counts turns, not steps
 
 
 def _step_changes(subject: RunSubject) -> np.ndarray:
@@ -144,7 +144,8 @@ def _missing(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     text = "{count:sample repeats|samples repeat} one value longer than noise allows, {where}"
-    stated = subject.run.attrs.get("derived", {})  # by formulas: from a load above the table
+    # computed by formulas, from a load in the file header
+    stated = subject.run.attrs.get("derived", {})
     results = []
     for name, values in one_by_one(subject.force_signals.items()):
         steady = bool(np.nanmin(values) == np.nanmax(values))
@@ -157,24 +158,24 @@ def _stuck(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
             continue
         if name == "normal_force" and _is_set(subject, values):
             good = uniform(values.size, GOOD)
-            told = "one value for all of the run while friction changes: it is set and not "
-            told += "measured, or its sensor is dead; call a set load set_normal_force"
+            told = "constant during the run while friction changes: a set-point and not "
+            told += "measured, or the sensor is dead; name a set-point set_normal_force"
             results.append(Result("suspect", name, told, 0.0, flags=good))
             continue
-        flags = _without_rests(subject, values, signals.stuck(values, limits["chance"]))
+        flags = _drop_rests(subject, values, signals.stuck(values, limits["chance"]))
         results.append(sample_result(name, flags, subject.time, text, fail_share=limits["fail"]))
     return results
 
 
-def _without_rests(subject: RunSubject, values: np.ndarray, flags: np.ndarray) -> np.ndarray:
-    """Take back flags of zeros beside the sliding: what nothing loads yet reads none."""
+def _drop_rests(subject: RunSubject, values: np.ndarray, flags: np.ndarray) -> np.ndarray:
+    """Remove flags of zeros next to the sliding, where an unloaded sensor reads zero."""
     if not (subject.sliding and (flags == SUSPECT).any()):
         return flags
-    return np.where((values == 0) & ~subject.in_segments, np.int8(GOOD), flags)
+    return np.where((values == 0) & ~subject.segment_mask, np.int8(GOOD), flags)
 
 
 def _is_set(subject: RunSubject, load: np.ndarray) -> bool:
-    """Whether a load may be a set-point: never another digit, not zero, and friction is alive."""
+    """Whether a constant load is a set-point: not zero, no digit ever changes, friction varies."""
     if not (np.nanmin(load) == np.nanmax(load) != 0):
         return False
     others = [values for name, values in subject.force_signals.items() if name != "normal_force"]
@@ -182,7 +183,7 @@ def _is_set(subject: RunSubject, load: np.ndarray) -> bool:
 
 
 def _is_stated(subject: RunSubject, name: str) -> bool:
-    """Whether a force follows from what texts state alone, from step to step or way to way."""
+    """Whether a force is computed from stated values only, which change with step or direction."""
     formula = subject.run.attrs.get("derived", {}).get(name)
     if formula is None or formula == "stated":
         return formula is not None
@@ -196,7 +197,7 @@ def _saturation(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
             told = "stated and not measured"
             results.append(Result("pass", name, told, 0.0, flags=uniform(values.size, GOOD)))
             continue
-        flags = _without_rests(subject, values, signals.saturation(values))
+        flags = _drop_rests(subject, values, signals.saturation(values))
         ends = f"{np.nanmax(values):.6g} or {np.nanmin(values):.6g} {subject.unit(name)}"
         text = f"{{count:sample lies|samples lie}} at the end of the range ({ends}): "
         text += "cut off there, {where}"
@@ -215,7 +216,7 @@ def _quantisation(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
             continue
         step, noise = quantisation_step(values), subject.noise(name)
         if step == 0:
-            text = "values do not repeat: no step to be seen"
+            text = "values do not repeat: no quantisation visible"
             results.append(Result("pass", name, text, 0.0))
             continue
         typical = subject.typical_size(name)
@@ -234,13 +235,13 @@ def _spikes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     joins = _joins(subject)
     for name, values in one_by_one(subject.force_signals.items()):
         flags = signals.spikes(values, limits["noise"])
-        flags[joins] = NOT_EVALUATED  # what stands before them is of another step
-        text = "{count:single sample stands|single samples stand} out from both neighbours, {where}"
+        flags[joins] = NOT_EVALUATED  # the samples before belong to another step
+        text = "{count:single sample is an outlier|single samples are outliers}, {where}"
         result = sample_result(name, flags, subject.time, text, fail_share=limits["fail"])
         if result.status in OBJECTIONS:
-            moved = _moved_by(values, flags)
+            moved = _mean_shift(values, flags)
             if moved > limits["mean"]:
-                text = f"{result.message}; with them the mean of its size is {moved:.1%} off"
+                text = f"{result.message}; they change the mean magnitude by {moved:.1%}"
                 result = replace(result, message=text, cure=_MOVED)
             elif _sticks_and_slips(subject):
                 result = replace(result, cure=_SLIPS)
@@ -249,7 +250,7 @@ def _spikes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _joins(subject: RunSubject) -> np.ndarray:
-    """Return the samples on either side of where a new step begins, or the record goes on."""
+    """Return the samples on both sides of each start of a new step or continued record."""
     starts = np.flatnonzero(timing.time_gaps(subject.time) == SUSPECT)
     steps = subject.run.get("step")
     if steps is not None:
@@ -257,8 +258,8 @@ def _joins(subject: RunSubject) -> np.ndarray:
     return np.unique(np.clip(np.concatenate([starts - 1, starts]), 0, subject.time.size - 1))
 
 
-def _moved_by(values: np.ndarray, flags: np.ndarray) -> float:
-    """Return by which share samples that stand out move the mean size of a signal."""
+def _mean_shift(values: np.ndarray, flags: np.ndarray) -> float:
+    """Share by which outlying samples change the mean magnitude of a signal."""
     places = np.flatnonzero((flags == SUSPECT) | (flags == FAIL))
     before, after = np.maximum(places - 1, 0), np.minimum(places + 1, values.size - 1)
     usual = 0.5 * (values[before] + values[after])
@@ -268,15 +269,15 @@ def _moved_by(values: np.ndarray, flags: np.ndarray) -> float:
 
 
 _MOVED = (
-    "Look what the instrument writes there: a word or number for an overload, or for no value, "
-    "belongs under [text] missing in the dialect."
+    "Check what the instrument writes there. Put its code for overload or no value under "
+    "[text] missing in the dialect."
 )
 
 _SLIPS = (
-    "The contact sticks and slips: a slip shorter than a sample looks like this; record faster to "
-    "tell. What repeats at rest, too, is a disturbance. The mean hardly moves."
+    "The contact sticks and slips. A slip shorter than a sample looks like this; record faster to "
+    "resolve it. Outliers at rest are a disturbance. The mean hardly changes."
 )
-_STRONG = 0.03  # standard deviation over friction, from which on an oscillation is stick-slip
+_STRONG = 0.03  # oscillations with a larger standard deviation over friction are stick-slip
 
 
 def _sticks_and_slips(subject: RunSubject) -> bool:
@@ -290,7 +291,7 @@ RECORD_CHECKS = (
     Check(
         "schema",
         0,
-        "Are the signals there, in SI units, and within what physics allows?",
+        "Are the signals present, in SI units, and physically possible?",
         "Correct the dialect: quantity, unit, sign or scale of the column.",
         {"pulled": Limit(0.5, "1", "bodies that are pulled apart most of the time do not slide")},
         _schema,
@@ -298,7 +299,7 @@ RECORD_CHECKS = (
     Check(
         "time_order",
         1,
-        "Does time go forward from sample to sample?",
+        "Does time increase from sample to sample?",
         "Export the file again, or let the dialect say what to do ([time] in the dialect).",
         {},
         _time_order,
@@ -307,7 +308,7 @@ RECORD_CHECKS = (
         "time_gaps",
         2,
         "Are stretches of time missing?",
-        "Look whether the logger lost data or paused; no segment goes across a long gap.",
+        "Check whether the logger lost data or paused. No segment extends across a long gap.",
         {
             "intervals": Limit(5.0, "1", "buffers that arrive late stretch 2 to 3 intervals"),
             "lost": Limit(0.2, "1", "a fifth of the record gone is no record of the experiment"),
@@ -336,7 +337,7 @@ RECORD_CHECKS = (
         "restarts",
         5,
         "Does the file hold several steps with headers or clocks of their own?",
-        "Nothing to mend: the steps are joined as the dialect says.",
+        "Nothing to do: the steps are joined as the dialect says.",
         {},
         _restarts,
     ),
@@ -354,7 +355,7 @@ RECORD_CHECKS = (
     Check(
         "stuck",
         7,
-        "Does a force signal stand still?",
+        "Is a force signal stuck?",
         "Check the cable and the amplifier; a healthy signal carries noise.",
         {
             "chance": Limit(1e-6, "1", "one false alarm in a million records"),
@@ -365,8 +366,8 @@ RECORD_CHECKS = (
     Check(
         "saturation",
         8,
-        "Does a force signal run into the end of its range?",
-        "Choose a larger range of the amplifier or a stronger force cell and measure again.",
+        "Is a force signal clipped at the end of its range?",
+        "Repeat with a larger amplifier range or a stronger force cell.",
         {"fail": Limit(1e-3, "1", "what is cut off biases the mean; a few samples do not")},
         _saturation,
     ),
@@ -384,8 +385,8 @@ RECORD_CHECKS = (
     Check(
         "spikes",
         10,
-        "Do single samples stand out?",
-        "Look for switching devices nearby; the mean hardly moves, extremes and spectra do.",
+        "Are there single outlying samples?",
+        "Look for switching devices nearby. The mean hardly changes; extremes and spectra do.",
         {
             "noise": Limit(8.0, "1", "Gaussian noise reaches it once in 1e15 samples"),
             "fail": Limit(0.01, "1", "one sample in a hundred is no longer a rare disturbance"),

@@ -1,4 +1,4 @@
-"""Checks on what the rig did: zero points, load, speed, and the match of two clocks."""
+"""Checks on the rig: zero points, load, speed, and match of two clocks."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tribolab.core.limit import Limit
 from tribolab.core.wording import duration
 from tribolab.friction.segments.slopes import digit, position_noise
 from tribolab.qc.register import Check, Result, Skip
-from tribolab.qc.run.per_segment import by_segment, status_of
+from tribolab.qc.run.per_segment import segment_results, status_of
 from tribolab.qc.run.subject import RunSubject
 
 
@@ -21,7 +21,7 @@ def _zero_offset(subject: RunSubject, limits: Mapping[str, float]) -> list[Resul
     if not offsets:
         raise Skip("the zero of the force was not measured: no rest without load")
     share = float(median(np.array(offsets))) / subject.typical_friction
-    text = f"the force cell's zero lies {share:+.2%} of the friction force off"
+    text = f"the zero of the force cell is off by {share:+.2%} of the friction force"
     return [Result(status_of(share, limits), "friction_force", text, share)]
 
 
@@ -30,7 +30,7 @@ def _zero_drift(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
     for name in ("friction_force", "normal_force"):
         levels = subject.unloaded_levels(name)
         if len(levels) < 2:
-            text = "fewer than two rests without load: no drift to be seen"
+            text = "fewer than two rests without load: drift cannot be measured"
             results.append(Result("skipped", name, text))
             continue
         force = name == "friction_force"
@@ -52,14 +52,14 @@ def _normal_force_error(subject: RunSubject, limits: Mapping[str, float]) -> lis
             return moved
         raise Skip("the set-point of the normal force is not known")
     error = (means - zero) / target - 1
-    said = by_segment(subject, "normal_force", error, limits, "normal force off its set-point")
+    said = segment_results(subject, "normal_force", error, limits, "normal force off its set-point")
     return moved if moved and said[0].status == "pass" else said
 
 
 def _load_moves(
     subject: RunSubject, loads: np.ndarray, limits: Mapping[str, float]
 ) -> list[Result]:
-    """Object to a load that was meant to be one and changes along the run, or along a segment."""
+    """Report a load that was set constant but changes along the run or a segment."""
     if "set_normal_force" in subject.run:
         return []
     parts = [part for part in subject.slices if part.stop > part.start]
@@ -67,7 +67,7 @@ def _load_moves(
     if not known.size:
         return []
     if known.max() > limits["programme"] * known.min():
-        return _steps_without_friction(subject, loads, limits)  # several loads that were meant
+        return _steps_without_friction(subject, loads, limits)  # several loads were set
     signal = subject.signals["normal_force"]
     first, last = parts[0], parts[-1]
     tenth = max((last.stop - last.start) // 10, 1), max((first.stop - first.start) // 10, 1)
@@ -83,8 +83,8 @@ def _load_moves(
     if abs(change) <= max(limits["change"], _CLEAR * noise / usual):
         return []
     text = (
-        f"the load changes by {change:+.1%} along the run, although one load was meant. If the "
-        "true load was constant, the friction coefficient is off by as much"
+        f"the load changes by {change:+.1%} along the run although it was set constant. If the "
+        "true load was constant, the friction coefficient is wrong by as much"
     )
     return [Result("suspect", "normal_force", text, change)]
 
@@ -92,10 +92,10 @@ def _load_moves(
 def _steps_without_friction(
     subject: RunSubject, loads: np.ndarray, limits: Mapping[str, float]
 ) -> list[Result]:
-    """Object to steps of the load that friction at the same speed does not follow."""
+    """Report load steps that the friction force at equal speed does not follow."""
     if "friction_force" not in subject.friction or np.isfinite(subject.target_normal_force).any():
         return []
-    # the half loop of a pair whose load steps shares its friction out by the load
+    # the half loop of a pair whose load steps divides its friction by the load
     zero = float(median_of_known(subject.friction["friction_force_offset"].values))
     force = np.abs(subject.segment_means("friction_force") - zero)
     speed = np.nan_to_num(subject.friction["sliding_speed"].values)
@@ -115,13 +115,13 @@ def _steps_without_friction(
     text = (
         f"the load reading changes by {change:+.0%} to {where}, the friction force at the same "
         f"speed by {own:+.1%} only. If the true load did not change, the friction coefficient is "
-        "off by as much as the reading"
+        "wrong by as much as the reading"
     )
     return [Result("suspect", "normal_force", text, change, where=where, cure=_READING_STEPS)]
 
 
 _READING_STEPS = (
-    "See that the load cell and its amplifier kept their range, or state the load of each step "
+    "Check that the load cell and its amplifier kept their range, or state the load of each step "
     "(set_normal_force)."
 )
 _CLEAR = 5.0  # standard errors of a change of the load
@@ -130,7 +130,7 @@ _CLEAR = 5.0  # standard errors of a change of the load
 def _normal_force_scatter(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     means = subject.segment_means("normal_force")
     share = subject.segment_stds("normal_force") / np.where(means == 0, np.nan, means)
-    return by_segment(subject, "normal_force", share, limits, "scatter of the normal force")
+    return segment_results(subject, "normal_force", share, limits, "scatter of the normal force")
 
 
 def _velocity_set(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -144,7 +144,7 @@ def _velocity_set(subject: RunSubject, limits: Mapping[str, float]) -> list[Resu
     if not np.isfinite(target).any():
         raise Skip("the set-point of the speed is not known")
     error = segments["sliding_speed"].values / np.where(target > 0, target, np.nan) - 1
-    return by_segment(subject, "sliding_velocity", error, limits, "speed off its set-point")
+    return segment_results(subject, "sliding_velocity", error, limits, "speed off its set-point")
 
 
 def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -153,8 +153,8 @@ def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list
     results = []
     if stands := float(subject.segments.attrs.get("standstill_s", 0.0)):
         text = (
-            f"the position stands still for at least {duration(stands)} while the recorded "
-            "velocity says that it moves; segments and speeds are taken from the position"
+            f"the position does not change for at least {duration(stands)} while the recorded "
+            "velocity is not zero; segments and speeds are taken from the position"
         )
         results.append(Result("suspect", "position", text, stands, "s", cure=_CURE_OF_STANDSTILL))
     position = subject.signals["position"]
@@ -165,23 +165,25 @@ def _velocity_position(subject: RunSubject, limits: Mapping[str, float]) -> list
     ).T
     if not np.isfinite(slopes).any() and not results:
         raise Skip("no position within the segments")
-    # the slope is a mean over the segment: compare it with the mean of the signed velocity
+    # the slope is a mean over the segment; compare it with the mean signed velocity
     velocity = subject.segment_means("sliding_velocity")
     velocity = np.where(velocity == 0, np.nan, velocity)
-    # a creep that the encoder does not resolve is no speed to compare with
+    # a creep below the resolution of the encoder cannot be compared
     resolved = limits["errors"] * error < limits["suspect"] * np.abs(velocity)
     off = np.where(resolved, slopes / velocity - 1, np.nan)
     if results and not np.isfinite(off).any():
         return results
-    told = by_segment(subject, "sliding_velocity", off, limits, "d(position)/dt off the velocity")
+    told = segment_results(
+        subject, "sliding_velocity", off, limits, "d(position)/dt off the velocity"
+    )
     return [*results, *told]
 
 
 def _slope(subject: RunSubject, part: slice, noise: float) -> tuple[float, float]:
-    """Slope of the position over a segment and its error [m/s], if a reading is off by `noise` [m].
+    """Slope of the position over a segment and its error [m/s] for a reading error `noise` [m].
 
-    What the position deviates from a line is not its noise: a stage that stops deviates as well.
-    Digits are off by as much all along a segment in which none of them changes.
+    Deviations from a line are not noise, because a stage that stops deviates too. In a segment
+    without a change of digit the reading error is constant.
     """
     time, position = subject.time[part], subject.signals["position"][part]
     good = np.isfinite(position)
@@ -205,7 +207,7 @@ def _clock_shift(subject: RunSubject, limits: Mapping[str, float]) -> list[Resul
     error = float(attrs.get("clock_shift_uncertainty_s", np.nan))
     if source == "none" or not np.isfinite(error):
         why = attrs.get("clock_shift_refused", "the force does not follow the motion")
-        text = f"the signals do not tell the shift between the clocks ({why}): state clock_shift"
+        text = f"the clock shift cannot be found from the signals ({why}): state clock_shift"
         return [Result("fail", "time", text, unit="s")]
     share = 2.0 * error / float(np.min(subject.durations))
     text = f"the clocks are matched to {2.0 * error:.3g} s, {share:.1%} of the shortest segment"
@@ -217,7 +219,7 @@ _CURE_OF_STANDSTILL = (
     "column out in the dialect."
 )
 
-_OFF = "Calibrate or zero the instrument; check what the file calls its unit."
+_OFF = "Calibrate or zero the instrument; check the unit stated in the file."
 
 RIG_CHECKS = (
     Check(
@@ -236,8 +238,8 @@ RIG_CHECKS = (
     Check(
         "zero_drift",
         12,
-        "Does the zero stay where it was?",
-        "Let the amplifier warm up; measure strokes both ways, whose half loops follow a drift.",
+        "Is the zero stable?",
+        "Let the amplifier warm up. Measure strokes in both directions: half loops cancel drift.",
         {
             "suspect": Limit(
                 0.10, "1", "a tenth of such a drift may not be steady, and is not followed: 1 %"
@@ -249,7 +251,7 @@ RIG_CHECKS = (
     Check(
         "normal_force_error",
         13,
-        "Is the normal force what it was set to?",
+        "Is the normal force at its set-point?",
         _OFF,
         {
             "suspect": Limit(0.03, "1", "friction coefficients of Hertz contacts go as F^-1/3"),
@@ -269,7 +271,7 @@ RIG_CHECKS = (
     Check(
         "normal_force_scatter",
         14,
-        "Does the load control hold the normal force?",
+        "Is the normal force kept constant by its control?",
         "Check the control loop and the flatness of the counter body.",
         {
             "suspect": Limit(0.03, "1", "three times what a good control leaves"),
@@ -280,7 +282,7 @@ RIG_CHECKS = (
     Check(
         "velocity_set",
         15,
-        "Is the speed what it was set to?",
+        "Is the speed at its set-point?",
         _OFF,
         {
             "suspect": Limit(0.03, "1", "stages keep their speed to 1 %"),

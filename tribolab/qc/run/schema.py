@@ -1,4 +1,4 @@
-"""What a run has to hold: its signals, their units, and the ranges that physics allows."""
+"""Required signals of a run, their units, and the physically possible ranges."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SPEED = ("sliding_velocity", "position", "step", "set_speed", "shear_rate")
 
 
 class Range(NamedTuple):
-    """What is believed, what is possible at all, and why; SI."""
+    """Plausible and possible range of a signal in SI, with the reason."""
 
     low: float
     high: float
@@ -29,10 +29,10 @@ class Range(NamedTuple):
 
 @functools.cache
 def ranges() -> Mapping[str, Range]:
-    """Return what is believed of each signal of a run, as ``run.schema.json`` states it.
+    """Plausible range of each signal of a run, from ``run.schema.json``.
 
-    Wide on purpose: they catch a wrong unit or an error code that passes for a number, not a bad
-    day. There they are stated once, for this check and for `table_schema.validate`.
+    The ranges are wide: they catch a wrong unit or an error code read as a number, not an unusual
+    measurement. `table_schema.validate` uses the same ones.
 
     Examples
     --------
@@ -41,7 +41,7 @@ def ranges() -> Mapping[str, Range]:
     """
     limits = {}
     for field in load_schema("run")["fields"]:
-        if "reason" not in field:  # time and the numbers of steps have checks of their own
+        if "reason" not in field:  # time and step numbers have their own checks
             continue
         believed, possible = field["constraints"], field.get("possible", {})
         limits[field["name"]] = Range(
@@ -54,12 +54,12 @@ def ranges() -> Mapping[str, Range]:
     return limits
 
 
-def in_range(values: np.ndarray, limits: Range) -> np.ndarray:
-    """Flag values outside what is believed (suspect) and outside what is possible (fail).
+def flag_range(values: np.ndarray, limits: Range) -> np.ndarray:
+    """Flag implausible values as suspect and impossible ones as fail.
 
     Examples
     --------
-    >>> in_range(np.array([293.0, 20.0, -1.0, np.nan]), ranges()["temperature"])
+    >>> flag_range(np.array([293.0, 20.0, -1.0, np.nan]), ranges()["temperature"])
     array([1, 3, 4, 2], dtype=int8)
     """
     if not values.size or (values.min() >= limits.low and values.max() <= limits.high):
@@ -72,7 +72,7 @@ def in_range(values: np.ndarray, limits: Range) -> np.ndarray:
 
 
 def wrong_units(run: xr.Dataset) -> dict[str, str]:
-    """Variables whose unit is not the one of the dictionary of quantities, and that unit."""
+    """Variables whose unit differs from that of the dictionary of quantities, with the unit."""
     wrong = {}
     for name, variable in run.variables.items():
         known = QUANTITIES.get(str(name))
@@ -82,8 +82,8 @@ def wrong_units(run: xr.Dataset) -> dict[str, str]:
     return wrong
 
 
-def lacks(run: xr.Dataset) -> list[tuple[str, str]]:
-    """Say what a friction run needs and this one has not, and the cure of each."""
+def missing_signals(run: xr.Dataset) -> list[tuple[str, str]]:
+    """Signals that a friction run needs but this one lacks, each with a remedy."""
     missing = []
     if not any(name in run for name in _FRICTION):
         missing.append(
@@ -94,21 +94,21 @@ def lacks(run: xr.Dataset) -> list[tuple[str, str]]:
             )
         )
     if not any(name in run for name in _SPEED) and "set_speed_m_s" not in run.attrs:
-        text = "nothing tells the speed (none of " + ", ".join(_SPEED) + ")"
+        text = "the speed is unknown (none of " + ", ".join(_SPEED) + ")"
         cure = "Let the dialect say the speed: a column, [speed], or a value 'set_speed'."
         if "companion_missing" in run.attrs:
             other = run.attrs["companion_missing"]
             text += f": the companion log {other} is not there"
-            cure = f"Put {other} beside this file, or give both."
+            cure = f"Put {other} next to this file, or give both."
         missing.append((text, cure))
     return missing
 
 
-def pulled_share(normal_force: np.ndarray) -> float:
-    """Share of the loaded samples whose normal force says that the bodies are pulled apart.
+def tensile_share(normal_force: np.ndarray) -> float:
+    """Share of the loaded samples in which the normal force is tensile.
 
-    Loaded is where its magnitude is above a tenth of the largest (99th percentile); adhesion may
-    pull for a moment, but no run slides so.
+    Samples are loaded if the magnitude exceeds a tenth of the 99th percentile. Adhesion can be
+    tensile for a moment, but no run slides under tension.
     """
     known = np.isfinite(normal_force)
     known = normal_force if known.all() else normal_force[known]

@@ -1,4 +1,4 @@
-"""Checks on sliding: disturbances, steadiness, and whether the coefficient is determined."""
+"""Checks on sliding: disturbances, steadiness, and uncertainty of the coefficient."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tribolab.friction.zero.limits import LOADS_DIFFER
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.qc.register import Check, Result, Skip
 from tribolab.qc.run.friction_sign import FRICTION_SIGN
-from tribolab.qc.run.per_segment import by_segment, status_of
+from tribolab.qc.run.per_segment import segment_results, status_of
 from tribolab.qc.run.strokes import DISTANCE, SAMPLING, SEGMENT_SPEED, find_lost_strokes
 from tribolab.qc.run.subject import RunSubject
 
@@ -35,7 +35,7 @@ def _resonance(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     speed = np.array([line.speed for line in lines])
     fixed = []
     for line in lines:
-        # stick-slip moves with the speed; a line of the rig stays where it is
+        # the frequency of stick-slip changes with speed; that of a resonance does not
         alike = speed[np.abs(np.log(frequency / line.frequency)) < limits["width"]]
         if alike.max() >= limits["speeds"] * alike.min():
             fixed.append(line)
@@ -66,7 +66,7 @@ def _steadiness(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
     graded = np.where(open_, np.nan, np.where(sure, change, 0.0))
     title = "trend within a segment"
     if not open_.any():
-        return _with_largest_change(by_segment(subject, signal, graded, limits, title), change)
+        return _add_largest_change(segment_results(subject, signal, graded, limits, title), change)
     worst = int(np.argmax(np.where(open_, np.abs(change), -1.0)))
     where = subject.segment_label(worst)
     text = (
@@ -79,13 +79,13 @@ def _steadiness(subject: RunSubject, limits: Mapping[str, float]) -> list[Result
     doubt = Result("skipped", signal, text, value, "1", where, count, noted=True)
     if np.isnan(graded).all():
         return [doubt]
-    rest = by_segment(subject, signal, graded, limits, title)
-    # one steady segment does not make a run steady; one unsteady segment makes it unsteady
+    rest = segment_results(subject, signal, graded, limits, title)
+    # one unsteady segment makes the run unsteady
     return [doubt, *(result for result in rest if result.status != "pass")]
 
 
-def _with_largest_change(results: list[Result], change: np.ndarray) -> list[Result]:
-    """State the largest measured change if no trend is significant."""
+def _add_largest_change(results: list[Result], change: np.ndarray) -> list[Result]:
+    """Add the largest measured change if no trend is significant."""
     if results[0].status != "pass" or results[0].value != 0.0:
         return results
     text = (
@@ -95,8 +95,8 @@ def _with_largest_change(results: list[Result], change: np.ndarray) -> list[Resu
 
 
 def _segments(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    _ = subject.required_friction_signal  # if there is none, `schema` objects
-    why = subject.no_segment
+    _ = subject.required_friction_signal  # without a segment, the check `schema` objects
+    why = subject.missing_segment_reason
     if why:
         return [Result("suspect", "", why)]
     number = subject.segments.sizes["segment"]
@@ -106,7 +106,7 @@ def _segments(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    """Report coefficients whose U95 is large against their value and larger than noise explains."""
+    """Report coefficients with a large U95 that noise does not explain."""
     friction, name = subject.friction, "friction_coefficient"
     if f"{name}_beyond_U95" not in friction:
         return []
@@ -117,7 +117,7 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
         pairs = friction["pair"].values.astype(float)
     moving, shared = np.where(speed > 0, speed, 1.0), shared_error(friction)
     means = []
-    for own in _loads_apart(friction):  # friction under several loads differs, and that is no error
+    for own in _load_groups(friction):  # differences between loads are not errors
         common = None if shared is None else shared[own]
         found = run_means(moving[own], mu[own], sem[own], wide[own], pairs[own], shared=common)
         means += [mean._replace(strokes=own[mean.strokes]) for mean in found]
@@ -142,8 +142,8 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     return [Result("suspect", name, text, share, count=len(bad), cure=cure)]
 
 
-def _loads_apart(friction: xr.Dataset) -> list[np.ndarray]:
-    """Return the segments under each load, in their order."""
+def _load_groups(friction: xr.Dataset) -> list[np.ndarray]:
+    """Segments under each load, in the order of the loads."""
     every = np.arange(friction.sizes["segment"])
     if "normal_force" not in friction:
         return [every]
@@ -168,7 +168,7 @@ SLIDING_CHECKS = (
         "(`segments.stroke_middle = 0.5` in its [[run]] takes half of it); see `drift` and "
         "`min_samples` under [segments].",
         {
-            "uncertain": Limit(0.3, "1", "a third of the value: no two surfaces are told apart"),
+            "uncertain": Limit(0.3, "1", "a third of the value: surfaces cannot be distinguished"),
             "known_to": Limit(0.005, "1", "a full film has 0.001 to 0.01: known to half of that"),
             "lost_strokes": Limit(
                 0.05, "1", "share of the strokes; the first and the last may be cut, others not"
@@ -211,7 +211,7 @@ SLIDING_CHECKS = (
             "samples": Limit(
                 steadiness.SAMPLES,
                 "1",
-                "fewer effective samples do not tell a trend from slow wandering",
+                "fewer effective samples cannot distinguish a trend from slow drift",
             ),
         },
         _steadiness,

@@ -23,7 +23,7 @@ _CURE_OF_UNKNOWN_STROKES = (
 )
 
 _CURE_OF_OTHER_STROKES = (
-    "See that the frequency is right. If it changes within the run, state it for each step: as a "
+    "Check that the frequency is right. If it changes within the run, state it for each step: as a "
     "column, or as values with the source step or programme in the dialect."
 )
 
@@ -31,7 +31,7 @@ _STRENGTH = Limit(0.03, "1", "a weaker oscillation moves a mean over four period
 
 
 def find_lost_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    """Report strokes without a segment although the position shows that they slide."""
+    """Report strokes without a segment although their position changes."""
     segments = subject.segments
     if segments.attrs.get("velocity_source") != "position" or "stroke_middle" in segments.attrs:
         return []
@@ -61,7 +61,7 @@ def find_lost_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[
 
 
 def _segment_speed(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    # of friction: a rheometer's steps of shear stress have a shear rate in place of a speed
+    # friction; steps of shear stress of a rheometer have a shear rate instead of a speed
     unknown = np.isnan(subject.friction["sliding_speed"].values)
     if unlike := subject.run.attrs.get("strokes_unlike_s"):
         often = subject.run.attrs["stroke_frequency_Hz"]
@@ -127,10 +127,10 @@ def _distance(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _periods_at_odds(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
-    """Report steady, oscillating segments in which drops and spectrum give different periods."""
+    """Report oscillating segments in which drops and spectrum give different periods."""
     slip = subject.slip
     odd = np.array([AT_ODDS in str(remark) for remark in slip["remark"].values], bool)
-    odd &= slip["false_alarm_probability"].values < CHANCE / odd.size  # any of the segments
+    odd &= slip["false_alarm_probability"].values < CHANCE / odd.size  # in any of the segments
     if odd.any():
         odd &= subject.friction["steady"].values == steadiness.IS_STEADY
         odd &= subject.oscillates_strongly(limits["strength"])

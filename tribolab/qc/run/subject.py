@@ -1,4 +1,4 @@
-"""What the checks on a run look at: its signals, its segments, and what is known of the contact."""
+"""Data examined by the checks on a run: signals, segments, and contact."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ _SIGNALS = (*_FORCES, "sliding_velocity", "position", "normal_stress", "temperat
 
 
 class RunSubject:
-    """A run under examination; what several checks need is computed once, when first asked for.
+    """Run under examination, with quantities that several checks need, computed once.
 
     Parameters
     ----------
     run
         The run dataset.
     segments, friction, slip
-        Found if not given.
+        Computed if not given.
     set_normal_force
         [N] set-point of the normal force, NaN if unknown.
     contact_width
@@ -63,47 +63,47 @@ class RunSubject:
 
     @cached_property
     def signals(self) -> dict[str, np.ndarray]:
-        """The recorded signals by name."""
+        """Recorded signals by name."""
         return {name: self.run[name].values for name in _SIGNALS if name in self.run}
 
     @cached_property
     def force_signals(self) -> dict[str, np.ndarray]:
-        """The signals that carry friction and load."""
+        """Signals of friction and load."""
         return {name: values for name, values in self.signals.items() if name in _FORCES}
 
     @cached_property
-    def _found_segments(self) -> xr.Dataset | Skip:
+    def _segments_or_skip(self) -> xr.Dataset | Skip:
         if self._segments is not None:
             return self._segments
         try:
             return find_segments(self.run)
-        except AnalysisError as why:  # e.g. nothing tells the speed: the `schema` check says so
+        except AnalysisError as why:  # e.g. the speed is unknown: the check `schema` reports it
             return Skip(f"no segments: {why}")
 
     @property
-    def no_segment(self) -> str:
-        """Why there is no segment, in a sentence; empty where there is one."""
-        if isinstance(self._found_segments, Skip):
-            raise self._found_segments  # nothing tells the speed: the `schema` check objects
-        return why_no_segment(self._found_segments)
+    def missing_segment_reason(self) -> str:
+        """Reason why there is no segment, as a sentence; empty if there is one."""
+        if isinstance(self._segments_or_skip, Skip):
+            raise self._segments_or_skip  # the speed is unknown: the check `schema` objects
+        return why_no_segment(self._segments_or_skip)
 
     @property
     def segments(self) -> xr.Dataset:
-        """Segments of constant speed, at least one; the check is skipped where there are none."""
-        if isinstance(self._found_segments, Skip):
-            raise self._found_segments
-        if self._found_segments.sizes["segment"] == 0:
+        """Segments of constant speed; without any, the check is skipped."""
+        if isinstance(self._segments_or_skip, Skip):
+            raise self._segments_or_skip
+        if self._segments_or_skip.sizes["segment"] == 0:
             raise Skip("no segment of constant speed was found")
-        return self._found_segments
+        return self._segments_or_skip
 
     @property
     def is_points(self) -> bool:
-        """Whether the rows are results of the instrument's own, and no samples."""
-        found = self._found_segments
+        """Whether the rows are results of the instrument instead of samples."""
+        found = self._segments_or_skip
         return not isinstance(found, Skip) and found.attrs.get("rows_are") == "points"
 
     @cached_property
-    def _found_friction(self) -> xr.Dataset | Skip:
+    def _friction_or_skip(self) -> xr.Dataset | Skip:
         if self._friction is not None:
             return self._friction
         try:
@@ -113,44 +113,44 @@ class RunSubject:
 
     @property
     def friction(self) -> xr.Dataset:
-        """Friction of each segment; the check is skipped where there is none."""
-        if isinstance(self._found_friction, Skip):
-            raise self._found_friction
-        return self._found_friction
+        """Friction of each segment; without any, the check is skipped."""
+        if isinstance(self._friction_or_skip, Skip):
+            raise self._friction_or_skip
+        return self._friction_or_skip
 
     @property
     def sliding(self) -> bool:
         """Whether there is any segment."""
-        segments = self._found_segments
+        segments = self._segments_or_skip
         return not isinstance(segments, Skip) and segments.sizes["segment"] > 0
 
     @cached_property
     def slices(self) -> list[slice]:
-        """The samples of each trimmed segment."""
+        """Samples of each trimmed segment."""
         first = np.searchsorted(self.time, self.segments["trimmed_start"].values, "left")
         last = np.searchsorted(self.time, self.segments["trimmed_stop"].values, "right")
         return [slice(int(a), int(b)) for a, b in zip(first, last, strict=True)]
 
     @cached_property
-    def in_segments(self) -> np.ndarray:
-        """Which samples lie within a trimmed segment."""
+    def segment_mask(self) -> np.ndarray:
+        """Mask of the samples within trimmed segments."""
         inside = np.zeros(self.time.size, dtype=bool)
         for part in self.slices if self.sliding else []:
             inside[part] = True
         return inside
 
     def typical_size(self, name: str) -> float:
-        """Return the median magnitude of a signal within the segments, else of all of it."""
+        """Return the median magnitude of a signal within the segments, or else of all samples."""
         values = self.signals[name]
-        inside = self.in_segments if self.in_segments.any() else np.ones(values.size, dtype=bool)
+        inside = self.segment_mask if self.segment_mask.any() else np.ones(values.size, dtype=bool)
 
         def sizes(first: int, last: int) -> np.ndarray:
             return np.abs(values[first:last][inside[first:last]])
 
         return float(median_in_pieces(sizes, values.size))
 
-    def on_samples(self, flags: np.ndarray) -> np.ndarray:
-        """Return one flag for each segment as flags of its samples (time)."""
+    def sample_flags(self, flags: np.ndarray) -> np.ndarray:
+        """Return the flag of each segment on its samples (time)."""
         samples = filled(self.time.size, NOT_EVALUATED, np.int8)
         for part, flag in one_by_one(zip(self.slices, flags, strict=True)):
             samples[part] = flag
@@ -163,20 +163,20 @@ class RunSubject:
 
     @cached_property
     def friction_signal(self) -> str | None:
-        """Name of the signal that carries friction, if there is one."""
+        """Name of the friction signal, or None."""
         names = ("friction_force", "friction_coefficient")
         return next((name for name in names if name in self.signals), None)
 
     @property
     def required_friction_signal(self) -> str:
-        """Name of the signal that carries friction; without one the check is skipped."""
+        """Name of the friction signal; without one the check is skipped."""
         if self.friction_signal is None:
             raise Skip("no friction was recorded")
         return self.friction_signal
 
     @cached_property
     def target_normal_force(self) -> np.ndarray:
-        """Set-point of the normal force [N] for each segment, NaN where unknown."""
+        """Set-point of the normal force [N] of each segment; NaN if unknown."""
         size = self.segments.sizes["segment"]
         if np.isfinite(self.set_normal_force):
             return np.full(size, self.set_normal_force)
@@ -185,7 +185,7 @@ class RunSubject:
         return np.full(size, float(self.run.attrs.get("set_normal_force_N", np.nan)))
 
     def segment_means(self, name: str) -> np.ndarray:
-        """Mean of a signal over each trimmed segment; the check is skipped without the signal."""
+        """Mean of a signal over each trimmed segment; without the signal the check is skipped."""
         if name not in self.signals:
             raise Skip(f"{name} was not recorded")
         return np.array([_mean(self.signals[name][part]) for part in one_by_one(self.slices)])
@@ -199,14 +199,14 @@ class RunSubject:
     def typical_friction(self) -> float:
         """Typical magnitude of the friction signal over the segments, in its unit.
 
-        Half the difference of the mean strokes where they go both ways, so that an offset does
-        not count as friction; else the mean magnitude.
+        Half the difference between the directions if there are two, so that an offset does not
+        count as friction; else the mean magnitude.
         """
         means = self.segment_means(self.required_friction_signal)
         directions = self.segments["direction"].values
         forward, backward = _mean(means[directions > 0]), _mean(means[directions < 0])
         loop = abs(forward - backward) / 2
-        # a coefficient that the instrument has rectified is the same on both strokes
+        # a rectified coefficient is equal on both strokes
         typical = loop if loop > 0.1 * _mean(np.abs(means)) else _mean(np.abs(means))
         if not typical > 0:
             raise Skip("there is no friction to compare with")
@@ -221,18 +221,17 @@ class RunSubject:
         return typical
 
     def unloaded_levels(self, name: str) -> list[float]:
-        """Median of a signal in each unloaded rest, in the order of time.
+        """Median of a signal in each unloaded rest, in temporal order.
 
-        A rest is unloaded where the normal force stays below a tenth of its mean over the segments
-        for at least 20 samples, outside the segments. The load's ramp begins in it, hence the
-        median.
+        A rest is unloaded if the normal force is below a tenth of its mean over the segments for at
+        least 20 samples outside the segments. The load ramp may begin in it, hence the median.
         """
         if name not in self.signals:
             raise Skip(f"{name} was not recorded")
         if "normal_force" not in self.signals:
             raise Skip("no normal force was recorded that would show a rest without load")
         force, light = self.signals["normal_force"], 0.10 * self.typical_normal_force
-        inside = self.in_segments
+        inside = self.segment_mask
         rests = stretches(lambda a, b: (np.abs(force[a:b]) < light) & ~inside[a:b], force.size)
         parts = [self.signals[name][a:b] for a, b in rests if b - a >= 20]
         return [float(median_of_known(part)) for part in parts if np.isfinite(part).any()]
@@ -242,15 +241,15 @@ class RunSubject:
         return float(self.segments["sliding_speed"].values[number])
 
     def segment_label(self, number: int) -> str:
-        """Return what a person calls a segment: its number as in tables, speed, direction, time."""
+        """Return the label of a segment: its number as in tables, speed, direction, time."""
         speed, start = self.speed_of(number), float(self.segments["start"].values[number])
-        own = int(self.segments["segment"].values[number])  # of all, rejected ones among them
+        own = int(self.segments["segment"].values[number])  # numbers include rejected segments
         arrow = {1: "forward", -1: "backward"}.get(int(self.segments["direction"][number]), "")
         how = f"{speed_text(speed)} {arrow}".strip()
         return f"segment {own + 1} ({how}, from t = {number_text(start, 4)} s)"
 
     @cached_property
-    def _found_slip(self) -> xr.Dataset | Skip:
+    def _slip_or_skip(self) -> xr.Dataset | Skip:
         if self._slip is not None:
             return self._slip
         try:
@@ -260,31 +259,31 @@ class RunSubject:
 
     @property
     def slip(self) -> xr.Dataset:
-        """Stick-slip of each segment, the same that the results state."""
-        if isinstance(self._found_slip, Skip):
-            raise self._found_slip
-        return self._found_slip
+        """Stick-slip of each segment, as in the results."""
+        if isinstance(self._slip_or_skip, Skip):
+            raise self._slip_or_skip
+        return self._slip_or_skip
 
     def strong_periods(self, least: float) -> np.ndarray:
-        """How many stick-slip periods each segment holds; NaN where there is none to speak of.
+        """Return the number of stick-slip periods in each segment; NaN without significant ones.
 
-        A wave that has too few periods to be claimed counts, too: it has that many all the same.
+        A wave with too few periods to be reported as stick-slip counts as well.
 
         Parameters
         ----------
         least
-            Least standard deviation, relative to the run's typical friction, that matters.
+            Smallest relevant standard deviation, relative to the run's typical friction.
         """
         return np.where(self.oscillates_strongly(least), self.slip["periods"].values, np.nan)
 
     def oscillates_strongly(self, least: float) -> np.ndarray:
-        """Tell where friction varies in a segment by more than a part of the typical friction."""
+        """Mask of segments where friction varies by more than a share of typical friction."""
         name = self.required_friction_signal
         return self.segment_stds(name) > least * self.typical_friction
 
     @cached_property
     def lines(self) -> list[Line]:
-        """Lines in the spectrum of the friction signal, over all segments."""
+        """Spectral lines of the friction signal over all segments."""
         values = self.signals[self.required_friction_signal]
         significant = [
             segment_lines(self.time[part], values[part], number, self.speed_of(number))
@@ -296,11 +295,11 @@ class RunSubject:
 
     @cached_property
     def reversals(self) -> np.ndarray:
-        """How often friction changes its sign in each segment whose direction is not known."""
+        """Return the number of sign changes of friction in segments of unknown direction."""
         values = self.signals[self.required_friction_signal]
         unknown = np.isnan(self.segments["sliding_speed"].values)
         if self.segments.attrs.get("velocity_source") in ("set speed", "step"):
-            unknown[:] = True  # what is set has no direction
+            unknown[:] = True  # a set-point has no direction
         return np.array(
             [
                 reversals(values[part]) if lost else 0
@@ -310,7 +309,7 @@ class RunSubject:
 
     @property
     def sliding_lines(self) -> list[Line]:
-        """Lines of the spectrum but those of motion to and fro that was not recorded."""
+        """Spectral lines without those of an unrecorded reciprocating motion."""
         return [line for line in self.lines if not self.reversals[line.segment]]
 
     def unit(self, name: str) -> str:
@@ -325,7 +324,7 @@ class RunSubject:
 
 def _known(values: np.ndarray) -> np.ndarray:
     good = np.isfinite(values)
-    return values if good.all() else values[good]  # a long stretch is not copied for nothing
+    return values if good.all() else values[good]  # a long part is not copied without need
 
 
 def _mean(values: np.ndarray) -> float:

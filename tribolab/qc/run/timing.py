@@ -13,12 +13,12 @@ from tribolab.arrays.scratch import filled
 from tribolab.friction.time_weights import without_gaps
 from tribolab.qc.flags import FAIL, GOOD, NOT_EVALUATED, SUSPECT, uniform
 
-_PARTS = 16  # of a stretch, whose rates are compared
-_BLOCK = 64  # samples over which a sampling interval is called local
+_PARTS = 16  # samples on each side whose rates are compared
+_BLOCK = 64  # samples over which the usual sampling interval is taken
 
 
 def time_order(time: np.ndarray) -> np.ndarray:
-    """Flag samples whose time does not lie after the one before.
+    """Flag samples whose time is not later than that of the sample before.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def time_order(time: np.ndarray) -> np.ndarray:
     Returns
     -------
     ndarray
-        fail where time stands still or goes back, good elsewhere.
+        fail where time does not increase, good elsewhere.
 
     Examples
     --------
@@ -57,8 +57,8 @@ def time_gaps(
     time
         [s] (time)
     suspect
-        Length of a gap in usual sampling intervals: the median of the three before or of the three
-        after, whichever is longer. A slower rate, even for a few samples, is thus no gap.
+        Length of a gap in local sampling intervals: the median of the three before or of the three
+        after, whichever is longer, so that a slower rate is not a gap.
     pauses
         Indices of samples before which the instrument paused on purpose.
 
@@ -75,7 +75,7 @@ def time_gaps(
     if time.size < 8:
         return np.full(time.size, NOT_EVALUATED, np.int8)
     late = [
-        start + np.flatnonzero(_late(time, start, stop, suspect))
+        start + np.flatnonzero(_late_intervals(time, start, stop, suspect))
         for start, stop in pieces(0, time.size - 1)
     ]
     after = np.concatenate(late) + 1
@@ -88,8 +88,8 @@ def time_gaps(
     return flags
 
 
-def _late(time: np.ndarray, start: int, stop: int, longest: float) -> np.ndarray:
-    """Which of the intervals from `start` to `stop` are longer than those around them."""
+def _late_intervals(time: np.ndarray, start: int, stop: int, longest: float) -> np.ndarray:
+    """Mask of intervals from `start` to `stop` that are longer than those around them."""
     count = time.size - 1
     low, high = max(start - 3, 0), min(stop + 3, count)
     interval = np.diff(time[low : high + 1])
@@ -107,7 +107,7 @@ def _middle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
 
 
 def lost_time(time: np.ndarray, flags: np.ndarray) -> float:
-    """Share of the record's duration that lies in gaps [1]."""
+    """Share of the record's duration [1] that is lost in gaps."""
     return float(lengths_of_gaps(time, flags).sum() / (time[-1] - time[0]))
 
 
@@ -118,7 +118,7 @@ def lengths_of_gaps(time: np.ndarray, flags: np.ndarray) -> np.ndarray:
 
 
 def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
-    """Flag stretches whose sampling intervals scatter.
+    """Flag parts of the record with irregular sampling intervals.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
     """
     if time.size < _BLOCK:
         return np.full(time.size, NOT_EVALUATED, np.int8)
-    # a block of changes of the interval: 64 of them, and two samples more
+    # a block of 64 changes of the interval needs two more samples
     changes = time.size - 2
     blocks = max(1, changes // _BLOCK)
     edges = np.linspace(0, changes, blocks + 1).astype(int)
@@ -160,14 +160,14 @@ def time_jitter(time: np.ndarray, suspect: float = 0.25) -> np.ndarray:
 
 
 def _odd(time: np.ndarray) -> np.ndarray:
-    """Change of the interval at each sample but the first and the last, over the interval."""
+    """Relative change of the interval at each sample except the first and last."""
     interval = np.diff(time)
     both = interval[1:] + interval[:-1]
     return np.abs(np.diff(interval)) / np.where(both > 0, both / 2, np.inf)
 
 
 def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
-    """Find where the sampling rate of a stretch changes for good.
+    """Find the sample at which the sampling rate changes permanently.
 
     Parameters
     ----------
@@ -179,7 +179,7 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
     Returns
     -------
     int or None
-        Index of the first sample at the new rate, within some samples; None if it holds.
+        Index of the first sample at the new rate, within some samples; None if it is constant.
 
     Examples
     --------
@@ -194,7 +194,7 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
     least = _least_mean(interval, factor) or _least_of_slow(interval, factor)
     if not least:
         return None
-    # the cut that parts the logarithms best into two levels
+    # the cut that separates the logarithms best into two levels
     level = np.log(np.maximum(interval, 1e-3 * least))
     count = np.arange(1, level.size)
     total = np.cumsum(level)
@@ -204,7 +204,7 @@ def rate_change(time: np.ndarray, factor: float = 1.5) -> int | None:
 
 
 def _least_mean(interval: np.ndarray, factor: float) -> float:
-    """Return the least mean interval of equal numbers of rows; 0 if all are alike."""
+    """Smallest mean interval of equal numbers of rows; 0 if all are equal."""
     parts = min(_PARTS, interval.size // 8)
     if parts < 2:
         return 0.0
@@ -214,20 +214,20 @@ def _least_mean(interval: np.ndarray, factor: float) -> float:
 
 
 def _least_of_slow(interval: np.ndarray, factor: float) -> float:
-    """Return the usual interval if some of as many equal times have far fewer rows than others.
+    """Usual interval if some of equally long periods have far fewer rows than others, else 0.
 
-    A slow rate has few rows: among equal numbers of rows it would not be seen.
+    A slow rate has few rows and would be missed among equal numbers of rows.
     """
     cumulative = np.cumsum(interval)
     marks = np.linspace(0, cumulative[-1], _PARTS + 1)
     rows = np.diff(np.searchsorted(cumulative, marks))
-    # intervals that scatter make numbers of rows scatter by their roots at most
+    # irregular intervals make numbers of rows scatter by their square roots at most
     clear = rows.max() > factor * rows.min() + 4 * np.sqrt(rows.max())
     return float(median(interval)) if clear else 0.0
 
 
 def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np.ndarray:
-    """Find the samples at which the sampling rate changes for at least a stretch of samples.
+    """Find the samples at which the sampling rate changes for a minimum number of samples.
 
     Parameters
     ----------
@@ -236,7 +236,7 @@ def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np
     factor
         Ratio of the mean intervals before and after that counts; gaps are not part of them.
     stretch
-        Samples over which a rate has to hold.
+        Number of samples over which a rate must be constant.
 
     Returns
     -------
@@ -248,17 +248,17 @@ def rate_changes(time: np.ndarray, factor: float = 1.5, stretch: int = 32) -> np
     blocks = (time.size - 1) // stretch
     level = np.empty(blocks)
     for begin, end in pieces(0, blocks, block=stretch):
-        # two intervals more at either end: a gap is one beside those around it
+        # two intervals more on either side: a gap is one next to those around it
         low, high = max(begin * stretch - 2, 0), end * stretch + 2
         interval = without_gaps(np.diff(time[low : high + 1]))
         own = interval[begin * stretch - low :][: (end - begin) * stretch]
         level[begin:end] = own.reshape(-1, stretch).mean(axis=1)
     level = np.log(np.maximum(level, np.finfo(float).tiny))
-    # the block that holds the change may have any mean: compare across it
+    # the block with the change may have any mean: compare across it
     jump = np.abs(level[2:] - level[:-2]) > np.log(factor)
     begins = np.flatnonzero(jump & ~np.concatenate([[False], jump[:-1]]))
     changes = []
-    for block in begins:  # a loop over changes of the rate, few by their nature
+    for block in begins:  # loop over the few changes of the rate
         start = block * stretch
         cut = rate_change(time[start : start + 3 * stretch + 1], factor)
         if cut is not None:

@@ -1,4 +1,4 @@
-"""Checks on the zero of the friction force: what it rests on, and whether the sign was lost."""
+"""Checks on the zero of the friction force: its reference, and loss of the sign."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ def _zero_reference(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
     return told or [Result("pass", signal, f"the zero rests on: {method}")]
 
 
-def _rectified(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
+def _rectified_signal(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
     signal = subject.required_friction_signal
     told = _doubts(subject, "rectified", signal)
     return told or [Result("pass", signal, "nothing says that the signal lost its sign")]
 
 
 def _doubts(subject: RunSubject, check: str, signal: str) -> list[Result]:
-    """Turn what the analysis was not sure of into results; no single sample is to blame."""
+    """Results for each doubt about the zero, without flags on samples."""
     doubts: list[Doubt] = list(subject.friction.attrs.get("zero_doubts", []))
     results = []
     for doubt in doubts:
@@ -62,6 +62,6 @@ ZERO_CHECKS = (
         "Does the friction signal hold its sign?",
         "State `rectified` in the [[run]], or of the column in the dialect.",
         {},
-        _rectified,
+        _rectified_signal,
     ),
 )

@@ -1,4 +1,4 @@
-"""Checks for what looks like heights and is none: dust, scratches, a stuck stylus, rounding."""
+"""Checks for artefacts in heights: dust, scratches, a stuck stylus, rounding."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from tribolab.surface.form import fill_dropouts
 from tribolab.surface.roughness import primary_roughness, roughness_parameters
 
 _CALIBRATED = "tests/benchmarks/tricky_scans.py, sets 1000 to 1002, and the scans of ../shared/data"
-# the seven-point slope of white noise of unit variance, times the pitch (ISO 4287, 4.4.1)
+# seven-point slope of white noise of unit variance, times the pitch (ISO 4287, 4.4.1)
 _SLOPE_OF_NOISE = float(np.sqrt(2 * (45**2 + 9**2 + 1)) / 60)
 
 
 def _rq(profile: xr.Dataset) -> float:
-    """Rq [m] of a profile without form; of one too short for a cut-off, Pq."""
+    """Rq [m] of a profile without form; Pq if it is too short for a cut-off."""
     try:
         return float(roughness_parameters(profile).Rq)
     except AnalysisError:
@@ -60,7 +60,7 @@ def _outliers(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
     touched = np.flatnonzero((flags == SUSPECT).any(axis=1))
     row = row if not subject.is_map else int(touched[0])
     at = np.flatnonzero(flags[row] == SUSPECT)
-    where = subject.where(row, int(at[0]), int(at[-1]))
+    where = subject.place(row, int(at[0]), int(at[-1]))
     name = "Sq" if subject.is_map else "Rq"
     text = (
         f"a few peaks or valleys exceed all others by far: dust, a scratch or a pore, {where}; "
@@ -77,19 +77,19 @@ def _stuck(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         return [Result("skipped", "height", "only profiles with roughness are looked at")]
     flags = np.full(subject.rows.shape, GOOD, np.int8)
     found: list[tuple[int, int, int]] = []
-    for row, profile in zip(subject.usable, subject.filled, strict=True):
+    for row, profile in zip(subject.usable, subject.filled_profiles, strict=True):
         stretch = stuck_stretch(profile.height.values, limits["share"], limits["quiet"])
         if stretch is None:
             continue
         part = slice(*stretch)
         if (~np.isfinite(subject.rows[row, part])).mean() > limits["missing"]:
-            continue  # a bridged gap is a straight line, too
+            continue  # a bridged gap is a straight line too
         flags[row, part] = SUSPECT
         found.append((row, stretch[0], stretch[1]))
     if not found:
         return [Result("pass", "height", "the heights vary all along", 0.0, flags=flags)]
     row, first, stop = max(found, key=lambda stretch: stretch[2] - stretch[1])
-    share, where = (stop - first) / flags[row].size, subject.where(row, first, stop - 1)
+    share, where = (stop - first) / flags[row].size, subject.place(row, first, stop - 1)
     text = f"the height does not change over {share:.0%} of the traverse but for noise, {where}"
     text += f" and in {len(found) - 1} more" if len(found) > 1 else ""
     count = int((flags == SUSPECT).sum())

@@ -1,4 +1,4 @@
-"""Faults of a scan that look like heights: dust, scratches, a stuck stylus, a stop, rounding.
+"""Artefacts of a scan: dust, scratches, a stuck stylus, clipping, rounding.
 
 Each is a plain function from heights to a mask or a number; none changes a height.
 """
@@ -11,17 +11,18 @@ from scipy import ndimage
 from tribolab.arrays.medians import median, medians_of_rows
 from tribolab.friction.oscillation.spectrum.noise import quantisation_step
 
-_BLOCKS = {1: 20, 2: 4}  # of the baseline along each axis of profiles and maps
-_WIDEST = {1: 0.04, 2: 0.2}  # share of all points: a wider feature is form, such as a chamfer
-_SCANNED = 50  # blocks of a profile in which a stuck stylus is sought
+_BLOCKS = {1: 20, 2: 4}  # blocks of the baseline along each axis of profiles and maps
+_WIDEST = {1: 0.04, 2: 0.2}  # share of all points; a wider feature is form, such as a chamfer
+_SCANNED = 50  # blocks of a profile in which a stuck stylus is looked for
 _FEWEST_IN_BLOCK = 16
-_BANDS = 0.02 * np.sqrt(2.0) ** np.arange(11)  # half widths of a noisy stop, in blocks' roughness
-_PILE = 4.0  # points in the band at an end of the range over those in the next: summits make 1.4
-_TRIM = 20  # points that one outlying reading may share an end of the range with
+# half widths of a noisy stop, in units of the blocks' roughness
+_BANDS = 0.02 * np.sqrt(2.0) ** np.arange(11)
+_PILE = 4.0  # ratio of points in the band at the end of the range to the next; summits give 1.4
+_TRIM = 20  # points that may share an end of the range with one outlier
 
 
 def outlying_features(height: np.ndarray, sigma: float, factor: float, most: int) -> np.ndarray:
-    """Mask the few peaks or valleys that exceed all others by far: dust, scratches, pores.
+    """Mask of the few peaks or valleys far above all others: dust, scratches, pores.
 
     Parameters
     ----------
@@ -33,8 +34,8 @@ def outlying_features(height: np.ndarray, sigma: float, factor: float, most: int
     factor
         Smallest ratio of its size to the largest other deviation to the same side.
     most
-        Largest number of peaks; where more stand out they are the surface's own. Of valleys one:
-        honed and porous surfaces have some of their own, and no others as deep as `sigma`.
+        Largest number of peaks; more belong to the surface. For valleys one: honed and porous
+        surfaces have valleys deeper than `sigma`.
 
     Returns
     -------
@@ -43,8 +44,8 @@ def outlying_features(height: np.ndarray, sigma: float, factor: float, most: int
 
     Notes
     -----
-    Sizes are compared with the largest of the same side, not with a normal distribution: valleys
-    of a honed surface, pores and arcs of a tool lie far out, and many lie equally far.
+    Sizes are compared with the largest of the same side, not with a normal distribution, because
+    valleys of a honed surface, pores and tool arcs are often many and equally deep.
 
     Examples
     --------
@@ -76,7 +77,7 @@ def outlying_features(height: np.ndarray, sigma: float, factor: float, most: int
 
 
 def _baseline(height: np.ndarray) -> np.ndarray:
-    """Line or surface through the medians of blocks."""
+    """Baseline through the medians of blocks."""
     sizes = [max(8, -(-points // _BLOCKS[height.ndim])) for points in height.shape]
     counts = [max(1, points // size) for points, size in zip(height.shape, sizes, strict=True)]
     if min(counts) < 2:
@@ -98,7 +99,7 @@ def _baseline(height: np.ndarray) -> np.ndarray:
 
 
 def stuck_stretch(height: np.ndarray, share: float, quiet: float) -> tuple[int, int] | None:
-    """Find where the stylus or gauge does not move: a straight line with white noise at most.
+    """Find a part where the stylus is stuck: a straight line with at most white noise.
 
     Parameters
     ----------
@@ -118,8 +119,8 @@ def stuck_stretch(height: np.ndarray, share: float, quiet: float) -> tuple[int, 
     Notes
     -----
     The heights of a smooth part of a surface resemble their neighbours; the noise of a gauge at
-    rest does not. The line may be tilted: levelling tilts what was constant. A profile most of
-    which is flat has flats, and is not stuck.
+    rest does not. Levelling can tilt the line. A profile that is mostly flat has flats and is not
+    stuck.
 
     Examples
     --------
@@ -132,7 +133,7 @@ def stuck_stretch(height: np.ndarray, share: float, quiet: float) -> tuple[int, 
     if size < _FEWEST_IN_BLOCK:
         return None
     blocks = height[: size * _SCANNED].reshape(_SCANNED, size)
-    spread, noise = _about_lines(blocks)
+    spread, noise = _line_scatter(blocks)
     usual = float(median(spread))
     still = (spread <= quiet * usual) & _is_white(spread, noise)
     labels, number = ndimage.label(still)
@@ -142,15 +143,15 @@ def stuck_stretch(height: np.ndarray, share: float, quiet: float) -> tuple[int, 
     longest = int(np.argmax(lengths)) + 1
     at = np.flatnonzero(labels == longest)
     first, last = int(at[0]) * size, (int(at[-1]) + 1) * size
-    whole, roughness = (float(part[0]) for part in _about_lines(height[None, first:last]))
+    whole, roughness = (float(part[0]) for part in _line_scatter(height[None, first:last]))
     if not _is_white(np.array(whole), np.array(roughness)):
         return None
-    first, last = _widened(height, first, last, max(5.0 * whole, 1e-3 * usual))
+    first, last = _widen(height, first, last, max(5.0 * whole, 1e-3 * usual))
     return (first, last) if last - first >= share * height.size else None
 
 
-def _about_lines(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the standard deviation of rows from straight lines, and that of their white noise."""
+def _line_scatter(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the standard deviation of rows about straight lines, and of their white noise."""
     x = np.linspace(-1.0, 1.0, rows.shape[1])
     rest = rows - rows.mean(axis=1, keepdims=True)
     rest = rest - np.outer(rest @ x / (x @ x), x)
@@ -161,12 +162,12 @@ def _about_lines(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _is_white(spread: np.ndarray, noise: np.ndarray) -> np.ndarray:
-    """Whether neighbours differ as independent heights do (von Neumann's ratio of 2, less 40 %)."""
+    """Whether neighbours differ like independent heights (von Neumann's ratio of 2, minus 40 %)."""
     return np.asarray(noise**2 >= 0.6 * spread**2)
 
 
-def _widened(height: np.ndarray, first: int, last: int, near: float) -> tuple[int, int]:
-    """Extend a stretch to where its line is left."""
+def _widen(height: np.ndarray, first: int, last: int, near: float) -> tuple[int, int]:
+    """Extend a stretch in both directions as far as its line continues."""
     x = np.arange(height.size, dtype=float)
     slope, level = np.polyfit(x[first:last], height[first:last], 1)
     away = np.abs(height - level - slope * x) > near
@@ -178,7 +179,7 @@ def _widened(height: np.ndarray, first: int, last: int, near: float) -> tuple[in
 
 
 def noisy_stop(height: np.ndarray, share: float, in_a_row: int) -> np.ndarray:
-    """Mask points that lie on a stop at an end of the range, spread by the gauge's noise.
+    """Mask of points clipped at an end of the range, with the noise of the gauge.
 
     Parameters
     ----------
@@ -207,7 +208,7 @@ def noisy_stop(height: np.ndarray, share: float, in_a_row: int) -> np.ndarray:
     if height.size < _SCANNED * _FEWEST_IN_BLOCK:
         return found
     blocks = height[: height.size - height.size % _SCANNED].reshape(_SCANNED, -1)
-    scale, digit = float(median(_about_lines(blocks)[0])), rounding_step(height)
+    scale, digit = float(median(_line_scatter(blocks)[0])), rounding_step(height)
     for sign in (1.0, -1.0):
         size = sign * height
         for band in _BANDS:
@@ -225,7 +226,7 @@ def noisy_stop(height: np.ndarray, share: float, in_a_row: int) -> np.ndarray:
 
 
 def longest_run(marked: np.ndarray) -> int:
-    """Length of the longest stretch of True.
+    """Length of the longest run of True.
 
     Examples
     --------
@@ -237,7 +238,7 @@ def longest_run(marked: np.ndarray) -> int:
 
 
 def _white_within(values: np.ndarray, marked: np.ndarray) -> bool:
-    """Whether the marked values vary about one level as independent readings do."""
+    """Whether the marked values scatter about one level like independent readings."""
     both = marked[1:] & marked[:-1]
     if both.sum() < 8:
         return False
@@ -246,7 +247,7 @@ def _white_within(values: np.ndarray, marked: np.ndarray) -> bool:
 
 
 def rounding_step(height: np.ndarray) -> float:
-    """Digit of the heights [m], even if the profile was levelled after they were rounded; or 0.
+    """Return the rounding step of the heights [m], even of a levelled profile; or 0.
 
     Examples
     --------

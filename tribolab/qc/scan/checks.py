@@ -1,4 +1,4 @@
-"""Are these scans usable? All checks on profiles of one surface, one table of findings."""
+"""All checks on scans of one surface, with a table of findings."""
 
 from __future__ import annotations
 
@@ -37,24 +37,24 @@ def check_scans(
     skip: Sequence[str] = (),
     results: xr.Dataset | Sequence[xr.Dataset] | None = None,
 ) -> Findings:
-    """Examine scans of one surface: what is wrong with them, where, how badly, what to do.
+    """Run all checks on scans of one surface: faults, their place, their effect, what to do.
 
     Parameters
     ----------
     scans
-        ``height`` [m] (scan, x) from `scan_files.read_scans`; a single profile or a map
-        (y, x) will do. A list of such datasets gives a list.
+        ``height`` [m] (scan, x) from `scan_files.read_scans`, a single profile or a map
+        (y, x). A list of such datasets gives a list.
     limits
         ``{check: {limit: value}}`` over the defaults; SI numbers or text with a unit.
     skip
         Names of checks to leave out; they appear as skipped.
     results
-        What `results.read_tester_results` gave for the instrument's own results.
+        The instrument's own results from `results.read_tester_results`.
 
     Returns
     -------
     Findings
-        ``.table`` shows one row for each check and variable, ``.status`` the gravest,
+        ``.table`` shows one row for each check and variable, ``.status`` the worst,
         ``.flagged`` the scans with ``height_qc`` and ``height_qc_tests``.
 
     Raises
@@ -90,7 +90,7 @@ def check_scans(
     answers = results_of_checks(SCAN_CHECKS, subject, resolved, dict.fromkeys(skip, SWITCHED_OFF))
     listed = tuple((SCAN_CHECKS[name], result) for name, rows in answers.items() for result in rows)
     flags = {
-        check.name: subject.to_shape(result.flags)
+        check.name: subject.reshape_flags(result.flags)
         for check, result in listed
         if result.flags is not None
     }
@@ -99,8 +99,10 @@ def check_scans(
     return Findings(str(scans.attrs.get("source", "scans")), listed, flagged, resolved)
 
 
-def _flagged(subject: ScanSubject, flags: np.ndarray, text: str, fail_share: float) -> list[Result]:
-    """One result for flags (row, x): how many points, where, how grave."""
+def _flag_result(
+    subject: ScanSubject, flags: np.ndarray, text: str, fail_share: float
+) -> list[Result]:
+    """Return the result from flags (row, x): number of points, place and severity."""
     bad = np.isin(flags, (SUSPECT, FAIL))
     count = int(bad.sum())
     share = count / flags.size
@@ -111,7 +113,7 @@ def _flagged(subject: ScanSubject, flags: np.ndarray, text: str, fail_share: flo
         flags = np.where(bad, FAIL, flags).astype(np.int8)
     row = int(np.argmax(bad.any(axis=1)))
     at = np.flatnonzero(bad[row])
-    where = subject.where(row, int(at[0]), int(at[-1]))
+    where = subject.place(row, int(at[0]), int(at[-1]))
     others = int(bad.any(axis=1).sum()) - 1
     message = (
         text.format(count=Count(count))
@@ -129,14 +131,14 @@ def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
     if not missing.any():
         text = cropped or "nothing missing"
         return [Result("pass", "height", text, 0.0, flags=flags, noted=bool(cropped))]
-    ends = np.zeros_like(missing) if subject.is_map else profiles.at_the_ends(missing)
+    ends = np.zeros_like(missing) if subject.is_map else profiles.end_points(missing)
     inside = missing & ~ends
     count, share = int(missing.sum()), float(inside.mean())
     row = int(np.argmax([longest_run(m) for m in inside]))
     if not inside[row].any():
         row = int(np.argmax(ends.any(axis=1)))
         at = np.flatnonzero(ends[row])
-        where = subject.where(row, int(at[0]), int(at[-1]))
+        where = subject.place(row, int(at[0]), int(at[-1]))
         text = f"{Count(count):height is|heights are} missing at the ends, which are left out"
         left_out = float(ends.mean(axis=1).max())
         status = "suspect" if left_out > limits["stretch"] else "pass"
@@ -148,7 +150,7 @@ def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
         ]
     longest = longest_run(inside[row])
     at = np.flatnonzero(inside[row])
-    where = subject.where(row, int(at[0]), int(at[-1]))
+    where = subject.place(row, int(at[0]), int(at[-1]))
     span = longest * subject.pitch
     text = (
         f"{Count(count):height is|heights are} missing ({missing.mean():.2%}), at most {longest} "
@@ -156,7 +158,7 @@ def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
     )
     text += f"; {cropped}" if cropped else ""
     whole = float(subject.x[-1] - subject.x[0])
-    # a map has other rows across a gap, a profile has not
+    # a map continues in other rows across a gap, a profile does not
     far = not subject.is_map and span > limits["stretch"] * whole
     status = "pass"
     if share > limits["suspect"] or longest > limits["in_a_row"] or far:
@@ -169,22 +171,22 @@ def _dropouts(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]
 
 
 def _most_missing(subject: ScanSubject) -> float:
-    """Share of heights missing in the scan that lacks most: a map, or one of the profiles."""
+    """Largest share of missing heights among the maps or profiles."""
     missing = ~np.isfinite(subject.rows)
     return float(missing.mean() if subject.is_map else missing.mean(axis=1).max())
 
 
 def _steps(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     flags = np.stack([profiles.steps(row, limits["factor"]) for row in subject.rows])
-    return _flagged(subject, flags, "the height jumps {count:time|times}", limits["fail"])
+    return _flag_result(subject, flags, "the height jumps {count:time|times}", limits["fail"])
 
 
 def _clipping(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     fewest, share = int(limits["points"]), limits["noisy"]
     noisy = 1.0 if subject.is_map else share
-    flags = np.stack([profiles.clipped(row, fewest, noisy) for row in subject.rows])
+    flags = np.stack([profiles.flag_clipping(row, fewest, noisy) for row in subject.rows])
     text = "{count:point lies|points lie} flat at the end of the range: cut off there"
-    return _flagged(subject, flags, text, limits["fail"])
+    return _flag_result(subject, flags, text, limits["fail"])
 
 
 def _form(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -204,7 +206,7 @@ def _form(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         text = f"the tilt is {np.degrees(angle):.3g} deg in the middle of {where}"
         results.append(Result(status, "tilt", text, angle, "rad"))
     share = []
-    for row, profile in zip(subject.filled, flat, strict=True):
+    for row, profile in zip(subject.filled_profiles, flat, strict=True):
         whole, rest = float(np.ptp(row.height.values)), float(np.ptp(profile.height.values))
         share.append(1.0 - min(rest / whole, 1.0) if whole > 0 else 0.0)
     text = f"form ({kind}) takes {max(share):.2%} of the range"
@@ -215,7 +217,7 @@ def _level(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     if not subject.usable:
         return [Result("skipped", "height", "there are too few heights")]
     if subject.is_map and not level_map(subject.rows):
-        return [Result("pass", "height", "the heights vary")]  # single rows may be level
+        return [Result("pass", "height", "the heights vary")]  # single rows may have no roughness
     level = subject.level
     if not level:
         return [Result("pass", "height", "the heights vary")]
@@ -229,7 +231,7 @@ def _level(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
 
 
 def _tip(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
-    radius = max(subject.stated("tip_radius_m"), default=None)
+    radius = max(subject.attribute_values("tip_radius_m"), default=None)
     if radius is None:
         return [Result("skipped", "height", "the file does not say the radius of the tip")]
     if not subject.spectra:
@@ -267,7 +269,7 @@ def _repeats(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         return [Result("skipped", "height", "one scan: nothing to compare it with")]
     every = np.stack([np.log(spectrum.psd_1d.values) for spectrum in spectra])
     counts = spectra[0].independent_values.values
-    logs, weights = profiles.pooled(every, counts, limits["values"])
+    logs, weights = profiles.pool_bands(every, counts, limits["values"])
     if not weights.size:
         return [Result("skipped", "height", "the scans are too short to be compared")]
     odd, factor = profiles.odd_one_out(logs, weights, limits["factor"], limits["sigma"])
@@ -284,7 +286,7 @@ def _repeats(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
 def _self_affine(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     if not subject.usable or subject.level:
         return [Result("skipped", "height", "there is no roughness to look at")]
-    if (why := subject.not_self_affine) == "":
+    if (why := subject.affinity_objection) == "":
         share, length = subject.wave
         if share < limits["told"]:
             return [Result("pass", "height", "no wave and no lay stands out", 0.0)]

@@ -1,4 +1,4 @@
-"""Checks on what an instrument says of its scan: spacing, length, and its own results."""
+"""Checks on the metadata of a scan: spacing, length, and the instrument's own results."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _COMPARED = ("Ra", "Rq")
 
 
 def _spacing(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
-    unevenness = max(subject.stated("x_unevenness"), default=float("nan"))
+    unevenness = max(subject.attribute_values("x_unevenness"), default=float("nan"))
     steps = np.diff(subject.x)
     here = float(np.abs(steps / subject.pitch - 1.0).max())
     resampled = "resampled" in subject.scans.attrs
@@ -44,12 +44,12 @@ def _length(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     real = {"length": float(subject.x[-1] - subject.x[0]), "pitch": subject.pitch}
     results = []
     for name, unit, size in (("length", "mm", 1e3), ("pitch", "um", 1e6)):
-        stated = subject.stated(f"stated_{name}_m")
+        stated = subject.attribute_values(f"stated_{name}_m")
         if not stated or np.isnan(stated).all():
             continue
-        is_attr = subject.stated(f"{name}_m")
+        is_attr = subject.attribute_values(f"{name}_m")
         stated_ones = np.broadcast_to(is_attr if is_attr else [real[name]], len(stated))
-        # n points are n - 1 steps: a length of one step more is the same length
+        # n points are n - 1 steps; accept a length that is one step longer
         allowance = real["pitch"] if name == "length" else 0.0
         apart = np.maximum(np.abs(np.array(stated) - stated_ones) - allowance, 0.0) / stated_ones
         row = int(np.nanargmax(apart))
@@ -61,9 +61,9 @@ def _length(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
             f"{stated_ones[row] * size:.6g} {unit}"
         )
         results.append(Result(status, name, text, value))
-    if (short := _too_few(subject)) is not None:
+    if (short := _point_count(subject)) is not None:
         results.append(short)
-    if (odd := _implausible(subject, limits)) is not None:
+    if (odd := _implausible_size(subject, limits)) is not None:
         results.append(odd)
     if not results and attrs.get("stated_length_m") is None:
         return [
@@ -74,9 +74,9 @@ def _length(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     return results
 
 
-def _too_few(subject: ScanSubject) -> Result | None:
-    """Say whether the file states another number of points than stand in it."""
-    stated = [number for number in subject.stated("stated_points") if np.isfinite(number)]
+def _point_count(subject: ScanSubject) -> Result | None:
+    """Report a number of points that differs from that stated in the file; else None."""
+    stated = [number for number in subject.attribute_values("stated_points") if np.isfinite(number)]
     points = subject.scans.sizes["x"]
     if subject.is_map or not stated or all(abs(number - points) <= 1 for number in stated):
         return None
@@ -85,8 +85,8 @@ def _too_few(subject: ScanSubject) -> Result | None:
     return Result("suspect", "height", text, float(points))
 
 
-def _implausible(subject: ScanSubject, limits: Mapping[str, float]) -> Result | None:
-    """Say whether a scan is longer, or steeper, than surfaces are; None if it is not."""
+def _implausible_size(subject: ScanSubject, limits: Mapping[str, float]) -> Result | None:
+    """Report a scan that is longer or steeper than surfaces are; else None."""
     length = float(subject.x[-1] - subject.x[0])
     largest = limits["map"] if subject.is_map else limits["profile"]
     if length > largest:
@@ -110,22 +110,22 @@ def _implausible(subject: ScanSubject, limits: Mapping[str, float]) -> Result | 
 
 
 def _own_results(subject: ScanSubject) -> list[tuple[str, dict[str, float], float]]:
-    """List the sets of results: where they come from, the values [m], the cut-off [m] or NaN."""
+    """List the instrument's results: source, values [m], and cut-off [m] or NaN."""
     sets = []
     for number, result in enumerate(subject.results, start=1):
         values = {n: float(result[n]) for n in _COMPARED if n in result}
         cut = float(result.attrs.get("lambda_c_m", np.nan))
         sets.append((str(result.attrs.get("source", f"results {number}")), values, cut))
-    own = {name: subject.stated(f"instrument_{name}_m") for name in _COMPARED}
-    cut = min(subject.stated("lambda_c_m"), default=float("nan"))
+    own = {name: subject.attribute_values(f"instrument_{name}_m") for name in _COMPARED}
+    cut = min(subject.attribute_values("lambda_c_m"), default=float("nan"))
     for row in range(max((len(v) for v in own.values()), default=0)):
         values = {n: v[row] for n, v in own.items() if row < len(v)}
         sets.append((subject.names[min(row, len(subject.names) - 1)], values, cut))
     return sets
 
 
-def _ours(profile: xr.Dataset, cut: float) -> list[dict[str, float]]:
-    """Roughness as it may have been computed: filtered (with the cut-off or ours), and levelled."""
+def _computed_roughness(profile: xr.Dataset, cut: float) -> list[dict[str, float]]:
+    """Roughness as the instrument may have computed it: filtered (either cut-off) or levelled."""
     parameters = []
     for cutoff in ("auto", None) if np.isnan(cut) else (cut, None):
         try:
@@ -136,8 +136,8 @@ def _ours(profile: xr.Dataset, cut: float) -> list[dict[str, float]]:
     return parameters
 
 
-def not_computed(results: xr.Dataset) -> Result | None:
-    """Name the values that the instrument could not compute; None if there are none."""
+def uncomputed_values(results: xr.Dataset) -> Result | None:
+    """Report values that the instrument could not compute; else None."""
     errors = str(results.attrs.get("instrument_errors", "none"))
     if errors in ("", "none"):
         return None
@@ -149,7 +149,7 @@ def not_computed(results: xr.Dataset) -> Result | None:
 def _results(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     results = []
     for result in subject.results:
-        if (missing := not_computed(result)) is not None:
+        if (missing := uncomputed_values(result)) is not None:
             results.append(missing)
     sets = _own_results(subject)
     if not sets and not results:
@@ -158,7 +158,7 @@ def _results(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     if subject.is_map or not profiles or subject.level:
         return results or [Result("skipped", "Ra", "there is no profile to compare with")]
     cut = sets[0][2] if sets else float("nan")
-    ours = [_ours(profile, cut) for profile in profiles]
+    ours = [_computed_roughness(profile, cut) for profile in profiles]
     for number, (source, values, cut) in enumerate(sets):
         alone = len(sets) == len(profiles) == len(subject.rows)  # one set for each profile
         candidates = ours[number] if alone else [parameters for many in ours for parameters in many]

@@ -1,4 +1,4 @@
-"""Checks on profiles of heights: steps, ends of the range, odd ones out.
+"""Checks on profiles of heights: steps, clipping, outlying repeats.
 
 Each is a plain function from arrays and limits to flags or numbers; none changes a height.
 """
@@ -15,16 +15,16 @@ from tribolab.qc.flags import GOOD, NOT_EVALUATED, SUSPECT
 from tribolab.qc.scan.artefacts import longest_run, noisy_stop, rounding_step
 from tribolab.surface.roughness import roughness_parameters
 
-_MOVED = 0.02  # share of points that move, from which on they are no rare jumps
-_BLOCK = 512  # points whose slopes are compared with each other
+_MOVED = 0.02  # share of points that change, above which changes are not rare jumps
+_BLOCK = 512  # points whose slopes are compared
 
 
-def at_the_ends(marked: np.ndarray) -> np.ndarray:
-    """Those of the marked points of each row (row, x) that reach one of its ends.
+def end_points(marked: np.ndarray) -> np.ndarray:
+    """Return the marked points of each row (row, x) that are connected to one of its ends.
 
     Examples
     --------
-    >>> at_the_ends(np.array([[True, False, True, False, True, True]])).astype(int).tolist()
+    >>> end_points(np.array([[True, False, True, False, True, True]])).astype(int).tolist()
     [[1, 0, 0, 0, 1, 1]]
     """
     return np.asarray(
@@ -34,12 +34,12 @@ def at_the_ends(marked: np.ndarray) -> np.ndarray:
 
 
 def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
-    """Flag points where the height jumps by far more than between other neighbours around.
+    """Flag points where the height jumps by far more than between neighbours nearby.
 
     Parameters
     ----------
     height
-        Heights of one profile [m] (x); NaN where there is none.
+        Heights of one profile [m] (x); NaN if missing.
     factor
         Smallest jump, in robust standard deviations of the differences between neighbours of the
         block of 512 points around (and of the quieter three quarters of the profile).
@@ -51,8 +51,8 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
 
     Notes
     -----
-    Rough profiles have slopes with long tails. A jump has to be three times larger than the
-    second-largest of other places in its block, too, and larger than three digits.
+    Slopes of rough profiles have long tails. A jump must therefore also be three times larger than
+    the second-largest elsewhere in its block, and larger than three digits.
 
     Examples
     --------
@@ -77,10 +77,10 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
     digit = rounding_step(height)
     for start, block, middle, scale in zip(
         np.cumsum([0, *(len(b) for b in blocks[:-1])]), blocks, middles, spread, strict=True
-    ):  # a loop over blocks, not over points
+    ):  # loop over blocks, not over points
         size = np.nan_to_num(np.abs(block - middle))
         limit = max(factor * max(scale, least), 3.0 * digit)
-        # a flank that several points climb is no jump: what stands beside it, same way, counts
+        # a flank of several points is not a jump: compare with the steps next to it
         signed = np.nan_to_num(block - middle)
         beside = np.zeros(size.size)
         beside[1:] = np.maximum(beside[1:], np.maximum(signed[:-1] * np.sign(signed[1:]), 0.0))
@@ -96,10 +96,9 @@ def steps(height: np.ndarray, factor: float = 12.0) -> np.ndarray:
 
 
 def _spread(values: np.ndarray, middle: float) -> float:
-    """Robust standard deviation of differences; where most are zero, that of the others.
+    """Robust standard deviation of differences; without the zeros if most are zero.
 
-    A gauge of coarse digits, or one that is read out more often than it moves, shows the same
-    height for some points, and then its next one.
+    A gauge with coarse digits, or one read out too fast, repeats the same height for some points.
     """
     away = np.abs(values[np.isfinite(values)] - middle)
     if not away.size:
@@ -111,8 +110,8 @@ def _spread(values: np.ndarray, middle: float) -> float:
     return usual / 0.6745
 
 
-def clipped(height: np.ndarray, fewest: int = 5, noisy: float = 0.01) -> np.ndarray:
-    """Flag flat tops or bottoms at the end of the gauge's range.
+def flag_clipping(height: np.ndarray, fewest: int = 5, noisy: float = 0.01) -> np.ndarray:
+    """Flag flat peaks or valleys at the end of the gauge's range.
 
     Parameters
     ----------
@@ -121,7 +120,7 @@ def clipped(height: np.ndarray, fewest: int = 5, noisy: float = 0.01) -> np.ndar
     fewest
         Smallest number of points in a row on the outermost height.
     noisy
-        Smallest share of the points on a stop whose reading has noise.
+        Smallest share of the points clipped with noise.
 
     Returns
     -------
@@ -131,7 +130,7 @@ def clipped(height: np.ndarray, fewest: int = 5, noisy: float = 0.01) -> np.ndar
     Notes
     -----
     A profile that is quantised coarsely reaches its outermost height in a row by chance; as many
-    points on the next level below tell it from one that is cut off.
+    points on the next level distinguish it from a clipped one.
     """
     flags = signals.saturation(height, excess=3.0, fewest=fewest).copy()
     for end in (np.nanmax(height, initial=-np.inf), np.nanmin(height, initial=np.inf)):
@@ -144,8 +143,10 @@ def clipped(height: np.ndarray, fewest: int = 5, noisy: float = 0.01) -> np.ndar
     return flags
 
 
-def pooled(logs: np.ndarray, weights: np.ndarray, fewest: float) -> tuple[np.ndarray, np.ndarray]:
-    """Pool neighbouring bands until each has enough independent values; the rest is left out.
+def pool_bands(
+    logs: np.ndarray, weights: np.ndarray, fewest: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Pool neighbouring bands until each has enough independent values; drop the remainder.
 
     Parameters
     ----------
@@ -163,11 +164,11 @@ def pooled(logs: np.ndarray, weights: np.ndarray, fewest: float) -> tuple[np.nda
 
     Examples
     --------
-    >>> pooled(np.array([[0.0, 1.0, 3.0, 5.0]]), np.array([1.0, 1.0, 2.0, 1.0]), 2.0)
+    >>> pool_bands(np.array([[0.0, 1.0, 3.0, 5.0]]), np.array([1.0, 1.0, 2.0, 1.0]), 2.0)
     (array([[0.5, 3. ]]), array([2., 2.]))
     """
     starts, held = [], 0.0
-    for band, weight in enumerate(weights):  # a loop over some forty bands
+    for band, weight in enumerate(weights):  # loop over some forty bands
         if held == 0.0:
             starts.append(band)
         held += weight
@@ -184,7 +185,7 @@ def pooled(logs: np.ndarray, weights: np.ndarray, fewest: float) -> tuple[np.nda
 def odd_one_out(
     logs: np.ndarray, weights: np.ndarray, factor: float, certainty: float
 ) -> tuple[int, float]:
-    """Find the one of several repeats whose spectrum differs from what the others agree on.
+    """Find the repeat whose spectrum differs from the spectra of the others.
 
     Parameters
     ----------
@@ -193,9 +194,9 @@ def odd_one_out(
     weights
         Number of independent values behind each (band).
     factor
-        A band that differs by less than this factor is no difference.
+        Smallest difference of a band, as a factor.
     certainty
-        A band that differs by less than this many standard deviations is none either.
+        Smallest difference of a band, in standard deviations.
 
     Returns
     -------
@@ -218,7 +219,7 @@ def odd_one_out(
         middle = np.median(others, axis=0)
         deviation = logs[repeat] - middle
         scatter = np.sqrt((1.0 + 1.5 / (repeats - 1)) / np.maximum(weights, 1.0))
-        # where the others disagree as much among themselves, this one is not the odd one
+        # if the others disagree as much among themselves, this one is not an outlier
         apart = np.abs(others - middle).max(axis=0)
         real = np.abs(deviation) > np.maximum(certainty * scatter, 2.0 * apart)
         odd.append(np.abs(deviation)[real].max(initial=0.0))
@@ -230,17 +231,17 @@ def odd_one_out(
 
 
 def cost_of_gaps(profile: xr.Dataset | None) -> str:
-    """Say how well Rq of a profile without form is known where heights are missing.
+    """Return the uncertainty of Rq of a profile without form due to missing heights, as text.
 
     Parameters
     ----------
     profile
-        ``height`` [m] (x), filled; what was filled is marked. None: it has too few heights.
+        ``height`` [m] (x) with filled heights marked; None if it has too few heights.
 
     Returns
     -------
     str
-        Empty if it has no roughness.
+        Empty if the profile has no roughness.
     """
     if profile is None:
         return ""

@@ -1,4 +1,4 @@
-"""Several scans of one surface, each with a verdict of its own; and results without a profile."""
+"""Checks on several scans of one surface, and on results without a profile."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import xarray as xr
 from tribolab.qc.findings import Findings
 from tribolab.qc.register import Result
 from tribolab.qc.scan.checks import SCAN_CHECKS, check_scans
-from tribolab.qc.scan.instrument import not_computed
+from tribolab.qc.scan.instrument import uncomputed_values
 
 _REPEATS = "repeats"
 CheckLimits = Mapping[str, Mapping[str, str | float]]
@@ -25,7 +25,7 @@ def check_scan_set(
     skip: Sequence[str] = (),
     results: Sequence[Sequence[xr.Dataset]] | None = None,
 ) -> list[Findings]:
-    """Examine each scan of a surface alone, and all against each other.
+    """Check each scan of a surface separately, and the scans against each other.
 
     Parameters
     ----------
@@ -34,13 +34,13 @@ def check_scan_set(
     limits, skip
         As for `check_scans`.
     results
-        For each scan, what the instrument wrote of its own results.
+        The instrument's own results for each scan.
 
     Returns
     -------
     list of Findings
-        One for each scan. In the row "repeats" only the odd scan is objected to; where two scans
-        differ and no third tells which is right, both are.
+        One for each scan. The check "repeats" objects to the outlying scan only; if two scans
+        differ and there is no third, it objects to both.
 
     Raises
     ------
@@ -74,11 +74,11 @@ def check_scan_set(
     }
     if len(alike) > 1:
         verdicts.update(_repeats([scans[number] for number in alike], alike, limits, skip))
-    return [_with(finding, verdicts[number]) for number, finding in enumerate(findings)]
+    return [_add_repeats(finding, verdicts[number]) for number, finding in enumerate(findings)]
 
 
 def check_results(results: xr.Dataset) -> Findings:
-    """Examine an instrument's own results that came without their profile.
+    """Check an instrument's own results that have no profile.
 
     Parameters
     ----------
@@ -88,10 +88,10 @@ def check_results(results: xr.Dataset) -> Findings:
     Returns
     -------
     Findings
-        Of the check "results" only: which values the instrument could not compute.
+        Result of the check "results": values that the instrument could not compute.
     """
     text = "the instrument could compute all of its values; there is no profile to compare with"
-    result = not_computed(results) or Result("pass", "results", text)
+    result = uncomputed_values(results) or Result("pass", "results", text)
     name = str(results.attrs.get("source", "results"))
     return Findings(name, ((SCAN_CHECKS["results"], result),))
 
@@ -104,7 +104,7 @@ def _shape(scan: xr.Dataset) -> tuple[Any, ...]:
 def _repeats(
     scans: list[xr.Dataset], numbers: list[int], limits: CheckLimits | None, skip: Sequence[str]
 ) -> dict[int, Result]:
-    """Judge scans of one shape against each other."""
+    """Compare scans of equal shape with each other."""
     rows = [np.asarray(scan.height.transpose(..., "x").values, dtype=float) for scan in scans]
     names = [str(scan.attrs.get("source", f"scan {n + 1}")) for n, scan in enumerate(scans)]
     first = scans[0]
@@ -128,8 +128,8 @@ def _repeats(
     return {number: said if n == odd else right for n, number in enumerate(numbers)}
 
 
-def _with(findings: Findings, repeats: Result) -> Findings:
-    """Put the verdict on the repeats where a scan alone had none."""
+def _add_repeats(findings: Findings, repeats: Result) -> Findings:
+    """Add the result for the repeats to the findings of a single scan."""
     rows = tuple(
         (check, repeats if check.name == _REPEATS else result) for check, result in findings.results
     )

@@ -1,4 +1,4 @@
-"""Scans under examination; what several checks need is computed once, when first asked for."""
+"""Scans under examination, with quantities that several checks need, computed once."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tribolab.surface.form import fill_dropouts, remove_form
 from tribolab.surface.level import level_rows
 from tribolab.surface.spectra.psd import psd_1d
 
-_FEWEST = 8  # heights of a profile: fewer have neither form nor roughness
+_FEWEST = 8  # heights of a profile; form and roughness need more
 
 
 class ScanSubject:
@@ -45,12 +45,12 @@ class ScanSubject:
 
     @cached_property
     def pitch(self) -> float:
-        """Distance of neighbouring points [m]."""
+        """Distance between neighbouring points [m]."""
         return float(self.x[-1] - self.x[0]) / (self.x.size - 1)
 
     @cached_property
     def names(self) -> list[str]:
-        """What to call each row."""
+        """Label of each row."""
         if "file" in self.scans:
             return [str(name) for name in np.atleast_1d(self.scans["file"].values)]
         if len(self.rows) == 1 and "source" in self.scans.attrs:
@@ -58,68 +58,68 @@ class ScanSubject:
         kind = "row" if self.is_map else "scan"
         return [f"{kind} {number}" for number in range(1, len(self.rows) + 1)]
 
-    def stated(self, key: str) -> list[float]:
-        """Values of an attribute: one for each row, or one for all, or none."""
+    def attribute_values(self, key: str) -> list[float]:
+        """Return the values of an attribute: one for each row, one for all, or none."""
         value = self.scans.attrs.get(key)
         if isinstance(value, str):
             parts = [part.strip() for part in value.split(";")]
             return [float(part) if part else float("nan") for part in parts]
         return [] if value is None else [float(value)]
 
-    def where(self, row: int, first: int, last: int) -> str:
-        """Words for a stretch of a row."""
+    def place(self, row: int, first: int, last: int) -> str:
+        """Return the place of an interval of a row as text."""
         text = f"{self.names[row]}, x = {self.x[first] * 1e3:.6g} mm"
         return text if last <= first else f"{text} to {self.x[last] * 1e3:.6g} mm"
 
-    def to_shape(self, rows: np.ndarray) -> np.ndarray:
-        """Bring flags (row, x) to the dims of the heights."""
+    def reshape_flags(self, rows: np.ndarray) -> np.ndarray:
+        """Return flags (row, x) with the dims of the heights."""
         dims = self.scans.height.transpose(..., "x").dims
         array = xr.DataArray(rows.reshape([self.scans.sizes[d] for d in dims]), dims=dims)
         return array.transpose(*self.scans.height.dims).values
 
     @cached_property
     def usable(self) -> list[int]:
-        """Numbers of the rows that hold enough heights to be a profile."""
+        """Indices of the rows with enough heights for a profile."""
         present = np.isfinite(self.rows).sum(axis=1)
         return np.flatnonzero(present >= _FEWEST).tolist()
 
     @cached_property
     def profile_names(self) -> list[str]:
-        """Names of the usable rows: of what `filled`, `form` and `spectra` hold."""
+        """Labels of the usable rows, in the order of `filled_profiles`, `form` and `spectra`."""
         return [self.names[row] for row in self.usable]
 
     @cached_property
-    def filled(self) -> list[xr.Dataset]:
-        """Each usable row as a profile without dropouts."""
+    def filled_profiles(self) -> list[xr.Dataset]:
+        """Usable rows as profiles without dropouts."""
         x = self.x - self.x[0]
         profiles = [xr.Dataset({"height": ("x", self.rows[n])}, {"x": x}) for n in self.usable]
         return [fill_dropouts(profile) for profile in profiles]
 
     def profile_of(self, row: int) -> xr.Dataset | None:
-        """Return a row without form, what was filled marked; None if it holds too few heights."""
+        """Return a row without form, filled heights marked; None if it has too few heights."""
         _, profiles = self.form
         return profiles[self.usable.index(row)] if row in self.usable else None
 
     @cached_property
     def form(self) -> tuple[str, list[xr.Dataset]]:
-        """Profiles without form, and which form it was: a circle, or a line if none fits."""
+        """Profiles without form, and the form removed: a circle, or a line if none fits."""
         if "form_removed" in self.scans.attrs:
-            return "none", self.filled
+            return "none", self.filled_profiles
         try:
-            return "circle", [remove_form(profile, "circle") for profile in self.filled]
-        except AnalysisError:  # no circle: a ramp, a profile of two flats, a chamfer
-            return "tilt", [remove_form(profile, "tilt") for profile in self.filled]
+            return "circle", [remove_form(profile, "circle") for profile in self.filled_profiles]
+        except AnalysisError:  # not a circle: a ramp, a profile of two flats, a chamfer
+            return "tilt", [remove_form(profile, "tilt") for profile in self.filled_profiles]
 
     @cached_property
     def level(self) -> list[int]:
-        """Numbers, among the usable rows, of those without roughness."""
+        """Indices, among the usable rows, of those without roughness."""
         _, profiles = self.form
         flat = [level_rows(profile.height.values[None])[0] for profile in profiles]
         return np.flatnonzero(flat).tolist()
 
     @cached_property
-    def not_self_affine(self) -> str:
-        """What speaks against a self-affine surface; empty if nothing does."""
+    def affinity_objection(self) -> str:
+        """Reason why the surface cannot be self-affine; empty if it can."""
         x = self.x - self.x[0]
         if not self.is_map:
             _, profiles = self.form
@@ -130,7 +130,7 @@ class ScanSubject:
 
     @cached_property
     def map_without_form(self) -> xr.Dataset | None:
-        """Map less a polynomial of second order; None if it has too few heights."""
+        """Map minus a polynomial of second order; None if it has too few heights."""
         if not np.isfinite(self.rows).any() or min(self.scans.height.shape[-2:]) < _FEWEST:
             return None
         scans = self.scans[["height"]].assign_attrs(self.scans.attrs)
@@ -138,7 +138,7 @@ class ScanSubject:
 
     @cached_property
     def wave(self) -> tuple[float, float]:
-        """Share of the mean square height and length [m] of a wave that repeats; of none 0."""
+        """Share of the mean square height in a periodic wave, and its wavelength [m]; else 0."""
         if self.is_map:
             return 0.0, float("nan")
         _, profiles = self.form
@@ -147,11 +147,11 @@ class ScanSubject:
 
     @cached_property
     def spectra(self) -> list[xr.Dataset]:
-        """Power spectrum of each profile; empty for a map, too few points or no heights."""
+        """Power spectrum of each profile; empty for maps or too few heights."""
         if self.is_map:
             return []
         _, profiles = self.form
-        radius = max(self.stated("tip_radius_m"), default=None)
+        radius = max(self.attribute_values("tip_radius_m"), default=None)
         spectra = []
         if self.level:
             return []
