@@ -1,1 +1,1 @@
-"""Results folders beside each other and over time: compared, followed, planned from."""
+"""Comparison of results folders, history of instruments, and planning."""

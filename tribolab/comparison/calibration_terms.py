@@ -1,4 +1,4 @@
-"""What the scatter of runs does not show of a difference: calibrations, shared or not."""
+"""Calibration errors of a difference between two sides, shared or not."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ _NOT_STATED = (
 
 @dataclass(frozen=True)
 class _Part:
-    """One input of one side; two sides share its error where they have the same one.
+    """Input of one side; two sides with the same one share its error.
 
     Parameters
     ----------
     name
-        What it is.
+        Name of the input.
     whose
-        Instrument and its calibration, or the mount; "" of what nobody else can share.
+        Instrument and its calibration, or the mount; "" if it cannot be shared.
     """
 
     name: str
@@ -40,16 +40,16 @@ class _Part:
 
 @dataclass(frozen=True)
 class CalibrationTerms:
-    """What calibrations add to the error of the differences of one condition.
+    """Calibration errors of the differences in one condition.
 
     Parameters
     ----------
     terms
-        Standard uncertainty of each, with its sign; it moves all points at once (term, point).
+        Signed standard uncertainties, each fully correlated between points (term, point).
     shared
-        Inputs that both sides share, so that little but the difference itself is left of them.
+        Inputs that both sides share and that largely cancel in the difference.
     own
-        Inputs that each side has for itself.
+        Inputs that the sides do not share.
     """
 
     terms: np.ndarray
@@ -60,14 +60,14 @@ class CalibrationTerms:
 def calibration_terms(
     condition: Matched, first: Folder | None, second: Folder | None
 ) -> CalibrationTerms:
-    """Return what the scatter of the runs does not show of the differences of a condition.
+    """Calibration errors of the differences in a condition that scatter does not include.
 
     Parameters
     ----------
     condition
         The runs and the speeds.
     first, second
-        Their results folders; None where there is none.
+        Their results folders, or None.
 
     Notes
     -----
@@ -104,12 +104,12 @@ def calibration_terms(
 
 
 def _rows(row: np.ndarray, size: int) -> np.ndarray:
-    """Return one term that moves all points at once, or one for each point."""
+    """One term that is fully correlated between points, or one term for each point."""
     return row.reshape(-1, size)
 
 
 def _calibrations(folder: Folder, runs: RunNames) -> frozenset[str]:
-    """Return instrument and calibration of each of some runs."""
+    """Instrument and calibration of some runs."""
     stated = None if folder.campaign is None else folder.campaign.calibration
     which = "" if stated is None else f"{stated.date} {stated.serial} {stated.certificate}"
     names = {str(run.get("instrument", "")) for run in folder.done if run["name"] in runs}
@@ -119,7 +119,7 @@ def _calibrations(folder: Folder, runs: RunNames) -> frozenset[str]:
 def _of_side(
     folder: Folder, runs: RunNames, speeds: np.ndarray, together: bool
 ) -> dict[_Part, np.ndarray]:
-    """Return the inputs of one side: what one standard uncertainty of each moves (point)."""
+    """Return the inputs of one side, each with the effect of one standard uncertainty (point)."""
     table = folder.table("uncertainty_budget")
     if table is None or "varies" not in table:
         return {}
@@ -145,7 +145,7 @@ _EACH_POINT = tuple(map(part_words, EACH_POINT))
 
 
 def _whose(folder: Folder, runs: RunNames, together: bool) -> Mapping[str, str]:
-    """Return of what varies with calibration or mount, of which calibration or mount it is."""
+    """Return the calibration or mount that an input varies with."""
     made = {}
     known = _calibrations(folder, runs)
     for whose in known:
@@ -160,7 +160,7 @@ def _whose(folder: Folder, runs: RunNames, together: bool) -> Mapping[str, str]:
 
 
 def _at(rows: pd.DataFrame, speeds: np.ndarray) -> np.ndarray:
-    """Return contributions at the speeds of a comparison; 0 where the curve has none."""
+    """Contributions at the speeds of a comparison; 0 where the curve has none."""
     known = rows[SPEED_COLUMN].to_numpy(dtype=float)
     apart = np.abs(np.log(known[:, None] / speeds))
     nearest = apart.argmin(axis=0)
@@ -169,7 +169,7 @@ def _at(rows: pd.DataFrame, speeds: np.ndarray) -> np.ndarray:
 
 
 def terms_text(made: Sequence[CalibrationTerms]) -> str:
-    """Say what the errors hold beside the scatter of the runs."""
+    """Text on the errors included in addition to the scatter of the runs."""
     shared = tuple(dict.fromkeys(name for terms in made for name in terms.shared))
     own = tuple(dict.fromkeys(name for terms in made for name in terms.own if name not in shared))
     if not shared and not own:

@@ -1,4 +1,4 @@
-"""What changed between two campaigns: settings, decisions, code and data."""
+"""Changes between two campaigns: settings, decisions, code and data."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from tribolab.comparison.folder import Folder
 from tribolab.core.untyped import Json
 from tribolab.core.wording import number
 
-_NAMED_BY = {"run": "files", "surface": "name"}  # what tells the entries of a list apart
+_NAMED_BY = {"run": "files", "surface": "name"}  # keys that identify the entries of a list
 
 
 @dataclass(frozen=True)
 class Change:
-    """One thing that is not the same: of which kind, what, and what it is in each."""
+    """One change: its kind, what changed, and both values."""
 
     kind: str
     what: str
@@ -24,7 +24,7 @@ class Change:
 
 
 def changes_between(first: Folder, second: Folder) -> list[Change]:
-    """Return what differs between the settings, decisions, code and raw data of two results."""
+    """Return the changes between the settings, decisions, code and raw data of two results."""
     return [
         *_settings(first, second),
         *_decisions(first, second),
@@ -39,7 +39,7 @@ def _settings(first: Folder, second: Folder) -> list[Change]:
 
 
 def _flat_settings(folder: Folder) -> dict[str, str]:
-    """Return every key that the campaign file sets or leaves at its default, in SI."""
+    """Every key that the campaign file sets or leaves at its default, in SI."""
     if folder.campaign is None:
         return {"the campaign file": f"as of {folder.report['campaign']['sha256'][:12]}"}
     return dict(_flat(folder.campaign.model_dump(mode="json"), ""))

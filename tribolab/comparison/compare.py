@@ -1,4 +1,4 @@
-"""Two campaigns, surfaces or media beside each other: what differs, and how surely."""
+"""Comparison of two campaigns, surfaces or media, with significance."""
 
 from __future__ import annotations
 
@@ -33,36 +33,36 @@ from tribolab.units.conversion import to_si
 
 UNCHANGED, CHANGED = "unchanged", "changed by the analysis"
 _LEVEL, _EQUIVALENCE_LEVEL = 0.95, 0.90
-_EXACT = 1e-12  # relative: results of the same raw data by the same analysis are the same
+_EXACT = 1e-12  # relative; equal analyses of equal raw data agree to rounding
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """What differs between two groups of runs.
+    """Differences between two groups of runs.
 
     Parameters
     ----------
     names
-        Of the first and the second.
+        Names of the first and the second group.
     points
-        A row for each condition and speed: means, their difference (second less first), its
-        standard error and degrees of freedom, the interval that holds all differences together,
-        ``p_value`` alone and ``adjusted_p_value`` as one of all, and the ``verdict``.
+        A row for each condition and speed: means, their difference (second minus first), its
+        standard error and degrees of freedom, the simultaneous interval, ``p_value`` of the point
+        alone, ``adjusted_p_value`` for all points, and the ``verdict``.
     quantities
         A row for each number of a condition or surface: mean friction over the common speeds,
         shear stress, roughness; difference with 95 % and 90 % intervals of each alone.
     changes
         What changed in settings, decisions, code and data.
     method
-        How the error rate of all points is kept, in words.
+        Method that controls the error rate of all points, in words.
     calibration
-        What the errors hold beside the scatter of the runs, in words.
+        Errors included in addition to the scatter of the runs, in words.
     margin
-        The difference that does not matter, as it was stated; "" if none was.
+        Largest irrelevant difference as stated; "" if none was.
     counts
-        How many points have each verdict.
+        Number of points with each verdict.
     two_folders
-        Whether it is known what changed.
+        Whether both sides are folders, so that changes can be listed.
     """
 
     names: tuple[str, str]
@@ -87,7 +87,7 @@ def compare(
 ) -> Comparison:
     """Compare two campaigns, or two surfaces or media within one.
 
-    The unit is the run: the mean of its strokes at a speed is one observation.
+    Each run is one observation at a speed: the mean of its strokes.
 
     Parameters
     ----------
@@ -97,15 +97,15 @@ def compare(
         ``medium``, ``nominal_normal_force_N``. Without a second, two levels of the first are
         compared.
     by
-        Column that tells these levels, e.g. ``"surface"``; with a second it is left out of what
-        makes a condition, e.g. to compare two surfaces that were measured in two campaigns.
+        Column of these levels, e.g. ``"surface"``; with a second it does not define conditions,
+        e.g. to compare two surfaces that were measured in two campaigns.
     levels
-        Which two, the first being what the second is compared with; by default the first two.
+        The two levels, the reference first; by default the first two.
     margin
-        The largest difference that does not matter, of the coefficient (``"0.01"``) or relative to
-        the first (``"5 %"``); without one nothing is called equivalent.
+        Largest irrelevant difference of the coefficient, absolute (``"0.01"``) or relative to the
+        first (``"5 %"``); without one no point is called equivalent.
     pairs
-        How many comparisons of this kind are made together: the error rate is of all of them.
+        Number of comparisons made together, which share one error rate.
 
     Returns
     -------
@@ -121,11 +121,11 @@ def compare(
 
     Notes
     -----
-    Runs made of the same raw files are no two observations: where all runs of a condition are, its
-    verdict says whether the analysis changed the numbers, and there is no test.
-    `differences_of_groups` has the statistics. What results folders state of their calibration and
-    the scatter of the runs does not show is in the errors; what both share, such as the gain of one
-    instrument, only as far as it acts on them differently (`calibration_terms`).
+    Runs from the same raw files are not two observations. If all runs of a condition are, its
+    verdict states whether the analysis changed the numbers, without a test. `differences_of_groups`
+    has the statistics. What results folders state of their calibration and the scatter of the runs
+    does not show is in the errors; what both share, such as the gain of one instrument, only as far
+    as it acts on them differently (`calibration_terms`).
 
     Examples
     --------
@@ -179,7 +179,7 @@ def compare(
 
 
 def _all_same(condition: Matched, first: Side, second: Side) -> bool:
-    """Tell whether the runs of a condition are made of the same raw files in both."""
+    """Whether both sides of a condition come from the same raw files."""
     if first.folder is None or second.folder is None or first.folder is second.folder:
         return False
     sums = [side.folder.checksums() if side.folder else {} for side in (first, second)]
@@ -191,7 +191,7 @@ def _all_same(condition: Matched, first: Side, second: Side) -> bool:
 
 
 def _points_of_same(condition: Matched) -> pd.DataFrame:
-    """Return the rows of a condition whose raw data are the same: no chance is in them."""
+    """Rows of a condition with the same raw data on both sides, without a test."""
     first, second = (np.nanmean(values, axis=0) for values in (condition.first, condition.second))
     return _rows(
         condition,
@@ -281,7 +281,7 @@ def _rows(
 
 
 def margin_of(margin: str, values: np.ndarray) -> np.ndarray | None:
-    """Return a margin that was stated for values, as a share of them or as it is.
+    """Stated margin in absolute terms, from an absolute or relative value.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The page and the tables of a comparison."""
+"""Page and tables of a comparison."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _HEADS = (
 
 
 def comparison_verdict(compared: Comparison) -> str:
-    """Return what came of a comparison in one sentence."""
+    """Return the result of a comparison as one sentence."""
     points = len(compared.points)
     words = {word: word for word in _VERDICTS}
     words[EQUIVALENT] += f" within {compared.margin}"
@@ -45,7 +45,7 @@ def comparison_verdict(compared: Comparison) -> str:
 
 
 def _open_to(compared: Comparison) -> str:
-    """Say by how much the two may differ where no difference was proved."""
+    """Text on the largest possible difference if none was proved."""
     rows = compared.points[compared.points["verdict"] == OPEN]
     reach = rows[["low", "high"]].abs().max(axis=1) / rows["first"].abs()
     if not np.isfinite(reach).any():
@@ -54,7 +54,7 @@ def _open_to(compared: Comparison) -> str:
 
 
 def write_comparisons(compared: Sequence[Comparison], folder: Path) -> Path:
-    """Write ``compare.html`` and, beside it, a table of points and one of numbers for each pair.
+    """Write ``compare.html``, and a table of points and one of numbers for each pair.
 
     Returns
     -------

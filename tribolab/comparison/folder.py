@@ -1,4 +1,4 @@
-"""What a results folder says of its campaign: settings, runs, files and their checksums."""
+"""Contents of a results folder: settings, runs, files and their checksums."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ REPORT = "report.json"
 
 @dataclass(frozen=True)
 class Folder:
-    """A results folder, its report read and its tables when asked for.
+    """Results folder, with its report and, on demand, its tables.
 
     Parameters
     ----------
     path
         The folder.
     report
-        What its ``report.json`` says.
+        Content of its ``report.json``.
     """
 
     path: Path
@@ -37,7 +37,7 @@ class Folder:
 
     @property
     def name(self) -> str:
-        """The folder as a reader knows it: that of the campaign if it is called as usual."""
+        """Name of the folder; that of its campaign if the folder has the default name."""
         resolved = self.path.resolve()
         return resolved.parent.name if resolved.name == "results" else resolved.name
 
@@ -48,26 +48,26 @@ class Folder:
 
     @functools.cached_property
     def campaign(self) -> Campaign | None:
-        """The campaign file as it was; None where this version does not understand it."""
+        """Campaign file at the time of the analysis; None if this version cannot read it."""
         return _campaign(self.report["campaign"]["text"])
 
     @property
     def made_at(self) -> dt.datetime:
-        """When the results were made."""
+        """Time of the analysis."""
         return dt.datetime.fromisoformat(self.report["made_at"])
 
     @property
     def done(self) -> list[Json]:
-        """Runs that have results, as the report has them."""
+        """Runs with results, as in the report."""
         return [run for run in self.report["runs"] if run["status"] == "done"]
 
     @property
     def counting(self) -> set[str]:
-        """Names of the runs that the measured curves are made of."""
+        """Names of the runs used in the measured curves."""
         return {name for curve in self.report["curves"] for name in curve["runs"]}
 
     def checksums(self) -> dict[str, tuple[str, ...]]:
-        """Return of each run the checksums of its raw files."""
+        """Return the checksums of the raw files of each run."""
         known = {source["file"]: source["sha256"] for source in self.report["sources"]}
         return {
             run["name"]: tuple(sorted(known.get(file, "") for file in run["files"]))
@@ -75,8 +75,8 @@ class Folder:
         }
 
     def table(self, name: str) -> pd.DataFrame | None:
-        """Return a table; None where the results have none of this name."""
-        # late: starting stays quick
+        """Return a table by name; None if the results lack it."""
+        # imported late for a quick start
         from tribolab.report import tables
 
         path = self.path / "tables" / f"{name}.csv"
@@ -85,7 +85,7 @@ class Folder:
 
 @functools.lru_cache(maxsize=8)
 def _campaign(text: str) -> Campaign | None:
-    """Read a campaign file; those of an archive are often the same."""
+    """Read a campaign file, cached because archives often repeat it."""
     try:
         return Campaign.model_validate(tomllib.loads(text), context={"in_file": True})
     except (ValueError, RecursionError):
@@ -98,7 +98,7 @@ def open_folder(path: str | Path) -> Folder:
     Raises
     ------
     ReadError
-        If it is none, or its report cannot be read.
+        If it is not a results folder, or its report cannot be read.
     """
     path = Path(path)
     file = path / REPORT

@@ -1,4 +1,4 @@
-"""An instrument over months: control charts of what its results folders say of it."""
+"""History of an instrument: control charts from its results folders."""
 
 from __future__ import annotations
 
@@ -36,28 +36,28 @@ from tribolab.metrology.run_length import (
     signal_probability,
 )
 
-_BASELINE = 20  # points, if there are as many again
+_BASELINE = 20  # points of the baseline, if at least as many follow
 _DAY = 86400.0
 
 
 @dataclass(frozen=True)
 class Watched:
-    """One quantity of one instrument over time.
+    """History of one quantity of one instrument.
 
     Parameters
     ----------
     instrument, quantity, unit
-        What it is.
+        Identification.
     when, folders, values
         The points, in order of time.
     baseline_points
-        How many of the first are the baseline; 0 where there are too few to judge.
+        Number of first points that form the baseline; 0 if there are too few.
     baseline
-        What they tell; None where they tell nothing.
+        Baseline; None if it cannot be computed.
     chart
-        The points after the baseline, judged; None without one.
+        Control chart of the points after the baseline; None without one.
     remark
-        Why there is none, or what is odd about the baseline.
+        Reason for its absence, or a problem of the baseline.
     """
 
     instrument: str
@@ -73,13 +73,13 @@ class Watched:
 
     @property
     def signals(self) -> np.ndarray:
-        """Places of the points that signal."""
+        """Indices of the points that signal."""
         if self.chart is None:
             return np.zeros(0, dtype=int)
         return self.baseline_points + np.flatnonzero(self.chart.any_signal)
 
     def table(self) -> pd.DataFrame:
-        """Return a row for each point, with limits and the rules by which it signals."""
+        """Table of the points, with limits and the rules by which they signal."""
         count, start = self.values.size, self.baseline_points
         rules = np.full(count, "", dtype=object)
         columns = {name: np.full(count, np.nan) for name in _COLUMNS}
@@ -110,18 +110,18 @@ _COLUMNS = ("low", "high", "smoothed", "smoothed_low", "smoothed_high")
 
 @dataclass(frozen=True)
 class History:
-    """What results folders tell of their instruments over time.
+    """History of instruments from results folders.
 
     Parameters
     ----------
     charts
-        Of each instrument and quantity.
+        Chart of each instrument and quantity.
     rules
-        By which points signal.
+        Rules by which points signal.
     due
-        When each instrument wants to be calibrated, where that is stated.
+        Date of the next calibration of each instrument, if it can be computed.
     unread
-        Folders that could not be read, and why.
+        Folders that could not be read, with the reason.
     """
 
     charts: tuple[Watched, ...]
@@ -135,7 +135,7 @@ class History:
         return tuple(chart for chart in self.charts if chart.signals.size)
 
     def table(self) -> pd.DataFrame:
-        """Return all points of all charts."""
+        """Table of the points of all charts."""
         rows = [chart.table() for chart in self.charts]
         return pd.concat(rows, ignore_index=True) if rows else pd.DataFrame()
 
@@ -146,7 +146,7 @@ def history(
     rules: Sequence[str] = DEFAULT_RULES,
     baseline: int | None = None,
 ) -> History:
-    """Follow instruments over the results folders of many campaigns.
+    """Control charts of instruments over the results folders of many campaigns.
 
     Parameters
     ----------
@@ -155,8 +155,8 @@ def history(
     rules
         ``"3 sigma"``, ``"EWMA"``, ``"CUSUM"``, ``"Western Electric"``.
     baseline
-        How many of the first campaigns, in order of time, are what is usual; by default 20, or half
-        of them if there are fewer than 40.
+        Number of first campaigns that form the baseline; by default 20, or half of them if there
+        are fewer than 40.
 
     Returns
     -------
@@ -170,10 +170,11 @@ def history(
 
     Notes
     -----
-    Watched are the zeros of the forces, noise, hum, the tilt (what the common offset of both
-    directions grows by with load), set-point errors, the shift between two clocks, and, where
+    The quantities are the zeros of the forces, noise, hum, the tilt (increase of the common offset
+    of both directions with load), set-point errors, and the shift between two clocks. If
     `[reference]` of the campaign file names runs on a reference sample, its friction at each speed
-    and the gain by a dead weight. Each campaign gives one point, the mean of its segments.
+    and the gain by a dead weight are added. Each campaign gives one point, the mean of its
+    segments.
 
     Examples
     --------
@@ -217,7 +218,7 @@ def history_of(
     rules: Sequence[str] = DEFAULT_RULES,
     baseline: int | None = None,
 ) -> History:
-    """Return the charts of observations; arguments as for `history`."""
+    """Control charts of observations; arguments as for `history`."""
     groups: dict[tuple[str, str, str], list[Observation]] = {}
     for point in sorted(at_common_speeds(points), key=lambda point: (point.when, point.folder)):
         groups.setdefault((point.instrument, point.quantity, point.unit), []).append(point)
@@ -263,7 +264,7 @@ def _fields(
 
 
 def _due(stated: CalibrationTable, charts: Sequence[Watched], instrument: str) -> Due:
-    """Return when an instrument is due, by its interval and by its reference's drift."""
+    """Date of the next calibration of an instrument, from its interval or its reference's drift."""
     assert stated.date is not None
     interval = None if stated.interval is None else stated.interval / _DAY
     watched = [c for c in charts if c.instrument == instrument and c.quantity == GAIN]
@@ -283,7 +284,7 @@ def _due(stated: CalibrationTable, charts: Sequence[Watched], instrument: str) -
 
 
 def expectations(chart: Watched, rules: Sequence[str]) -> str:
-    """Say how often a chart signals without a cause, and how soon after one."""
+    """Text on the rate of false alarms and the delay of true ones."""
     if chart.chart is None:
         return chart.remark
     points, usual = chart.values.size - chart.baseline_points, chart.baseline_points

@@ -1,4 +1,4 @@
-"""The page and the table of an instrument's history."""
+"""Page and table of an instrument's history."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tribolab.report import tables
 
 
 def history_verdict(told: History) -> str:
-    """Return what came of it in one sentence."""
+    """Return the result of the history as one sentence."""
     charts = many(len(told.charts), "chart")
     judged = [chart for chart in told.charts if chart.chart is not None]
     if not judged:
@@ -41,7 +41,7 @@ def history_verdict(told: History) -> str:
 
 
 def _name(chart: Watched, told: History) -> str:
-    """Return the quantity, and of which instrument where there are several."""
+    """Name of the quantity, with the instrument if there are several."""
     several = len({other.instrument for other in told.charts}) > 1
     return f"{chart.instrument}: {chart.quantity}" if several else chart.quantity
 
@@ -64,7 +64,7 @@ def write_history(told: History, folder: Path) -> Path:
 
 
 def _ordered(told: History) -> list[Watched]:
-    """Return the charts: first those that signal, last those that could not be judged."""
+    """Return the charts: those that signal first, those without verdict last."""
     return sorted(told.charts, key=lambda chart: (not chart.signals.size, chart.chart is None))
 
 
@@ -111,7 +111,7 @@ def _summary(told: History) -> Part:
 
 
 def _by_chance(told: History) -> str:
-    """Say how often any chart would signal if nothing had changed."""
+    """Text on how often any chart would signal without a change."""
     judged = [chart for chart in told.charts if chart.chart is not None]
     if not judged:
         return ""

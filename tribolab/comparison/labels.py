@@ -1,7 +1,7 @@
-"""What tells runs apart beside what was measured: operator, mount, day, specimen, free labels.
+"""Labels of runs: operator, mount, day, specimen, and free labels.
 
-Labels shape no number, so they are looked up when somebody asks, and a label that is added to the
-campaign file has nothing analysed anew.
+Labels affect no result: they are read on demand, and adding one to the campaign file does not
+repeat the analysis.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ _KEYS = ("operator", "mount", "day", "specimen")
 
 
 def labelled_segments(place: str | Path) -> pd.DataFrame:
-    """Return the table of friction of a campaign, with the labels of each row's run.
+    """Table of friction of a campaign, with the labels of each row's run.
 
     Parameters
     ----------
     place
-        A campaign file, its folder, or a results folder. With a campaign file the labels are those
-        that it has now.
+        A campaign file, its folder, or a results folder. With a campaign file its current
+        labels are used.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def labelled_segments(place: str | Path) -> pd.DataFrame:
     path = Path(place)
     campaign: Campaign | None = None
     if path.is_file() or (path / "campaign.toml").is_file():
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.campaign.settings.load import load_campaign
 
         campaign = load_campaign(path)
@@ -58,7 +58,7 @@ def labelled_segments(place: str | Path) -> pd.DataFrame:
 
 
 def labels_of_runs(folder: Folder, campaign: Campaign | None) -> pd.DataFrame:
-    """Return the labels of the runs of a results folder, by the name of the run."""
+    """Labels of the runs of a results folder, by the name of the run."""
     rows = {}
     for run in folder.done:
         entry = _entry_of(campaign, run) if campaign is not None else None

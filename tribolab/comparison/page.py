@@ -1,4 +1,4 @@
-"""A page of texts, figures and tables in the frame that every page of tribolab has."""
+"""Page of texts, figures and tables in the common layout."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _NARROW_MM = 120.0
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure on the page, with what a reader who does not see it is told."""
+    """Figure on the page, with its alternative text."""
 
     figure: Figure
     caption: str
@@ -31,13 +31,13 @@ class Picture:
 
     @property
     def wide(self) -> bool:
-        """Whether it takes the whole width of the page."""
+        """Whether it takes the full width of the page."""
         return bool(self.figure.get_size_inches()[0] * 25.4 > _NARROW_MM)
 
     @property
     def address(self) -> str:
-        """The figure as an address that holds it."""
-        # late: starting stays quick
+        """Figure as a data URL."""
+        # imported late for a quick start
         from tribolab.figures.look.style import svg
 
         return data_address(svg(self.figure))
@@ -45,7 +45,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class PageCell:
-    """What stands in a table: its text, and the number that it is sorted by."""
+    """Cell of a table: its text, and the number it is sorted by."""
 
     text: str
     value: float | None = None
@@ -53,7 +53,7 @@ class PageCell:
 
 @dataclass(frozen=True)
 class Sheet:
-    """A table on the page: what it is, its file without ending, heads and rows."""
+    """Table on the page: title, file name without ending, heads and rows."""
 
     label: str
     file: str
@@ -63,7 +63,7 @@ class Sheet:
 
 @dataclass(frozen=True)
 class Part:
-    """A section of the page."""
+    """Section of the page."""
 
     id: str
     title: str
@@ -74,7 +74,7 @@ class Part:
 
 
 def cells(row: Iterable[object], digits: int = 3) -> list[PageCell]:
-    """Return the cells of a row: numbers with so many digits, words as they are.
+    """Cells of a row: numbers rounded to so many digits, words unchanged.
 
     Examples
     --------
@@ -96,16 +96,16 @@ def cells(row: Iterable[object], digits: int = 3) -> list[PageCell]:
 def write_parts(
     path: Path, *, kind: str, heading: str, verdict: str, fine: bool, parts: Sequence[Part]
 ) -> None:
-    """Write a page that opens offline.
+    """Write a self-contained HTML page.
 
     Parameters
     ----------
     path
         The file.
     kind, heading, verdict
-        What the page is, of what, and what came of it in one sentence.
+        Kind of page, its subject, and the result in one sentence.
     fine
-        Whether nothing wants to be looked at: the colour of the banner.
+        Whether no action is needed: the colour of the banner.
     parts
         Its sections.
     """

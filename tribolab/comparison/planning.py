@@ -1,4 +1,4 @@
-"""How long to slide and how often to repeat next time, told from the results of a pilot."""
+"""Planning of sliding time and repeats from the results of a pilot campaign."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ from tribolab.metrology.planning import (
 from tribolab.report.read_results import Results
 
 _ASSURANCE = 0.8
-_TEN = 10  # runs, of which it is said what precision they reach
-LONGEST_STROKE = 20  # times the pilot's sliding time, what is thought of as the longest stroke
+_TEN = 10  # numbers of runs for which the precision is listed
+LONGEST_STROKE = 20  # times the pilot's sliding time: longest stroke considered
 
 
 @dataclass(frozen=True)
 class MeasuringPlan:
-    """How a precision is reached.
+    """Numbers and durations of runs that reach a wanted precision.
 
     Parameters
     ----------
@@ -50,11 +50,11 @@ class MeasuringPlan:
         ``cheapest_assured_runs`` for it, and what each of these takes in all, ``time_s``,
         ``assured_time_s``, ``cheapest_time_s``, ``cheapest_assured_time_s``.
     goal
-        What was asked for, in words.
+        Wanted precision, in words.
     assurance
-        With which chance the assured runs reach it.
+        Probability that the assured runs reach it.
     setup_time
-        Of each run, beside sliding [s].
+        Time for each run besides sliding [s].
     is_interval
         Whether the goal is half a 95 % interval, else a standard error.
     """
@@ -74,18 +74,18 @@ def measuring_plan(
     assurance: float = _ASSURANCE,
     setup_time: float = 600.0,
 ) -> MeasuringPlan:
-    """Tell how many runs, and how long ones, reach a precision at each speed.
+    """Return the number and duration of runs needed for a precision at each speed.
 
     Parameters
     ----------
     pilot
         Results folder, or table of friction, of two runs or more for each condition.
     standard_error, half_interval
-        Of the mean coefficient; or of it half the 95 % interval: one of the two.
+        Standard error of the mean coefficient, or half its 95 % interval: one of the two.
     assurance
-        Chance with which the next campaign's own error comes out as small, of the assured runs.
+        Probability that the next campaign's error is as small as wanted, for the assured runs.
     setup_time
-        What each run costs beside sliding [s].
+        Time for each run besides sliding [s].
 
     Returns
     -------
@@ -156,7 +156,7 @@ def measuring_plan(
 def _pilots(
     pilot: pd.DataFrame | Results | str | Path,
 ) -> list[tuple[str, float, pd.DataFrame]]:
-    """Return condition, speed and runs of all that two runs or more measured."""
+    """Condition, speed and runs for every combination with two runs or more."""
     if isinstance(pilot, pd.DataFrame):
         table, where = pilot, "table"
     else:
@@ -200,7 +200,7 @@ def _runs(segments: pd.DataFrame) -> pd.DataFrame:
 
 
 def _told(runs: pd.DataFrame) -> tuple[Pilot, float, float]:
-    """Return what runs tell of the scatter, how long they slid, and their mean."""
+    """Scatter of the runs, their sliding time, and their mean."""
     within = math.sqrt(float(runs["variance"].mean()))
     memory = float(np.nan_to_num(runs["memory"].mean()))
     sliding = float(runs["time"].median())
@@ -211,7 +211,7 @@ def _told(runs: pd.DataFrame) -> tuple[Pilot, float, float]:
 
 
 def plan_text(plan: MeasuringPlan) -> str:
-    """Return what a plan comes to in one sentence."""
+    """Summary of a plan in one sentence."""
     table = plan.table
     beyond = int(table["runs"].isna().sum())
     if beyond:
@@ -228,7 +228,7 @@ def plan_text(plan: MeasuringPlan) -> str:
 
 
 def _missing(plan: MeasuringPlan) -> str:
-    """Return what the worst point lacks, and the precision that ten runs reach there."""
+    """Text on the worst point, and the precision that ten runs reach there."""
     rows = plan.table[plan.table["runs"].isna()].to_dict("records")
     scatter, worst = max(
         (
@@ -255,7 +255,7 @@ def _missing(plan: MeasuringPlan) -> str:
 
 
 def _span(runs: pd.Series) -> str:
-    """Return the least and the largest number of runs, as far as they are within reach."""
+    """Smallest and largest number of runs, within the feasible range."""
     low, high = runs.min(), runs.max()
     if not math.isfinite(low):
         return "runs out of reach"

@@ -1,4 +1,4 @@
-"""The page and the table of a plan."""
+"""Page and table of a plan."""
 
 from __future__ import annotations
 
@@ -71,5 +71,5 @@ def write_plan(plan: MeasuringPlan, heading: str, folder: Path) -> Path:
 
 
 def _count(runs: float) -> int | str:
-    """Return a number of runs as a whole one, or that more than can be thought of are needed."""
+    """Return the number of runs as text, or "more than" the largest considered."""
     return int(runs) if math.isfinite(runs) else "out of reach"

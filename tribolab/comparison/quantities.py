@@ -1,4 +1,4 @@
-"""Numbers of a whole condition or surface beside each other: what a forest plot shows."""
+"""Differences of quantities of whole conditions or surfaces, for a forest plot."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import pandas as pd
 from tribolab.comparison.run_values import Matched, condition_text
 from tribolab.metrology.differences import differences_of_groups, interval
 
-_TWO_SIDED = 1.959963984540054  # standard deviations in each half of a 95 % interval
+_TWO_SIDED = 1.959963984540054  # standard deviations in half a 95 % interval
 _ROUGHNESS = {"rms_roughness": "_m", "rms_slope": ""}
 
 
@@ -23,18 +23,18 @@ def of_quantities(
     second: Mapping[str, pd.DataFrame],
     by: str = "",
 ) -> pd.DataFrame:
-    """Return mean friction, shear stress and roughness of both, with their differences.
+    """Return mean friction, shear stress and roughness of both sides, with differences.
 
     Parameters
     ----------
     conditions
         The runs at common speeds.
     same
-        Of each whether its raw data are the same: then its difference has no error.
+        Whether the raw data of each condition are the same; its difference then has no error.
     terms
-        Of each what the scatter of the runs does not show of its differences (term, point).
+        Errors of the differences of each that scatter does not include (term, point).
     first, second
-        Tables of shear stresses and roughness, where there are any.
+        Tables of shear stresses and roughness, if any.
     by
         Column by which the two differ on purpose.
 
@@ -80,7 +80,7 @@ def _row(
 
 
 def _mean_friction(condition: Matched, same: bool, terms: np.ndarray) -> list[object]:
-    """Mean over the speeds that every run has; else over those of each run."""
+    """Mean friction of each run over the speeds that all runs have, or over its own."""
     means = [np.nanmean(values, axis=1)[:, None] for values in (condition.first, condition.second)]
     everywhere = terms.mean(axis=1, keepdims=True)
     compared = differences_of_groups([(means[0], means[1])], not_in_scatter=[everywhere])
@@ -96,7 +96,7 @@ def _mean_friction(condition: Matched, same: bool, terms: np.ndarray) -> list[ob
 def _matched_rows(
     first: pd.DataFrame, second: pd.DataFrame, keys: Sequence[str]
 ) -> list[tuple[pd.Series, pd.Series]]:
-    """Rows of two tables that agree in the keys that both have; each once."""
+    """Rows of two tables that agree in their common keys, each once."""
     result = []
     for _, row in first.iterrows():
         for _, other in second.iterrows():

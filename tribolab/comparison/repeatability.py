@@ -1,4 +1,4 @@
-"""How well a friction coefficient repeats: within a mount, between mounts, days, operators."""
+"""Repeatability of a friction coefficient within and between mounts, days, operators."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ from tribolab.metrology.reml import variance_components
 from tribolab.report.read_results import Results
 
 _POOLED = "all speeds"
-FEW = 5  # levels of a factor, below which what lies between them is hardly known
+FEW = 5  # levels of a factor below which its variance is hardly known
 
 
 @dataclass(frozen=True)
 class Repeatability:
-    """Components of variance of a friction coefficient.
+    """Variance components of a friction coefficient.
 
     Parameters
     ----------
@@ -42,14 +42,14 @@ class Repeatability:
         A row for each speed and one for all of them: mean, standard deviations within
         (``repeatability_std``) and between the levels of each factor (``between_..._std``), all of
         them together (``reproducibility_std``), the limits r and R that two single runs differ by
-        with 95 %, and ``runs``. The row of all speeds is relative to the mean.
+        at 95 % coverage, and ``runs``. The row of all speeds is relative to the mean.
     mandel
         A row for each level of the first factor and condition with two runs or more at each: h and
         k with their limits at 1 %.
     method
-        How the components were told apart, in words.
+        Method of estimation, in words.
     levels
-        How many of each factor there were.
+        Number of levels of each factor.
     """
 
     by: tuple[str, ...]
@@ -62,7 +62,7 @@ class Repeatability:
 def repeatability(
     table: pd.DataFrame | Results | str | Path, by: str | Sequence[str], *, value: str = VALUE
 ) -> Repeatability:
-    """Tell the variance within runs that were measured alike from that between mounts, days ...
+    """Separate the variance between equal runs from that between mounts, days ...
 
     Parameters
     ----------
@@ -70,8 +70,8 @@ def repeatability(
         Table of friction with a column for each factor, or a campaign file or results folder, whose
         `[[run]]` entries say operator, mount, day, specimen or other labels.
     by
-        The factors, as a list or parted by commas. A factor that has its own levels within another
-        (mounts of a day) is named with it: ``"day,day:mount"``.
+        The factors, as a list or separated by commas. A factor that has its own levels within
+        another (mounts of a day) is named with it: ``"day,day:mount"``.
     value
         Column to look at.
 
@@ -155,7 +155,7 @@ def _per_run(segments: pd.DataFrame, names: Sequence[str]) -> pd.DataFrame:
 
 
 def _of_speed(runs: pd.DataFrame, names: Sequence[str]) -> tuple[dict[str, float], str]:
-    """Components at one speed, and how they were told apart."""
+    """Return the components at one speed, and the method of estimation."""
     for name in names:
         levels = runs[name].nunique()
         if levels < 2:
@@ -197,7 +197,7 @@ def _of_speed(runs: pd.DataFrame, names: Sequence[str]) -> tuple[dict[str, float
 
 
 def _alike(runs: pd.DataFrame) -> pd.Series:
-    """Return the values as if all conditions had the mean of all: what spreads them is relative."""
+    """Return the values scaled to equal means of all conditions: relative scatter."""
     means = runs.groupby("condition")[VALUE].transform("mean")
     return runs[VALUE] / means.where(means != 0, 1.0) * runs[VALUE].mean()
 
@@ -226,7 +226,7 @@ def _row(
 
 
 def _balanced(runs: pd.DataFrame, names: Sequence[str]) -> np.ndarray | None:
-    """Return (condition, level, run), where one factor is crossed with conditions, as many each."""
+    """Return (condition, level, run) for a factor crossed equally with conditions; else None."""
     if len(names) != 1 or runs["condition"].nunique() < 2:
         return None
     groups = runs.groupby(["condition", names[0]])[VALUE]
@@ -239,7 +239,7 @@ def _balanced(runs: pd.DataFrame, names: Sequence[str]) -> np.ndarray | None:
 
 
 def _pooled(rows: Sequence[dict[str, object]], names: Sequence[str]) -> dict[str, object]:
-    """Return all speeds together: variances relative to the squared mean, by degrees of freedom."""
+    """Return components for all speeds: relative variances, averaged by degrees of freedom."""
     table = pd.DataFrame(rows)
     weight = table["degrees_of_freedom"].to_numpy(dtype=float)
     columns = [c for c in map(str, table) if c.endswith(("_std", "_limit"))]
@@ -256,7 +256,7 @@ def _pooled(rows: Sequence[dict[str, object]], names: Sequence[str]) -> dict[str
 
 
 def _mandel(runs: pd.DataFrame, name: str) -> pd.DataFrame:
-    """Return h and k of each level of a factor, where it has two runs or more in a condition."""
+    """Mandel's h and k of each level of a factor with two runs or more in a condition."""
     rows = []
     conditions = runs[["condition", "level"]].drop_duplicates().sort_values(["condition", "level"])
     for condition, speed in conditions.itertuples(index=False, name=None):
@@ -274,7 +274,7 @@ def _mandel(runs: pd.DataFrame, name: str) -> pd.DataFrame:
 
 
 def repeatability_verdict(told: Repeatability) -> str:
-    """Return what came of it in one sentence."""
+    """Return the result of the study as one sentence."""
     last = told.table.iloc[-1]
     parts = [f"within {100 * last.repeatability_std:.2g} %"]
     for name in told.by:

@@ -1,4 +1,4 @@
-"""The page and the tables of a study of repeatability."""
+"""Page and tables of a repeatability study."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def write_repeatability(told: Repeatability, heading: str, folder: Path) -> Path
 
 
 def _plainly(told: Repeatability) -> tuple[str, ...]:
-    """Say what r and R mean here, and of which factor too few levels were seen."""
+    """Text that explains r and R, and names factors with too few levels."""
     last = told.table.iloc[-1]
     said = [
         f"Of two runs that were measured alike, 95 of 100 pairs differ by less than "

@@ -1,4 +1,4 @@
-"""Friction of each run at each speed: the observations that campaigns are compared by."""
+"""Friction of each run at each speed, the observations used to compare campaigns."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from tribolab.core.wording import force_text
 CONDITION = ["surface", "medium", "nominal_normal_force_N"]
 SPEED_COLUMN = "sliding_speed_m_s"
 VALUE = "friction_coefficient"
-TOLERANCE = 0.1  # of speeds that belong together, as in measured curves
+TOLERANCE = 0.1  # relative distance of speeds that belong together, as in measured curves
 
 
 @dataclass(frozen=True)
 class Matched:
-    """The runs of two groups in one condition, at the speeds that both have.
+    """Runs of two groups in one condition, at their common speeds.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class Matched:
 
 
 def condition_text(surface: object, medium: object, load: float) -> str:
-    """Return surface, medium and load in words.
+    """Surface, medium and load as text.
 
     Examples
     --------
@@ -56,7 +56,7 @@ def condition_text(surface: object, medium: object, load: float) -> str:
 
 
 def segments_of(table: pd.DataFrame, where: object = "table") -> pd.DataFrame:
-    """Return the segments of a table of friction that have a speed and a coefficient.
+    """Segments of a table of friction that have a speed and a coefficient.
 
     Segments that a person rejected are left out.
 
@@ -77,9 +77,9 @@ def segments_of(table: pd.DataFrame, where: object = "table") -> pd.DataFrame:
 
 
 def speed_levels(speeds: np.ndarray) -> np.ndarray:
-    """Return for each speed the geometric mean of those that belong together with it [m/s].
+    """Geometric mean [m/s] of the group that each speed belongs to.
 
-    Speeds that follow each other within a tenth belong together.
+    Neighbouring speeds within 10 % of each other form a group.
 
     Examples
     --------
@@ -98,19 +98,19 @@ def speed_levels(speeds: np.ndarray) -> np.ndarray:
 def matched(
     first: pd.DataFrame, second: pd.DataFrame, by: Sequence[str] = tuple(CONDITION)
 ) -> list[Matched]:
-    """Put two groups of runs side by side, condition by condition and speed by speed.
+    """Match two groups of runs by condition and speed.
 
     Parameters
     ----------
     first, second
         Segments, from `segments_of`.
     by
-        Columns that make a condition.
+        Columns that define a condition.
 
     Returns
     -------
     list of Matched
-        Of the conditions and speeds that both have, in the order of the first.
+        Conditions and speeds that both have, in the order of the first.
     """
     keys = [_condition_keys(segments, by) for segments in (first, second)]
     result = []
@@ -157,7 +157,7 @@ def of_level(segments: pd.DataFrame, by: str, level: str) -> pd.DataFrame:
 
 
 def _condition_keys(segments: pd.DataFrame, by: Sequence[str]) -> pd.Series:
-    """Return one text for each segment's condition; a load that nobody knows is one, too."""
+    """Return the condition of each segment as text; an unknown load is one condition."""
     columns = [segments[name].tolist() for name in by]
     texts = [
         "\n".join(f"{v:.6g}" if isinstance(v, float) else str(v) for v in row)
@@ -167,6 +167,6 @@ def _condition_keys(segments: pd.DataFrame, by: Sequence[str]) -> pd.Series:
 
 
 def _per_run(segments: pd.DataFrame, levels: np.ndarray) -> pd.DataFrame:
-    """Mean coefficient of each run at each speed: runs down, speeds across."""
+    """Mean coefficient of each run (row) at each speed (column)."""
     known = segments.assign(level=levels)
     return known.pivot_table(index="run", columns="level", values=VALUE, aggfunc="mean")

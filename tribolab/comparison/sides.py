@@ -1,4 +1,4 @@
-"""The two sides of a comparison: results folders, tables, or two levels of one of them."""
+"""Sides of a comparison: results folders, tables, or two levels of one of them."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ Compared = str | Path | Results | pd.DataFrame
 
 @dataclass(frozen=True)
 class Side:
-    """One of two groups of runs that are compared.
+    """One of the two groups of runs that are compared.
 
     Parameters
     ----------
     name
-        As a reader knows it.
+        Name for the reader.
     segments
         Its rows of the table of friction.
     folder
-        Where they are from; None of a table.
+        Their results folder; None for a table.
     tables
         Those of shear stresses and roughness, where there are any.
     """
@@ -41,12 +41,12 @@ class Side:
 def sides_of(
     first: Compared, second: Compared | None, by: str, levels: Sequence[str]
 ) -> tuple[Side, Side]:
-    """Return the two sides of a comparison; arguments as for `compare`.
+    """Sides of a comparison; arguments as for `compare`.
 
     Raises
     ------
     AnalysisError
-        If it is not said what they are, or a results folder has no runs.
+        If the sides are not defined, or a results folder has no runs.
     """
     if second is not None:
         sides = _side(first, "first"), _side(second, "second")
@@ -78,7 +78,7 @@ def sides_of(
 
 
 def _told_apart(alike: tuple[Side, Side]) -> tuple[Side, Side]:
-    """Return two folders of one name with what tells them apart."""
+    """Return distinct names for two folders of the same name."""
     names = [
         str(side.folder.path) if side.folder else f"{side.name} ({word})"
         for side, word in zip(alike, ("first", "second"), strict=True)

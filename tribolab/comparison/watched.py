@@ -1,4 +1,4 @@
-"""What a results folder says of its rig: zeros, noise, tilt, set points, clocks, a reference."""
+"""Observations of a rig in a results folder: zeros, noise, tilt, set-points, clocks."""
 
 from __future__ import annotations
 
@@ -41,20 +41,20 @@ _SLIP = ["run", "sample_noise", "mains_amplitude"]
 
 @dataclass(frozen=True)
 class Observation:
-    """One number of one campaign on one instrument.
+    """One value of one instrument in one campaign.
 
     Parameters
     ----------
     instrument, quantity, unit
-        What it is of.
+        Identification.
     when
-        When the campaign began.
+        Start of the campaign.
     folder
         The results folder.
     value
         In that unit.
     speed
-        At which sliding speed [m/s]; NaN of what has none.
+        Sliding speed [m/s]; NaN if not applicable.
     """
 
     instrument: str
@@ -67,7 +67,7 @@ class Observation:
 
 
 def results_below(folders: Iterable[str | Path]) -> list[Path]:
-    """Return results folders: those that are named, and of other folders those below them."""
+    """Results folders among the given folders and below them."""
     places: list[Path] = []
     for folder in map(Path, folders):
         own = (
@@ -79,12 +79,12 @@ def results_below(folders: Iterable[str | Path]) -> list[Path]:
 
 
 def observations_of(path: str | Path) -> tuple[list[Observation], Folder]:
-    """Return what a results folder says of its instruments, and the folder.
+    """Observations of the instruments in a results folder, and the folder.
 
     Raises
     ------
     ReadError
-        If it is none.
+        If it is not a results folder.
     """
     folder = open_folder(path)
     friction = _table(folder, "friction", _FRICTION)
@@ -107,7 +107,7 @@ def observations_of(path: str | Path) -> tuple[list[Observation], Folder]:
 
 
 def _table(folder: Folder, name: str, columns: Sequence[str]) -> SeriesColumns | None:
-    """Read some columns of a table, which is a tenth of the work for all of them."""
+    """Read some columns of a table, ten times faster than all of them."""
     path = folder.path / "tables" / f"{name}.csv"
     if not path.is_file():
         return None
@@ -131,7 +131,7 @@ def _of_runs(table: SeriesColumns, names: Collection[str]) -> SeriesColumns:
 
 
 def _began(runs: Iterable[Json], otherwise: dt.datetime) -> dt.datetime:
-    """Return when the first run was recorded, without a time zone; else when results were made."""
+    """Return the start of the first run, without time zone, or else the time of analysis."""
     known = []
     for run in runs:
         try:
@@ -171,7 +171,7 @@ def _numbers(
 
 
 def _gain(campaign: Campaign, runs: Sequence[Json], friction: SeriesColumns) -> float:
-    """Return the gain by a dead weight: as runs on the reference tell, else by their load."""
+    """Return the gain by a dead weight from runs on the reference, or else from their load."""
     mine = _reference_runs(campaign, runs)
     gains = [run.get("dead_weight_gain") for run in runs if run["name"] in mine]
     if told := [float(gain) for gain in gains if gain is not None]:
@@ -183,7 +183,7 @@ def _gain(campaign: Campaign, runs: Sequence[Json], friction: SeriesColumns) -> 
 
 
 def _reference_runs(campaign: Campaign, runs: Sequence[Json]) -> set[str]:
-    """Return the names of the runs on a reference sample."""
+    """Names of the runs on a reference sample."""
     files = campaign.reference.files
     if files is None:
         return set()
@@ -209,9 +209,9 @@ def _of_reference(
 
 
 def at_common_speeds(points: Sequence[Observation]) -> list[Observation]:
-    """Name what has a speed by the one that it has in common with other campaigns.
+    """Group the observations of campaigns under their common speeds.
 
-    A campaign's own mean must not make another quantity of it.
+    Small differences of a campaign's mean speed must not create a new quantity.
 
     Examples
     --------
@@ -235,15 +235,15 @@ def at_common_speeds(points: Sequence[Observation]) -> list[Observation]:
 
 
 def _middle(values: np.ndarray) -> float:
-    """Return the mean of what is known; NaN of nothing."""
+    """Mean of the finite values; NaN without any."""
     known = values[np.isfinite(values)]
     return float(known.mean()) if known.size else float("nan")
 
 
 def _tilt(offset: np.ndarray, load: np.ndarray) -> float:
-    """Angle between the axes of force cell and load: what the common offset grows by with load.
+    """Angle between the axes of force cell and load, from the increase of the offset with load.
 
-    NaN where one load alone was measured: a zero and a tilt cannot be told apart then.
+    NaN with only one load: zero and tilt cannot be separated then.
     """
     known = np.isfinite(offset) & np.isfinite(load)
     if known.sum() < 3 or np.ptp(load[known]) < 0.2 * np.abs(load[known]).max():

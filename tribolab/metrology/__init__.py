@@ -1,1 +1,1 @@
-"""How well a number is known: budget, repeatability, control charts, comparison, planning."""
+"""Uncertainty of results: budget, repeatability, control charts, comparison, planning."""

@@ -1,4 +1,4 @@
-"""The uncertainty of measured friction coefficients, and the parts that it is made of."""
+"""Uncertainty budget of measured friction coefficients."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ from tribolab.metrology.budget_result import UncertaintyBudget
 from tribolab.metrology.sensitivity import contributions, readings_of
 from tribolab.reading.dialect.uncertainty import NAMES, Known, StatedUncertainty, Uncertainty
 
-_OWN = ("friction_coefficient_u", "friction_coefficient_dof")  # of a curve's own scatter
+# name of the part that a curve's own scatter makes
+_OWN = ("friction_coefficient_u", "friction_coefficient_dof")
 StatedUncertainties = Mapping[str, StatedUncertainty | Mapping[str, Any]]
 
 
@@ -27,18 +28,18 @@ def uncertainty_budget(
     *,
     speed_tolerance: float = 0.1,
 ) -> UncertaintyBudget:
-    """Budget of measured friction coefficients: standard uncertainty, its parts, U95.
+    """Uncertainty budget of friction coefficients: standard uncertainty, its parts, U95.
 
     Parameters
     ----------
     friction
         From `friction_coefficient`: the budget of each segment. A list of such results, of repeated
         runs of one system: the budget of each point of their curve. Runs of one instrument share
-        what is stated of it, those of several are independent.
+        its calibration; different instruments are independent.
     uncertainty
-        What is stated of the calibration, by the names of `uncertainty.NAMES`, each
+        Calibration uncertainties by the names of `uncertainty.NAMES`, each
         with the keys of a table [uncertainty.NAME] of the campaign file: ``{"tilt": {"value":
-        "0.5 deg", "as": "half-width"}}``. It goes before what the instrument's file states.
+        "0.5 deg", "as": "half-width"}}``. It overrides the instrument's file.
     speed_tolerance
         As for `measured_stribeck_curve`.
 
@@ -55,8 +56,8 @@ def uncertainty_budget(
     -----
     ``u^2 = sum (c_i u_i)^2`` with the sensitivities of `contributions`, degrees of freedom by
     Welch and Satterthwaite, ``U95 = t_0.975(nu) u`` (JCGM 100:2008). The noise within the run is
-    the standard error of the mean with its degrees of freedom. Where one rectangular part
-    dominates, U95 is too wide, and `says` says so.
+    the standard error of the mean with its degrees of freedom. If one rectangular part
+    dominates, U95 is too wide, which `says` states.
 
     Examples
     --------
@@ -89,7 +90,7 @@ def uncertainty_budget(
 def known_uncertainties(
     friction: xr.Dataset, stated: StatedUncertainties | None = None
 ) -> dict[str, Known]:
-    """Return the standard uncertainties by name: those of the instrument's file, and those stated.
+    """Return the standard uncertainties by name, from the instrument's file and as stated.
 
     Parameters
     ----------
@@ -126,7 +127,7 @@ def known_uncertainties(
 
 
 def with_uncertainty(friction: xr.Dataset, known: Mapping[str, Known]) -> xr.Dataset:
-    """Return a friction result with the uncertainty of each segment and its parts.
+    """Friction result with the uncertainty of each segment and its parts.
 
     Parameters
     ----------
@@ -160,21 +161,21 @@ def with_uncertainty(friction: xr.Dataset, known: Mapping[str, Known]) -> xr.Dat
 
 
 class ZeroApart(NamedTuple):
-    """A friction result whose errors do not hold the stated zero, and the inputs that do."""
+    """Friction result without the stated zero in its errors, and the inputs with it."""
 
     friction: xr.Dataset
     known: Mapping[str, Known]
 
 
 def zero_apart(friction: xr.Dataset, known: Mapping[str, Known]) -> ZeroApart:
-    """Take the zero that was stated out of the standard errors: it is a part of its own.
+    """Remove the stated zero uncertainty from the standard errors: it is a separate part.
 
     Parameters
     ----------
     friction
         From `friction_coefficient` (segment).
     known
-        Standard uncertainties by name; without a ``friction_zero`` nothing is taken out.
+        Standard uncertainties by name; without ``friction_zero`` nothing is removed.
     """
     entry, stated = known.get("friction_zero"), friction.attrs.get("zero_stated")
     if entry is None or stated is None or "normal_force" not in friction:

@@ -1,4 +1,4 @@
-"""The uncertainty of a measured curve: what its runs scatter, and what they all share."""
+"""Uncertainty of a measured curve: scatter of its runs, and errors that they share."""
 
 from __future__ import annotations
 
@@ -13,19 +13,20 @@ from tribolab.metrology.budget_parts import BETWEEN, NOISE, ScatterPart, combine
 from tribolab.metrology.sensitivity import AMBIGUOUS, contributions, readings_of
 from tribolab.reading.dialect.uncertainty import Known
 
-_MOUNT = "mount"  # attribute of a friction result: which mount it was measured in
-EACH_POINT = (NOISE, BETWEEN, AMBIGUOUS, "resolution", "zero_drift")  # each point has its own
+_MOUNT = "mount"  # attribute of a friction result: the mount of its sample
+# inputs with a separate value at each point
+EACH_POINT = (NOISE, BETWEEN, AMBIGUOUS, "resolution", "zero_drift")
 
 
 class CurveUncertainty(NamedTuple):
-    """A measured curve with its uncertainty, and what was stated of its parts.
+    """Measured curve with its uncertainty, and the stated inputs.
 
     Parameters
     ----------
     curve
         See `tribolab.metrology.budget_parts.combined`.
     known
-        By the names of the parts: of several instruments, those of each.
+        Inputs by the names of the parts; for several instruments, those of each.
     """
 
     curve: xr.Dataset
@@ -33,7 +34,7 @@ class CurveUncertainty(NamedTuple):
 
 
 class _Part(NamedTuple):
-    """One input of one calibration: runs that have it share its error."""
+    """One input of one calibration; runs that share it share its error."""
 
     name: str
     instrument: str
@@ -43,7 +44,7 @@ class _Part(NamedTuple):
 def with_curve_uncertainty(
     curve: xr.Dataset, frictions: Sequence[xr.Dataset], known: Sequence[Mapping[str, Known]]
 ) -> CurveUncertainty:
-    """Return a measured curve with the uncertainty of each point and its parts.
+    """Measured curve with the uncertainty of each point and its parts.
 
     Parameters
     ----------
@@ -51,7 +52,7 @@ def with_curve_uncertainty(
         From `tribolab.measured_stribeck_curve` of these runs (sliding_speed).
     frictions
         Results of `tribolab.friction_coefficient`. The attribute ``mount``, where all of them
-        have one, tells how often the sample was mounted; the attribute ``instrument``, by which.
+        have one, distinguishes mounts of the sample; the attribute ``instrument``, instruments.
     known
         Standard uncertainties by name, of each run.
 
@@ -101,7 +102,7 @@ def with_curve_uncertainty(
 
 
 def _scatter(curve: xr.Dataset, runs: np.ndarray) -> list[ScatterPart]:
-    """Return the noise of points with one run, and the spread between runs of the others."""
+    """Noise of points with one run, and spread between runs of the others."""
     u, dof = (curve[f"friction_coefficient_{end}"].values for end in ("u", "dof"))
     several = runs > 1
     scatter = [ScatterPart(np.where(several, 0.0, u), dof, NOISE)] if not several.all() else []
@@ -111,7 +112,7 @@ def _scatter(curve: xr.Dataset, runs: np.ndarray) -> list[ScatterPart]:
 
 
 def _labelled(parts: Mapping[_Part, np.ndarray]) -> dict[str, _Part]:
-    """Return what each part is called: by its input, of several calibrations by whose it is."""
+    """Return the label of each part: its input, and the calibration if there are several."""
     labels: dict[str, _Part] = {}
     for key in parts:
         alike = [other for other in parts if other.name == key.name]
@@ -127,7 +128,7 @@ def _labelled(parts: Mapping[_Part, np.ndarray]) -> dict[str, _Part]:
 def _at_points(
     friction: xr.Dataset, points: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the point of each segment that counts, these segments, and observations per point."""
+    """Return the point of each used segment, these segments, and observations per point."""
     speed = friction["sliding_speed"].values
     mu = friction["friction_coefficient"].values
     own = np.flatnonzero(np.isfinite(mu) & (speed > 0))
@@ -146,7 +147,7 @@ def _mounts(frictions: Sequence[xr.Dataset]) -> int:
 
 
 def shared_parts(curve: xr.Dataset) -> Iterator[tuple[str, np.ndarray]]:
-    """Give the parts of a curve's uncertainty that its points share, by name (sliding_speed).
+    """Parts of the uncertainty that the points of a curve share, by name (sliding_speed).
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Parts of an uncertainty put together: root of the sum of squares, Welch-Satterthwaite, U95."""
+"""Combination of uncertainties: root sum of squares, Welch-Satterthwaite, U95."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from tribolab.units.stamping import stamp
 NOISE, BETWEEN = "noise and known zero of the run", "between runs"
 _NOT_STATED = "calibration not stated: statistical only"
 _RECTANGULAR = ("half-width", "step")
-# Few repeats that agree by chance would count as known from many. Where a scatter has fewer degrees
+# Few repeats that agree by chance would count as well known. If a scatter has fewer degrees
 # of freedom than _FEW, its share x of Welch's and Satterthwaite's sum grows to 1 - (1 - x)^(1 +
-# _CHANCE/nu^2): U95 of two runs beside a calibration then covers 93.4 to 96.4 % whatever the ratio
-# of the two (87 to 95 % without), of three runs 95 to 95.8 %. Of two runs none can do it within 1 %
+# _CHANCE/nu^2): U95 of two runs plus a calibration then covers 93.4 to 96.4 % for any ratio
+# of the two (87 to 95 % without), of three runs 95 to 95.8 %. For two runs no rule is within 1 %
 _FEW, _CHANCE = 4.0, 10.0
-_DOMINATES = 0.7  # share of the variance from which on one rectangular part shapes the whole
+_DOMINATES = 0.7  # share of the variance above which one rectangular part shapes the distribution
 
 
 class ScatterPart(NamedTuple):
-    """What the data themselves say of the uncertainty, one entry for each value.
+    """Scatter of the data as a part of the uncertainty, one entry for each value.
 
     Parameters
     ----------
     u, dof
         Standard uncertainty without Student's factor, and its degrees of freedom.
     name
-        What it is the scatter of: `NOISE` or `BETWEEN`.
+        Origin of the scatter: `NOISE` or `BETWEEN`.
     """
 
     u: np.ndarray
@@ -40,7 +40,7 @@ class ScatterPart(NamedTuple):
 
 
 def effective_dof(parts: np.ndarray, dof: np.ndarray, observed: int = 0) -> np.ndarray:
-    """Degrees of freedom of a combined uncertainty, by Welch and Satterthwaite.
+    """Effective degrees of freedom of a combined uncertainty (Welch-Satterthwaite).
 
     Parameters
     ----------
@@ -49,14 +49,14 @@ def effective_dof(parts: np.ndarray, dof: np.ndarray, observed: int = 0) -> np.n
     dof
         Their degrees of freedom (part, ...).
     observed
-        How many parts, the first ones, are scatter that was seen: of less than four degrees of
-        freedom they count for more, for they may be small by chance.
+        Number of the first parts that are observed scatter. With less than four degrees of
+        freedom their weight is increased, because they may be small by chance.
 
     Notes
     -----
     ``1/sum(x_i/nu_i)`` with ``x_i = (u_i/u)^4`` and u^2 the sum of the u_i^2 (JCGM 100:2008, Eq.
     (G.2b)). Seen scatter of few degrees of freedom: ``1 - (1 - x_i)^(1 + 10/nu_i^2)`` for x_i,
-    found by making coverage the same for every ratio of a scatter to what is known beside it.
+    chosen for equal coverage at every ratio of a scatter to the other parts.
 
     Examples
     --------
@@ -74,7 +74,7 @@ def effective_dof(parts: np.ndarray, dof: np.ndarray, observed: int = 0) -> np.n
 
 
 def coverage_factor(dof: np.ndarray | float) -> np.ndarray:
-    """Return t_0.975 of so many degrees of freedom.
+    """Student's t_0.975 for given degrees of freedom.
 
     Examples
     --------
@@ -102,20 +102,20 @@ def combined(
     dim
         The dim of the values.
     scatter
-        What the data say themselves.
+        Scatter of the data.
     parts
         Signed contribution of each input [1] (dim); NaN where it could not be computed.
     known
-        What is stated of the inputs.
+        Stated uncertainties of the inputs.
     unstated
-        Instruments of which nothing is stated, where it is of others.
+        Instruments without stated uncertainties, if others have them.
 
     Returns
     -------
     xarray.Dataset
         `data` with ``friction_coefficient_u``, ``_dof``, ``_U95`` (dim) and ``uncertainty_part``,
-        ``uncertainty_part_dof`` (part, dim). Attributes: ``uncertainty_says``: what the
-        uncertainty does not hold, in words.
+        ``uncertainty_part_dof`` (part, dim). Attributes: ``uncertainty_says``: limits of
+        the uncertainty, in words.
     """
     size = data.sizes[dim]
     names = [str(s.name) for s in scatter] + list(parts)
@@ -125,8 +125,8 @@ def combined(
     stated = [known[name].dof if name in known else np.inf for name in parts]
     freedom += [np.full(size, dof) for dof in stated]
     dof = np.array(freedom, float).reshape(shape)
-    # what an input adds is left out where it cannot be worked out; scatter that nobody knows stays
-    # unknown, and so does the whole
+    # an input that cannot be evaluated is left out; an unknown scatter makes the whole
+    # unknown
     inputs = zip(parts, values[len(scatter) :], strict=True)
     missing = [name for name, row in inputs if size and np.isnan(row).all()]
     counted = np.where([[n in missing] for n in names], 0.0, values)
@@ -151,7 +151,7 @@ def _says(
     missing: list[str],
     unstated: Sequence[str],
 ) -> str:
-    """Say what an uncertainty does not hold, or holds too widely."""
+    """Return what an uncertainty does not include, or overstates, as text."""
     said = [] if any(name in known for name in names) else [_NOT_STATED]
     said += [
         f"calibration of {name or 'an instrument without a name'} not stated" for name in unstated
@@ -169,7 +169,7 @@ def _says(
 
 
 def part_name(part: str) -> str:
-    """Return of which input a part is, without the instrument that it is of.
+    """Return the input of a part, without its instrument.
 
     Examples
     --------
@@ -180,7 +180,7 @@ def part_name(part: str) -> str:
 
 
 def part_words(name: str) -> str:
-    """Return what a part of the uncertainty is called in words.
+    """Return the label of a part of the uncertainty.
 
     Examples
     --------

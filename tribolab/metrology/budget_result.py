@@ -1,4 +1,4 @@
-"""What an uncertainty budget came to, as papers print it."""
+"""Uncertainty budget as a result, with the table that papers print."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from tribolab.reading.dialect.uncertainty import NAMES, Known
 
 @dataclass(frozen=True, eq=False)
 class UncertaintyBudget:
-    """The uncertainty of friction coefficients, and its parts.
+    """Uncertainty of friction coefficients, and its parts.
 
     Parameters
     ----------
     data
         ``friction_coefficient`` with ``_u``, ``_dof`` and ``_U95`` over segments or sliding speeds;
-        ``uncertainty_part`` (part, ...): by how much one standard uncertainty of each input moves
-        it, with its sign.
+        ``uncertainty_part`` (part, ...): signed change of the coefficient for one standard
+        uncertainty of each input.
     known
-        What was stated, by name.
+        Stated uncertainties by name.
     """
 
     data: xr.Dataset
@@ -33,16 +33,16 @@ class UncertaintyBudget:
 
     @property
     def dim(self) -> str:
-        """What the values are over: "segment" or "sliding_speed"."""
+        """Dimension of the values: "segment" or "sliding_speed"."""
         return str(self.data["friction_coefficient"].dims[0])
 
     @property
     def says(self) -> str:
-        """What the uncertainty does not hold, in words; "" where it holds all that is asked."""
+        """What the uncertainty does not include, as text; "" if it is complete."""
         return str(self.data.attrs.get("uncertainty_says", ""))
 
     def table(self, at: int | None = None) -> pd.DataFrame:
-        """Return the budget of one value, or of the typical one, as a table.
+        """Return the budget of one value, by default a typical one, as a table.
 
         Parameters
         ----------
@@ -56,7 +56,7 @@ class UncertaintyBudget:
             A row for each part, the largest first, and one for the whole: ``part``, ``u`` (of the
             input, in its ``unit``), ``stated`` (as what), ``varies``, ``dof``, ``sensitivity``,
             ``contribution`` [1] and ``share`` [1] of the variance, ``source``. The last row has the
-            combined uncertainty and its degrees of freedom; its ``U95`` stands in the attributes.
+            combined uncertainty and its degrees of freedom; ``U95`` is an attribute.
 
         Raises
         ------
@@ -109,7 +109,7 @@ class UncertaintyBudget:
         return int(fine[np.argsort(relative[fine], kind="stable")[(fine.size - 1) // 2]])
 
     def _repr_html_(self) -> str:
-        """Return the typical value with its uncertainty, what is not in it, and the table."""
+        """HTML of a typical value with its uncertainty, what that excludes, and the table."""
         table = self.table()
         mu, wide = table.attrs["friction_coefficient"], table.attrs["U95"]
         says = f"<br>{self.says}" if self.says else ""

@@ -1,4 +1,4 @@
-"""Control charts: whether what is measured today is as it was when all was well."""
+"""Control charts: whether an instrument still measures as it did in its baseline."""
 
 from __future__ import annotations
 
@@ -25,27 +25,28 @@ _CUSUM_SLACK, _CUSUM_LIMIT = 0.5, 4.77
 FEWEST_OF_BASELINE, MANY = (
     5,
     30,
-)  # points of the baseline: least, and from which on moving ranges will do
-_RANGE_TO_SIGMA = 2 / math.sqrt(math.pi)  # mean moving range of normal values in their deviations
-RANGE_FREEDOM = 0.62  # degrees of freedom of a mean moving range, of each point beyond the first
+)  # points of the baseline: minimum, and number above which moving ranges are used
+# mean moving range of normal values, in standard deviations
+_RANGE_TO_SIGMA = 2 / math.sqrt(math.pi)
+RANGE_FREEDOM = 0.62  # degrees of freedom of a mean moving range, per point beyond the first
 
 
 @dataclass(frozen=True)
 class Baseline:
-    """What was usual: centre, standard deviation and how well they are known.
+    """Baseline of a control chart: centre, standard deviation, and their accuracy.
 
     Parameters
     ----------
     centre, sigma
         Mean and standard deviation of the baseline.
     points
-        How many it has; infinite where centre and deviation are known without error.
+        Number of points; infinite if centre and deviation are known exactly.
     degrees_of_freedom
         Of the standard deviation.
     correlation
         Of neighbouring points.
     correlated
-        Whether that is beyond chance.
+        Whether that is significant.
     """
 
     centre: float
@@ -56,11 +57,11 @@ class Baseline:
     correlated: bool = False
 
     def widened(self, limit: float) -> float:
-        """Return how many estimated deviations a new point exceeds as seldom as `limit` known ones.
+        """Return the number of estimated deviations equivalent to `limit` exactly known ones.
 
         Notes
         -----
-        Student's t of the same chance; the error of the centre is added elsewhere.
+        Student's t of equal probability; the error of the centre is added elsewhere.
         """
         if math.isinf(self.degrees_of_freedom):
             return limit
@@ -68,7 +69,7 @@ class Baseline:
 
 
 def baseline_of(values: ArrayLike) -> Baseline:
-    """Return centre and standard deviation of points at which all was well.
+    """Centre and standard deviation of the baseline points.
 
     Parameters
     ----------
@@ -82,9 +83,10 @@ def baseline_of(values: ArrayLike) -> Baseline:
 
     Notes
     -----
-    Of fewer than 30 points the deviation is that of all of them, which is known best; of more it is
-    the mean moving range over 1.128, which a slow drift hardly widens, unless neighbours are
-    correlated beyond chance, r_1 beyond 2/sqrt(n): moving ranges would be too small then.
+    With fewer than 30 points the standard deviation of all is used, which is the most accurate.
+    With more it is the mean moving range over 1.128, which slow drift hardly increases, unless
+    neighbours are significantly correlated (r_1 above 2/sqrt(n)), which makes moving ranges too
+    small.
 
     Examples
     --------
@@ -112,13 +114,13 @@ def baseline_of(values: ArrayLike) -> Baseline:
 
 
 def mean_moving_range(values: Array) -> float:
-    """Return the standard deviation that moving ranges of two tell of a series."""
+    """Return the standard deviation of a series from its moving ranges of two."""
     return float(np.abs(np.diff(values)).mean()) / _RANGE_TO_SIGMA
 
 
 @dataclass(frozen=True)
 class Chart:
-    """The points of a control chart after its baseline, and which of them signal.
+    """Points of a control chart after its baseline, with those that signal.
 
     Parameters
     ----------
@@ -139,29 +141,29 @@ class Chart:
 
     @property
     def any_signal(self) -> Signalled:
-        """Which points signal by any rule (point)."""
+        """Mask of the points that signal by any rule (point)."""
         return np.any(list(self.signals.values()), axis=0)
 
 
 def control_chart(
     values: ArrayLike, baseline: Baseline, rules: Sequence[str] = DEFAULT_RULES
 ) -> Chart:
-    """Judge points that were measured after a baseline.
+    """Apply the rules of control charts to points measured after a baseline.
 
     Parameters
     ----------
     values
         (point), in order of time.
     baseline
-        What is usual, from `baseline_of`, or known.
+        From `baseline_of`, or known.
     rules
-        Of ``"3 sigma"``, ``"EWMA"``, ``"CUSUM"``, ``"Western Electric"``. The more there are, the
-        more often they signal without a cause: `average_run_length` says how often.
+        Any of ``"3 sigma"``, ``"EWMA"``, ``"CUSUM"``, ``"Western Electric"``. More rules give more
+        false alarms; `average_run_length` computes their rate.
 
     Raises
     ------
     AnalysisError
-        If there is no such rule.
+        If a rule is unknown.
 
     Notes
     -----
@@ -204,14 +206,14 @@ def control_chart(
 
 
 def signals_of(standard: Array, baseline: Baseline, rules: Sequence[str]) -> dict[str, Signalled]:
-    """Return which points signal by each rule.
+    """Masks of the points that signal, by rule.
 
     Parameters
     ----------
     standard
-        Points less the centre, over sigma (series, point): many series at once.
+        (Points - centre)/sigma (series, point), for several series.
     baseline
-        How well centre and sigma are known.
+        Accuracy of centre and sigma.
     rules
         As for `control_chart`.
     """
@@ -238,13 +240,13 @@ def _smoothed(standard: Array, centre_error: float) -> tuple[Array, Array]:
         last = _EWMA_WEIGHT * standard[:, place] + (1 - _EWMA_WEIGHT) * last
         z[:, place] = last
     steps = np.arange(1, standard.shape[1] + 1)
-    decay = 1 - (1 - _EWMA_WEIGHT) ** steps  # of the weights, how many there are yet
+    decay = 1 - (1 - _EWMA_WEIGHT) ** steps  # number of weights so far
     own = _EWMA_WEIGHT / (2 - _EWMA_WEIGHT) * (1 - (1 - _EWMA_WEIGHT) ** (2 * steps))
     return z, np.sqrt(own + centre_error * decay**2)
 
 
 def cusums(standard: Array, slack: float = _CUSUM_SLACK) -> tuple[Array, Array]:
-    """Return the upper and the lower cumulative sum (series, point)."""
+    """Upper and lower cumulative sum (series, point)."""
     up, down = np.empty_like(standard), np.empty_like(standard)
     high, low = np.zeros(standard.shape[0]), np.zeros(standard.shape[0])
     for place in range(standard.shape[1]):
@@ -267,6 +269,6 @@ def _western(standard: Array, limit: float) -> Signalled:
             there = (turned > beyond * limit).astype(int)
             total = np.cumsum(there, axis=1)
             total[:, size:] -= total[:, :-size].copy()
-            # a point that is itself on the side has completed the pattern
+            # only a point on the same side completes the pattern
             marks |= (total >= wanted) & (there == 1)
     return marks

@@ -1,4 +1,4 @@
-"""The gain of a force channel from a dead weight that is put on and taken off."""
+"""Gain of a force channel from placing and removing a dead weight."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from tribolab.core.errors import AnalysisError
 from tribolab.friction.statistics import NORMAL, estimate_of
 from tribolab.units.conversion import positive
 
-_TRIM = 0.1  # of each part with and without the weight, at both ends
-_LEAST = 20  # samples of a part that counts
-_CLEAR = 10.0  # the step over the noise: below there is no step
+_TRIM = 0.1  # share of each interval with and without the weight that is cut at both ends
+_LEAST = 20  # smallest number of samples of an interval
+_CLEAR = 10.0  # smallest ratio of the step to the noise
 
 
 class DeadWeightGain(NamedTuple):
-    """What a channel reads of a weight.
+    """Gain of a force channel from a dead weight.
 
     Parameters
     ----------
@@ -37,16 +37,16 @@ class DeadWeightGain(NamedTuple):
 def dead_weight_gain(
     run: xr.Dataset, weight: str | float, signal: str = "normal_force"
 ) -> DeadWeightGain:
-    """Gain of a force channel from a record in which a dead weight is put on or taken off.
+    """Gain of a force channel from a record in which a dead weight is placed or removed.
 
     Parameters
     ----------
     run
-        With the signal over time; it need not slide.
+        Record with the signal (time); sliding is not needed.
     weight
         The weight [N], or text such as ``"19.62 N"``.
     signal
-        Which channel it loads: ``"normal_force"``, or ``"friction_force"`` over a pulley.
+        Loaded channel: ``"normal_force"``, or ``"friction_force"`` over a pulley.
 
     Returns
     -------
@@ -55,7 +55,7 @@ def dead_weight_gain(
     Raises
     ------
     AnalysisError
-        If the signal is not there, or shows no step from one level to another.
+        If the signal is missing, or has no step between two levels.
 
     Notes
     -----
@@ -101,7 +101,7 @@ def dead_weight_gain(
 
 
 def _level(parts: list[tuple[float, float]]) -> tuple[float, float]:
-    """Return the mean of some parts and its standard error."""
+    """Mean of some intervals and its standard error."""
     means, errors = np.array(parts).T
     count = means.size
     by_noise = float(np.sqrt(np.sum(errors**2))) / count

@@ -1,4 +1,4 @@
-"""Two groups of runs beside each other: at which points they differ, all points taken together."""
+"""Differences between two groups of runs at many points, with a joint error rate."""
 
 from __future__ import annotations
 
@@ -26,23 +26,23 @@ DIFFERENT, EQUIVALENT, OPEN = "different", "equivalent", "undecided"
 
 @dataclass(frozen=True)
 class Differences:
-    """Differences of the means of two groups of runs, second less first, over all points.
+    """Differences between the means of two groups of runs (second minus first) at all points.
 
     Parameters
     ----------
     first, second
         Means of the groups (point).
     difference, standard_error, degrees_of_freedom
-        Of the difference: Welch's (point).
+        Of the difference, by Welch's test (point).
     p_value
         Of each point alone, two-sided (point).
     adjusted_p_value
-        Of each point as one of all of them: that this or a larger one of any point came by chance.
+        Probability that any of the points shows such a difference by chance (point).
     factor
-        Standard errors to each side within which all differences lie together (point).
+        Half width of the simultaneous intervals in standard errors (point).
     methods
-        How the points of each condition were taken together: ``"permutation"``, ``"rotation"`` or
-        ``"Bonferroni"`` (condition).
+        Correction for several points: ``"permutation"``, ``"rotation"`` or ``"Bonferroni"``
+        (condition).
     """
 
     first: Array
@@ -56,29 +56,29 @@ class Differences:
     methods: tuple[str, ...]
 
     def interval(self, level: float) -> tuple[Array, Array]:
-        """Return the interval of each point alone that holds the difference at this level."""
+        """Return the confidence interval of each point alone at a level."""
         return interval(self.difference, self.standard_error, self.degrees_of_freedom, level)
 
     @property
     def low(self) -> Array:
-        """Lower ends of the intervals that hold all differences together."""
+        """Lower ends of the simultaneous intervals of all differences."""
         return self.difference - self.factor * self.standard_error
 
     @property
     def high(self) -> Array:
-        """Upper ends of the intervals that hold all differences together."""
+        """Upper ends of the simultaneous intervals of all differences."""
         return self.difference + self.factor * self.standard_error
 
     @property
     def differs(self) -> NDArray[np.bool_]:
-        """Whether the interval of a point, of all that hold together, leaves out zero (point)."""
+        """Mask of points whose simultaneous interval excludes zero (point)."""
         return (self.low > 0) | (self.high < 0)
 
 
 def interval(
     difference: Array, standard_error: Array, degrees_of_freedom: Array, level: float
 ) -> tuple[Array, Array]:
-    """Return the ends of Student's interval about differences at a level, e.g. 0.95."""
+    """Return the ends of Student's confidence interval of differences at a level, e.g. 0.95."""
     half = special.stdtrit(degrees_of_freedom, 0.5 + level / 2) * standard_error
     return difference - half, difference + half
 
@@ -90,7 +90,7 @@ def differences_of_groups(
     alpha: float = 0.05,
     seed: int = 0,
 ) -> Differences:
-    r"""Compare two groups of runs at many points, with an error rate for all points together.
+    r"""Compare two groups of runs at many points, with one error rate for all points.
 
     Parameters
     ----------
@@ -98,13 +98,13 @@ def differences_of_groups(
         For each condition the values of the runs of both groups, (run, point) each; NaN where a
         run has none. The points of all conditions are one family.
     not_in_scatter
-        For each condition what the scatter of the runs does not show of the difference, e.g. gains
-        that the groups do not share: one standard uncertainty of each, with its sign, which moves
-        all points at once (term, point).
+        For each condition, errors that the scatter of the runs does not include, e.g. of gains
+        that the groups do not share: signed standard uncertainties, fully correlated between
+        points (term, point).
     alpha
-        Chance that any point of the family is called different where none is.
+        Probability that any point is called different although none is.
     seed
-        Of the permutations that are drawn where there are too many to take all.
+        Seed of the permutations drawn if there are too many to use all.
 
     Returns
     -------
@@ -169,7 +169,7 @@ def differences_of_groups(
 
 @dataclass(frozen=True)
 class _Points:
-    """Welch's numbers of the points of one condition; named as in `Differences`."""
+    """Results of Welch's test at the points of one condition; names as in `Differences`."""
 
     first: Array
     second: Array
@@ -196,7 +196,7 @@ def _points(first: Array, second: Array, terms: Array) -> _Points:
 def _together(
     first: Array, second: Array, terms: Array, at: _Points, level: float, seed: int
 ) -> tuple[Array, Array, str]:
-    """Return p values of a condition's points as parts of all, the intervals' factor, and how."""
+    """Return the adjusted p values of a condition's points, factor of the intervals, and method."""
     if permutations_will_do(len(first), len(second), level):
         scores = np.abs(_ratio(at.difference, at.standard_error))
         return *by_permutation(first, second, terms, scores, level, seed), PERMUTATION
@@ -215,15 +215,14 @@ def _together(
 
 
 def verdicts(compared: Differences, margin: Array | None, alpha: float = 0.05) -> list[str]:
-    """Say of each point whether the two differ, are equivalent within a margin, or neither is sure.
+    """Verdict for each point: different, equivalent within a margin, or undecided.
 
     Parameters
     ----------
     compared
         From `differences_of_groups`.
     margin
-        The largest difference that does not matter (point); None if nobody stated one, and then
-        nothing is equivalent.
+        Largest irrelevant difference (point); None if not stated: then no point is equivalent.
     alpha
         Of the test whether each point alone is equivalent, since the two curves are equivalent only
         if all their points are.
@@ -266,6 +265,6 @@ def _mean_and_error(values: Array) -> tuple[Array, Array, Array]:
 
 
 def _ratio(difference: Array, error: Array) -> Array:
-    """Difference over its error; two values that are the same to the last digit do not differ."""
+    """Difference over its error; 0 for values that are equal except for rounding."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(difference == 0, np.where(np.isnan(error), np.nan, 0.0), difference / error)

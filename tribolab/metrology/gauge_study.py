@@ -1,4 +1,4 @@
-"""Gauge study: parts measured by appraisers in trials, and whose doing the variance is."""
+"""Gauge study: variance components of parts, appraisers and trials."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from scipy import special
 from tribolab.core.aliases import Array
 from tribolab.core.errors import AnalysisError
 
-_POOLED_ABOVE = 0.25  # p value of the interaction, from which on it counts as repeatability
-_CATEGORIES = math.sqrt(2)  # ndc: widths of the 97 % interval of the gauge in that of the parts
+_POOLED_ABOVE = 0.25  # p value of the interaction above which it is pooled with repeatability
+_CATEGORIES = math.sqrt(2)  # ndc: width of the parts' distribution in 97 % intervals of the gauge
 
 
 @dataclass(frozen=True)
 class GaugeStudy:
-    """Components of variance of a balanced study, in the square of what was measured.
+    """Variance components of a balanced gauge study, in squared units of the value.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ class GaugeStudy:
     interaction_p_value
         Of the F test of the interaction.
     pooled
-        Whether the interaction was taken into the repeatability, as it is no more than that.
+        Whether the insignificant interaction was pooled with the repeatability.
     """
 
     repeatability: float
@@ -39,27 +39,27 @@ class GaugeStudy:
 
     @property
     def reproducibility(self) -> float:
-        """Variance between appraisers, their interaction with parts included."""
+        """Variance between appraisers, including their interaction with parts."""
         return self.appraisers + self.interaction
 
     @property
     def gauge(self) -> float:
-        """Variance of measuring: repeatability and reproducibility."""
+        """Variance of the measurement: repeatability plus reproducibility."""
         return self.repeatability + self.reproducibility
 
     @property
     def study_variation(self) -> float:
-        """Standard deviation of measuring relative to that of all values."""
+        """Standard deviation of the measurement relative to that of all values."""
         return math.sqrt(self.gauge / (self.gauge + self.parts))
 
     @property
     def categories(self) -> int:
-        """Number of kinds of parts that can be told apart (ndc)."""
+        """Number of categories of parts that the gauge can distinguish (ndc)."""
         return int(_CATEGORIES * math.sqrt(self.parts / self.gauge)) if self.gauge else 0
 
 
 def gauge_study(values: ArrayLike) -> GaugeStudy:
-    """Return the components of variance of a balanced crossed study by analysis of variance.
+    """Variance components of a balanced crossed study by analysis of variance.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def gauge_study(values: ArrayLike) -> GaugeStudy:
 
 @dataclass(frozen=True)
 class RangeStudy:
-    """Standard deviations by averages and ranges: of equipment, appraisers, gauge and parts."""
+    """Standard deviations from averages and ranges: equipment, appraisers, gauge and parts."""
 
     equipment: float
     appraisers: float
@@ -134,12 +134,12 @@ class RangeStudy:
 
     @property
     def study_variation(self) -> float:
-        """Standard deviation of measuring relative to that of all values."""
+        """Standard deviation of the measurement relative to that of all values."""
         return self.gauge / math.hypot(self.gauge, self.parts)
 
 
 def average_and_range(values: ArrayLike) -> RangeStudy:
-    """Return the standard deviations of a balanced study by averages and ranges.
+    """Return the standard deviations of a balanced study from averages and ranges.
 
     Parameters
     ----------
@@ -177,12 +177,13 @@ def _single_range(size: int) -> float:
 
 
 def _range_of_normal(size: int) -> tuple[float, float]:
-    """Mean and standard deviation of the range of so many standard normal values, d2 and d3."""
+    """Mean d2 and standard deviation d3 of the range of standard normal values."""
     low = np.linspace(-8.5, 8.5, 1201)
     step = low[1] - low[0]
     cdf, pdf = special.ndtr(low), np.exp(-(low**2) / 2) / np.sqrt(2 * np.pi)
     mean = float((1 - (1 - cdf) ** size - cdf**size).sum() * step)
-    span = np.maximum(cdf[None, :] - cdf[:, None], 0.0)  # of the least at low, the greatest above
+    # of the smallest at low and the largest above
+    span = np.maximum(cdf[None, :] - cdf[:, None], 0.0)
     joint = size * (size - 1) * span ** (size - 2) * pdf[:, None] * pdf[None, :]
     joint *= np.triu(np.ones_like(span), 1)
     width = low[None, :] - low[:, None]

@@ -1,4 +1,4 @@
-"""How long to slide and how often to repeat, for a friction coefficient that is known so well."""
+"""Planning of sliding time and repeats for a wanted uncertainty of friction."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _RUNS = np.arange(2, MOST_RUNS + 1)
 
 @dataclass(frozen=True)
 class Pilot:
-    """What a few runs at one speed tell of how friction scatters.
+    """Scatter of friction in a pilot study at one speed.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ class Pilot:
     memory
         Its integrated autocorrelation time [s].
     between
-        Standard deviation between runs, beyond what that explains.
+        Standard deviation between runs beyond that due to scatter within runs.
     """
 
     within: float
@@ -36,7 +36,7 @@ class Pilot:
 
 
 def run_variance(pilot: Pilot, sliding_time: float) -> float:
-    """Return the variance of the mean of one run that slides so long [s].
+    """Variance of the mean of one run of a given sliding time [s].
 
     Notes
     -----
@@ -62,7 +62,7 @@ def runs_for_standard_error(
     assurance: float | None = None,
     pilot_runs: int | None = None,
 ) -> int | None:
-    """Return how many runs a standard error of the mean takes.
+    """Return the number of runs needed for a standard error of the mean.
 
     Parameters
     ----------
@@ -71,10 +71,9 @@ def runs_for_standard_error(
     standard_error
         Wanted.
     assurance
-        Chance that the one that is then estimated is no larger; without it, that is as likely as
-        not.
+        Probability that the estimated error is no larger than wanted; 50 % if not given.
     pilot_runs
-        How many runs told the variance; None where it is known.
+        Number of runs from which the variance was estimated; None if it is known.
 
     Returns
     -------
@@ -104,7 +103,7 @@ def runs_for_half_interval(
     assurance: float | None = None,
     pilot_runs: int | None = None,
 ) -> int | None:
-    """Return how many runs the half of a 95 % interval takes; else as `runs_for_standard_error`.
+    """Return the number of runs needed for half a 95 % interval.
 
     Examples
     --------
@@ -118,7 +117,7 @@ def runs_for_half_interval(
 
 @functools.lru_cache(maxsize=64)
 def _worst(assurance: float | None, pilot_runs: int | None) -> NDArray[np.float64]:
-    """Variance that will be found, with the chance that is assured, over the one that is known."""
+    """Ratio of the variance not exceeded with the given probability to the known variance."""
     if pilot_runs is not None:
         chance = 0.5 if assurance is None else assurance
         return np.asarray(special.fdtri(_RUNS - 1, pilot_runs - 1, chance))
@@ -128,22 +127,22 @@ def _worst(assurance: float | None, pilot_runs: int | None) -> NDArray[np.float6
 
 
 def _first(reached: NDArray[np.float64], wanted: float) -> int | None:
-    """Return the least number of runs that reaches what is wanted."""
+    """Smallest number of runs that meets a condition."""
     enough = np.flatnonzero(reached <= wanted * (1 + 1e-12))
     return int(_RUNS[enough[0]]) if enough.size else None
 
 
 def cheapest_sliding_time(pilot: Pilot, setup_time: float, longest: float) -> float:
-    """Return the sliding time of each run that costs least in all [s].
+    """Return the sliding time of each run with the lowest total time [s].
 
     Parameters
     ----------
     pilot
-        What is known.
+        Scatter from a pilot study.
     setup_time
-        What a run costs beside sliding [s].
+        Time for each run besides sliding [s].
     longest
-        What the rig can do at most [s]; taken where runs do not differ.
+        Longest sliding time of the rig [s]; returned if runs do not differ.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""Repeatability and reproducibility as ISO 5725-2 has them: limits, and which laboratory is odd."""
+"""Repeatability and reproducibility by ISO 5725-2: limits, and outlying laboratories."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from scipy import special
 
 from tribolab.core.aliases import Array
 
-LIMIT = 2.8  # standard deviations that two single results differ by with 95 %: 1.96 sqrt(2)
+# 95 % limit of the difference of two single results, in standard deviations: 1.96 sqrt(2)
+LIMIT = 2.8
 
 
 def reproducibility_deviation(repeatability: float, between: ArrayLike) -> float:
@@ -25,7 +26,7 @@ def reproducibility_deviation(repeatability: float, between: ArrayLike) -> float
 
 
 def mandel(means: ArrayLike, deviations: ArrayLike) -> tuple[Array, Array]:
-    """Return Mandel's h and k of each laboratory, mount or day.
+    """Mandel's h and k of each laboratory, mount or day.
 
     Parameters
     ----------
@@ -53,14 +54,14 @@ def mandel(means: ArrayLike, deviations: ArrayLike) -> tuple[Array, Array]:
 
 
 def mandel_limits(laboratories: int, results: int, level: float = 0.01) -> tuple[float, float]:
-    """Return what h (either sign) and k exceed by chance with this probability.
+    """Critical values of Mandel's h (either sign) and k at a significance level.
 
     Parameters
     ----------
     laboratories
-        How many there are, three or more.
+        Number of laboratories, three or more.
     results
-        How many results each has, two or more.
+        Number of results of each, two or more.
     level
         Of significance: ISO 5725-2 marks 5 % and 1 %.
 

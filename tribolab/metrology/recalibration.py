@@ -1,4 +1,4 @@
-"""When an instrument wants to be calibrated anew: by its date, or by how fast it drifts."""
+"""Date of the next calibration of an instrument, from its interval or its drift."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-_FEWEST = 4  # points of a line with an error
+_FEWEST = 4  # smallest number of points of a line with an error
 _FARTHEST = 3653  # days
 
 
 @dataclass(frozen=True)
 class Due:
-    """When a calibration is due, and why.
+    """Date of the next calibration, and the reason.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class Due:
     reason
         In words.
     drift
-        Per day, of what was watched; NaN if it is not known.
+        Drift of the monitored quantity per day; NaN if unknown.
     """
 
     date: dt.date | None
@@ -39,19 +39,19 @@ def recalibration_due(
     values: ArrayLike = (),
     limit: float | None = None,
 ) -> Due:
-    """Return when an instrument wants to be calibrated anew.
+    """Date of the next calibration, from its interval and from observed drift.
 
     Parameters
     ----------
     calibrated
         Date of the last calibration.
     interval_days
-        How long it holds at most.
+        Longest interval between calibrations.
     days, values
-        What was watched since, e.g. the gain relative to that of the calibration (point), and how
-        many days after it.
+        Days since the calibration, and the monitored quantity, e.g. the gain relative to that of
+        the calibration (point).
     limit
-        How far that may be off, on either side.
+        Largest tolerated deviation of either sign.
 
     Notes
     -----

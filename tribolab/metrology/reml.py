@@ -1,4 +1,4 @@
-"""Components of variance of unbalanced or nested data, by restricted maximum likelihood."""
+"""Variance components of unbalanced or nested data by restricted maximum likelihood."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ from scipy import linalg, optimize
 from tribolab.core.aliases import Array
 from tribolab.core.errors import AnalysisError
 
-_STARTS = (0.1, 2.0)  # of each ratio of variances: the likelihood may have more than one summit
+# starting values of each ratio of variances: the likelihood may have several maxima
+_STARTS = (0.1, 2.0)
 _LARGEST = 1e6
 
 
 @dataclass(frozen=True)
 class Components:
-    """Variances of the factors and of what is left, with the estimates of the fixed effects."""
+    """Variances of the factors and of the residual, with the estimates of the fixed effects."""
 
     factors: tuple[float, ...]
     residual: float
@@ -30,7 +31,7 @@ class Components:
 def variance_components(
     values: ArrayLike, factors: Sequence[ArrayLike], fixed: ArrayLike | None = None
 ) -> Components:
-    """Return the components of variance of values that have several random factors.
+    """Variance components of values with several random factors.
 
     Parameters
     ----------
@@ -46,7 +47,7 @@ def variance_components(
     Raises
     ------
     AnalysisError
-        If nothing is left to tell the variances from.
+        If no degrees of freedom remain for the variances.
 
     Notes
     -----
@@ -98,7 +99,7 @@ def variance_components(
 
 
 def _indicators(levels: ArrayLike) -> Array:
-    """Return which observation (down) belongs to which level (across)."""
+    """Return the indicator matrix of the level (column) of each observation (row)."""
     _, codes = np.unique(np.asarray(levels), return_inverse=True)
     return np.eye(int(codes.max()) + 1)[codes]
 
@@ -106,7 +107,7 @@ def _indicators(levels: ArrayLike) -> Array:
 def _solved(
     y: Array, x: Array, parts: Sequence[Array], ratios: Array
 ) -> tuple[float, float, Array]:
-    """Loss (minus the restricted log-likelihood), residual variance and means at some ratios."""
+    """Loss (minus the restricted log-likelihood), residual variance and means at given ratios."""
     covariance = np.eye(y.size)
     for ratio, part in zip(ratios, parts, strict=True):
         covariance += ratio * part

@@ -1,4 +1,4 @@
-"""What chance does to the points of two groups of runs together: runs permuted, or rotated."""
+"""Permutation and rotation tests for many points of two groups of runs."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from scipy import special
 
 from tribolab.core.aliases import Array
 
-_FEWEST = 4  # runs in each group, from which on they are permuted
-MOST_ROTATED = 40  # runs of both groups together
+_FEWEST = 4  # runs in each group above which they are permuted
+MOST_ROTATED = 40  # largest number of runs of both groups together
 _DRAWS, _FEW_DRAWS = 4999, 1999
-_FEW_WILL_DO = 0.005  # level of error
+_FEW_WILL_DO = 0.005  # significance level
 _EXHAUSTIVE = 5000
-_REACHED = 0.8  # of the level wanted, what permutations have to be numerous enough for
-_SAME = 1e-9  # relative: rounding does not tell a draw from itself
+_REACHED = 0.8  # times the wanted level; permutations must resolve it
+_SAME = 1e-9  # relative: rounding must not distinguish a draw from the data
 
 
 def permutations_will_do(first: int, second: int, level: float) -> bool:
-    """Tell whether so many runs can be permuted in enough ways for a level of error.
+    """Whether the runs allow enough permutations for a significance level.
 
-    Of four and four runs there are 70 ways, of which pairs are alike: the levels that a test can
-    have are multiples of 2/70, and the one below 5 % is 2.9 %.
+    Four and four runs have 70 permutations, equal in pairs: possible levels are multiples of 2/70,
+    and the one below 5 % is 2.9 %.
 
     Examples
     --------
@@ -41,15 +41,15 @@ def permutations_will_do(first: int, second: int, level: float) -> bool:
 def by_permutation(
     first: Array, second: Array, terms: Array, scores: Array, level: float, seed: int
 ) -> tuple[Array, Array]:
-    r"""Return p values of points as parts of all, and the factor of intervals that hold all.
+    r"""Return adjusted p values and the factor of simultaneous intervals, by permuting runs.
 
     Parameters
     ----------
     first, second
         Values of the runs of both groups (run, point); NaN where a run has none.
     terms
-        What the scatter of the runs does not show, standard uncertainties with their sign, each
-        moving all points at once (term, point).
+        Errors not in the scatter of the runs: signed standard uncertainties, each fully
+        correlated between points (term, point).
     scores
         Differences over their standard errors (point).
     level
@@ -74,7 +74,7 @@ def by_permutation(
     about = np.concatenate([_about_mean(first), _about_mean(second)])
     drawn = _largest(*_means_and_squares(about, chosen), terms, rng)
     same = chosen == chosen[0]
-    drawn[same.all(axis=1) | ~same.any(axis=1)] = np.inf  # the groups as they are, or exchanged
+    drawn[same.all(axis=1) | ~same.any(axis=1)] = np.inf  # the groups as measured, or exchanged
     factor = np.sort(drawn)[::-1][_most(level, drawn.size)]
     return _share_above(drawn, scores), np.full(scores.shape, float(factor))
 
@@ -88,7 +88,7 @@ def by_rotation(
     level: float,
     seed: int,
 ) -> tuple[Array, Array]:
-    """Return p values of points as parts of all, and the factor of intervals that hold all.
+    """Return adjusted p values and the factor of simultaneous intervals, by rotating residuals.
 
     Parameters
     ----------
@@ -113,14 +113,14 @@ def by_rotation(
     turns = _rotations(sum(counts) - 1, _FEW_DRAWS if level >= _FEW_WILL_DO else _DRAWS, seed)
     about = np.concatenate([_about_mean(first), _about_mean(second)])
     drawn = _smallest(about, counts, terms, turns, seed)
-    drawn[0] = 0.0  # the groups as they are
+    drawn[0] = 0.0  # the groups as measured
     bound = float(np.sort(drawn)[_most(level, drawn.size)])
     factor = -special.stdtrit(np.minimum(degrees_of_freedom, 1e9), bound / 2)
     return _share_below(drawn, p_values), np.asarray(factor)
 
 
 def _most(level: float, draws: int) -> int:
-    """Return how many draws may be as far off as what is still called different."""
+    """Return the number of draws that may exceed a difference that is still significant."""
     return math.floor(level * draws * (1 + _SAME))
 
 
@@ -131,7 +131,7 @@ def _about_mean(values: Array) -> Array:
 
 
 def _choices(first: int, second: int, rng: np.random.Generator) -> NDArray[np.bool_]:
-    """Return which runs make the first group in each permutation; first as they did."""
+    """Return the runs of the first group in each permutation; the first is as measured."""
     if math.comb(first + second, first) <= _EXHAUSTIVE:
         return _all_choices(first, second)
     return _drawn_choices(first, second, rng)
@@ -168,14 +168,14 @@ def _means_and_squares(values: Array, chosen: NDArray[np.bool_]) -> tuple[Array,
 
 
 def _with_terms(difference: Array, terms: Array, rng: np.random.Generator) -> Array:
-    """Add to each draw but the first, which is what was measured, what the terms may have done."""
+    """Add random effects of the terms to each draw except the first, which was measured."""
     moved = difference.copy()
     moved[1:] += rng.normal(size=(len(difference) - 1, len(terms))) @ terms
     return moved
 
 
 def _largest(difference: Array, square: Array, terms: Array, rng: np.random.Generator) -> Array:
-    """Largest absolute t of all points for each draw."""
+    """Largest absolute t of all points in each draw."""
     error = np.sqrt(square + (terms**2).sum(axis=0))
     with np.errstate(invalid="ignore", divide="ignore"):
         scores = np.abs(_with_terms(difference, terms, rng)) / error
@@ -184,7 +184,7 @@ def _largest(difference: Array, square: Array, terms: Array, rng: np.random.Gene
 
 @functools.lru_cache(maxsize=4)
 def _rotations(size: int, draws: int, seed: int) -> Array:
-    """Return random rotations (draw, size, size), the first of which turns nothing."""
+    """Random rotations (draw, size, size); the first is the identity."""
     rng = np.random.default_rng(seed)
     turned, scale = np.linalg.qr(rng.normal(size=(1 + draws, size, size)))
     turned *= np.sign(np.diagonal(scale, axis1=1, axis2=2))[:, None, :]
@@ -198,7 +198,7 @@ def _smallest(
     """Smallest p of all points for each rotation of the runs (run, point) about their mean."""
     total = sum(counts)
     columns = np.concatenate([np.ones((total, 1)), np.eye(total)[:, :-1]], axis=1)
-    beside = np.linalg.qr(columns)[0][:, 1:]  # (run, direction): all but the mean
+    beside = np.linalg.qr(columns)[0][:, 1:]  # (run, direction): all directions except the mean
     turned = beside @ (turns @ (beside.T @ values))
     means, squares = [], []
     for part, count in zip(np.split(turned, [counts[0]], axis=1), counts, strict=True):
@@ -217,14 +217,14 @@ def _smallest(
 
 
 def _share_above(largest: Array, scores: Array) -> Array:
-    """Share of the draws in which some point was as far off as each score."""
+    """Share of the draws whose largest score reaches each score."""
     ordered = np.sort(largest)
     bound = np.where(np.isfinite(scores), scores * (1 - _SAME), scores)
     return 1 - np.searchsorted(ordered, bound, side="left") / ordered.size
 
 
 def _share_below(smallest: Array, p_values: Array) -> Array:
-    """Share of the draws in which some point was as unlikely as each."""
+    """Share of the draws whose smallest p is at most each p."""
     ordered = np.sort(smallest)
     share = np.searchsorted(ordered, p_values * (1 + _SAME), side="right") / ordered.size
     return np.maximum(share, 1 / ordered.size)

@@ -1,4 +1,4 @@
-"""How long a control chart runs until it signals: without a cause, and after one."""
+"""Run length of a control chart: points until a false or a true alarm."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tribolab.metrology.control_charts import (
 )
 
 _SERIES, _BLOCK, _LONGEST = 4000, 250, 2000
-_SHORT, _MORE = 400, 4  # points up to which so many times as many series are affordable
+_SHORT, _MORE = 400, 4  # up to this number of points, so many times as many series are affordable
 _SEED = 20260101
 
 
@@ -30,17 +30,17 @@ def average_run_length(
     drift: float = 0.0,
     baseline: int | None = None,
 ) -> float:
-    """Return after how many points on average a chart with these rules signals.
+    """Average number of points until a chart with these rules signals.
 
     Parameters
     ----------
     rules
         As for `control_chart`.
     shift, drift
-        What happens to the instrument when the chart begins, in standard deviations of a point: a
-        step, and a slope per point. Without them it is the ARL0, the points between false alarms.
+        Step, and slope per point, of the instrument from the start of the chart, in standard
+        deviations of a point. Without them the result is ARL0, the points between false alarms.
     baseline
-        Of how many points centre and deviation were estimated; None where they are known.
+        Number of points from which centre and deviation were estimated; None if they are known.
 
     Notes
     -----
@@ -65,7 +65,7 @@ def median_run_length(
     drift: float = 0.0,
     baseline: int | None = None,
 ) -> float:
-    """Return after how many points half of all charts have signalled; as `average_run_length`."""
+    """Median number of points until a signal; arguments as for `average_run_length`."""
     return float(np.median(_run_lengths(tuple(rules), shift, drift, baseline, _LONGEST)))
 
 
@@ -77,7 +77,7 @@ def signal_probability(
     drift: float = 0.0,
     baseline: int | None = None,
 ) -> float:
-    """Return the chance of a signal within so many points; arguments as `average_run_length`."""
+    """Probability of a signal within a number of points; see `average_run_length`."""
     lengths = _run_lengths(tuple(rules), shift, drift, baseline, points)
     return float((lengths <= points).mean())
 
@@ -86,7 +86,7 @@ def signal_probability(
 def _run_lengths(
     rules: tuple[str, ...], shift: float, drift: float, baseline: int | None, longest: int
 ) -> NDArray[np.float64]:
-    """Points until the first signal of many simulated series."""
+    """Return the number of points until the first signal in many simulated series."""
     rng = np.random.default_rng(_SEED)
     count = _SERIES * (_MORE if longest <= _SHORT else 1)
     usual, centre, sigma = Baseline(0.0, 1.0), np.zeros(count), np.ones(count)
@@ -102,7 +102,7 @@ def _run_lengths(
     running = np.arange(count)
     series = np.zeros((count, 0))
     while running.size and series.shape[1] < longest:
-        # from the first point on: what the rules remember is not to be cut at a block
+        # evaluated from the first point: rules with memory must not restart at a block
         start = series.shape[1]
         place = np.arange(start, start + min(_BLOCK, longest - start))
         fresh = rng.normal(size=(running.size, place.size)) + shift + drift * (place + 1)

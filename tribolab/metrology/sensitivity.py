@@ -1,4 +1,4 @@
-"""How each input of a measured friction coefficient moves it: the sensitivities of its budget."""
+"""Sensitivities of a friction coefficient to the inputs of its budget."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from tribolab.friction.coefficient.reversal import ZERO as TAKEN_FOR_ZERO
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.reading.dialect.uncertainty import Known
 
-_TOLD_BY_LOOPS = 3  # pairs from which on the loops themselves show how the zero drifts
-# inputs of the friction coefficient; the other names are inputs of the model beside it
+_TOLD_BY_LOOPS = 3  # pairs above which the loops themselves show the drift of the zero
+# inputs of the friction coefficient; the other names are inputs of the model
 _OF_FRICTION = (
     "friction_gain",
     "normal_gain",
@@ -29,12 +29,12 @@ _OF_FRICTION = (
     "zero_drift",
     "resolution",
 )
-AMBIGUOUS = "zero_or_tilt"  # what a load that changed leaves where the two are not told apart
+AMBIGUOUS = "zero_or_tilt"  # remainder of a changed load if tilt and zero cannot be separated
 
 
 @dataclass(frozen=True)
 class SegmentReadings:
-    """What the sensitivities depend on, one entry for each segment.
+    """Quantities that the sensitivities depend on, one entry for each segment.
 
     Parameters
     ----------
@@ -43,17 +43,17 @@ class SegmentReadings:
     direction
         +1 or -1.
     both_ways
-        Whether the coefficient is that of a forward and a backward stroke together.
+        Whether the coefficient is the mean of a forward and a backward stroke.
     inverse_load_change
         (1/N_forward - 1/N_backward)/2 of its pair [1/N]; 0 without one.
     middle
-        Middle of the loop beyond what rests without load show [N].
+        Middle of the loop minus the unloaded zero [N].
     zero_told, normal_zero_told
-        Whether the run itself told the zeros, whose errors are then in the noise.
+        Whether the zeros were measured in the run; their errors are then in the noise.
     drift_told
-        Whether the loops showed how the zero drifts.
+        Whether the drift of the zero was measured from the loops.
     middle_is
-        What the middle of the loops was taken for; "" without loops.
+        Interpretation of the middle of the loops; "" without loops.
     """
 
     mu: np.ndarray
@@ -69,7 +69,7 @@ class SegmentReadings:
 
 
 def readings_of(friction: xr.Dataset) -> SegmentReadings:
-    """Collect from a friction result what the sensitivities depend on.
+    """Collect from a friction result the quantities that the sensitivities depend on.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def _values(friction: xr.Dataset, name: str, default: float) -> np.ndarray:
 
 
 def _of_pairs(values: np.ndarray, pair: np.ndarray, both: np.ndarray) -> np.ndarray:
-    """Return the mean over the strokes of each pair, at both; 0 without a pair."""
+    """Mean of a quantity over both strokes of each pair, at both; 0 without a pair."""
     sums, count = np.zeros((2, int(pair.max(initial=-1)) + 1))
     np.add.at(sums, pair[both], values[both])
     np.add.at(count, pair[both], 1.0)
@@ -118,7 +118,7 @@ def _of_pairs(values: np.ndarray, pair: np.ndarray, both: np.ndarray) -> np.ndar
 
 
 def contributions(at: SegmentReadings, known: Mapping[str, Known]) -> dict[str, np.ndarray]:
-    """Return by how much one standard uncertainty of each input moves mu, with its sign.
+    """Signed change of mu for one standard uncertainty of each input.
 
     Parameters
     ----------
@@ -131,7 +131,7 @@ def contributions(at: SegmentReadings, known: Mapping[str, Known]) -> dict[str, 
     Returns
     -------
     dict
-        Of each input (segment) [1]; NaN where the normal force that it takes was not recorded.
+        Change for each input (segment) [1]; NaN if the required normal force was not recorded.
 
     Notes
     -----
@@ -175,10 +175,10 @@ def contributions(at: SegmentReadings, known: Mapping[str, Known]) -> dict[str, 
 def _left_by_load(
     at: SegmentReadings, u: Mapping[str, float], parts: Mapping[str, np.ndarray]
 ) -> dict[str, np.ndarray]:
-    """Return what a change of load between the strokes leaves of the tilt and of the zero.
+    """Remainder of tilt and zero after a change of load between the strokes.
 
-    Where both are stated and no rest tells them apart, the middle of the loop was shared between
-    them, and what is left of either has the variance a b/(a + b) of both.
+    If both are stated and no rest separates them, the middle of the loop was divided between them,
+    and the remainder of each has the variance a b/(a + b).
     """
     if at.middle_is in ("", RESTS):
         return {}
@@ -189,6 +189,6 @@ def _left_by_load(
         return {"tilt": parts.get("tilt", 0.0) + left}
     if at.middle_is != TAKEN_FOR_ZERO or "friction_zero" in u:
         return {}
-    # somewhere between all of it and nothing
+    # between all of it and nothing
     left = np.abs(at.middle * at.inverse_load_change) / np.sqrt(3)
     return {AMBIGUOUS: left} if left.any() else {}

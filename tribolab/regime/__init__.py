@@ -1,1 +1,1 @@
-"""How a contact slides: the evidence, the verdict, and its words."""
+"""Sliding mode of a contact: evidence, verdict, and wording."""

@@ -1,4 +1,4 @@
-"""The single pieces of evidence on the sliding mode, each one sentence with its numbers."""
+"""Pieces of evidence on the sliding mode, each a sentence with its numbers."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from tribolab.regime.words import REVERSED, SAW, SINE, friction_text, percent_te
 if TYPE_CHECKING:
     from tribolab.regime.model import Mode
 
-_FAR = 10.0  # times apart, that a plateau and the model's boundary regime are not the same
-_BELOW = 2.0  # times that friction lies below a uniform slip's
-_WEAKER = 1.5  # times that drops differ between speeds
-_FALLS = 0.10  # relative; less of a fall between two speeds is none
-_FALLEN = 0.8  # of the plateau's friction: below, the plateau is left
+_FAR = 10.0  # ratio of speeds above which a plateau and the model's boundary regime differ
+_BELOW = 2.0  # ratio of the friction of uniform slip to that measured
+_WEAKER = 1.5  # ratio of drops at different speeds
+_FALLS = 0.10  # relative; a smaller fall of friction between two speeds is ignored
+_FALLEN = 0.8  # of the plateau's friction: below, the plateau has ended
 
 
 def _moving(slip: xr.Dataset) -> xr.Dataset:
@@ -29,7 +29,7 @@ def _moving(slip: xr.Dataset) -> xr.Dataset:
 
 
 def traces(slip: xr.Dataset | None) -> Evidence | None:
-    """Say what the traces show."""
+    """Evidence from the waveform of the friction traces."""
     if slip is None or not slip.sizes.get("sliding_speed", 0):
         return Evidence(UNTOUCHED, "stick-slip was not looked for in the traces", "traces")
     moving = _moving(slip)
@@ -66,7 +66,7 @@ def traces(slip: xr.Dataset | None) -> Evidence | None:
 
 
 def _apart(row: xr.Dataset) -> str:
-    """Say how far drops are apart, and what the spectrum says if periods scatter."""
+    """Return the distance between drops as text, with the spectral period if periods scatter."""
     spectral = 1e6 * float(row["dominant_wavelength"]) if "dominant_wavelength" in row else np.nan
     apart = 1e6 * float(row["recurrence_distance"]) if "recurrence_distance" in row else np.nan
     kind = str(row["regularity"].item()) if "regularity" in row else ""
@@ -100,7 +100,7 @@ def macroscopic_adhesion(known: Mode) -> Evidence | None:
 
 
 def vanishing_adhesion(known: Mode) -> Evidence | None:
-    """Whether adhesion may vanish within its bounds."""
+    """Whether adhesion may vanish within its uncertainty."""
     bounds = known.work_of_adhesion_range
     if not known.work_of_adhesion or bounds is None or bounds[0] > 0:
         return None
@@ -109,10 +109,10 @@ def vanishing_adhesion(known: Mode) -> Evidence | None:
 
 
 def weakening(curve: xr.Dataset, slip: xr.Dataset | None) -> Evidence | None:
-    """Whether friction falls with speed where the traces oscillate, as stick-slip of a rig needs.
+    """Whether friction falls with speed where the traces oscillate, as rig stick-slip requires.
 
-    A spring that pulls a body over friction that falls with speed sticks and slips by itself,
-    whatever the interface does; its wavelength is fixed, too.
+    A spring that pulls a body against friction that falls with speed causes stick-slip of fixed
+    wavelength, whatever happens at the interface.
     """
     if slip is None or not slip.sizes.get("sliding_speed", 0):
         return None
@@ -134,7 +134,7 @@ def weakening(curve: xr.Dataset, slip: xr.Dataset | None) -> Evidence | None:
 
 
 def strength(slip: xr.Dataset | None) -> Evidence | None:
-    """Whether the oscillation weakens with speed, as forced wetting makes it."""
+    """Whether the oscillation weakens with speed, as expected for forced wetting."""
     if slip is None or not slip.sizes.get("sliding_speed", 0):
         return None
     moving = _moving(slip)
@@ -154,7 +154,7 @@ def strength(slip: xr.Dataset | None) -> Evidence | None:
 
 
 def scaling(slip: xr.Dataset | None) -> Evidence | None:
-    """Whether something of a fixed frequency rings, whatever the speed."""
+    """Whether a resonance with a fixed frequency is present at all speeds."""
     if slip is None:
         return None
     if (own := slip.attrs.get("resonance_frequency_Hz")) is not None:
@@ -167,7 +167,7 @@ def scaling(slip: xr.Dataset | None) -> Evidence | None:
 
 
 def repeating(slip: xr.Dataset | None) -> Evidence | None:
-    """Say what repeats with each turn of the rig, and was taken out of the traces."""
+    """Evidence of waves that repeat with each turn of the rig and were removed."""
     text = rig_wave_text(slip)
     if not text:
         return None
@@ -175,7 +175,7 @@ def repeating(slip: xr.Dataset | None) -> Evidence | None:
 
 
 def plateau(numbers: dict[str, float], model: xr.Dataset | None) -> Evidence | None:
-    """Where the plateau ends against where the model's boundary regime does."""
+    """Compare the ends of the friction plateau and of the model's boundary regime."""
     end, computed = numbers["boundary_end_m_s"], numbers["model_boundary_end_m_s"]
     if model is None or np.isnan(end) or "solid_load_share" not in model:
         return None
@@ -217,7 +217,7 @@ def misfit(numbers: dict[str, float]) -> Evidence | None:
 
 
 def uniform_slip(numbers: dict[str, float], known: Mode) -> Evidence | None:
-    """Say what friction a uniform slip at the rough surfaces' shear stress would need."""
+    """Friction expected for uniform slip at the shear stress of rough surfaces."""
     uniform, seen = numbers["uniform_friction"], numbers["plateau_friction"]
     stress = known.rough_shear_stress
     if stress is None or not uniform > _BELOW * seen > 0:  # nothing to explain
@@ -234,7 +234,7 @@ def uniform_slip(numbers: dict[str, float], known: Mode) -> Evidence | None:
 
 
 def forced_wetting(curve: xr.Dataset, slip: xr.Dataset | None, known: Mode) -> dict[str, float]:
-    """Between which speeds forced wetting would set in: stick-slip ends, or friction has fallen."""
+    """Speeds between which forced wetting starts: stick-slip ends, or friction falls."""
     if not known.fluid or slip is None:
         return {}
     speed, mu = curve["sliding_speed"].values, curve["friction_coefficient"].values

@@ -1,4 +1,4 @@
-"""Whether a model is sufficient for a measured curve: a test with the errors of both."""
+"""Goodness of fit of a model to a measured curve, with the errors of both."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from scipy import special
 
 from tribolab.fit.point_covariance import PointErrors, shared_errors
 
-SUFFICIENT = 0.10  # rms misfit over the largest friction below which a model is sufficient
-_CHANCE = 0.05  # probability under which a misfit is no chance
-_FITTED = 1  # the shear stress
+SUFFICIENT = 0.10  # rms misfit relative to the largest friction below which a model is sufficient
+_CHANCE = 0.05  # p value below which a misfit is significant
+_FITTED = 1  # number of fitted parameters: the shear stress
 
 
 def misfit_numbers(measured: xr.Dataset, model: xr.Dataset, off: np.ndarray) -> dict[str, float]:
-    """Return how far a model misses a measured curve, and what the errors say of it.
+    """Misfit of a model to a measured curve, its p value, and its error.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ def misfit_numbers(measured: xr.Dataset, model: xr.Dataset, off: np.ndarray) -> 
         uncertainty of viscosity times speed, its ``model_part`` (model_input, sliding_speed) what
         the errors of load, radius and modulus make of it.
     off
-        Computed less measured (sliding_speed); NaN where the model was not computed.
+        Computed minus measured (sliding_speed); NaN where the model was not computed.
 
     Returns
     -------
@@ -77,7 +77,7 @@ def misfit_numbers(measured: xr.Dataset, model: xr.Dataset, off: np.ndarray) -> 
 
 
 def _moved(errors: PointErrors, solid: np.ndarray) -> float:
-    """Return what the root mean square of errors stays below with 95 %, a level fitted to them."""
+    """Upper 95 % bound of the rms of the errors, after fitting a level to them."""
     covariance = errors.covariance
     if np.any(solid > 0):
         taken = errors.whitened(solid)
@@ -91,12 +91,11 @@ def _moved(errors: PointErrors, solid: np.ndarray) -> float:
 
 
 def is_sufficient(numbers: dict[str, float]) -> bool | None:
-    """Return whether a model is sufficient; None where the errors are too large to tell.
+    """Whether a model is sufficient; None if the errors are too large to decide.
 
-    A model is sufficient where its misfit, with what the errors may hide of it, stays below a
-    tenth of the largest friction, or where the errors alone would make it and would have shown one
-    of that tenth. It is not where the misfit is no chance and is more than that tenth with what the
-    errors may have added taken off.
+    A model is sufficient if its misfit plus the errors is below a tenth of the largest friction, or
+    if the errors explain the misfit and could have revealed one of a tenth. It is not sufficient if
+    the misfit is significant and exceeds a tenth after subtraction of the errors.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What is known of a contact, the pieces of evidence, and the names of the verdicts."""
+"""Contact properties, evidence, and verdicts of the sliding mode."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ UNKNOWN = "not known"
 
 @dataclass(frozen=True)
 class Mode:
-    """What is known of a contact beside its curves; all SI, None where not known.
+    """Properties of a contact besides its curves; in SI, None if unknown.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ FOR, AGAINST, UNTOUCHED = "for", "against", "neutral"
 
 
 class Evidence(NamedTuple):
-    """One piece: for or against an adhesion-controlled mode, or neutral; what; a figure's topic."""
+    """Piece of evidence: for or against an adhesion-controlled mode, or neutral."""
 
     side: str
     text: str

@@ -1,4 +1,4 @@
-"""Boundary, mixed or hydrodynamic: of a measured curve by its form, of a model by who carries."""
+"""Boundary, mixed or hydrodynamic regime of measured and computed curves."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import numpy as np
 import xarray as xr
 
 _BOUNDARY, _MIXED, _HYDRODYNAMIC = "boundary", "mixed", "hydrodynamic"
-_FLAT = 0.15  # part of its level by which friction may change along a plateau
-_SIGMAS = 3.0  # or that many standard errors
-_RISE = 1.2  # friction over its minimum where it is hydrodynamic
-_CARRIED = 0.9  # part of the load on one side that decides a regime
+_FLAT = 0.15  # relative change of friction along a plateau
+_SIGMAS = 3.0  # or so many standard errors
+_RISE = 1.2  # ratio of friction to its minimum in the hydrodynamic regime
+_CARRIED = 0.9  # share of the load on one side that decides a regime
 
 
 def measured_regimes(curve: xr.Dataset) -> np.ndarray:
-    """Regime at each speed of a measured curve, from its form alone.
+    """Lubrication regime at each speed of a measured curve, from its shape.
 
     Parameters
     ----------
@@ -28,8 +28,8 @@ def measured_regimes(curve: xr.Dataset) -> np.ndarray:
     Notes
     -----
     Boundary: from the lowest speed on as long as friction stays within 15 % (or three standard
-    errors) of its median over the three lowest speeds; none unless three speeds do. Hydrodynamic:
-    behind the minimum, where friction has risen by a fifth. Mixed: between.
+    errors) of its median over the three lowest speeds, for at least three speeds. Hydrodynamic:
+    above the minimum, where friction has risen by a fifth. Mixed: between.
 
     Examples
     --------
@@ -62,7 +62,7 @@ def measured_regimes(curve: xr.Dataset) -> np.ndarray:
 
 
 def model_regimes(curve: xr.Dataset) -> np.ndarray:
-    """Regime at each speed of a computed curve: who carries nine tenths of the load.
+    """Lubrication regime at each speed of a computed curve, from the shares of the load.
 
     Parameters
     ----------

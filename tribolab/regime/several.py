@@ -1,4 +1,4 @@
-"""Sliding modes of several surfaces, media or loads, weighed at once."""
+"""Sliding modes of several surfaces, media or loads."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _CURVES = ("friction_coefficient", "waveform", "friction_coefficient_low")
 
 
 class SlidingModes(Conditions[SlidingMode]):
-    """How several contacts slide: a `SlidingMode` for each condition."""
+    """Sliding modes of several contacts: a `SlidingMode` for each condition."""
 
     def to_dataframe(self) -> pd.DataFrame:
-        """Return a table with a row for each piece of evidence, and for what would decide."""
+        """Return a table of the evidence and of decisive measurements, one row each."""
         rows = [
             {**labels, "verdict": mode.verdict, "side": side, "text": text}
             for labels, mode in self
@@ -35,7 +35,7 @@ class SlidingModes(Conditions[SlidingMode]):
         return pd.DataFrame(rows, columns=[*self.results.dims, "verdict", "side", "text"])
 
     def __repr__(self) -> str:
-        """Return each verdict in a sentence, with what speaks for and against it."""
+        """Return each verdict as a sentence, with the evidence for and against it."""
         lines = []
         for labels, mode in self:
             lines.append(f"{_words(labels)}: {mode.text}")
@@ -44,7 +44,7 @@ class SlidingModes(Conditions[SlidingMode]):
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        """Each verdict in a sentence; below it what speaks for and against it."""
+        """HTML of each verdict, with the evidence for and against it below."""
         parts = []
         for labels, mode in self:
             rows = [(piece.side, piece.text) for piece in mode.evidence]
@@ -66,18 +66,18 @@ def sliding_modes(
     adhesion: xr.Dataset | None = None,
     band: xr.Dataset | None = None,
 ) -> SlidingModes:
-    """Weigh how each of several contacts slides.
+    """Sliding modes of several contacts.
 
     Parameters
     ----------
     measured, model, slip, band
-        As for `sliding_mode`, over further dims such as ``surface``; what lacks a dim holds for
-        all along it.
+        As for `sliding_mode`, over further dims such as ``surface``; data without a dim apply to
+        all its values.
     known
-        What else is known, and the same for all.
+        Further properties, the same for all contacts.
     adhesion
-        From `adhesion_uncertainty`, at the load: of each contact gamma_eff(1) with its bounds, and
-        the contact area; they stand in place of what `known` says.
+        From `adhesion_uncertainty`, at the load: gamma_eff(1) of each contact with its bounds, and
+        the contact area; they replace those of `known`.
 
     Returns
     -------
@@ -136,7 +136,7 @@ def _known(known: Mode, adhesion: xr.Dataset | None, labels: Mapping[Hashable, o
 
 
 def _cut(data: xr.Dataset | None, labels: Mapping[Hashable, object]) -> xr.Dataset | None:
-    """Return what belongs to one condition; None where nothing is known of it."""
+    """Part of the data that belongs to one condition; None if there is none."""
     if data is None:
         return None
     for dim, label in labels.items():
@@ -152,7 +152,7 @@ def _cut(data: xr.Dataset | None, labels: Mapping[Hashable, object]) -> xr.Datas
 
 
 def _told(values: xr.DataArray) -> np.ndarray:
-    """Where curves on common axes have a value, or a text."""
+    """Mask of where curves on common axes have a value or a text."""
     return values.to_numpy() != "" if values.dtype.kind in "OU" else values.notnull().to_numpy()
 
 

@@ -1,4 +1,4 @@
-"""How a contact slides: steadily as the model has it, or by instabilities that adhesion allows."""
+"""Sliding mode of a contact: steady as in the model, or unstable due to adhesion."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from tribolab.units.stamping import stamp
 
 @dataclass(frozen=True)
 class SlidingMode:
-    """The verdict on how a contact slides, and what it rests on.
+    """Verdict on the sliding mode of a contact, with its evidence.
 
     Parameters
     ----------
@@ -38,11 +38,11 @@ class SlidingMode:
     text
         The verdict as one sentence, with the speeds.
     evidence
-        What was found, each for or against an adhesion-controlled mode, or neither.
+        Pieces of evidence for or against an adhesion-controlled mode, or neutral.
     decide
-        What measurement would decide.
+        Measurements that would decide.
     paragraph
-        All of it in words.
+        Verdict, evidence and decisive measurements as text.
     curve
         Per sliding speed: ``regime`` and ``model_regime`` (text), ``waveform`` and
         ``regularity`` (text), ``drop``, ``dominant_wavelength`` and ``recurrence_distance`` [m],
@@ -72,7 +72,7 @@ def sliding_mode(
     band: xr.Dataset | None = None,
     name: str = "the contact",
 ) -> SlidingMode:
-    """Weigh what speaks for and against an adhesion-controlled sliding mode.
+    """Assess the evidence for and against an adhesion-controlled sliding mode.
 
     Parameters
     ----------
@@ -84,16 +84,16 @@ def sliding_mode(
     slip
         Stick-slip over speed, from `stick_slip_curve`; None if not looked for.
     known
-        What else is known; see `Mode`.
+        Further properties of the contact; see `Mode`.
     band
-        From `model_uncertainty`: between which curves the model may lie.
+        From `model_uncertainty`: band of the model.
     name
-        What to call the contact in the text.
+        Name of the contact in the text.
 
     Returns
     -------
     SlidingMode
-        It says "suspected" and no more: the interface is not seen.
+        The mode is at most "suspected", because the interface is not observed.
 
     Notes
     -----
@@ -160,7 +160,7 @@ def sliding_mode(
 
 
 def oscillating_speeds(slip: xr.Dataset | None) -> np.ndarray:
-    """Speeds at which stick-slip is claimed [m/s]."""
+    """Speeds [m/s] with significant stick-slip."""
     if slip is None or "waveform" not in slip:
         return np.zeros(0)
     return slip["sliding_speed"].values[oscillates(slip["waveform"].values)]
@@ -210,7 +210,7 @@ def _curve(
 
 
 def _in_band(measured: xr.Dataset, band: xr.Dataset | None) -> dict[str, float]:
-    """At how many measured speeds friction lies in the model's band, within its 95 %."""
+    """Return the number of measured speeds at which friction agrees with the model's 95 % band."""
     if band is None:
         return {"speeds_in_band": float("nan"), "speeds_with_band": float("nan")}
     place = np.log(band["sliding_speed"].values)

@@ -1,4 +1,4 @@
-"""The verdict on the sliding mode in words: sentences made from the evidence, nothing beyond."""
+"""Text of the verdict on the sliding mode, made from the evidence only."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from tribolab.regime.model import Evidence, Mode
 
 _STEADY, SAW, SINE, REVERSED = CLASSES
-_LONG = 0.5e-3  # m: shorter waves are no turn of a track and no pitch of a screw
-_APART, _ALIKE = 1.5, 1.15  # times, of the speeds at which a wavelength is the same, and of those
+_LONG = 0.5e-3  # m; shorter waves are neither turns of a track nor pitches of a screw
+_APART, _ALIKE = 1.5, 1.15  # ratio of the speeds at equal wavelength, and of these wavelengths
 
 
 def friction_text(value: float) -> str:
@@ -27,12 +27,12 @@ def friction_text(value: float) -> str:
 
 
 def percent_text(share: float) -> str:
-    """Part as a percentage."""
+    """Share as a percentage."""
     return f"{100 * share:.2g} %"
 
 
 def rig_wave_text(slip: xr.Dataset | None) -> str:
-    """Say what repeats with each turn of the rig, at how many speeds, how large; "" if nothing."""
+    """Text on waves that repeat with each turn of the rig, with speeds and size; else ""."""
     if slip is None or "rig_wave" not in slip:
         return ""
     kinds = slip["rig_wave"].values.astype(str)
@@ -43,7 +43,7 @@ def rig_wave_text(slip: xr.Dataset | None) -> str:
     what = str(names[np.argmax(counts)]).replace("run-out: ", "run-out of the disc: friction ")
     text = f"{what} at {seen.sum()} of {Count(kinds.size):speed|speeds}"
     swing = slip["rig_swing"].values if "rig_swing" in slip else np.full(kinds.size, np.nan)
-    if np.isfinite(swing).any():  # of forces alone it has another unit
+    if np.isfinite(swing).any():  # for forces alone the unit differs
         text += f", by up to {friction_text(float(np.nanmax(swing)))}"
     return text
 
@@ -51,7 +51,7 @@ def rig_wave_text(slip: xr.Dataset | None) -> str:
 def verdict_text(
     verdict: str, numbers: dict[str, float], slip: xr.Dataset | None, modelled: bool
 ) -> str:
-    """Return the verdict as one sentence."""
+    """Verdict as one sentence."""
     text = _verdict_text(verdict, numbers, slip, modelled)
     return f"{text}; {wave}" if (wave := rig_wave_text(slip)) else text
 
@@ -105,7 +105,7 @@ def _verdict_text(
 def suggestions(
     verdict: str, numbers: dict[str, float], known: Mode, slip: xr.Dataset | None
 ) -> tuple[str, ...]:
-    """Return what measurement would decide."""
+    """Measurements that would decide."""
     length = _fixed_wavelength(slip)
     compare: tuple[str, ...] = ()
     if verdict in (SUSPECTED, LOCAL, UNEXPLAINED) and length > _LONG:
@@ -119,7 +119,7 @@ def suggestions(
 
 
 def _fixed_wavelength(slip: xr.Dataset | None) -> float:
-    """Return the wavelength [m] that the traces share at several speeds; NaN if they do not."""
+    """Return the common wavelength [m] of the traces at several speeds; NaN if they differ."""
     if slip is None or "dominant_wavelength" not in slip:
         return np.nan
     moving = oscillating(slip["waveform"].values)
@@ -181,7 +181,7 @@ def paragraph(
     decide: Sequence[str],
     numbers: dict[str, float],
 ) -> str:
-    """Return verdict, evidence and what would decide as a short paragraph."""
+    """Verdict, evidence and decisive measurements as a short paragraph."""
     parts = [f"{name[:1].upper()}{name[1:]}: {text}."]
     for side, opening in (
         ("for", "For an adhesion-controlled mode:"),

@@ -1,1 +1,1 @@
-"""Rubber: its viscoelastic modulus and the friction that hysteresis causes on roughness."""
+"""Rubber: viscoelastic modulus and hysteresis friction on rough surfaces."""

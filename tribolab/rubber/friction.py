@@ -1,4 +1,4 @@
-"""Hysteretic rubber friction: the loss that roughness causes in rubber that slides over it."""
+"""Hysteresis friction of rubber that slides on a rough surface."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tribolab.surface.moments import (
 from tribolab.units.conversion import to_si
 from tribolab.units.stamping import labelled, stamp
 
-_PER_DECADE = 60  # wavenumbers, where the spectrum has no more nodes than that
+_PER_DECADE = 60  # wavenumbers per decade if the spectrum has fewer nodes
 _ANGLES = 24  # Gauss-Legendre points on a quarter of a turn
 
 
@@ -154,7 +154,7 @@ def _solved(
     """Friction coefficient and area at the largest wavenumber (pressures, speed)."""
     q, spectrum = refine_nodes(*spectrum_arrays(psd), _PER_DECADE)
     stored, lost = _turn_averages(np.atleast_1d(speed.values)[:, None] * q, modulus)
-    # pressures first, then speeds and wavenumbers
+    # dims: pressures, then speeds and wavenumbers
     relative = 1 / ((1 - poisson_ratio**2) * over.values.reshape(*over.shape, 1, 1))
     g = relative**2 / 8 * cumulative(q, spectrum * stored, 3)
     with np.errstate(divide="ignore"):
@@ -169,7 +169,7 @@ def _solved(
 def _heating(
     friction: np.ndarray, area: np.ndarray, speed: xr.DataArray, over: xr.DataArray, psd: xr.Dataset
 ) -> np.ndarray:
-    """Temperature rise [K] in the spots by the loss in the rubber (pressures, speed)."""
+    """Temperature rise [K] of contact spots due to the loss in the rubber (pressures, speed)."""
     q, spectrum = spectrum_arrays(psd)
     first, second = (cumulative(q, spectrum, power)[-1] for power in (1, 2))
     if first == 0:
@@ -180,7 +180,7 @@ def _heating(
 
 
 def _growth(over: xr.DataArray, psd: xr.Dataset, stiffness: float, work: float) -> np.ndarray:
-    """P(q) with adhesion over that without, at rest (pressures, 1, wavenumber)."""
+    """Ratio of P(q) with and without adhesion, at rest (pressures, 1, wavenumber)."""
     q, spectrum = refine_nodes(*spectrum_arrays(psd), _PER_DECADE)
     bound = adhesion(over.values.ravel(), psd, stiffness, work)
     nodes = bound["wavenumber"].values
@@ -199,9 +199,9 @@ def _outside(
     speed: xr.DataArray,
     modulus: TabulatedModulus,
 ) -> dict[str, str]:
-    """Judge how much rests on frequencies outside the table, by two ways to go on there.
+    """Return the validity of a result that depends on the modulus outside the measured frequencies.
 
-    An error only if no speed is inside the second limit: a curve may have ends that are not sure.
+    An error only if no speed is within the second limit: the ends of a curve may be uncertain.
     """
     share = np.zeros(np.atleast_1d(speed.values).size)
     for force, two in zip(forces, other, strict=True):
@@ -220,7 +220,7 @@ def _outside(
 
 
 def _turn_averages(frequency: np.ndarray, modulus: Modulus) -> tuple[np.ndarray, np.ndarray]:
-    """Integrate |E|^2 and cos(phi) Im E over a turn of phi, E taken at frequency cos(phi).
+    """Integrals of |E|^2 and cos(phi) Im E over a turn of phi, with E at frequency cos(phi).
 
     Both are four times their integral over a quarter: E(-omega) is the conjugate of E(omega).
     """

@@ -1,4 +1,4 @@
-"""The complex modulus of rubber over frequency: a fractional Zener model, or a measured table."""
+"""Complex modulus of rubber against frequency: fractional Zener model or measured table."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tribolab.units.conversion import positive
 
 
 class Modulus(Protocol):
-    """Whatever gives the complex modulus E(omega) [Pa] at angular frequencies [rad/s]."""
+    """Callable that returns the complex modulus E(omega) [Pa] at angular frequencies [rad/s]."""
 
     def __call__(self, angular_frequency: ArrayLike) -> np.ndarray:
         """Complex modulus [Pa], with the shape of the frequencies; E(-omega) = conj(E(omega))."""
@@ -24,7 +24,7 @@ class Modulus(Protocol):
 
 @dataclass(frozen=True)
 class FractionalZener:
-    """Rubber between a rubbery and a glassy plateau, with a power law of loss between them.
+    """Fractional Zener solid: rubbery and glassy plateau with a power-law loss between.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class FractionalZener:
     exponent: float
 
     def __post_init__(self) -> None:
-        """Turn text into SI floats and refuse what is no solid."""
+        """Convert text to SI values and raise an error for impossible ones."""
         for name, unit in (("relaxed", "Pa"), ("unrelaxed", "Pa"), ("relaxation_time", "s")):
             object.__setattr__(self, name, positive(getattr(self, name), unit, name))
         if self.unrelaxed < self.relaxed:
@@ -75,7 +75,7 @@ class FractionalZener:
         return np.where(omega < 0, np.conj(modulus), modulus)
 
 
-# PDMS at 20 C as a stand-in: the paper shows its modulus in a picture only, itself interpolated
+# PDMS at 20 C as a substitute: the paper only plots its modulus, which is itself interpolated
 # between rubber and glass. Plateaus as stated there; a glass-transition frequency of about 1e9 Hz
 # and an exponent of one half are usual for PDMS networks. Good for orders of magnitude.
 PDMS_STAND_IN = FractionalZener(1.5e6, 1e9, 1e-10, 0.5)
@@ -83,7 +83,7 @@ PDMS_STAND_IN = FractionalZener(1.5e6, 1e9, 1e-10, 0.5)
 
 @dataclass(frozen=True, eq=False)
 class TabulatedModulus:
-    """A measured modulus, interpolated in the logarithm of the frequency.
+    """Measured modulus, interpolated in the logarithm of the frequency.
 
     Between entries storage and loss are power laws of the frequency (straight lines in its
     logarithm where the loss is not positive). Outside the table the storage modulus stays what it
@@ -96,7 +96,7 @@ class TabulatedModulus:
     storage, loss
         E' and E'' [Pa] (n).
     remarks
-        What was taken for granted when it was read.
+        Assumptions made in reading it.
     """
 
     angular_frequency: np.ndarray = field(repr=False)
@@ -105,7 +105,7 @@ class TabulatedModulus:
     remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        """Check the table and keep copies nobody can change."""
+        """Check the table and keep read-only copies."""
         for name in ("angular_frequency", "storage", "loss"):
             values = np.array(getattr(self, name), dtype=float)
             values.flags.writeable = False
@@ -133,16 +133,16 @@ class TabulatedModulus:
 
     @property
     def continued(self) -> Modulus:
-        """The same table with its power laws of the last decades going on outside.
+        """Return the table extrapolated by the power laws of its first and last decade.
 
-        What differs between the two is what the table does not tell.
+        The difference between both results shows the effect of the unknown frequencies.
         """
         return _Continued(self)
 
 
 @dataclass(frozen=True, eq=False)
 class _Continued:
-    """A table whose storage and loss go on as over its first and last decade, up to a glass."""
+    """Table extrapolated by the power laws of its first and last decade, up to a glass."""
 
     table: TabulatedModulus
 
@@ -168,7 +168,7 @@ class _Continued:
 
 
 _DECADE = np.log(10.0)
-_GLASS = 3e9  # Pa, no polymer is stiffer
+_GLASS = 3e9  # Pa; no polymer is stiffer
 
 
 def read_modulus(
@@ -177,7 +177,7 @@ def read_modulus(
     sheet: str | None = None,
     unit: str | None = None,
 ) -> TabulatedModulus:
-    r"""Read storage and loss modulus over frequency from the file of a rheometer or DMA.
+    r"""Storage and loss modulus over frequency from the file of a rheometer or DMA.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A modulus as a sum of relaxations, as fits of master curves and finite elements state it."""
+"""Prony series of a modulus, as from fits of master curves or finite elements."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribolab.units.conversion import positive
 
 @dataclass(frozen=True, eq=False)
 class PronySeries:
-    """Rubber with a relaxed modulus and a few relaxations beside it.
+    """Modulus as a sum of a relaxed value and exponential relaxations.
 
     Parameters
     ----------
@@ -32,8 +32,8 @@ class PronySeries:
     Notes
     -----
     ``E(omega) = E_0 + sum_k E_k i omega tau_k/(1 + i omega tau_k)``. The glass has the modulus
-    E_0 + sum_k E_k. Between times more than a decade apart the loss has dips that are not the
-    rubber's: take one relaxation or more for each decade of frequency.
+    E_0 + sum_k E_k. Between times more than a decade apart the loss has artificial dips: use at
+    least one relaxation for each decade of frequency.
 
     Examples
     --------
@@ -47,7 +47,7 @@ class PronySeries:
     relaxation_times: np.ndarray = field(repr=False)
 
     def __post_init__(self) -> None:
-        """Turn text into SI, and refuse what is no solid."""
+        """Convert text to SI values and raise an error for impossible ones."""
         object.__setattr__(self, "relaxed", positive(self.relaxed, "Pa", "relaxed"))
         for name in ("moduli", "relaxation_times"):
             values = np.array(getattr(self, name), dtype=float)

@@ -1,4 +1,4 @@
-"""The modulus of rubber at another temperature, and how hot sliding makes its contact."""
+"""Modulus of rubber at another temperature, and flash temperature of its contact."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from tribolab.units.conversion import positive
 from tribolab.units.quantities import si_values
 
 Shiftable = FractionalZener | TabulatedModulus | PronySeries
-_FARTHEST = 100.0  # K above the reference, up to where the constants are trusted
+_FARTHEST = 100.0  # K above the reference up to which the constants are valid
 
 
 @dataclass(frozen=True)
 class WilliamsLandelFerry:
-    """How relaxation times of a rubber change with temperature.
+    """Temperature dependence of the relaxation times of a rubber (WLF equation).
 
     Parameters
     ----------
@@ -51,13 +51,13 @@ class WilliamsLandelFerry:
     reference_temperature: float
 
     def __post_init__(self) -> None:
-        """Turn text into SI."""
+        """Convert text to SI values."""
         object.__setattr__(self, "c1", positive(self.c1, "1", "c1"))
         for name in ("c2", "reference_temperature"):
             object.__setattr__(self, name, positive(getattr(self, name), "K", name))
 
     def shift_factor(self, temperature: str | float) -> float:
-        """a_T [1] at a temperature [K].
+        """Return the shift factor a_T [1] at a temperature [K].
 
         Raises
         ------
@@ -83,7 +83,7 @@ class WilliamsLandelFerry:
 
 
 def modulus_at(modulus: Shiftable, temperature: str | float, law: WilliamsLandelFerry) -> Shiftable:
-    """Shift a modulus to another temperature.
+    """Modulus at another temperature, by shifting its frequencies.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def modulus_at(modulus: Shiftable, temperature: str | float, law: WilliamsLandel
     temperature
         [K], or text such as ``"40 degC"``.
     law
-        How relaxation times change with temperature.
+        Temperature dependence of the relaxation times.
 
     Returns
     -------
@@ -134,7 +134,7 @@ def flash_temperature(
     conductivity: str | float = 0.16,
     diffusivity: str | float = 1.1e-7,
 ) -> np.ndarray | float:
-    """Temperature rise in a contact spot that slides, at most.
+    """Upper bound of the temperature rise in a sliding contact spot.
 
     Parameters
     ----------
