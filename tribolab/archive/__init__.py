@@ -1,1 +1,1 @@
-"""Results as others can read them: packed with what they were made of, and described."""
+"""Archives of results with their raw data and metadata, for a repository."""

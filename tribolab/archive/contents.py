@@ -1,4 +1,4 @@
-"""What goes into a deposit: results, settings, raw files, each with what it is in words."""
+"""Files of a deposit: results, settings and raw files, each with a description."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from tribolab.core.untyped import Json
 from tribolab.reading.dialect.zero_reading import parse_zero
 from tribolab.report.campaign_tables import TABLES
 
-_RESULTS = "published"  # not where `tribolab run` writes: what it makes anew stands beside
-_OWN = ("catalogue.sqlite",)  # what the next run here is made from; says nothing to others
+_RESULTS = "published"  # not in the results folder of `tribolab run`, which would be replaced
+_OWN = ("catalogue.sqlite",)  # cache of the next run; useless to others
 _KINDS = {
     ".html": "text/html",
     ".json": "application/json",
@@ -33,7 +33,7 @@ _KINDS = {
 
 @dataclass(frozen=True)
 class Item:
-    """A file of the deposit: where it is, its name there, what it is, its media type."""
+    """File of the deposit: source path, name in the deposit, description, media type."""
 
     source: Path
     name: str
@@ -42,12 +42,12 @@ class Item:
 
 
 def campaign_of(results: Path, report: Json, stated: Path | None = None) -> Campaign:
-    """Return the campaign that results were made from.
+    """Return the campaign of the results.
 
     Raises
     ------
     ConfigError
-        If its file is not beside them, or has changed since.
+        If its file is not next to them, or has changed since.
     """
     file = report["campaign"]["file"]
     places = [stated] if stated else [results.parent / file, results / file]
@@ -71,16 +71,16 @@ def items_of(results: Path, campaign: Campaign, *, raw: bool) -> list[Item]:
     results
         The results folder.
     campaign
-        What it was made from.
+        Campaign of the results.
     raw
-        Whether raw files go with it; else only their checksums, in the table of sources.
+        Whether to include raw files; else only their checksums, in the table of sources.
 
     Raises
     ------
     ReadError
-        If a file of the results is not as it was written.
+        If a file of the results was changed.
     ConfigError
-        If the campaign file names its files in a way that leads nowhere elsewhere.
+        If the paths in the campaign file would not work on another computer.
     """
     inputs = [(path, words) for path, words in inputs_of(campaign) if path.is_file()]
     if not raw:

@@ -1,4 +1,4 @@
-"""A deposit described: RO-Crate metadata, and a Frictionless data package of its tables."""
+"""Metadata of a deposit: RO-Crate, and a Frictionless data package of its tables."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _TYPES = {"i": "integer", "f": "number", "b": "boolean"}
 
 @dataclass(frozen=True)
 class CrateFacts:
-    """Size and SHA-256 of a file as it was packed."""
+    """Size and SHA-256 of a packed file."""
 
     size: int
     sha256: str
@@ -32,7 +32,7 @@ class CrateFacts:
 
 @dataclass(frozen=True)
 class People:
-    """Who deposits, and under which licence: "" where nobody said."""
+    """Author, publisher and licence of a deposit; "" if not stated."""
 
     author: str = ""
     publisher: str = ""
@@ -46,18 +46,18 @@ def crate_metadata(
     facts: Mapping[str, CrateFacts],
     people: People,
 ) -> Json:
-    """Return the RO-Crate metadata of a deposit, as JSON-LD.
+    """RO-Crate metadata of a deposit, as JSON-LD.
 
     Parameters
     ----------
     report
-        What ``report.json`` says.
+        Content of ``report.json``.
     campaign
-        The campaign that it is of.
+        Campaign of the results.
     items, facts
-        The files, and what is known of each by its name in the deposit.
+        The files, and size and checksum of each by its name in the deposit.
     people
-        Who deposits.
+        Author, publisher and licence.
 
     References
     ----------
@@ -75,7 +75,7 @@ def crate_metadata(
         "version": version,
         "softwareVersion": version,
         "softwareRequirements": f"Python {report['versions']['python']}",
-        "url": f"pkg:generic/tribolab@{version}",  # a package's name as an address
+        "url": f"pkg:generic/tribolab@{version}",  # a package name that is valid in a URL
         "description": "Workbench for friction experiments: raw files in, friction out.",
     }
     actions = _actions(items, instruments, author, report["made_at"])
@@ -110,7 +110,7 @@ def crate_metadata(
 def data_package(
     report: Json, tables: Mapping[str, pd.DataFrame], facts: Mapping[str, CrateFacts]
 ) -> Json:
-    """Return the Frictionless description of the tables, by their names in the deposit."""
+    """Frictionless description of the tables, by their names in the deposit."""
     return {
         "profile": "tabular-data-package",
         "name": "tribolab-results",
@@ -142,7 +142,7 @@ def data_package(
 
 
 def address(name: str) -> str:
-    """Return what a file of the deposit is called in its description: an address has no spaces."""
+    """Return the identifier of a file in the metadata: its name without spaces."""
     return quote(name)
 
 
@@ -172,7 +172,7 @@ def _description(report: Json, campaign: Campaign) -> str:
 
 
 def _instruments(report: Json, campaign: Campaign) -> list[Json]:
-    """Return the instruments, with serial number and calibration where the campaign says them."""
+    """Instruments, with serial number and calibration if stated."""
     stated = campaign.calibration
     due = None
     if stated.date is not None and stated.interval is not None:
@@ -207,7 +207,7 @@ def _instruments(report: Json, campaign: Campaign) -> list[Json]:
 
 
 def _measured(report: Json) -> list[Json]:
-    """Return a value for each friction coefficient of each measured curve."""
+    """Return one value for each friction coefficient of each measured curve."""
     made = []
     for curve in report["curves"]:
         for number, point in enumerate(curve["points"], start=1):
@@ -255,7 +255,7 @@ def _people(people: People) -> tuple[Json, Json, Json]:
 def _actions(
     items: Sequence[Item], instruments: Sequence[Json], author: Json, made_at: str
 ) -> list[Json]:
-    """Return what was done: the measurement made raw files, the analysis made the rest of them."""
+    """Actions of the deposit: the measurement created raw files, the analysis the results."""
     raw = [item for item in items if item.description in ("A raw file", "A scan")]
     settings = [item for item in items if item.kind == "application/toml"]
     results = [item for item in items if item not in raw and item not in settings]

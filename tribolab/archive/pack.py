@@ -1,4 +1,4 @@
-"""One file that others can read and run again: results, settings, raw data, and what they are."""
+"""Archive of a campaign in one file that others can read and analyse again."""
 
 from __future__ import annotations
 
@@ -40,34 +40,34 @@ def pack(
     publisher: str = "",
     licence: str = "",
 ) -> Path:
-    """Pack a results folder with what it was made from into one file for a repository.
+    """Pack results with their settings and raw data into one file for a repository.
 
     Parameters
     ----------
     results
         The results folder.
     output
-        The ``.zip`` file; by default named after the campaign, beside the results.
+        The ``.zip`` file; by default named after the campaign, next to the results.
     raw
-        Whether raw files go with it; else the table of sources has their checksums.
+        Whether to include raw files; else the table of sources has their checksums.
     campaign
-        The campaign file, where it is not beside the results.
+        The campaign file, if it is not next to the results.
     author, publisher, licence
-        Who deposits, and under which licence (its SPDX name, e.g. ``CC-BY-4.0``, or its address).
+        Author, publisher and licence (its SPDX name, e.g. ``CC-BY-4.0``, or its URL).
 
     Returns
     -------
     pathlib.Path
         The file: an RO-Crate 1.2 with ``ro-crate-metadata.json`` and, for its tables,
-        ``datapackage.json``. It is checked as a whole before it gets its name. With `raw`,
-        ``tribolab run`` in the unpacked folder makes the numbers anew.
+        ``datapackage.json``. It is verified before it gets its final name. With `raw`,
+        ``tribolab run`` in the unpacked folder repeats the analysis.
 
     Raises
     ------
     ReadError
-        If a file of the results is not as it was written.
+        If a file of the results was changed.
     ConfigError
-        If the campaign file is not there, or has changed since.
+        If the campaign file is missing, or has changed since.
     OutputError
         If the file cannot be written.
 
@@ -113,17 +113,17 @@ def pack(
 
 
 def problems_of(path: str | Path) -> list[str]:
-    """Return what is wrong with a packed file: what is missing, changed, or not described.
+    """Return the problems of an archive: files that are missing, changed, or not described.
 
     Raises
     ------
     ReadError
-        If it is no such file.
+        If it is not such an archive.
     """
     path = Path(path)
     try:
         with zipfile.ZipFile(path) as archive:
-            size = sum(info.file_size for info in archive.infolist())  # no more is unpacked
+            size = sum(info.file_size for info in archive.infolist())  # limit of unpacked bytes
             if size > largest_unpacked(path.stat().st_size):
                 raise ReadError(
                     f"{path}: it unpacks to {size / 1e6:.0f} MB, more than "
@@ -153,13 +153,13 @@ def _is_as_described(archive: zipfile.ZipFile, name: str, part: Json) -> bool:
             while block := file.read(_BLOCK):
                 digest.update(block)
                 size += len(block)
-    except zipfile.BadZipFile:  # its own checksum
+    except zipfile.BadZipFile:  # checksum of the checksums themselves
         return False
     return digest.hexdigest() == part["sha256"] and str(size) == part["contentSize"]
 
 
 def _dangling(graph: Sequence[Json]) -> list[str]:
-    """Return references to what is not described, addresses elsewhere aside."""
+    """Return the references to entries that are not described, apart from external URLs."""
     known = {part["@id"] for part in graph}
     wanted: dict[str, None] = {}
     for part in graph:
@@ -172,7 +172,7 @@ def _dangling(graph: Sequence[Json]) -> list[str]:
 
 
 def _add(archive: zipfile.ZipFile, item: Item) -> CrateFacts:
-    """Pack a file as it is at this moment, with its checksum."""
+    """Pack a file in its present state, with its checksum."""
     digest, size = hashlib.sha256(), 0
     info = zipfile.ZipInfo.from_file(item.source, item.name, strict_timestamps=False)
     info.compress_type = zipfile.ZIP_DEFLATED

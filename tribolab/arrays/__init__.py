@@ -1,1 +1,1 @@
-"""Long arrays: medians, chunks, scratch files, and functions over several runs at once."""
+"""Long arrays: medians, chunks, scratch files, and functions on lists of runs."""

@@ -1,4 +1,4 @@
-"""Functions of one thing that take several: a list of runs, or a dataset with a further dim."""
+"""Decorators for functions of one run or dataset that also accept lists or further dims."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ R_co = TypeVar("R_co", covariant=True)
 
 
 class OfRuns(Protocol[P, R]):
-    """A function of a run that gives a list for a list of runs."""
+    """Function of a run that returns a list for a list of runs."""
 
     @overload
     def __call__(self, runs: list[xr.Dataset], /, *args: Any, **kwargs: Any) -> list[R]: ...
@@ -32,9 +32,9 @@ class OfRuns(Protocol[P, R]):
 
 
 def of_runs(function: Callable[P, R]) -> OfRuns[P, R]:
-    """Let a function of a run take a list of runs, and give a list.
+    """Extend a function of a run to lists of runs, for which it returns a list.
 
-    Other arguments that are lists of datasets go with the runs, one each; the rest holds for all.
+    Other arguments that are lists of datasets are paired with the runs; the rest apply to all.
 
     Examples
     --------
@@ -66,7 +66,7 @@ def of_runs(function: Callable[P, R]) -> OfRuns[P, R]:
 
 
 class OfLists(Protocol[P, R_co]):
-    """A function that gives a list for lists."""
+    """Function that returns a list for lists."""
 
     @overload
     def __call__(self, *args: P.args, **kwargs: P.kwargs) -> R_co: ...
@@ -76,14 +76,14 @@ class OfLists(Protocol[P, R_co]):
 
 
 def of_lists(*names: str, beside: str = "") -> Callable[[Callable[P, R]], OfLists[P, R]]:
-    """Let a function take lists for these arguments, and give a list.
+    """Extend a function to lists for these arguments, for which it returns a list.
 
     Parameters
     ----------
     *names
-        Arguments that may be lists; what is none holds for all.
+        Arguments that may be lists; single values apply to all.
     beside
-        One more, whose list is for one call unless another argument is a list too.
+        Another argument, whose list belongs to one call unless another argument is a list too.
 
     Examples
     --------
@@ -124,14 +124,14 @@ def _called(
     placed: int,
     number: int,
 ) -> R:
-    """Call a function with one thing of each list; so many arguments go by their place."""
+    """Call a function once for each set of list entries."""
     mine = {key: own[key][number] if key in own else value for key, value in given.items()}
     places = [mine.pop(place) for place in range(placed)]
     return function(*places, **mine)
 
 
 def _of_datasets(value: Any) -> bool:
-    # by name: whoever calls with lists has loaded xarray already
+    # tested by name: callers with lists have loaded xarray already
     return isinstance(value, list) and all(type(item).__name__ == "Dataset" for item in value)
 
 
@@ -140,18 +140,18 @@ def _name(function: Callable[..., Any], key: int | str) -> str:
 
 
 def over_dims(**own: tuple[str, ...]) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Let a function take arguments with further dims, and give them to the result.
+    """Extend a function to arguments with further dims, which the result then has.
 
     Parameters
     ----------
     **own
-        The arguments that may have further dims, and those dims that the function knows itself.
+        The arguments that may have further dims, with the dims that the function itself handles.
 
     Notes
     -----
-    The function is called once for each place along the further dims, for which each argument that
-    has such a dim is cut; wavenumbers without a value are left out, so that spectra on different
-    wavenumbers may stand in one dataset. What the results say of their validity is joined.
+    The function is called once for each position along the further dims. Wavenumbers without a
+    value are left out, so that spectra on different wavenumbers can share one dataset. The validity
+    attributes of the results are combined.
 
     Examples
     --------
@@ -186,14 +186,14 @@ def over_dims(**own: tuple[str, ...]) -> Callable[[Callable[P, R]], Callable[P, 
 
 
 def _dims(value: Any) -> tuple[Hashable, ...]:
-    """Dims of what an argument holds; beside its spectrum a dataset may tell of its scans."""
+    """Dims of an argument; for a dataset with a spectrum, those of the spectrum."""
     holder = value["psd_2d"] if "psd_2d" in getattr(value, "data_vars", ()) else value
     return tuple(getattr(holder, "dims", ()))
 
 
 def _along(function: Callable[..., Any], given: Arguments, dim: Hashable) -> Any:
-    """Call a function for each place along a dim, and put the results together."""
-    # late: xarray takes long to load
+    """Call a function for each position along a dim, and combine the results."""
+    # imported late: xarray loads slowly
     import xarray as xr
 
     having = {name: value for name, value in given.items() if dim in getattr(value, "dims", ())}
@@ -215,12 +215,12 @@ def _along(function: Callable[..., Any], given: Arguments, dim: Hashable) -> Any
 
 
 def as_stated(value: str | float | xr.DataArray) -> str | float:
-    """Return what was stated, or of an array without dims its number."""
+    """Return a value as stated, or as a number if it is an array without dims."""
     return float(value.item()) if hasattr(value, "item") else value
 
 
 def _cut(value: Any) -> Any:
-    """Leave out what this part of several does not have: wavenumbers of spectra, segments."""
+    """Drop missing entries of one condition: wavenumbers of spectra, segments."""
     if not hasattr(value, "data_vars"):
         return value
     for dim in {"wavenumber", "segment"} & {*value.dims}:
@@ -229,7 +229,7 @@ def _cut(value: Any) -> Any:
 
 
 def _array(result: Any, who: str) -> Any:
-    # late: xarray takes long to load
+    # imported late: xarray loads slowly
     import xarray as xr
 
     if np.ndim(result):

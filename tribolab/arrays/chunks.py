@@ -1,4 +1,4 @@
-"""A long record piece by piece: what is worked on at a time fits into the cache."""
+"""Processing of long records in pieces that fit into the cache."""
 
 from __future__ import annotations
 
@@ -9,26 +9,26 @@ import numpy as np
 
 from tribolab.arrays.scratch import let_go, room
 
-PIECE = 1 << 17  # samples
-_GIVEN_BACK = 1 << 21  # samples, of which the memory is given back at once: each time takes a while
+PIECE = 1 << 17  # samples of a piece
+_GIVEN_BACK = 1 << 21  # samples after which memory is returned to the system, which takes time
 _Part = TypeVar("_Part")
 
 
 def pieces(
     start: int, stop: int, length: int | None = None, *, block: int = 1
 ) -> Iterator[tuple[int, int]]:
-    """Cut a stretch of samples, or of blocks of them, into pieces.
+    """Cut a range of samples, or of blocks of samples, into pieces.
 
-    The memory that they took is given back behind some of them, and behind the last.
+    Their memory is returned after some pieces, and after the last.
 
     Parameters
     ----------
     start, stop
-        First sample, and that behind the last.
+        First sample, and the end (exclusive).
     length
-        Samples of a piece, at most; if not given, what makes `PIECE` samples.
+        Largest length of a piece; by default `PIECE` samples.
     block
-        Samples of a block, where blocks are counted.
+        Samples of a block, if the range counts blocks.
 
     Yields
     ------
@@ -51,12 +51,12 @@ def pieces(
 
 
 def whole_blocks(edges: np.ndarray) -> Iterator[tuple[int, int]]:
-    """Cut blocks of any lengths into pieces of one block at least; as `pieces`.
+    """Cut blocks of variable length into pieces of at least one block; as `pieces`.
 
     Parameters
     ----------
     edges
-        First sample of each block, and that behind the last (block + 1).
+        First sample of each block, and the end of the last (block + 1).
 
     Yields
     ------
@@ -78,7 +78,7 @@ def whole_blocks(edges: np.ndarray) -> Iterator[tuple[int, int]]:
 
 
 def one_by_one(parts: Iterable[_Part]) -> Iterator[_Part]:
-    """Yield the parts of a record; the memory that one took is given back before the next.
+    """Yield the parts of a record, and free the memory of each before the next.
 
     Examples
     --------
@@ -91,7 +91,7 @@ def one_by_one(parts: Iterable[_Part]) -> Iterator[_Part]:
 
 
 def anywhere(test: Callable[[np.ndarray], np.ndarray], values: np.ndarray) -> bool:
-    """Whether a test of single values holds for any; behind the first, none is looked at.
+    """Whether a test of single values is true for any sample; stops at the first.
 
     Examples
     --------
@@ -102,7 +102,7 @@ def anywhere(test: Callable[[np.ndarray], np.ndarray], values: np.ndarray) -> bo
 
 
 def samples_where(test: Callable[[np.ndarray], np.ndarray], values: np.ndarray) -> np.ndarray:
-    """Return the indices of the samples for which a test of single values holds.
+    """Return the indices of the samples for which a test of single values is true.
 
     Examples
     --------
@@ -118,19 +118,19 @@ def _all_of(values: np.ndarray) -> Iterator[tuple[int, int]]:
 
 
 def stretches(holds: Callable[[int, int], np.ndarray], count: int) -> np.ndarray:
-    """Return the stretches of a record in which something holds.
+    """Intervals of a record in which a condition is true.
 
     Parameters
     ----------
     holds
-        Gives, from the first sample of a piece and that behind its last, where in it that is so.
+        Mask of a piece, from its first sample and its end.
     count
         Samples of the record.
 
     Returns
     -------
     ndarray
-        First sample of each stretch, and that behind its last (stretch, 2).
+        First sample and end of each interval (stretch, 2).
 
     Examples
     --------
@@ -148,7 +148,7 @@ def stretches(holds: Callable[[int, int], np.ndarray], count: int) -> np.ndarray
 
 
 def concatenated(parts: Sequence[np.ndarray]) -> np.ndarray:
-    """Return the parts of a record one behind the other.
+    """Return the parts of a record as one array.
 
     Examples
     --------
@@ -165,7 +165,7 @@ def concatenated(parts: Sequence[np.ndarray]) -> np.ndarray:
 
 
 def chosen(values: np.ndarray, keep: np.ndarray) -> np.ndarray:
-    """Return the samples that are kept.
+    """Return the selected samples.
 
     Examples
     --------
@@ -182,7 +182,7 @@ def chosen(values: np.ndarray, keep: np.ndarray) -> np.ndarray:
 
 
 def lowered(values: np.ndarray, by: float) -> np.ndarray:
-    """Return values without a constant.
+    """Return values minus a constant.
 
     Examples
     --------
@@ -196,7 +196,7 @@ def lowered(values: np.ndarray, by: float) -> np.ndarray:
 
 
 def running_total(values: np.ndarray, level: float = 0.0) -> np.ndarray:
-    """Return sums of the first 0, 1, 2 ... values above a level.
+    """Cumulative sums of the first 0, 1, 2 ... values above a level.
 
     Examples
     --------
@@ -207,7 +207,7 @@ def running_total(values: np.ndarray, level: float = 0.0) -> np.ndarray:
     total[0] = 0.0
     for first, last in pieces(0, values.size):
         part = total[first : last + 1]
-        # the sum so far stands before the piece, so that the cut does not show in its last digit
+        # the sum so far is added first, so that the result does not depend on the pieces
         part[1:] = values[first:last] - level
         np.cumsum(part, out=part)
     return total

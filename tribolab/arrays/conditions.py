@@ -1,4 +1,4 @@
-"""Results of several conditions, such as surfaces, media or loads, each by its labels."""
+"""Results for several conditions, such as surfaces, media or loads, with labels."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ ConditionLabels = dict[Hashable, Any]
 
 @dataclass(frozen=True, eq=False)
 class Conditions(Generic[Selected]):
-    """A result for each condition.
+    """Results of one kind for several conditions.
 
     Parameters
     ----------
     results
-        Over the conditions; None where nothing was measured.
+        Result of each condition; None if not measured.
 
     Examples
     --------
@@ -44,7 +44,7 @@ class Conditions(Generic[Selected]):
         coords
             The labels along each dim.
         compute
-            Labels in, their result out; None where nothing was measured.
+            Function from labels to a result; None if not measured.
         """
         results = np.empty([len(values) for values in coords.values()], dtype=object)
         for place in np.ndindex(results.shape):
@@ -53,12 +53,12 @@ class Conditions(Generic[Selected]):
         return cls(xr.DataArray(results, coords, tuple(coords)))
 
     def sel(self, **labels: object) -> Selected | Self:
-        """Return what one condition has, or what some have, as `xarray.DataArray.sel` does.
+        """Select the result of one or several conditions, like `xarray.DataArray.sel`.
 
         Raises
         ------
         AnalysisError
-            If nothing was measured under this condition.
+            If this condition was not measured.
         """
         chosen = self.results.sel(labels, drop=True)
         if chosen.dims:
@@ -69,7 +69,7 @@ class Conditions(Generic[Selected]):
         return result
 
     def __iter__(self) -> Iterator[tuple[ConditionLabels, Selected]]:
-        """Give the labels of each condition that was measured, and what it has."""
+        """Yield the labels and the result of each measured condition."""
         for place in np.ndindex(self.results.shape):
             part = self.results[place]
             if part.item() is not None:
@@ -77,7 +77,7 @@ class Conditions(Generic[Selected]):
 
 
 def labels_text(labels: Mapping[Any, object]) -> str:
-    """Return labels with the dims that they are along.
+    """Labels with the names of their dims, as text.
 
     Examples
     --------
@@ -88,5 +88,5 @@ def labels_text(labels: Mapping[Any, object]) -> str:
 
 
 def labels_along(holder: xr.DataArray, dim: Hashable) -> np.ndarray:
-    """Return the labels along a dim; numbers from 0 where it has none."""
+    """Labels along a dim; numbers from 0 without labels."""
     return holder[dim].to_numpy() if dim in holder.coords else np.arange(holder.sizes[dim])

@@ -1,7 +1,7 @@
-"""Medians, by sorting: `numpy.median` takes several times as long, for few values and for many.
+"""Medians by sorting, several times faster than `numpy.median`.
 
-Its checks cost more than the median of a few hundred values, and the sorting of numbers uses
-instructions of the processor that the search for a single rank does not.
+The checks of numpy cost more than the median of a few hundred values, and sorting uses vector
+instructions that partitioning does not.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ import numpy as np
 
 from tribolab.arrays.chunks import pieces
 
-_MANY = 1 << 20  # samples; fewer are sorted as a whole
-_STRETCHES, _SHORT = 256, 256  # of a long record that are tried, and their samples
-_AROUND = (0.05, 0.3)  # share of the numbers on each side of a quantile that are kept, at first
+_MANY = 1 << 20  # samples; shorter records are sorted as a whole
+_STRETCHES, _SHORT = 256, 256  # number and length of the parts of a long record that are sampled
+_AROUND = (0.05, 0.3)  # initial share of the numbers on each side of a quantile that are kept
 
 
 def median(values: np.ndarray) -> np.float64:
-    """Return the median of all values; NaN if there is one among them, or none at all.
+    """Median of all values; NaN if any is NaN, or if there are none.
 
     Examples
     --------
@@ -33,7 +33,7 @@ def median(values: np.ndarray) -> np.float64:
 
 
 def median_of_known(values: np.ndarray) -> np.float64:
-    """Return the median of the values that are no NaN; NaN if there are none.
+    """Median of the values that are not NaN; NaN if there are none.
 
     Examples
     --------
@@ -44,7 +44,7 @@ def median_of_known(values: np.ndarray) -> np.float64:
 
 
 def medians_of_rows(rows: np.ndarray) -> np.ndarray:
-    """Return the median of each row (row, column); NaN where there is one in it.
+    """Median of each row (row, column); NaN if any value in it is NaN.
 
     Examples
     --------
@@ -58,15 +58,15 @@ def medians_of_rows(rows: np.ndarray) -> np.ndarray:
 
 
 def median_in_pieces(part: Callable[[int, int], np.ndarray], count: int) -> np.float64:
-    """Return the median of numbers that are computed piece by piece, NaN left out.
+    """Median of numbers that are computed piece by piece, ignoring NaN.
 
-    Of a long record only what lies near the median is kept; the median is the same.
+    Only values near the median of a long record are kept; the median is exact.
 
     Parameters
     ----------
     part
-        Gives the numbers of a piece, from its first sample and that behind its last; there may
-        be fewer than samples.
+        Returns the numbers of a piece, from its first sample and its end; there may be fewer than
+        samples.
     count
         Samples of the record.
 
@@ -81,14 +81,14 @@ def median_in_pieces(part: Callable[[int, int], np.ndarray], count: int) -> np.f
 
 
 def quantile_in_pieces(part: Callable[[int, int], np.ndarray], count: int, share: float) -> float:
-    """Return a quantile of such numbers, as `numpy.quantile` gives it; NaN of none.
+    """Quantile of numbers computed piece by piece, as by `numpy.quantile`; NaN if none.
 
     Parameters
     ----------
     part, count
         As of `median_in_pieces`.
     share
-        Of the numbers that are not above the quantile [1].
+        Share of the numbers that are not above the quantile [1].
 
     Examples
     --------
@@ -101,7 +101,7 @@ def quantile_in_pieces(part: Callable[[int, int], np.ndarray], count: int, share
 
 
 class _About(NamedTuple):
-    """The numbers on both sides of a quantile, and its place between them [1]; NaN of none."""
+    """Numbers on both sides of a quantile, and its position between them [1]; NaN if none."""
 
     below: np.float64
     above: np.float64
@@ -127,13 +127,13 @@ def _about(part: Callable[[int, int], np.ndarray], count: int, share: float) -> 
         numbers[end : end + own.size] = own
         end += own.size
     ordered = np.sort(numbers[:end])
-    known = int(np.searchsorted(ordered, np.nan))  # NaN is sorted behind all numbers
+    known = int(np.searchsorted(ordered, np.nan))  # NaN is sorted last
     about = _between(ordered, 0, known, share)
     return _About(np.float64(np.nan), np.float64(np.nan), 0.0) if about is None else about
 
 
 def _tried(part: Callable[[int, int], np.ndarray], count: int) -> np.ndarray:
-    """Return the numbers of short stretches of a record, which tell about where a quantile lies."""
+    """Return samples of short parts of a record, which locate a quantile roughly."""
     starts = np.linspace(0, count - _SHORT, _STRETCHES).astype(int).tolist()
     tried = np.concatenate([part(start, start + _SHORT) for start in starts])
     return tried[~np.isnan(tried)]
@@ -142,7 +142,7 @@ def _tried(part: Callable[[int, int], np.ndarray], count: int) -> np.ndarray:
 def _near(
     part: Callable[[int, int], np.ndarray], count: int, bracket: tuple[float, float], share: float
 ) -> _About | None:
-    """Tell by the numbers in a bracket what is about a quantile; None if it lies elsewhere."""
+    """Numbers around a quantile, from those in a bracket; None if it is elsewhere."""
     low, high = bracket
     below, known = 0, 0
     kept = [np.zeros(0)]
@@ -156,7 +156,7 @@ def _near(
 
 
 def _between(ordered: np.ndarray, below: int, known: int, share: float) -> _About | None:
-    """Take what is about a quantile of so many known numbers from a part, so many above the least.
+    """Return the numbers around a quantile from the part of them above a lower bound.
 
     None if it is not among them.
     """
@@ -169,13 +169,13 @@ def _between(ordered: np.ndarray, below: int, known: int, share: float) -> _Abou
 
 
 def _of_ordered(numbers: np.ndarray) -> np.float64:
-    """Return the median of what is no NaN; NaN is sorted behind all numbers."""
+    """Return the median of sorted numbers, ignoring the NaN at the end."""
     known = int(np.searchsorted(numbers, np.nan))
     return _middle(numbers[:known]) if known else np.float64(np.nan)
 
 
 def _middle(ordered: np.ndarray) -> np.float64:
-    """Return the median of numbers in their order, one at least."""
+    """Median of sorted numbers, at least one."""
     half = ordered.size // 2
     if ordered.size % 2:
         return ordered[half]

@@ -1,28 +1,28 @@
-"""Motion to and fro that nothing but the friction force tells of."""
+"""Detection of a reciprocating motion from the friction force alone."""
 
 from __future__ import annotations
 
 import numpy as np
 
-_CLEAR = 0.3  # of the force's usual height: what is nearer to zero has no sign
-_BOTH = 0.2  # of the samples with a sign have each of both
-_OFTEN = 4  # times the sign changes at least; a stroke and its return change it once
+_CLEAR = 0.3  # share of the force's typical magnitude; smaller values have no sign
+_BOTH = 0.2  # smallest share of the signed samples on either side
+_OFTEN = 4  # smallest number of sign changes; a stroke and its return change it once
 
 
 def reversals(force: np.ndarray) -> int:
-    """Count how often a friction force turns from one clear sign to the other.
+    """Count the sign changes of a friction force, if it reciprocates.
 
     Parameters
     ----------
     force
-        Friction force, or its coefficient, of a stretch whose direction of sliding is not known.
+        Friction force or coefficient of an interval of unknown sliding direction.
 
     Returns
     -------
     int
-        Zero unless it looks like sliding to and fro: four changes of sign or more, with at least
-        a fifth of the clear samples (beyond 0.3 of the 95th percentile of its magnitude) on each
-        side. The mean of such a force is what the zero is off, and no friction.
+        Zero unless the motion reciprocates: at least four sign changes, with at least a fifth of
+        the clear samples (above 0.3 of the 95th percentile of the magnitude) on each side. The
+        mean of such a force is the zero error and not friction.
 
     Examples
     --------

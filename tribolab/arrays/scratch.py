@@ -1,13 +1,13 @@
-"""Room for long arrays: of a record that is too long for the memory, they lie in a scratch file.
+"""Long arrays in scratch files, for records that exceed the memory.
 
-An array of `LONG` samples or more is the content of a file without a name, which vanishes with the
-last array on it, however the process ends. The system brings its pages into the memory as they are
-looked at; `let_go` says that they are not needed just now. What is in them stays.
+An array of `LONG` samples or more is stored in an unnamed file, which is deleted with the last
+array that uses it, even if the process is killed. The system loads its pages when they are read;
+`let_go` releases them for now without losing their content.
 
 Notes
 -----
-The files lie where ``TMPDIR`` says, else in ``/var/tmp``, which unlike ``/tmp`` is on a disk
-everywhere. Where there is no room for them, or no such system call, arrays are in memory as ever.
+The files are in ``TMPDIR`` or else in ``/var/tmp``, which unlike ``/tmp`` is always on a disk.
+Without disk space, or on systems without memory mapping, arrays are in memory.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ _mapped: weakref.WeakSet[mmap.mmap] = weakref.WeakSet()
 def room(
     count: int, kind: type[np.generic] | np.dtype = np.float64, of: int | None = None
 ) -> np.ndarray:
-    """Return an array to be filled: in memory, or, if it is long, in a scratch file.
+    """Return an empty array: in memory or, if it is long, in a scratch file.
 
     Parameters
     ----------
     count
         Samples.
     kind
-        Of each.
+        Type of each sample.
     of
-        Samples of the record, if the array is a part of it.
+        Samples of the whole record, if the array is a part of it.
 
     Examples
     --------
@@ -52,12 +52,12 @@ def room(
 
 
 def is_long(count: int) -> bool:
-    """Whether an array of so many samples is to lie in a scratch file."""
+    """Whether an array of so many samples belongs in a scratch file."""
     return count >= LONG
 
 
 def filled(count: int, value: float, kind: type[np.generic] = np.float64) -> np.ndarray:
-    """Return an array with one value, as `room`.
+    """Return an array filled with one value, as by `room`.
 
     Examples
     --------
@@ -72,20 +72,20 @@ def filled(count: int, value: float, kind: type[np.generic] = np.float64) -> np.
 
 
 def take_in(mapped: mmap.mmap) -> None:
-    """Have a shared mapping of a nameless file treated as the scratch files of this module."""
+    """Register a shared mapping of an unnamed file as a scratch file."""
     _mapped.add(mapped)
 
 
 def let_go() -> None:
-    """Give back the memory that looking at long arrays took; they are read again when needed."""
-    if not _mapped:  # said behind every piece of every run: mostly there is nothing
+    """Release the memory of long arrays; they are read again when needed."""
+    if not _mapped:  # called after every piece of every run, usually without effect
         return
     for mapped in list(_mapped):
         mapped.madvise(mmap.MADV_DONTNEED)
 
 
 def tidy_up() -> None:
-    """Free the scratch files of arrays that nobody needs any more, circles of references or not."""
+    """Delete the scratch files of unused arrays, including those in reference cycles."""
     if _mapped:
         gc.collect()
         let_go()
@@ -96,7 +96,7 @@ def _scratch(size: int) -> mmap.mmap | None:
         return None
     try:
         with tempfile.TemporaryFile(dir=_folder()) as file:
-            # a disk that is full says so now, and not by a signal in the midst of a loop
+            # report a full disk now instead of by a signal during a calculation
             os.posix_fallocate(file.fileno(), 0, size)
             mapped = mmap.mmap(file.fileno(), size)
     except OSError:

@@ -1,4 +1,4 @@
-"""Linear algebra on one thread, for matrices so small that two threads wait for each other."""
+"""Linear algebra on one thread, faster for small matrices."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from contextlib import AbstractContextManager
 
 from threadpoolctl import ThreadpoolController
 
-_SECOND = "scipy.linalg"  # brings a library of its own, beside numpy's
+_SECOND = "scipy.linalg"  # scipy has a library of its own, besides numpy's
 
 
 def one_thread() -> AbstractContextManager[object]:
-    """Return a context in which numpy's and scipy's linear algebra keeps to one thread.
+    """Return a context in which linear algebra of numpy and scipy uses one thread.
 
     Examples
     --------
@@ -28,5 +28,5 @@ def one_thread() -> AbstractContextManager[object]:
 
 @functools.cache
 def _libraries(second: bool) -> ThreadpoolController:
-    """Find the libraries, once as they come: it takes as long as to match two short logs."""
+    """Find the linear algebra libraries, once, because the search is slow."""
     return ThreadpoolController()

@@ -1,1 +1,1 @@
-"""What every room needs and no room owns."""
+"""Basic tools that all rooms use."""

@@ -1,4 +1,4 @@
-"""The errors a user can meet: each says what is wrong, where, and how to mend it."""
+"""Errors shown to users: what is wrong, where, and how to fix it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ AUDIENCES = ("notebook", "terminal", "campaign")
 
 @dataclass(frozen=True)
 class Cure:
-    """How to mend something, in words for each who may read it; "" where there is nothing to say.
+    """Remedy of an error, worded for each audience; "" if there is none.
 
     Parameters
     ----------
@@ -22,7 +22,7 @@ class Cure:
     terminal
         Names commands and their options.
     campaign
-        Names keys of the campaign file; stands in the report of a campaign, too.
+        Names keys of the campaign file; also used in the report of a campaign.
     """
 
     notebook: str = ""
@@ -30,26 +30,26 @@ class Cure:
     campaign: str = ""
 
     def told(self, audience: str) -> str:
-        """Return the words for one audience."""
+        """Return the remedy worded for one audience."""
         return str(getattr(self, audience))
 
 
 class TribolabError(Exception):
-    """Base of every error that tribolab raises on purpose.
+    """Base of all errors that tribolab raises intentionally.
 
-    It holds the parts of a message. Who catches it knows who reads, and asks for the words:
-    `told("terminal")`. As text it is for a notebook. No part can steer a terminal.
+    It contains the parts of a message; `told("terminal")` words it for an audience. As text it is
+    worded for a notebook. Control characters for terminals are removed.
 
     Parameters
     ----------
     what
-        What is wrong; another error, to say more of where it happened.
+        The problem, or another error to which a place is added.
     where
         The file, key or quantity.
     function
-        The Python function or argument that complains: told in notebooks only.
+        The Python function or argument that raised it, shown in notebooks only.
     cure
-        How to mend it: the same words for everyone, or a `Cure`.
+        How to fix it: the same words for everyone, or a `Cure`.
 
     Examples
     --------
@@ -82,7 +82,7 @@ class TribolabError(Exception):
         self.cure = cure
 
     def told(self, audience: str) -> str:
-        """Return the message in words for a "notebook", the "terminal" or a "campaign"."""
+        """Return the message worded for a "notebook", the "terminal" or a "campaign"."""
         what = self.what.told(audience) if isinstance(self.what, TribolabError) else str(self.what)
         first = self.function if audience == "notebook" else ""
         cure = self.cure.told(audience) if isinstance(self.cure, Cure) else self.cure
@@ -90,11 +90,11 @@ class TribolabError(Exception):
         return harmless("; ".join(part for part in (message, cure) if part))
 
     def __str__(self) -> str:
-        """Return the message in words for a notebook."""
+        """Return the message worded for a notebook."""
         return self.told("notebook")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Have every part travel between processes."""
+        """Pickle all parts of the error."""
         return copyreg.__newobj__, (type(self), *self.args), self.__dict__  # type: ignore[attr-defined]
 
 
@@ -103,7 +103,7 @@ class ReadError(TribolabError):
 
 
 class LacksError(ReadError):
-    """A raw file lacks what the description of its instrument asks for: it may be another's."""
+    """A raw file lacks data that the instrument's description requires."""
 
 
 class UnitError(TribolabError):
@@ -115,7 +115,7 @@ class ConfigError(TribolabError):
 
 
 class AnalysisError(TribolabError):
-    """The data were read, but the question asked of them has no answer."""
+    """The data were read, but do not allow the requested analysis."""
 
 
 class OutputError(TribolabError):
@@ -123,7 +123,7 @@ class OutputError(TribolabError):
 
 
 def told(error: BaseException, audience: str) -> str:
-    """Return what an error says to one audience; of other libraries' errors, briefly.
+    """Message of an error worded for one audience; errors of other libraries are shortened.
 
     >>> told(ReadError("empty", where="a.csv"), "terminal"), told(ValueError("no"), "campaign")
     ('a.csv: empty', 'no')
@@ -132,7 +132,7 @@ def told(error: BaseException, audience: str) -> str:
 
 
 def harmless(text: str) -> str:
-    r"""Return text without what steers a terminal; line ends stay.
+    r"""Text without characters that control a terminal, except line ends.
 
     >>> harmless("\x1b[31mred\tline\nnext")
     '?[31mred line\nnext'
@@ -143,7 +143,7 @@ def harmless(text: str) -> str:
 
 
 def brief(error: BaseException, most: int = 300) -> str:
-    r"""Say in one short line of text what another library's error says, whatever it holds.
+    r"""Message of another library's error, shortened to one line.
 
     >>> brief(ValueError("bad tag\n in \x00 the file"))
     'bad tag in the file'
@@ -156,7 +156,7 @@ def brief(error: BaseException, most: int = 300) -> str:
 
 
 def shown(value: object, most: int = 80) -> str:
-    r"""Return a value as a message may show it: short, and without what steers a terminal.
+    r"""Short text of a value for a message, without characters that control a terminal.
 
     >>> shown("\x1b[31mred\n"), shown("x" * 1000, 5)
     ('?[31mred?', 'xxxxx ...')
@@ -167,16 +167,16 @@ def shown(value: object, most: int = 80) -> str:
     return text if len(text) <= most else f"{text[:most]} ..."
 
 
-_MOST = 60  # letters of a word; what a damaged file calls a name may have any length
+_MOST = 60  # letters of a word; names in damaged files may have any length
 
 
 _LISTED = 20
 
 
 def nearest(word: str, known: Iterable[str], most: int | None = _LISTED) -> str:
-    """Return a hint naming the known words nearest to `word`, ready to end an error message.
+    """Hint naming the known words nearest to `word`, for the end of an error message.
 
-    Without any that is near, it names those known: at most `most`, None for all.
+    If none is near, it lists the known words: at most `most`, None for all.
 
     >>> nearest("viscosty", ["viscosity", "radius"])
     "; did you mean 'viscosity'?"

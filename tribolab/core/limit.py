@@ -1,4 +1,4 @@
-"""A number that decides a result, with what it was chosen for and where it comes from."""
+"""Record for a number that decides a result, with reason and source."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Limit:
-    """A number that drives a decision.
+    """Number that decides a result, with unit, reason and source.
 
     Attributes
     ----------
@@ -16,7 +16,7 @@ class Limit:
     unit
         An SI unit, or ``"1"``.
     reason
-        What the number limits, and why it has this size.
+        The quantity it limits, and why it has this size.
     source
         The script and seeds it was calibrated on, a standard with its clause, a paper with its DOI,
         or ``"judgement"``.

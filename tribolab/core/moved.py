@@ -1,4 +1,4 @@
-"""Modules that have moved: their old import paths work for one release, with a warning."""
+"""Old import paths of moved modules, which work for one release with a warning."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ MOVED = {
 
 
 class _MovedModules(importlib.abc.MetaPathFinder, importlib.abc.Loader):
-    """Answer an import of an old path with the module at its new one."""
+    """Import finder that returns a module at its new path for an old one."""
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
@@ -41,11 +41,11 @@ class _MovedModules(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         return sys.modules[new]
 
     def exec_module(self, module: ModuleType) -> None:
-        module.__spec__ = self._spec  # the import system has just set that of the old path
+        module.__spec__ = self._spec  # the import system has just set the path of the old module
 
 
 def new_path(old: str) -> str:
-    """Return where a module is now, "" if it has not moved.
+    """Return the present path of a moved module; "" if it has not moved.
 
     Examples
     --------
@@ -61,9 +61,9 @@ def new_path(old: str) -> str:
 
 
 def accept_old_paths() -> None:
-    """Let old import paths lead to the modules that have moved.
+    """Make old import paths of moved modules work.
 
-    First in line: the parent of an old path has the folder of the new one.
+    The finder is placed first, because the parent package of an old path has the new folder.
     """
     if not any(isinstance(finder, _MovedModules) for finder in sys.meta_path):
         sys.meta_path.insert(0, _MovedModules())

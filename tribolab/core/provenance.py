@@ -1,4 +1,4 @@
-"""Where a result comes from: checksums, versions and one history line."""
+"""Provenance of a result: checksums, versions and a history line."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ def sha256_of_file(path: str | Path) -> str:
 
 
 def sha256_of(value: Any) -> str:
-    """SHA-256 of anything that JSON can hold; the order of keys does not matter."""
+    """SHA-256 of any JSON value, independent of the order of keys."""
     text = json.dumps(value, sort_keys=True, default=str, ensure_ascii=False)
     return hashlib.sha256(text.encode(errors="surrogateescape")).hexdigest()
 
 
-# C0, C1, separators of lines and paragraphs, and what overrides the direction of text
+# C0, C1, line and paragraph separators, and characters that override text direction
 _STEERS = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]")
 
 
 def as_text(path: str | Path) -> str:
-    r"""Return a path, or a name, as results write it, in print that steers no terminal or page.
+    r"""Return a path or name as text without characters that control a terminal or page.
 
-    Bytes that are not UTF-8, control characters and what turns the direction of text are escaped.
+    Bytes that are not UTF-8, control characters and direction overrides are escaped.
 
     Examples
     --------
@@ -47,7 +47,7 @@ def as_text(path: str | Path) -> str:
 
 
 def without_controls(text: str) -> str:
-    r"""Return a text whose control characters are escaped, but for tabs and ends of lines.
+    r"""Return a text with escaped control characters, except tabs and line ends.
 
     Examples
     --------
@@ -58,8 +58,8 @@ def without_controls(text: str) -> str:
 
 
 def history_line(action: str) -> str:
-    """Return one line for the ``history`` attribute: time in UTC, version, what was done."""
-    # late: looks the installed package up
+    """Line for the ``history`` attribute: time in UTC, version, action."""
+    # late: it looks up the installed package
     from tribolab.version import __version__
 
     now = dt.datetime.now(dt.UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
@@ -73,24 +73,24 @@ def made(
     source_sha256: str = "",
     config_sha256: str = "",
 ) -> dict[str, str]:
-    """Return the attributes that every product carries, those that there are.
+    """Return the provenance attributes of a product.
 
     Parameters
     ----------
     action
-        What was done, in a few words, for the history line.
+        Action in a few words, for the history line.
     source, source_sha256
         Names of the raw files and their checksums, each joined by ``"; "``. What was computed
         from published constants has their citation as its source, and no file, so no checksum.
     config_sha256
-        Checksum of the settings that shaped the product.
+        Checksum of the settings that affect the product.
 
     Examples
     --------
     >>> sorted(made("contact of the reference system", source="Xu et al. (2026)"))
     ['Conventions', 'history', 'source', 'tribolab_version']
     """
-    # late: looks the installed package up
+    # late: it looks up the installed package
     from tribolab.version import __version__
 
     attrs = {
@@ -105,9 +105,9 @@ def made(
 
 
 def joined_sources(products: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
-    """Return ``source`` and ``source_sha256`` of what is made from several products.
+    """Return ``source`` and ``source_sha256`` of a product of several others.
 
-    Checksums are left out if one of the products has none: they would stand beside other names.
+    Checksums are left out if one of the products has none, to keep names and checksums paired.
 
     Parameters
     ----------
@@ -131,14 +131,14 @@ def joined_sources(products: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
 
 
 def provenance(sources: Iterable[str | Path], action: str) -> dict[str, str]:
-    """Return the attributes of a product that is made from raw files.
+    """Provenance attributes of a product made from raw files.
 
     Parameters
     ----------
     sources
         The raw files that the product was made from.
     action
-        What was done, in a few words, for the history line.
+        Action in a few words, for the history line.
 
     Returns
     -------
@@ -155,7 +155,7 @@ def provenance(sources: Iterable[str | Path], action: str) -> dict[str, str]:
 
 
 def named_sources(sources: Iterable[tuple[str, str, int]]) -> dict[str, str]:
-    """Return ``source`` and ``source_sha256`` of files, given by label, checksum and size."""
+    """Return ``source`` and ``source_sha256`` from the names, checksums and sizes of files."""
     labels, sums = [], []
     for label, checksum, _ in sources:
         labels.append(label)

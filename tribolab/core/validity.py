@@ -1,8 +1,8 @@
-"""Where the theory ends: the limits of its approximations, in one place.
+"""Limits of validity of the theory.
 
-Every model result carries what `examine` says as the attributes ``validity`` ("pass" or "suspect")
-and ``validity_reasons``; campaigns make findings of it, and the page a word. Beyond the second,
-wider limit there is no result but an error.
+Every model result has the attributes ``validity`` ("pass" or "suspect") and ``validity_reasons``
+from `examine`; campaigns report them as findings. Beyond the second, wider limit an error is
+raised.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ import numpy as np
 from tribolab.core.errors import AnalysisError
 
 _PASS, _SUSPECT = "pass", "suspect"
-TINY = float(np.finfo(float).tiny)  # what is divided by a number that may be 0
+TINY = float(np.finfo(float).tiny)  # denominators may be 0
 
 
 @dataclass(frozen=True)
 class ValidityLimit:
-    """One approximation and how far it reaches.
+    """Approximation of the theory with its limits.
 
     Parameters
     ----------
     what
-        The number that is compared, in words.
+        The number compared, in words.
     suspect
-        Above this a result is not sure.
+        Above this a result is doubtful.
     refuse
-        Above this there is none.
+        Above this there is no result.
     because
-        What the theory takes for granted, and fails.
+        The assumption of the theory that fails.
     cure
         What to do.
     """
@@ -47,8 +47,9 @@ class ValidityLimit:
 LIMITS = {
     "film": ValidityLimit(
         "film thickness over the radius R",
-        1e-2,  # a cylinder's gap is 0.5 % wider than the parabola's where the film is doubled,
-        # 6 % at R/10 and twice as wide at R/2: there its own edge is reached, sqrt(2 R h) = R
+        # a cylinder's gap is 0.5 % wider than the parabola's where the film is twice as thick,
+        1e-2,
+        # 6 % at R/10 and twice as wide at R/2, where its own edge is reached, sqrt(2 R h) = R
         0.5,
         "the gap is taken as a parabola and the film as thin",
         "take lower speeds or a thinner liquid",
@@ -62,8 +63,8 @@ LIMITS = {
     ),
     "thickening": ValidityLimit(
         "rise of an oil's viscosity at the highest pressure, in its logarithm",
-        0.1,  # so much more drag in the middle of the contact; the film follows later
-        np.inf,  # a warning: which liquid it is is not asked for, and water does not thicken
+        0.1,  # increase of drag in the middle of the contact; the film follows later
+        np.inf,  # warning only: the liquid is not known, and water does not thicken under pressure
         "the viscosity is taken to be the same at every pressure, as between soft bodies",
         "take a smaller load or a softer body, or a theory of elastohydrodynamics between hard "
         "ones",
@@ -93,16 +94,16 @@ LIMITS = {
     ),
     "heating": ValidityLimit(
         "temperature rise in K in the contact spots of sliding rubber",
-        10.0,  # a relaxation is some two times as fast
-        np.inf,  # a warning: friction falls, and how far is not computed
+        10.0,  # a relaxation is about two times as fast
+        np.inf,  # warning only: friction falls by an amount that is not computed
         "the modulus is that of the rubber at rest, without heat by friction",
         "take lower speeds, or the modulus at the temperature of the contact",
     ),
     "pressure": ValidityLimit(
         "contact pressure over the largest in the table of p(u)",
         1.0,
-        # at the table's end u is 1e-17 h_rms, and ~ exp(-k p^2) from there on: 1e-205 at four
-        # times, where p(u) still comes back to 1e-5; at five dp/du overflows, at 5.3 u is 0
+        # at the table's end u is 1e-17 h_rms, and ~ exp(-k p^2) beyond: 1e-205 at four
+        # times that pressure p(u) still inverts to 1e-5; at five dp/du overflows, at 5.3 u is 0
         4.0,
         "beyond it the roughness is pressed flat and p(u) is extrapolated",
         "take a smaller load, or smooth surfaces",
@@ -111,22 +112,21 @@ LIMITS = {
 
 
 def examine(who: str, where: str = "", **values: Any) -> dict[str, str]:
-    """Compare numbers with the limits of the theory.
+    """Compare numbers with the limits of the theory, and return validity attributes.
 
     Parameters
     ----------
     who
-        The function that asks, for the error.
+        The calling function, for the error message.
     where
-        At which load, speed or surface.
+        Load, speed or surface, for the message.
     **values
-        The numbers [1] by the limits' names; of arrays the largest counts, and what is not a
-        number does not.
+        The numbers [1] by the limits' names; for arrays the largest, ignoring NaN.
 
     Returns
     -------
     dict
-        Attributes ``validity`` ("pass" or "suspect") and ``validity_reasons``, "" where it passes.
+        Attributes ``validity`` ("pass" or "suspect") and ``validity_reasons``, "" for "pass".
 
     Raises
     ------
@@ -161,7 +161,7 @@ def examine(who: str, where: str = "", **values: Any) -> dict[str, str]:
 
 
 def together(attrs: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
-    """Join what several results say of their validity; each reason once.
+    """Combine the validity attributes of several results; each reason once.
 
     Examples
     --------
@@ -175,5 +175,5 @@ def together(attrs: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
 
 
 def reasons_of(attrs: Mapping[Any, Any]) -> list[str]:
-    """Return why a result is not sure, from its attributes."""
+    """Return the reasons why a result is doubtful, from its attributes."""
     return [reason for reason in str(attrs.get("validity_reasons", "")).split(" | ") if reason]

@@ -1,4 +1,4 @@
-"""Wording that terminal, page, figures and messages share: numbers, counts, speeds, reasons."""
+"""Formats of numbers, counts, speeds and reasons in all texts."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ MINUS = "\N{MINUS SIGN}"
 
 
 def number(value: float, digits: int = 3) -> str:
-    """Return a number with so many significant digits and no needless zeros or exponents.
+    """Return the number with so many significant digits, without needless zeros or exponents.
 
     Examples
     --------
@@ -35,7 +35,7 @@ def number(value: float, digits: int = 3) -> str:
 
 
 def aligned(value: float, digits: int = 3) -> str:
-    """Return a number with so many significant digits, zeros kept, as columns of numbers want.
+    """Return a number with so many significant digits and trailing zeros, for columns.
 
     Examples
     --------
@@ -50,9 +50,9 @@ def aligned(value: float, digits: int = 3) -> str:
 
 
 def speed_text(speed: float) -> str:
-    """Return a sliding speed [m/s] with the prefix a reader would choose.
+    """Text of a sliding speed [m/s] with a suitable prefix.
 
-    A speed just below 1 um/s stays in um/s, since it was meant to be 1 um/s.
+    A speed just below 1 um/s is given in um/s, since its set-point was 1 um/s.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def speed_text(speed: float) -> str:
 
 
 def force_text(force: float | None) -> str:
-    """Return a force [N] as text, e.g. ``"31 N"``; None is one that nobody knows."""
+    """Force [N] as text, e.g. ``"31 N"``; None is an unknown force."""
     if force is None or not math.isfinite(force):
         return "load unknown"
     return f"{number(force)} N"
@@ -78,7 +78,7 @@ LOAD_STATED, LOAD_MEASURED, LOAD_VARIES = "stated", "measured", "varies"
 
 
 def load_label(load: float | None) -> float | None:
-    """Return the load [N] that runs and their curve are filed under: to four digits.
+    """Load [N] that identifies runs and their curve, rounded to four digits.
 
     >>> load_label(14.709975), load_label(None)
     (14.71, None)
@@ -87,7 +87,7 @@ def load_label(load: float | None) -> float | None:
 
 
 def load_text(load: float | None, load_from: str) -> str:
-    """Return the load [N] of a run or curve, with the word that it was not stated but measured.
+    """Load [N] of a run or curve as text, marked if measured rather than set.
 
     Examples
     --------
@@ -100,7 +100,7 @@ def load_text(load: float | None, load_from: str) -> str:
 
 
 def span(values: Iterable[float | None], unit: str = "") -> str:
-    """Return smallest to largest, once if they look the same.
+    """Smallest to largest as text; one number if they look the same.
 
     Examples
     --------
@@ -115,7 +115,7 @@ def span(values: Iterable[float | None], unit: str = "") -> str:
 
 
 def speeds(values: Iterable[float | None]) -> str:
-    """Return the range of sliding speeds.
+    """Range of sliding speeds as text.
 
     Examples
     --------
@@ -130,7 +130,7 @@ def speeds(values: Iterable[float | None]) -> str:
 
 
 def duration(seconds: float | None) -> str:
-    """Return a duration in the unit that suits it.
+    """Duration as text in a suitable unit.
 
     Examples
     --------
@@ -146,14 +146,14 @@ def duration(seconds: float | None) -> str:
 
 
 def percent(share: float | None) -> str:
-    """Return a share as text, e.g. ``"2.1 %"``."""
+    """Share as text, e.g. ``"2.1 %"``."""
     if share is None or not math.isfinite(share):
         return "–"
     return f"{number(100 * share, 2)} %"
 
 
 def many(count: int, word: str) -> str:
-    """Return a count with its noun.
+    """Count with its noun.
 
     Examples
     --------
@@ -164,7 +164,7 @@ def many(count: int, word: str) -> str:
 
 
 def size(count: int) -> str:
-    """Return a number of bytes, e.g. ``"1.2 MB"``."""
+    """Return the number of bytes as text, e.g. ``"1.2 MB"``."""
     for limit, factor, unit in ((1e3, 1, "B"), (1e6, 1e3, "kB"), (math.inf, 1e6, "MB")):
         if count < limit:
             return f"{number(count / factor)} {unit}"
@@ -172,7 +172,7 @@ def size(count: int) -> str:
 
 
 class Count(int):
-    """A count that is written with the noun that suits it.
+    """Count that is formatted with the matching noun.
 
     Examples
     --------
@@ -181,7 +181,7 @@ class Count(int):
     """
 
     def __format__(self, nouns: str) -> str:
-        """Write the number and, of "one|many", what suits it."""
+        """Write the number and the singular or plural of "one|many"."""
         singular, _, more = nouns.partition("|")
         return f"{int(self)} {singular if self == 1 else more}" if nouns else str(int(self))
 
@@ -190,10 +190,10 @@ _PACKAGE = Path(__file__).resolve().parents[1]
 
 
 def explain(error: BaseException) -> tuple[str, str]:
-    """Return one line that says what went wrong, and the class name of the error.
+    """One line with the message of an error and its class name.
 
-    It is for the records of a campaign, whose readers have a campaign file before them.
-    An error that nobody raised on purpose also says where it happened.
+    It is worded for the records of a campaign.
+    Unexpected errors also state where they happened.
     """
     name = type(error).__name__
     if isinstance(error, TribolabError):
@@ -215,7 +215,7 @@ _DRY = {"dry", "none", "air"}
 
 
 def is_dry(medium: str) -> bool:
-    """Whether a medium's name means that there is no fluid.
+    """Whether the name of a medium means that there is no fluid.
 
     Examples
     --------

@@ -1,1 +1,1 @@
-"""The reference paper reproduced: its figures, its numbers beside computed ones, and a page."""
+"""Reproduction of the reference paper: figures, comparison of numbers, and a page."""

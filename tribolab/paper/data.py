@@ -1,4 +1,4 @@
-"""What the figures are drawn from: the data files of a reproduction."""
+"""Data files of a reproduction, from which the figures are drawn."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from tribolab.figures.subjects.slip import Trace
     from tribolab.records.parts import CurveOutcome, RunOutcome
 
-# Several figures show the same data, and none of them changes it.
+# Several figures share the same data, and none changes it.
 _KEPT = 64
 SURFACES = tuple(xu2026.surfaces)
 ROUGH = tuple(name for name in SURFACES if name != "Smooth")
@@ -31,14 +31,14 @@ ROUGH = tuple(name for name in SURFACES if name != "Smooth")
 
 @dataclass(frozen=True)
 class PaperData:
-    """Everything computed and simulated, read when it is asked for.
+    """Computed and simulated data of a reproduction, read on demand.
 
     Parameters
     ----------
     folder
         Folder of the results.
     runs, curves
-        Simulated runs and the measured curves that came of them.
+        Simulated runs and their measured curves.
     fits
         Shear stresses fitted to the simulated curves, a row each.
     """
@@ -78,7 +78,7 @@ class PaperData:
         raise LookupError(f"no simulated curve of {surface}, {medium}, {force:g} N")
 
     def trace(self, surface: str, medium: str, speed: float) -> Trace:
-        """Read the forward stroke at the lowest force whose speed is nearest to a speed [m/s]."""
+        """Read the forward stroke at the lowest force with the speed nearest to a speed [m/s]."""
         run = next(
             run
             for run in self.runs

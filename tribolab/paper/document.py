@@ -1,4 +1,4 @@
-"""What the page says: the published numbers at their places, and how many of them hold."""
+"""Content of the page: published numbers by section, and how many are reproduced."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _SCHEMA_VERSION = "1.1"
 
 
 class StatusMark(NamedTuple):
-    """How the page marks a status: colour, sign, the word on it, and what it means."""
+    """Mark of a status on the page: colour, sign, word and meaning."""
 
     look: str
     sign: str
@@ -72,7 +72,7 @@ _MARKS = {
     ),
 }
 _BODY = "paper/section.html.j2"
-# Key, heading, and which words of "where a number is printed" mean it.
+# Key, heading, and the words of "where a number is printed" that belong to it.
 _PARTS = (
     ("theory", "2 Theory of mixed lubrication", ("Sec. 2",)),
     ("setup", "3 Experiment", ("Sec. 3",)),
@@ -96,7 +96,7 @@ _ABOUT = {
     "dry": "The drawing of bonds in the contact is left out.",
     "discussion": "The drawing of a Schallamach wave is left out.",
 }
-# A word beside names of quantities that say too little by themselves.
+# Word added to names of quantities that are unclear alone.
 _WORDS = {
     "hertz_contact_width": "2a of a smooth cylinder",
     "contact_area_ratio": "real over nominal area, A/A₀",
@@ -113,7 +113,7 @@ _WORDS = {
 
 
 def paper_sections() -> list[Section]:
-    """Return the sections of the page: the summary, the paper's, and where it comes from."""
+    """Sections of the page: the summary, those of the paper, and the sources."""
     return [
         Section("summary", "Summary", "paper/summary.html.j2"),
         Section("numbers", "All published numbers", "paper/numbers.html.j2"),
@@ -129,7 +129,7 @@ def paper_document(
     laboratory: Laboratory,
     sources: Sequence[tuple[str, str, int]],
 ) -> Json:
-    """Return all that the page says as plain data: ``paper.json``.
+    """Content of the page as plain data: ``paper.json``.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def paper_document(
     fits
         Shear stresses fitted to the simulated curves.
     laboratory
-        What was simulated.
+        Simulated measurement.
     sources
         Raw files of the simulation with checksum and size.
     """
@@ -170,7 +170,7 @@ def paper_document(
 
 
 def context_of(document: Json) -> Json:
-    """Return the document with what its page wants besides."""
+    """Return the document with further entries that the page needs."""
     rows = document["numbers"]
     return document | {
         "parts": {
@@ -186,7 +186,7 @@ def context_of(document: Json) -> Json:
 
 
 def _paired(table: pd.DataFrame) -> list[tuple[Json, Published]]:
-    """Put every row beside the published number that it is about, of which the order is known."""
+    """Pair every row with its published number; both have the same order."""
     pairs = list(zip(rows_of(table), xu2026.published, strict=True))
     for record, known in pairs:
         if (record["quantity"], record["condition"]) != (known.quantity, known.condition):
@@ -210,7 +210,7 @@ def _row(record: Json, known: Published) -> Json:
 
 
 def _difference(record: Json, known: Published) -> str:
-    """Say how a number differs that has no relative difference; "" if it has one or is unknown."""
+    """Text on the difference of a number without relative difference; else ""."""
     if known.relation.startswith(BOUNDS) and record["computed"]:
         if record["status"] in (REPRODUCED, BY_CONSTRUCTION):
             return "within the bound"

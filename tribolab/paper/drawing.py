@@ -1,4 +1,4 @@
-"""The figures of the reproduction: each drawn from the data, with what it shows in numbers."""
+"""Figures of the reproduction, each with its numbers."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from tribolab.surface.moments import rms_roughness, rms_slope
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FigureAndText = tuple["Figure", str]  # and what it shows, in words and numbers
-_BOUNDARY = 1e-9  # m/s, from where on the theory of Smooth is shown
+FigureAndText = tuple["Figure", str]  # and its content in words and numbers
+_BOUNDARY = 1e-9  # m/s, lowest speed at which the theory of Smooth is shown
 
 
 def _listed(parts: Iterable[str]) -> str:
@@ -36,7 +36,7 @@ def paper_spectra(data: PaperData) -> FigureAndText:
 
 
 def scanned_spectra(data: PaperData) -> FigureAndText:
-    """Spectra that the analysis makes of the simulated profiles."""
+    """Spectra from the analysis of the simulated profiles."""
     psds = {name: data.read("spectrum", name, "psd") for name in SURFACES}
     said = _listed(
         f"{name}: h_rms {1e6 * rms_roughness(psd):.3g} µm from {int(psd.scans)} profiles"

@@ -1,4 +1,4 @@
-"""Which figures the reproduction has: where in the paper, what is computed and what simulated."""
+"""List of the figures of the reproduction, with section, sources and captions."""
 
 from __future__ import annotations
 
@@ -42,29 +42,29 @@ _SLIP = (
 
 @dataclass(frozen=True)
 class PlannedFigure:
-    """A figure of the reproduction.
+    """Figure of the reproduction.
 
     Parameters
     ----------
     name
-        What its file is called.
+        Name of its file.
     section
         Key of the section of the paper that has it.
     title
-        What it shows.
+        Title.
     kinds
-        Where what it shows comes from: `COMPUTED`, `SIMULATED` or both.
+        Origin of its data: `COMPUTED`, `SIMULATED` or both.
     caption
         Full sentences below it.
     draw
-        Draws it.
+        Function that draws it.
     claims
         Published numbers that belong to it: quantity, surface ("" for any), a part of the
         condition.
     wide
-        Whether it wants the whole width of the page.
+        Whether it needs the full width of the page.
     told
-        Whether the caption, too, has what it shows in numbers.
+        Whether its numbers are repeated in the caption.
     """
 
     name: str
@@ -264,7 +264,7 @@ BY_NAME = {figure.name: figure for figure in FIGURES}
 
 @dataclass(frozen=True)
 class DrawTask:
-    """A figure to draw."""
+    """Figure to draw."""
 
     name: str
     data: PaperData
@@ -279,7 +279,7 @@ def draw_paper_figure(task: DrawTask) -> Json:
         caption = f"{known.caption} {said}" if known.told else known.caption
         data = write_figure(figure, task.data.folder, known.file)
         record = asdict(FigureRecord(known.file, data, caption, alt))
-    del record["kind"]  # it stands in a section
+    del record["kind"]  # the figure belongs to a section
     return record | {
         "name": known.name,
         "section": known.section,

@@ -1,4 +1,4 @@
-"""What the exponents above 1 of the stand-in spectra mean for slope and contact."""
+"""Effect of Hurst exponents above 1 of the stand-in spectra on slope and contact."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ENDLESS = 1e30  # 1/m
 
 @dataclass(frozen=True)
 class SteepSpectrum:
-    """A stand-in spectrum whose exponent exceeds 1.
+    """Stand-in spectrum with a Hurst exponent above 1.
 
     Parameters
     ----------
@@ -29,10 +29,10 @@ class SteepSpectrum:
     half_slope_wavelength
         Wavelength [m]: half of the mean square slope comes from longer waves.
     slope_beyond
-        What the root-mean-square slope would gain [1, relative] if the power law went on beyond
-        the last wavenumber without end.
+        Relative increase of the rms slope [1] if the power law were extended to infinite
+        wavenumbers.
     verdict
-        What the exponent means.
+        Meaning of the exponent.
     """
 
     surface: str
@@ -43,7 +43,7 @@ class SteepSpectrum:
 
 
 def steep_spectra() -> list[Json]:
-    """Return what stands on the page for each stand-in spectrum with H above 1.
+    """Return the record on the page for each stand-in spectrum with H above 1.
 
     Examples
     --------
@@ -70,7 +70,7 @@ def _judged(name: str, spectrum: SelfAffine) -> SteepSpectrum:
 
 
 def _half(spectrum: SelfAffine, whole: float) -> float:
-    """Wavenumber [1/m] up to which half of the mean square slope is gathered."""
+    """Wavenumber [1/m] below which half of the mean square slope is contained."""
 
     def missing(log_q: float) -> float:
         return moment(replace(spectrum, high=math.exp(log_q)), _SLOPE) / whole - 0.5

@@ -1,4 +1,4 @@
-"""The virtual rig in place of the paper's laboratory: raw files, and what the pipeline finds."""
+"""Virtual rig in place of the paper's laboratory, and the analysis of its files."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ _FOLDER = "simulated"
 
 @dataclass(frozen=True)
 class Laboratory:
-    """What the virtual rig measures: by default all that the paper measured, each once.
+    """Programme of the virtual rig, by default that of the paper, each condition once.
 
     Parameters
     ----------
     loads
         Normal forces [N] in glycerol; dry the lowest of them.
     speeds
-        Sliding speeds [m/s]; 3 um/s is among them because the paper shows traces at it.
+        Sliding speeds [m/s]; 3 um/s is included because the paper shows traces at it.
     scans
         Profiles of each surface.
     seed
@@ -48,7 +48,7 @@ class Laboratory:
 def simulate_laboratory(
     laboratory: Laboratory, folder: Path, executor: Executor | None, progress: Progress
 ) -> Campaign:
-    """Let the rig write its raw files below a folder, and return the campaign."""
+    """Write the raw files of the virtual rig to a folder, and return the campaign."""
     file = simulate_campaign(
         folder / _FOLDER,
         laboratory.seed,
@@ -65,13 +65,13 @@ def simulate_laboratory(
 def analyse_laboratory(
     campaign: Campaign, folder: Path, executor: Executor | None, progress: Progress
 ) -> tuple[Outcome, tuple[PlannedSurface, ...]]:
-    """Take the raw files through the ordinary pipeline.
+    """Analyse the raw files of the virtual rig by the usual pipeline.
 
     Returns
     -------
     tuple
-        What came of the runs, whose data files are in ``data/``, and the surfaces with their
-        scans. Contact and models are computed on the stand-in spectra and not here.
+        Results of the runs, whose data files are in ``data/``, and the surfaces with their
+        scans. Contact and models are computed elsewhere, from the stand-in spectra.
 
     Raises
     ------

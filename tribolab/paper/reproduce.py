@@ -1,4 +1,4 @@
-"""The job behind ``tribolab reproduce``: simulate, analyse, compute, draw, compare, write."""
+"""Command ``tribolab reproduce``: simulate, analyse, compute, draw, compare, write."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Reproduction:
-    """What came of a reproduction.
+    """Results of a reproduction.
 
     Parameters
     ----------
     folder
         The results.
     table
-        Published numbers beside computed ones, as in ``paper.csv``.
+        Published and computed numbers, as in ``paper.csv``.
     document
-        All that the page says, as in ``paper.json``.
+        Content of the page, as in ``paper.json``.
     """
 
     folder: Path
@@ -55,7 +55,7 @@ def reproduce(
     progress: Progress | None = None,
     laboratory: lab.Laboratory | None = None,
 ) -> Reproduction:
-    """Reproduce the reference paper: its figures, its numbers, and a page that shows both.
+    """Reproduce the figures and numbers of the reference paper, with a page.
 
     Parameters
     ----------
@@ -67,12 +67,12 @@ def reproduce(
     progress
         Called as ``progress(stage, done, total)``.
     laboratory
-        What the virtual rig measures; by default all that the paper measured.
+        Programme of the virtual rig; by default that of the paper.
 
     Raises
     ------
     ConfigError, OutputError
-        If `output` holds something else, or cannot be written.
+        If `output` contains other files, or cannot be written.
     """
     laboratory = laboratory or lab.Laboratory()
     place = Path(output).resolve()
@@ -99,12 +99,12 @@ def reproduce(
 def _computed(
     outcome: Outcome, scans: Sequence[PlannedSurface], pool: Executor | None, tell: Progress
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Compute what the theory gives, compare the numbers, and fit the simulated curves."""
+    """Compute the theory, compare the numbers, and fit the simulated curves."""
     folder = outcome.folder
     tasks = [PaperTask("published", "", folder)]
     for name in SURFACES:
         wet = [c for c in outcome.curves if (c.surface, c.medium) == (name, "glycerol")]
-        # of Smooth the paper computes the lowest load only
+        # for Smooth the paper computes the lowest load only
         forces = sorted(c.normal_force for c in wet if c.normal_force is not None)
         forces = forces[: 1 if name == "Smooth" else None]
         tasks.append(PaperTask("wet", name, folder, tuple(forces), tuple(wet)))

@@ -1,4 +1,4 @@
-"""What workers compute for the reproduction, each task into a data file of its own."""
+"""Tasks of the reproduction, each computed by a worker into its own data file."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ _LOWEST_WAVENUMBER = 423.0  # 1/m, of the stand-in spectra
 
 @dataclass(frozen=True)
 class PaperTask:
-    """Something to compute: `kind` is a key of `_KINDS`.
+    """Task of the reproduction: `kind` is a key of `_KINDS`.
 
     Parameters
     ----------
     kind, surface
-        What, and of which surface.
+        Kind of task, and the surface.
     folder
         Folder of the results.
     forces
@@ -80,9 +80,9 @@ def _root(task: PaperTask) -> xr.Dataset:
 
 
 def _origin(task: PaperTask) -> dict[str, str]:
-    """Return what a task's result is made from: files, or else the published constants alone.
+    """Return the sources of a task's result: files, or the published constants alone.
 
-    There is no checksum of a file where there is no file; the settings are then the constants.
+    Without files there is no checksum; the settings are then the constants.
     """
     if task.scans is not None:
         config = {"campaign": task.scans.config_sha256, "q_low": _LOWEST_WAVENUMBER}
@@ -101,7 +101,7 @@ def _dry(task: PaperTask) -> GroupsAndRows:
 
 
 def _spectrum(task: PaperTask) -> GroupsAndRows:
-    """Return the spectrum that the simulated profiles give, extrapolated as for any surface."""
+    """Spectrum of the simulated profiles, extrapolated as for any surface."""
     if task.scans is None:
         raise AnalysisError(f"{task.surface}: there are no scans to make a spectrum of")
     checked = usable_scans(task.scans)
@@ -121,14 +121,14 @@ def _wet(task: PaperTask) -> GroupsAndRows:
 
 
 def _fit(task: PaperTask, curve: CurveOutcome, force: float, printed: float) -> Row:
-    """Fit the shear stress to a simulated curve, as the authors did to theirs."""
+    """Fit the shear stress to a simulated curve, as the authors did."""
     fit = fit_shear_stress(
         read_netcdf(task.folder / curve.data_file),
         xu2026.contact,
         xu2026.psd(task.surface),
         xu2026.system.viscosity,
         xu2026.contact.load(force),
-        # one run at each load does not tell how well it would repeat; the rig's is known
+        # one run per load does not determine the repeatability; the rig's is known
         common_error=Scatter().repeat,
     )
     plain, corrected = (
@@ -138,7 +138,7 @@ def _fit(task: PaperTask, curve: CurveOutcome, force: float, printed: float) -> 
         "surface": task.surface,
         "normal_force_N": force,
         "printed_shear_stress_Pa": printed,
-        # what leaves the solid's friction over the measured speeds as it is
+        # gives the solid friction over the measured speeds
         "printed_with_corrected_area_Pa": printed * (plain @ corrected) / (corrected @ corrected),
         "shear_stress_Pa": fit.shear_stress,
         "shear_stress_low_Pa": fit.shear_stress - fit.half_interval,

@@ -1,4 +1,4 @@
-"""The virtual rig: signals and files with known truth, for the demo, the tests and teaching."""
+"""Virtual rig: signals and files with known truth, for the demo, tests and teaching."""
 
 from tribolab.rig.calibration import Calibration
 from tribolab.rig.campaign import simulate_campaign

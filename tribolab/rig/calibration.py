@@ -1,4 +1,4 @@
-"""What is wrong with a force cell's calibration and mount: gains, tilt, cross-talk, hysteresis."""
+"""Errors of a force cell's calibration and mounting: gains, tilt, cross-talk, hysteresis."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Calibration:
-    """Errors of the force cell, as they are; without arguments it has none.
+    """True errors of the force cell; all zero by default.
 
     Parameters
     ----------
     friction_gain, normal_gain
         Relative errors of the gains.
     tilt
-        Angle between cell and contact in the plane of sliding [rad], rigid: of both axes.
+        Angle between cell and contact in the plane of sliding [rad], common to both axes.
     cross_talk_friction_from_normal, cross_talk_normal_from_friction
-        Share of one force that the channel of the other reads.
+        Share of one force in the reading of the other.
     friction_linearity
-        Hysteresis of the friction channel [N]: it reads so much more force against the motion.
+        Hysteresis of the friction channel [N], added to the force against the motion.
     normal_linearity
-        What the normal force channel reads too much under load [N].
+        Error of the normal force channel under load [N].
 
     Examples
     --------
@@ -41,7 +41,7 @@ class Calibration:
     normal_linearity: float = 0.0
 
     def seen(self, friction: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return what both channels read of the true forces [N], zeros aside.
+        """Return the readings of both channels for true forces [N], without zeros.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""A whole simulated campaign on disk: raw files, campaign.toml and the truth beside them."""
+"""Simulated campaign on disk: raw files, campaign.toml and the truth."""
 
 from __future__ import annotations
 
@@ -46,13 +46,13 @@ class _Condition:
 
 @dataclass(frozen=True)
 class _Job:
-    """One file or pair of files to make: picklable, so that another process can."""
+    """File or pair of files to make, picklable for other processes."""
 
     folder: Path
     seed: int
     rig: Rig
     condition: _Condition
-    number: int  # of the repeat; 0: the surface's scans
+    number: int  # number of the repeat; 0: the surface's scans
     scans: int
     date: dt.datetime
     faults: tuple[str, ...] = ()
@@ -74,12 +74,12 @@ def simulate_campaign(
     jobs: int = 1,
     executor: Executor | None = None,
 ) -> Path:
-    """Write a campaign as the virtual rig measures it: every surface at every load, in repeats.
+    """Simulate a campaign with the virtual rig: all surfaces and loads, with repeats.
 
     Parameters
     ----------
     folder
-        Where to; must not exist, or be empty.
+        Target folder; must not exist, or be empty.
     seed
         The same seed gives the same bytes, whatever `jobs` is.
     small
@@ -92,10 +92,10 @@ def simulate_campaign(
     rig
         Protocol and sensors.
     faults
-        Names of faults. Of runs (`tribolab.rig.faults.FAULTS`): each strikes one run, the first
-        that it can happen in and that has none yet. Of scans
-        (`tribolab.rig.scans.faulty.SCAN_FAULTS_BY_NAME`): each strikes the scans of one surface, of
-        which there are then as many as it takes to see it. The truth says which files carry it.
+        Names of faults. Of runs (`tribolab.rig.faults.FAULTS`): each affects one run, the first
+        suitable one without a fault. Of scans
+        (`tribolab.rig.scans.faulty.SCAN_FAULTS_BY_NAME`): each affects the scans of one surface, of
+        which enough are simulated to detect it. The truth lists the affected files.
     progress
         Called as ``progress(stage, done, total)``.
     jobs
@@ -106,12 +106,12 @@ def simulate_campaign(
     Returns
     -------
     pathlib.Path
-        The ``campaign.toml``. Beside it lie ``raw/friction``, ``raw/profiles`` and ``truth``.
+        The ``campaign.toml``, next to ``raw/friction``, ``raw/profiles`` and ``truth``.
 
     Raises
     ------
     ConfigError
-        If the folder holds anything already; if a fault is not known or finds no run.
+        If the folder is not empty, or if a fault is unknown or suits no run.
 
     Examples
     --------
@@ -141,7 +141,7 @@ def simulate_campaign(
     n_scans = n_scans or xu2026.profilometer.scans
 
     target.parent.mkdir(parents=True, exist_ok=True)
-    # made aside and moved into place: a killed simulation leaves no half campaign
+    # made elsewhere and moved into place: a killed simulation leaves no partial campaign
     aside = Path(tempfile.mkdtemp(prefix=f".{target.name}-", dir=target.parent))
     try:
         for room in ("raw/friction", "raw/profiles", "truth"):
@@ -184,7 +184,7 @@ def _jobs(
 
 
 def _deal(faults: Sequence[str], work: list[_Job]) -> list[_Job]:
-    """Give each fault to the run, or the surface, that has the fewest it can happen in."""
+    """Assign each fault to a run or surface, those with the fewest choices first."""
     for name in faults:
         fault = fault_of_campaign(name)
         able = [k for k, job in enumerate(work) if _can_have(job, fault)]
@@ -201,14 +201,14 @@ def _deal(faults: Sequence[str], work: list[_Job]) -> list[_Job]:
 
 
 def _can_have(job: _Job, fault: Fault | ScanFault) -> bool:
-    """Whether a fault can happen in a run, or to the scans of a surface (job number 0)."""
+    """Whether a fault suits a run, or the scans of a surface (job number 0)."""
     if isinstance(fault, ScanFault):
         return not job.number
     return bool(job.number) and fault.suits(job.condition.surface, job.condition.medium)
 
 
 def _date(made: int) -> dt.datetime:
-    """When a run began: eight a day."""
+    """Start of a run; there are eight a day."""
     day, turn = divmod(made, 8)
     return FIRST_DAY + dt.timedelta(days=day, minutes=52 * turn, seconds=17 * turn)
 
@@ -225,10 +225,10 @@ def _run_all(
     pool: Executor | None,
     progress: Callable[[str, int, int], None] | None,
 ) -> dict[str, Json]:
-    """Do the jobs here or in other processes; facts of runs and of scans with faults, in order."""
+    """Do the jobs here or in other processes, and return the facts in order."""
     do = pool.map if pool else map
     conditions = list(dict.fromkeys(job.condition for job in work if job.number))
-    # laws first: repeats share one, wherever each of them is simulated
+    # laws first: repeats share one, in whichever process they run
     laws = dict(zip(conditions, do(_law, conditions), strict=True))
     work = [replace(job, law=laws.get(job.condition)) for job in work]
     facts: dict[str, Json] = {"runs": {}, "scans": {}}
@@ -247,7 +247,7 @@ def _law(condition: _Condition) -> Law:
 
 
 def _do(job: _Job) -> tuple[str, Json]:
-    """Make one run's two files and its truth, or the scans of one surface; say what is true."""
+    """Write the files of one run, or the scans of one surface, and return the truth."""
     c = job.condition
     if not job.number:
         stem = c.surface.lower()
@@ -256,7 +256,7 @@ def _do(job: _Job) -> tuple[str, Json]:
         if not job.faults:
             write_scans(data, folder)
             return stem, {}
-        # a stream of its own: scans beneath the faults are those of a campaign without
+        # separate stream: without faults the scans are those of a fault-free campaign
         rng = _generator(job.seed, f"{stem} faults")
         return stem, write_faulty_scans(data, job.faults, folder, rng)
     name = run_name(c.surface, c.medium, c.normal_force, job.number)
@@ -277,14 +277,14 @@ def _do(job: _Job) -> tuple[str, Json]:
 
 
 def _generator(seed: int, name: str) -> np.random.Generator:
-    """Each run has its own stream, whichever process makes it and whatever else is made."""
+    """Return the random generator of a run, independent of processes and other runs."""
     return np.random.default_rng([seed, zlib.crc32(name.encode())])
 
 
 def _write_facts(
     folder: Path, seed: int, rig: Rig, names: Sequence[str], facts: dict[str, Json]
 ) -> None:
-    # late: looks the installed package up
+    # late: it looks up the installed package
     from tribolab.version import __version__
 
     text = json.dumps(
@@ -307,7 +307,7 @@ def _write_facts(
 
 
 def campaign_text(names: Sequence[str], conditions: Sequence[_Condition]) -> str:
-    """Write the campaign file for these surfaces and conditions."""
+    """Content of the campaign file for these surfaces and conditions."""
     s = xu2026.system
     parts = [
         "# Simulated by the virtual rig of tribolab; the truth lies in truth/.\n"
@@ -340,7 +340,7 @@ def campaign_text(names: Sequence[str], conditions: Sequence[_Condition]) -> str
 
 
 def _range(medium: str) -> str:
-    """Write the bounds that the literature's surface energies set to the work of adhesion."""
+    """Text of the bounds of the work of adhesion, from literature values of surface energies."""
     spread = work_of_adhesion_spread(PDMS_PMMA_GLYCEROL, samples=2).sel(medium=medium)
     ends = (1e3 * float(spread[f"work_of_adhesion_{end}"]) for end in ("low", "high"))
     return "work_of_adhesion_range = [{}]\n".format(", ".join(f'"{x:.1f} mJ/m^2"' for x in ends))

@@ -1,4 +1,4 @@
-"""Faults that real rigs have, to be put into simulated runs: one for each check on a run."""
+"""Faults of real rigs for simulated runs, one for each check on a run."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from tribolab.rig.simulated import SimulatedRun
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault: what happens, how grave it is, and which check has to find it.
+    """Fault with its effect, severity, and the check that must find it.
 
     Attributes
     ----------
     name
         As in ``tribolab.rig.simulate_campaign(folder, faults=[NAME])``.
     what
-        What it does, in a sentence.
+        Effect, in a sentence.
     severity
         "suspect", "fail", or "unreadable": the reader itself refuses the file.
     check
@@ -30,7 +30,7 @@ class Fault:
     strike
         ``strike(run, rng) -> (force log, motion log, facts)``; changes nothing in place.
     surface, medium
-        The only ones it can happen on; empty: any.
+        The only ones it can occur with; empty for any.
 
     Examples
     --------
@@ -48,7 +48,7 @@ class Fault:
     medium: str = ""
 
     def suits(self, surface: str, medium: str) -> bool:
-        """Whether the fault can happen on this surface in this medium."""
+        """Whether the fault can occur on this surface in this medium."""
         return self.surface in ("", surface) and self.medium in ("", medium)
 
 
@@ -61,17 +61,16 @@ def inject(
     Parameters
     ----------
     run
-        A simulated run; stays as it is. A list of runs gives a list.
+        A simulated run, not changed. A list of runs gives a list.
     faults
-        Names of faults, in the order in which they strike; for a list of runs a list has those of
-        each run.
+        Names of faults, in the order of application; for a list of runs, a list for each run.
     rng
         Seed or generator.
 
     Raises
     ------
     ConfigError
-        If there is no such fault, or it cannot happen in this run.
+        If a fault is unknown, or cannot occur in this run.
 
     Examples
     --------
@@ -103,7 +102,7 @@ def inject(
 
 
 def known_fault(name: str) -> Fault:
-    """Return the fault of this name; an unknown one is an error that names the nearest."""
+    """Return the fault of this name; the error for an unknown one names the nearest."""
     if name not in FAULTS:
         raise ConfigError(f"the rig has no fault '{shown(name)}'{nearest(name, FAULTS, most=None)}")
     return FAULTS[name]

@@ -1,4 +1,4 @@
-"""The rig's raw files: delimited text of fixed decimals, written without a loop over rows."""
+"""Raw files of the rig: delimited text with fixed decimals, written without loops over rows."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from tribolab.studies import xu2026
 if TYPE_CHECKING:
     from tribolab.rig.simulated import SimulatedRun
 
-FIRST_DAY = dt.datetime(2026, 3, 2, 9, 12, 31)  # noqa: DTZ001 - instruments know no time zone
+FIRST_DAY = dt.datetime(2026, 3, 2, 9, 12, 31)  # noqa: DTZ001 - instruments have no time zone
 
 
 def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> bytes:
-    r"""Write numbers with fixed decimals, one row per line.
+    r"""Text of numbers with fixed decimals, one row per line.
 
     Parameters
     ----------
@@ -31,9 +31,9 @@ def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> by
 
     Notes
     -----
-    Loggers write fixed decimals; the fast CSV writers know the shortest form only (``1e-05``). All
-    digits of a column are laid out in one byte matrix; leading zeros and absent signs are masked
-    away. What is not a number becomes an empty cell.
+    Loggers write fixed decimals; fast CSV writers only write the shortest form (``1e-05``). All
+    digits of a column are computed in one byte matrix, and leading zeros and absent signs are
+    masked. NaN becomes an empty cell.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def fixed_table(columns: Sequence[tuple[np.ndarray, int]], delimiter: str) -> by
 
 
 def force_file(log: xr.Dataset, date: dt.datetime) -> bytes:
-    """Force log as the logger writes it."""
+    """Content of a force log as the logger writes it."""
     head = (
         "# Linear slider, force log\n"
         f"# date: {date.isoformat()}\n"
@@ -85,7 +85,7 @@ def force_file(log: xr.Dataset, date: dt.datetime) -> bytes:
 
 
 def motion_file(log: xr.Dataset, date: dt.datetime) -> bytes:
-    """Motion log as the table's controller writes it."""
+    """Content of a motion log as the table's controller writes it."""
     head = (
         "# Linear slider, motion log\n"
         f"# date: {date.isoformat()}\n"
@@ -106,21 +106,21 @@ def motion_file(log: xr.Dataset, date: dt.datetime) -> bytes:
 def write_run(
     run: SimulatedRun, folder: str | Path = ".", date: dt.datetime = FIRST_DAY
 ) -> tuple[Path, Path]:
-    """Write a simulated run as its two loggers do: a force log and a motion log.
+    """Write the force log and the motion log of a simulated run.
 
     Parameters
     ----------
     run
         From `simulate_run`; a list of runs gives a list.
     folder
-        Where to; made if it is not there.
+        Target folder, created if missing.
     date
-        When the run began, for the files' first lines.
+        Start of the run, for the file headers.
 
     Returns
     -------
     tuple of pathlib.Path
-        The force log, which `tribolab.read` takes, and the motion log beside it.
+        The force log, which `tribolab.read` takes, and the motion log next to it.
 
     Examples
     --------
@@ -148,9 +148,9 @@ def scan_file(
     length: float | None = None,
     results: Mapping[str, float] | None = None,
 ) -> bytes:
-    """One profile as the stylus instrument exports it, all in m.
+    """Content of a profile as the stylus instrument exports it, in m.
 
-    Pitch and length are what the file states, by default what is true; `results` are the
+    Pitch and length are written to the file, by default the true ones; `results` are the
     instrument's own Ra and Rq, which it does not export by default.
     """
     pitch = x[1] - x[0] if pitch is None else pitch
@@ -167,14 +167,14 @@ def scan_file(
 
 
 def write_scans(scans: xr.Dataset, folder: str | Path = ".", surface: str = "") -> list[Path]:
-    """Write simulated scans as the stylus instrument exports them, a file for each.
+    """Write simulated scans as the stylus instrument exports them, one file each.
 
     Parameters
     ----------
     scans
         ``height`` [m] (profile, x), from `tribolab.rig.scans`.
     folder
-        Where to; made if it is not there.
+        Target folder, created if missing.
     surface
         First part of the files' names; by default the surface's name.
 

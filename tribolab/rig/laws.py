@@ -1,4 +1,4 @@
-"""How the virtual rig's friction depends on speed: the model where it holds, else stated laws."""
+"""Friction laws of the virtual rig: the model where valid, else empirical laws."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from tribolab.studies import xu2026
 
 _MEDIA = ("glycerol", "dry")
 
-# Effective shear stress of the dry contact [Pa], for the area with adhesion: of the magnitude of
-# Sec. 6, with the paper's ratio of 1.5 between Sb-R and Sb-S; the values stand in a figure only.
+# Effective shear stress of the dry contact [Pa], for the area with adhesion: the magnitude of
+# Sec. 6, with the paper's ratio of 1.5 between Sb-R and Sb-S; the values are only in a figure.
 _DRY_SHEAR_STRESS = {"Smooth": 0.130e6, "Sb-S": 0.605e6, "Sb-R": 0.907e6}
 
 
 @dataclass(frozen=True)
 class DryLaw:
-    """Weakly rising friction: ``mu = level (1 + slope log10(v / 0.1 mm/s))``.
+    """Slowly increasing friction: ``mu = level (1 + slope log10(v / 0.1 mm/s))``.
 
     Examples
     --------
@@ -39,7 +39,7 @@ class DryLaw:
 
 @dataclass(frozen=True)
 class StribeckLaw:
-    """Boundary plateau, transition, hydrodynamic rise: Smooth, which the model does not describe.
+    """Friction of Smooth, which the model does not describe: plateau, transition, drag.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class StribeckLaw:
 
 @dataclass(frozen=True)
 class StickSlip:
-    """Stick-slip of one surface in one medium, by speed.
+    """Stick-slip of one surface in one medium as a function of speed.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class StickSlip:
         From peak to valley, relative to the friction coefficient:
         ``drop * (v / 1 um/s) ** -drop_exponent``.
     fade_start, fade_stop
-        From the first speed [m/s] on it fades linearly in log v, and from the second on it is gone.
+        It fades linearly in log v between these speeds [m/s] and is zero above the second.
 
     Examples
     --------
@@ -133,15 +133,15 @@ def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | Str
     Returns
     -------
     DryLaw, StribeckLaw or MixedLaw
-        A function of speed [m/s]. Anything that can be called so can take its place in
-        `simulate_run`.
+        A function of speed [m/s]. `simulate_run` accepts any such function.
 
     Notes
     -----
     In glycerol the rough surfaces follow the mixed-lubrication model with the paper's fitted shear
-    stress, see `mixed_law`. Smooth slides by instabilities, so its level takes the paper's
-    adhesive area and area-corrected stress (Sec. 7); as the paper reports and its theory does not
-    give, it holds to about 10 um/s, where forced wetting sets in, and then soft EHL drags.
+    stress, see `mixed_law`. Smooth slides by instabilities: its level uses the paper's adhesive
+    area and area-corrected stress (Sec. 7). As the paper observes, which its theory does not
+    predict, it is constant up to about 10 um/s, where forced wetting starts; above, soft EHL adds
+    drag.
 
     Examples
     --------
@@ -153,7 +153,7 @@ def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | Str
         raise AnalysisError(f"the rig has no medium '{medium}'{nearest(medium, _MEDIA)}")
     s, known = xu2026.system, xu2026.surface(surface)
     pressure = s.nominal_pressure(normal_force)
-    # adhesion pulls Smooth into nearly full contact at every load; elsewhere area goes with load
+    # adhesion pulls Smooth into nearly full contact at every load; else area grows with load
     reference = pressure if known.name == "Smooth" else s.nominal_pressure(s.loads[0])
     if medium == "dry":
         level = _DRY_SHEAR_STRESS[known.name] * known.area_ratio_dry / reference
@@ -168,11 +168,11 @@ def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | Str
 
 
 def stick_slip(surface: str, medium: str) -> StickSlip:
-    """Stick-slip as Sec. 6 to 8 describe it: on Smooth only.
+    """Stick-slip as described in Sec. 6 to 8, for Smooth only.
 
-    Dry it is a sawtooth, alike at 1 and 3 um/s; in glycerol rounder and longer, much weaker and
-    shorter at 3 than at 1 um/s, and gone at 10 um/s. The paper prints no numbers: wavelengths and
-    drops are assumptions, and so is the fading of the dry sawtooth above 0.1 mm/s.
+    Dry stick-slip is a sawtooth, equal at 1 and 3 um/s. In glycerol it is rounder and longer, much
+    weaker and shorter at 3 than at 1 um/s, and absent at 10 um/s. The paper prints no numbers:
+    wavelengths and drops are assumptions, and so is the fading of the dry sawtooth above 0.1 mm/s.
 
     Parameters
     ----------

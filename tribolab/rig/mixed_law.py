@@ -1,4 +1,4 @@
-"""Friction of the rough surfaces in glycerol: the mixed-lubrication model as the rig's truth."""
+"""Friction of the rough surfaces in glycerol: mixed-lubrication model as the rig's truth."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from scipy.interpolate import PchipInterpolator
 from tribolab.core.errors import AnalysisError, Cure
 from tribolab.studies import xu2026
 
-# The set speeds themselves, so that the truth there is the model's and not an interpolation's.
+# The set speeds themselves, so that the truth there needs no interpolation.
 _SPEEDS = tuple(sorted({1e-9, 1e-8, 1e-7, *xu2026.SPEEDS, 3e-2, 1e-1}))
 
 
@@ -23,7 +23,7 @@ class MixedLaw:
     Parameters
     ----------
     surface
-        Name of the surface, whose stand-in spectrum the model takes.
+        Name of the surface, whose stand-in spectrum the model uses.
     normal_force
         [N]
     shear_stress
@@ -45,7 +45,7 @@ class MixedLaw:
     friction: tuple[float, ...]
 
     def __call__(self, speed: ArrayLike) -> np.ndarray:
-        """Friction coefficient at sliding speeds [m/s]; under the lowest the boundary limit.
+        """Friction coefficient at sliding speeds [m/s]; the boundary limit below the lowest.
 
         Raises
         ------
@@ -66,9 +66,9 @@ class MixedLaw:
 
 @functools.cache
 def mixed_law(surface: str, normal_force: float) -> MixedLaw:
-    """Return the law of a rough surface in glycerol with the paper's shear stress at that load.
+    """Friction law of a rough surface in glycerol with the paper's shear stress at that load.
 
-    Between the paper's loads sigma_f is interpolated, beyond them it is that of the nearest.
+    sigma_f is interpolated between the paper's loads and constant beyond them.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def mixed_law(surface: str, normal_force: float) -> MixedLaw:
     >>> law.shear_stress, round(float(law(1e-6)), 2)
     (840000.0, 1.38)
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.lubrication.stribeck import stribeck_curve
 
     known = xu2026.surface(surface)

@@ -10,7 +10,7 @@ import numpy as np
 def slow_noise(
     rng: np.random.Generator, span: float, correlation: float
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Draw a stationary process of unit variance that can be asked at any moment of the span.
+    """Draw a stationary random process of unit variance, defined at any time of the span.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ def slow_noise(
         The process at given moments: a first-order autoregression on knots an eighth of the
         correlation length apart, linear in between.
     """
-    # late: scipy takes long to load
+    # imported late: scipy loads slowly
     from scipy.linalg import lapack
 
     step = correlation / 8
@@ -33,7 +33,7 @@ def slow_noise(
     memory = np.exp(-1 / 8)
     kicks = rng.standard_normal(knots)
     kicks[1:] *= np.sqrt(1 - memory**2)
-    # x_i - memory x_{i-1} = kick_i: one below the other, solved from the first to the last
+    # x_i - memory x_{i-1} = kick_i, solved as a banded system
     recursion = np.vstack([np.ones(knots), np.full(knots, -memory)])
     values = lapack.dtbtrs(recursion, kicks[:, None], uplo="L", diag="U")[0][:, 0]
     grid = step * np.arange(knots)
@@ -41,7 +41,7 @@ def slow_noise(
 
 
 def smooth_drift(rng: np.random.Generator, span: float) -> Callable[[np.ndarray], np.ndarray]:
-    """Draw a smooth drift, zero at the start and of unit variance after it.
+    """Draw a smooth random drift, zero at the start and of unit variance.
 
     Three cosines of one half to three halves of a period over the span.
     """
@@ -50,7 +50,7 @@ def smooth_drift(rng: np.random.Generator, span: float) -> Callable[[np.ndarray]
     turns = np.array([0.5, 1.0, 1.5]) * 2 * np.pi / span
 
     def drift(moments: np.ndarray) -> np.ndarray:
-        start = np.cos(phases) @ amplitudes  # the zero offset is a thing of its own
+        start = np.cos(phases) @ amplitudes  # the zero offset is modelled separately
         return np.cos(np.multiply.outer(moments, turns) + phases) @ amplitudes - start
 
     return drift

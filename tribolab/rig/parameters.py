@@ -1,4 +1,4 @@
-"""What the virtual rig is made of: protocol, sensors, loggers, clocks; all SI, all frozen."""
+"""Parameters of the virtual rig: protocol, sensors, loggers, clocks; SI units, frozen."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from tribolab.studies import xu2026
 
 @dataclass(frozen=True)
 class Protocol:
-    """One run: rest, load, forward and backward strokes at each speed, unload, rest.
+    """Protocol of a run: rest, load, forward and backward strokes at each speed, unload, rest.
 
     Parameters
     ----------
     speeds
-        Set speeds [m/s], in the order in which they are run.
+        Set speeds [m/s], in the order of the run.
     stroke, stroke_exponent
         A stroke at v is ``stroke * (v / 1 um/s) ** stroke_exponent`` long [m]: long enough for
         ten stick-slip periods at the lowest speed, short enough at the highest for a short slab.
@@ -22,13 +22,13 @@ class Protocol:
         Durations [s]: without load at both ends, of the load ramp, under load before the first
         stroke, between strokes.
     ramp_fraction, shortest_ramp, longest_ramp
-        An acceleration ramp takes this part of a stroke's time, within these limits [s].
+        Share of a stroke's time for an acceleration ramp, within these limits [s].
     build_up, run_in, overshoot
-        Friction turns over within the distance `build_up` [m] of a stroke's start, as far as the
-        contact shears before it slides, and has a start-up peak, `overshoot` high relative to the
-        steady value, that is gone after `run_in` [m]: 7 % of the shortest stroke.
+        Friction reverses within the distance `build_up` [m] after a stroke's start, while the
+        contact shears before it slides. Its start-up peak, of relative height `overshoot`, decays
+        within `run_in` [m], 7 % of the shortest stroke.
     relaxation_time, relaxed_part
-        At rest the friction force relaxes with this time [s] to this part of its last value.
+        Relaxation time [s] of the friction force at rest, and the share it relaxes to.
 
     Examples
     --------
@@ -55,15 +55,15 @@ class Protocol:
 
 @dataclass(frozen=True)
 class Scatter:
-    """What is real, not an error of a sensor.
+    """Real variations of friction and load, as opposed to sensor errors.
 
     Parameters
     ----------
     repeat
         Standard deviation of the friction level between repeats, relative.
     fluctuation, fluctuation_length
-        Friction fluctuates by this relative standard deviation along the track, correlated over
-        this part of a stroke.
+        Relative standard deviation of friction along the track, and its correlation length as a
+        share of the stroke.
     load_control, load_control_time
         The load controller's error: relative standard deviation and correlation time [s].
 
@@ -82,18 +82,18 @@ class Scatter:
 
 @dataclass(frozen=True)
 class ForceCell:
-    """Two-axis force cell with its amplifier and converter; all in N.
+    """Two-axis force cell with amplifier and converter; in N.
 
     Parameters
     ----------
     noise, flicker, flicker_time
         White noise, and slow noise of this correlation time [s].
     hum
-        Amplitude of the 50 Hz that is left before the logger averages.
+        Amplitude of the 50 Hz hum before the logger averages.
     offset_friction, offset_normal
         Standard deviation of the zero offsets between runs.
     drift
-        Standard deviation of a smooth drift over a run; a fifth of it on the normal force.
+        Standard deviation of a smooth drift over a run; a fifth of it in the normal force.
     step
         One count of the converter: 16 bit over +-500 N.
 
@@ -115,7 +115,7 @@ class ForceCell:
 
 @dataclass(frozen=True)
 class Encoder:
-    """Position and velocity of the table.
+    """Encoder of the table: noise and resolution of position and velocity.
 
     Parameters
     ----------
@@ -141,16 +141,16 @@ class Encoder:
 
 @dataclass(frozen=True)
 class Loggers:
-    """How often is sampled: ``rate * (v / 1 um/s) ** exponent``, and `rate` at rest.
+    """Sampling rates of the loggers: ``rate * (v / 1 um/s) ** exponent``; `rate` at rest.
 
     Parameters
     ----------
     force_rate, motion_rate
         Rates [Hz] at 1 um/s.
     exponent
-        How the rate grows with the step's speed: 1/2 makes 10 Hz at 1 um/s 1 kHz at 1 cm/s.
+        Exponent of speed in the rate: with 1/2, 10 Hz at 1 um/s becomes 1 kHz at 1 cm/s.
     jitter
-        Standard deviation of a sample's moment, relative to the sampling interval.
+        Standard deviation of the sampling time, relative to the sampling interval.
 
     Examples
     --------
@@ -167,14 +167,14 @@ class Loggers:
 
 @dataclass(frozen=True)
 class Clocks:
-    """Two loggers, two clocks: ``force time = motion time * (1 + rate) + shift``.
+    """Differences between two loggers' clocks: ``force time = motion time * (1 + rate) + shift``.
 
     Parameters
     ----------
     largest_shift
-        The shift [s] is drawn between plus and minus this.
+        Largest shift [s] of either sign.
     largest_rate
-        So is the relative difference of the clocks' rates.
+        Largest relative difference of the clocks' rates.
 
     Examples
     --------
@@ -188,12 +188,12 @@ class Clocks:
 
 @dataclass(frozen=True)
 class Rig:
-    """Everything together.
+    """Virtual rig: protocol, sensors, loggers and clocks.
 
     Parameters
     ----------
     protocol, scatter, force_cell, encoder, loggers, clocks
-        What is run, what is real, and what measures it.
+        Parts of the rig.
 
     Examples
     --------

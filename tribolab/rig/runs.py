@@ -1,4 +1,4 @@
-"""One run of the virtual rig: two logs and the truth behind them."""
+"""Simulated run of the virtual rig: two logs and their truth."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from tribolab.units.stamping import stamp
 
 
 def run_name(surface: str, medium: str, normal_force: float, number: int) -> str:
-    """Name of a run, and the stem of its files' names.
+    """Name of a run and of its files.
 
     >>> run_name("Sb-R", "glycerol", 31.0, 1)
     'sb-r_glycerol_31N_01'
@@ -56,8 +56,8 @@ def simulate_run(
 ) -> SimulatedRun:
     """Simulate one run on the linear slider, or one for each of several conditions.
 
-    Lists of surfaces, media, loads, numbers and seeds go together, one of each for every run, and
-    give a list; beside them a list of faults has those of each run.
+    Lists of surfaces, media, loads, numbers and seeds are combined element by element and give a
+    list of runs; a list of faults then has one entry for each run.
 
     Parameters
     ----------
@@ -76,10 +76,10 @@ def simulate_run(
     slip
         Stick-slip; default `stick_slip` of surface and medium.
     faults
-        Names of faults (`tribolab.rig.faults.FAULTS`) that strike the logs; the run beneath is the
-        same as without.
+        Names of faults (`tribolab.rig.faults.FAULTS`) in the logs; the true signals are the same
+        as without.
     calibration
-        What is wrong with the force cell beside the zeros, which the rig draws; default nothing.
+        Errors of the force cell besides the zeros, which are drawn; default none.
 
     Returns
     -------
@@ -91,7 +91,7 @@ def simulate_run(
     AnalysisError
         If surface or medium is not known.
     ConfigError
-        If a fault is not known, or cannot happen in this run.
+        If a fault is unknown, or cannot occur in this run.
     UnitError
         If the load's text has no unit of force.
 
@@ -118,7 +118,7 @@ def simulate_run(
     friction, normal = read_forces(
         signals, time, interval, rig.force_cell, errors, rng, calibration
     )
-    # somebody starts and stops the other logger by hand
+    # the other logger is started and stopped by hand
     begin, end = rng.uniform(2.2, 4.0), schedule.end - rng.uniform(0.5, 2.5)
     moved, _ = sample_times(schedule, rig.loggers.motion_rate, rig.loggers, rng, begin, end)
     position, velocity, set_speed = read_motion(signals, moved, rig.encoder, errors, rng)
@@ -168,15 +168,16 @@ def _log(time: np.ndarray, **signals: np.ndarray) -> xr.Dataset:
 
 
 def _named(thing: object) -> Json:
-    """Return parameters of a law for the record; a bare function has its name only."""
+    """Parameters of a law for the record; the name of a bare function."""
     values = asdict(thing) if is_dataclass(thing) and not isinstance(thing, type) else {}
-    values = {k: v for k, v in values.items() if not isinstance(v, tuple)}  # tables follow
+    # tables are written separately
+    values = {k: v for k, v in values.items() if not isinstance(v, tuple)}
     finite = {k: v if isinstance(v, str) or np.isfinite(v) else None for k, v in values.items()}
     return {"kind": getattr(thing, "__name__", type(thing).__name__), **finite}
 
 
 def _clock_facts(errors: Errors, begin: float, end: float) -> dict[str, float]:
-    """State errors, and the one constant shift that is best over the whole motion log."""
+    """Clock errors, and the constant shift that fits the whole motion log best."""
     middle = motion_clock(np.array([begin, end]), errors).mean()
     return {
         "friction_force_offset_N": errors.friction_force_offset,

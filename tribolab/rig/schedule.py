@@ -1,4 +1,4 @@
-"""What the table and the load do when: the protocol spelled out phase by phase."""
+"""Schedule of motion and load of a run, phase by phase."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tribolab.rig.parameters import Protocol
 
 @dataclass(frozen=True)
 class Schedule:
-    """Phases of constant acceleration, in the order of time; one array element each.
+    """Phases of constant acceleration in temporal order, one array element each.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ class Schedule:
 
     @property
     def end(self) -> float:
-        """When the run is over [s]."""
+        """End of the run [s]."""
         return float(self.start[-1] + self.duration[-1])
 
     def phase(self, time: np.ndarray) -> np.ndarray:
@@ -64,7 +64,7 @@ class Schedule:
 
 
 def make_schedule(protocol: Protocol) -> Schedule:
-    """Spell the protocol out.
+    """Schedule of the phases of a protocol.
 
     Examples
     --------

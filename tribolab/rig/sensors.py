@@ -1,4 +1,4 @@
-"""What the loggers write down: sampling moments, noise, offsets, drift, resolution, clocks."""
+"""Recorded signals: sampling times, noise, offsets, drift, resolution, clocks."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers
 from tribolab.rig.schedule import Schedule
 from tribolab.rig.signals import Signals
 
-TRUE = Calibration()  # a cell that reads what is
+TRUE = Calibration()  # a cell without errors
 _MAINS = 50.0  # Hz
-_TIME_STEP = 1e-5  # s, the resolution of the time stamps
+_TIME_STEP = 1e-5  # s, resolution of the time stamps
 
 
 @dataclass(frozen=True)
 class Errors:
-    """The systematic errors that one run has drawn.
+    """Systematic errors of one run.
 
     Parameters
     ----------
@@ -59,10 +59,10 @@ def sample_times(
     begin: float = 0.0,
     end: float = np.inf,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Moments [s, force clock] at which a logger samples, and the interval [s] at each.
+    """Return the sampling times [s, force clock] of a logger, and the interval [s] at each.
 
-    The rate goes with the square root of the step's speed; a phase holds a whole number of
-    samples, so the record is uniform piece by piece, but for the jitter. Strictly increasing.
+    The rate is proportional to the square root of the step's speed. A phase has a whole number of
+    samples, so sampling is uniform within it except for jitter. Times increase strictly.
     """
     speed = np.maximum(schedule.set_speed, 1e-6)
     wanted = schedule.duration * rate * (speed / 1e-6) ** loggers.exponent
@@ -70,7 +70,7 @@ def sample_times(
     interval = np.repeat(schedule.duration / count, count)
     number = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
     time = np.repeat(schedule.start, count) + number * interval
-    # of the shorter neighbouring interval, or a slow step could begin before a fast one has ended
+    # share of the shorter neighbouring interval, so that the order of samples is kept
     shorter = np.minimum(interval, np.concatenate([interval[:1], interval[:-1]]))
     jitter = np.clip(rng.standard_normal(time.size), -5, 5) * loggers.jitter
     time = np.round((time + jitter * shorter) / _TIME_STEP) * _TIME_STEP
@@ -88,9 +88,9 @@ def read_forces(
     rng: np.random.Generator,
     calibration: Calibration = TRUE,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Friction force and normal force [N] as the force cell gives them at the times [s].
+    """Friction force and normal force [N] as measured by the force cell at the times [s].
 
-    A reading is the mean over its interval as far as mains hum goes; a slow logger hardly sees it.
+    Mains hum is averaged over the sampling interval, so that a slow logger hardly records it.
     """
     end = signals.schedule.end
     normal = signals.force_normal(time)
@@ -115,7 +115,7 @@ def read_motion(
     errors: Errors,
     rng: np.random.Generator,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Position [m], velocity and set speed [m/s] as the table's controller gives them."""
+    """Position [m], velocity and set speed [m/s] as recorded by the table's controller."""
     position, velocity = signals.schedule.motion(time)
     set_speed = signals.schedule.set_speed[signals.schedule.phase(time)]
     noise = rng.standard_normal((3, time.size))
@@ -130,6 +130,6 @@ def read_motion(
 
 
 def motion_clock(time: np.ndarray, errors: Errors) -> np.ndarray:
-    """Translate force-clock time into what the motion logger's clock shows [s]."""
+    """Convert force-clock time to the time of the motion logger's clock [s]."""
     shown = (time - errors.clock_shift) / (1 + errors.clock_rate)
     return np.round(shown / _TIME_STEP) * _TIME_STEP

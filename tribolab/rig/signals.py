@@ -1,4 +1,4 @@
-"""The true signals of a run: friction, normal force, motion, before any sensor sees them."""
+"""True signals of a run: friction, normal force and motion without sensor errors."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from tribolab.rig.parameters import Protocol, Scatter
 from tribolab.rig.schedule import Schedule
 from tribolab.rig.waves import WAVES
 
-_TRIM = 0.10  # the paper leaves out this part of a segment at either end (App. C)
-_FINE = 20_000  # points per segment for the averages that the truth states
+_TRIM = 0.10  # share of a segment that the paper cuts off at both ends (App. C)
+_FINE = 20_000  # points per segment for the true averages
 
 
 @dataclass(frozen=True)
 class StrokeFriction:
-    """Friction along one stroke, at the distance [m] slid since it began; positive is resistance.
+    """Friction along one stroke, at the distance [m] from its start; positive is resistance.
 
     Parameters
     ----------
@@ -29,9 +29,9 @@ class StrokeFriction:
     length
         Length of the stroke [m].
     ripple
-        What is added to the level: stick-slip and fluctuation.
+        Stick-slip and fluctuation, added to the level.
     held
-        What was left of the friction before the stroke, in the direction of this stroke.
+        Remaining friction before the stroke, in the direction of this stroke.
     """
 
     level: float
@@ -45,14 +45,14 @@ class StrokeFriction:
         steady = self.level + self.ripple(distance)
         built = 1 - (1 - np.clip(distance / self.protocol.build_up, 0, 1)) ** 3
         part = np.clip(distance / self.protocol.run_in, 0, 1)
-        peak = 27 / 4 * part * (1 - part) ** 2  # reaches 1 at a third, gone at the end
+        peak = 27 / 4 * part * (1 - part) ** 2  # maximum of 1 at a third, zero at the end
         run_in = self.level * self.protocol.overshoot * peak
         return self.held + (steady - self.held) * built + run_in
 
 
 @dataclass(frozen=True)
 class Signals:
-    """Everything that truly happens in a run, as functions of the time on the force clock [s].
+    """True signals of a run as functions of the time on the force clock [s].
 
     Parameters
     ----------
@@ -100,7 +100,7 @@ class Signals:
 
 
 def _relaxed(protocol: Protocol, time: np.ndarray | float) -> np.ndarray:
-    """Part of the friction force that is left after a time at rest."""
+    """Share of the friction force that remains after a time at rest."""
     left = np.exp(-np.asarray(time) / protocol.relaxation_time)
     return protocol.relaxed_part + (1 - protocol.relaxed_part) * left
 
@@ -120,7 +120,7 @@ def make_signals(
     Parameters
     ----------
     schedule, protocol, scatter
-        What is done, and how steady it is.
+        Programme of the run, and its variations.
     law, slip
         Friction coefficient at speeds [m/s], and stick-slip.
     normal_force
@@ -147,7 +147,7 @@ def make_signals(
         level = factor * float(law(np.array([speed]))[0])
         length = speed * (duration + ramp)
         form, wavelength, drop = slip.at(speed)
-        # the middle of the small steps of the constant-speed part, from the stroke's start
+        # middle of each small step of the constant-speed part, from the stroke's start
         fine = 0.5 * speed * ramp + speed * duration * (np.arange(_FINE) + 0.5) / _FINE
         ripple = _ripple(form, length, wavelength, drop * level, level, scatter, fine, rng)
         stroke = StrokeFriction(level, length, ripple, held=left * direction, protocol=protocol)
@@ -192,7 +192,7 @@ def _ripple(
 ) -> Callable[[np.ndarray], np.ndarray]:
     """Stick-slip of zero mean over the constant-speed part, and fluctuation whose mean is random.
 
-    Were the fluctuation's mean removed too, no error bar told from the trace could be right.
+    The mean of the fluctuation is kept, because error bars estimated from the trace include it.
     """
     noise = slow_noise(rng, length, scatter.fluctuation_length * length)
     wave = WAVES[form](rng, length, wavelength, drop) if form != "none" else None

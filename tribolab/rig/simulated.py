@@ -1,4 +1,4 @@
-"""One simulated run: what its loggers wrote, and what was true."""
+"""Record of a simulated run: logs and truth."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribolab.core.untyped import Json
 
 @dataclass(frozen=True)
 class SimulatedRun:
-    """What the loggers wrote, and what was true.
+    """Simulated run: its logs and its true signals.
 
     Parameters
     ----------
@@ -28,9 +28,9 @@ class SimulatedRun:
         At the force log's times: the true ``friction_coefficient`` (signed as the force),
         ``friction_force``, ``normal_force``, ``position``, ``sliding_velocity``.
     segments
-        One row per constant-speed segment; units stand in the columns' names.
+        One row per constant-speed segment; units are in the column names.
     facts
-        What was drawn and chosen for this run, ready for JSON.
+        Random and chosen parameters of this run, ready for JSON.
 
     Examples
     --------
@@ -51,7 +51,7 @@ class SimulatedRun:
 
 @of_lists("run")
 def on_one_clock(run: SimulatedRun) -> xr.Dataset:
-    """Return what a rig with one clock would have recorded: forces, and the true velocity.
+    """Return the record of a rig with one clock: forces, and the true velocity.
 
     Parameters
     ----------

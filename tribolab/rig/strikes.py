@@ -1,7 +1,7 @@
-"""What each fault does to the logs of a simulated run; `tribolab.rig.faults` lists them.
+"""Effects of faults on the logs of a simulated run; listed in `tribolab.rig.faults`.
 
 Every function takes the run and a generator, draws a realistic strength, and returns the force log,
-the motion log and the facts: where it struck, and how hard. Nothing is changed in place.
+the motion log and the facts: place and strength. Nothing is changed in place.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from tribolab.rig.simulated import SimulatedRun
 
 StrikeFacts = Json
 Struck = tuple[xr.Dataset, xr.Dataset, StrikeFacts]
-_UNLOADED = 0.05  # of the greatest normal force; above it, load is on
-_FAST = 130.0  # Hz; slower logs do not show the lines of mains and rig
+_UNLOADED = 0.05  # share of the greatest normal force above which the contact is loaded
+_FAST = 130.0  # Hz; slower logs do not resolve the lines of mains and rig
 
 
 def _typical(run: SimulatedRun) -> float:
@@ -54,15 +54,15 @@ def _rows(run: SimulatedRun, stroke: int) -> slice:
 
 
 def _interval(run: SimulatedRun) -> np.ndarray:
-    """Return the sampling interval after each row [s]; that of the last is not a number."""
+    """Return the sampling interval after each row [s]; NaN for the last."""
     return np.diff(run.force_log.time.values, append=np.nan)
 
 
 def load_sign(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Turn the sign of the normal force of a cell that was zeroed.
+    """Reverse the sign of the normal force of a zeroed cell.
 
-    Whatever zero the cell has drawn, its readings at rest then lie on both sides of zero: were
-    all of them below, the reader would refuse the file before any check could see it.
+    Its readings at rest are then on both sides of zero. If all were negative, the reader would
+    refuse the file before any check.
     """
     values = run.force_log.normal_force.values
     size = np.abs(values)
@@ -79,7 +79,7 @@ def time_back(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def restart(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Start the clock anew at zero in the middle of the force log."""
+    """Restart the clock at zero in the middle of the force log."""
     time = run.force_log.time.values.copy()
     row = int(rng.uniform(0.2, 0.8) * time.size)
     time[row:] -= time[row]
@@ -87,7 +87,7 @@ def restart(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def lose_stretches(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Drop three stretches of the force log."""
+    """Drop three parts of the force log."""
     time = run.force_log.time.values
     starts = np.sort(rng.uniform(0.2, 0.7, 3)) * time[-1]
     lengths = rng.uniform(1.5, 4.0, 3)
@@ -126,7 +126,7 @@ def dropouts(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def frozen(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Hold the friction force at one value for a while."""
+    """Keep the friction force at one value for a while."""
     values = run.force_log.friction_force.values.copy()
     length = int(rng.uniform(0.02, 0.05) * values.size)
     row = int(rng.uniform(0.1, 0.8) * values.size)
@@ -135,7 +135,7 @@ def frozen(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def saturate(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Cut the friction force off at both ends of a range."""
+    """Clip the friction force at both ends of a range."""
     highest = float(np.abs(run.noise_free.friction_force.values).max())
     limit = float(rng.uniform(0.6, 0.8)) * highest
     values = np.clip(run.force_log.friction_force.values, -limit, limit)
@@ -150,7 +150,7 @@ def coarse_digits(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def add_spikes(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Add single samples that stand far out."""
+    """Add single outlying samples."""
     values = run.force_log.friction_force.values.copy()
     rows = np.sort(rng.choice(np.arange(10, values.size - 10, 10), int(rng.integers(4, 13))))
     height = np.maximum(rng.uniform(0.2, 0.6, rows.size) * _typical(run), 2.0)
@@ -160,7 +160,7 @@ def add_spikes(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 def zero_offset(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     """Add a constant to the friction force."""
-    # far beyond what the cell itself has drawn, which may have the other sign
+    # far beyond the zero of the cell itself, which may have the other sign
     offset = float(rng.choice([-1, 1]) * (rng.uniform(0.8, 1.5) * _typical(run) + 4.0))
     return _force(run, run.force_log.friction_force.values + offset, {"offset_N": offset})
 
@@ -192,7 +192,7 @@ def load_hunting(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def slow_table(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Raise the set speed above what the table does."""
+    """Raise the set speed above the speed of the table."""
     factor = float(rng.uniform(0.88, 0.95))
     motion = run.motion_log.assign(set_speed=run.motion_log.set_speed / factor)
     return run.force_log, motion, {"factor": factor}
@@ -206,7 +206,7 @@ def encoder_scale(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def wrong_motion(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Turn the motion log round in time."""
+    """Reverse the motion log in time."""
     motion = run.motion_log
     time = motion.time.values
     turned = motion.isel(time=slice(None, None, -1)).assign_coords(
@@ -216,14 +216,14 @@ def wrong_motion(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def _wave(run: SimulatedRun, amplitude: float, frequency: float, phase: float) -> np.ndarray:
-    """Sine as a logger that averages over its interval records it."""
+    """Sine averaged over the sampling interval of a logger."""
     seen = np.nan_to_num(np.sinc(frequency * _interval(run)))
     time = run.force_log.time.values
     return amplitude * seen * np.sin(2 * np.pi * frequency * time + phase)
 
 
 def hum(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Add 50 Hz to the friction force, as far as the logger sees it."""
+    """Add 50 Hz hum to the friction force, as far as the logger resolves it."""
     _fast_speeds(run, "hum", 1)
     amplitude = float(rng.uniform(0.06, 0.25)) * _typical(run)
     values = run.force_log.friction_force.values
@@ -232,7 +232,7 @@ def hum(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def resonance(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Add a line at one frequency, whatever the speed."""
+    """Add an oscillation at one frequency, independent of speed."""
     _fast_speeds(run, "resonance", 2)
     amplitude = float(rng.uniform(0.06, 0.25)) * _typical(run)
     frequency = float(rng.uniform(15, 40))
@@ -242,7 +242,7 @@ def resonance(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def _fast_speeds(run: SimulatedRun, name: str, wanted: int) -> None:
-    """Refuse a run that cannot show lines: at too few speeds is the logger fast enough."""
+    """Return the speeds that are sampled fast enough to show spectral lines, or raise an error."""
     interval = _interval(run)
     speeds = []
     for stroke, speed in enumerate(run.segments["sliding_speed_m_s"]):
@@ -258,12 +258,12 @@ def _fast_speeds(run: SimulatedRun, name: str, wanted: int) -> None:
 
 
 def sign(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Turn the sign of the friction force."""
+    """Reverse the sign of the friction force."""
     return _force(run, -run.force_log.friction_force.values, {})
 
 
 def _progress(run: SimulatedRun) -> np.ndarray:
-    """Part of the segment that has passed at each row; NaN outside segments."""
+    """Share of the segment passed at each row; NaN outside segments."""
     time = run.force_log.time.values
     result = np.full(time.size, np.nan)
     for stroke in range(len(run.segments)):
@@ -273,14 +273,14 @@ def _progress(run: SimulatedRun) -> np.ndarray:
 
 
 def run_in(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Let friction change linearly along every segment."""
+    """Change friction linearly along every segment."""
     part = float(rng.choice([-1, 1]) * rng.uniform(0.2, 0.4))
     change = part * np.nan_to_num(_progress(run) - 0.5) * run.noise_free.friction_force.values
     return _force(run, run.force_log.friction_force.values + change, {"change": part})
 
 
 def long_wave(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Let friction wave three or four times along every segment."""
+    """Modulate friction by three or four periods along every segment."""
     part, periods = float(rng.uniform(0.12, 0.25)), float(rng.uniform(3.2, 4.2))
     phase = float(rng.uniform(0, 2 * np.pi))
     wave = np.nan_to_num(np.sin(2 * np.pi * periods * _progress(run) + phase))
@@ -290,7 +290,7 @@ def long_wave(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def slow_logger(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Keep so few rows that stick-slip has three to five samples in a period."""
+    """Keep so few rows that stick-slip has three to five samples per period."""
     strong = 0.12 * float(run.segments["friction_coefficient"].mean())
     slip = run.segments[run.segments["stick_slip_drop"] > strong]
     if slip.empty:
@@ -308,7 +308,7 @@ def slow_logger(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def rectifier(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Record the magnitude of the friction force, zeroed before."""
+    """Record the magnitude of the friction force after zeroing."""
     values = run.force_log.friction_force.values
     load = np.abs(run.force_log.normal_force.values)
     rest = load < _UNLOADED * load.max()
@@ -317,7 +317,7 @@ def rectifier(run: SimulatedRun, rng: np.random.Generator) -> Struck:
 
 
 def one_way(run: SimulatedRun, rng: np.random.Generator) -> Struck:
-    """Log one loaded stroke only: nothing tells the zero of the friction force."""
+    """Keep one loaded stroke only, so that the zero of the friction force is unknown."""
     row = run.segments.iloc[int(rng.integers(len(run.segments)))]
     first, last = float(row.start_s) - 1.0, float(row.stop_s) + 1.0
     shift = float(run.facts["clock_shift_at_middle_s"])

@@ -1,4 +1,4 @@
-"""A friction trace of one stroke, with stick-slip, noise and speed as wanted and known truth."""
+"""Simulated friction trace of one stroke, with known stick-slip and noise."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribolab.rig.noise import slow_noise
 from tribolab.rig.waves import JITTER, WAVES
 from tribolab.units.stamping import stamp
 
-_FINE = 400  # points in a period, for what the truth states
+_FINE = 400  # points per period, for the true values
 
 
 @of_lists("form", "wavelength", "drop", "noise", "samples", "speed", "seed")
@@ -35,8 +35,8 @@ def simulate_trace(
 ) -> xr.Dataset:
     """Simulate the friction coefficient along one stroke at constant speed.
 
-    Lists of forms, wavelengths, drops, noises, numbers of samples, speeds and seeds go together,
-    one of each for every stroke, and give a list.
+    Lists of forms, wavelengths, drops, noises, numbers of samples, speeds and seeds are combined
+    element by element and give a list.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def simulate_trace(
     red_length
         Correlation length of the slow noise, relative to the stroke.
     jitter
-        Standard deviation of a sample's moment, in sample spacings.
+        Standard deviation of the sampling time, in sampling intervals.
     seed
         Seed or generator.
 
@@ -100,7 +100,7 @@ def simulate_trace(
 def _truth(
     wave: Callable[[np.ndarray], np.ndarray], length: float, wavelength: float
 ) -> dict[str, float]:
-    """Mean distance between the peaks, and mean drop behind them, of the wave without noise."""
+    """Mean distance between the peaks, and mean drop after them, of the wave without noise."""
     place = np.linspace(0, length, int(_FINE * length / wavelength))
     values = wave(place)
     rising = np.diff(values) > 0

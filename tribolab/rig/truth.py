@@ -1,4 +1,4 @@
-"""What is true of a simulated campaign: kept beside the raw files, never read by the analysis."""
+"""Truth of a simulated campaign, stored with the raw files and never read by the analysis."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from tribolab.core.untyped import Json
 
 @dataclass(frozen=True)
 class Truth:
-    """The truth of a campaign.
+    """Truth of a simulated campaign.
 
     Parameters
     ----------
     facts
-        What stands in ``truth.json``: seed, the rig's parameters, surfaces, and for each run its
-        law, offsets and clocks under ``facts["runs"][name]``; for each scan with faults those, the
-        check that has to find them and how grave they are under ``facts["scans"][file name]``.
+        Content of ``truth.json``: seed, the rig's parameters, surfaces; law, offsets and clocks of
+        each run under ``facts["runs"][name]``; the faults of each scan, with check and severity,
+        under ``facts["scans"][file name]``.
     segments
         For each run's name the table of its constant-speed segments.
 
@@ -46,12 +46,12 @@ def read_truth(folder: str | Path) -> Truth:
     Parameters
     ----------
     folder
-        The campaign's folder (the one that holds ``campaign.toml``).
+        The campaign's folder (with ``campaign.toml``).
 
     Raises
     ------
     ReadError
-        If there is no truth in the folder.
+        If the folder contains no truth.
 
     Examples
     --------

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 JITTER = 0.07  # relative standard deviation of period and drop
-_FALL = 0.04  # part of a period that the abrupt drop takes
+_FALL = 0.04  # share of a period taken by the abrupt drop
 
 
 def sawtooth(
@@ -17,14 +17,14 @@ def sawtooth(
     drop: float,
     jitter: float = JITTER,
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Slow linear rise, abrupt drop; each period and each drop a little different.
+    """Sawtooth wave with slow linear rise and abrupt drop, and scattering periods and drops.
 
     Parameters
     ----------
     rng
         Generator.
     length, wavelength
-        Distance that is covered, and mean distance between drops [m].
+        Total distance, and mean distance between drops [m].
     drop
         Mean height of a drop, in the unit of the result.
     jitter
@@ -50,7 +50,7 @@ def rounded(
     drop: float,
     jitter: float = JITTER,
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Near a sine, leaning a little to the sawtooth's side; parameters as in `sawtooth`."""
+    """Return the rounded sawtooth wave, close to a sine; parameters as for `sawtooth`."""
     starts, periods, sizes = _periods(rng, length, wavelength, jitter)
     edges = np.append(starts, starts[-1] + periods[-1])
     turns = np.arange(edges.size)
@@ -82,11 +82,11 @@ def irregular(
     drop: float,
     jitter: float = JITTER,
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Stick-slip without a period: loads to thresholds that scatter, drops as they come.
+    """Stick-slip without a period, with random thresholds and drops.
 
-    Parameters as in `sawtooth`; `jitter` plays no part. Peaks and valleys scatter by a third of a
-    drop each, loading is alike, so that periods follow what there is to load; a fall takes a tenth
-    to a third of its period.
+    Parameters as for `sawtooth`; `jitter` is ignored. Peaks and valleys scatter by a third of a
+    drop. Loading has constant slope, so that periods follow from the thresholds; a drop takes a
+    tenth to a third of its period.
     """
     count = int(np.ceil(3 * length / wavelength)) + 8
     valleys = drop * (-0.5 + 0.33 * rng.standard_normal(count + 1).clip(-2, 2))

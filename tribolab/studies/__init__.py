@@ -1,4 +1,4 @@
-"""Parameter sets named after the papers they come from, and what came of them."""
+"""Parameter sets named after their papers, and comparisons with published numbers."""
 
 from __future__ import annotations
 

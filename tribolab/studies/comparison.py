@@ -1,4 +1,4 @@
-"""The paper's numbers beside computed ones: which are reproduced, which contradict themselves."""
+"""Comparison of the paper's numbers with computed ones."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _OWN: dict[str, Callable[[Published], Own | None]] = {
 
 
 def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataFrame:
-    """Compute what the paper prints, and compare.
+    """Compute the published numbers of the paper, and compare.
 
     Parameters
     ----------
@@ -49,18 +49,18 @@ def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataF
         A row per published number: quantity, surface, condition, published (text with unit),
         computed (in the same unit), relative_difference, tolerance, status (reproduced | by
         construction | within a wide tolerance | differs | published value inconsistent |
-        measured, not computed) and a note. What cannot be computed has none of the three numbers,
-        and what is printed as a bound no relative difference.
+        measured, not computed) and a note. The three numbers are missing for quantities that cannot
+        be computed, and the relative difference for bounds.
 
     Raises
     ------
     AnalysisError
-        If it is not known how to compute a quantity.
+        If a quantity is unknown.
 
     Notes
     -----
-    Contact is computed at the exact mean Hertz pressure of the load to which the paper assigns a
-    rounded one, on the stand-in spectra of `tribolab.studies.xu2026`.
+    Contact is computed at the exact mean Hertz pressure of each load (the paper rounds it), with
+    the stand-in spectra of `tribolab.studies.xu2026`.
     """
     theory = Theory()
     compared = []
@@ -85,7 +85,7 @@ def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataF
 
 
 def _numbers(row: Published, computed: Computed | Measured) -> dict[str, str | float]:
-    """Give published and computed number in the printed unit, and how far apart they are."""
+    """Return published and computed number in the printed unit, and their difference."""
     percent = 0.01 if "%" in row.text else 1.0
     unit = "" if row.unit == "1" else f" {row.unit}"
     if isinstance(computed, Measured):
@@ -96,7 +96,8 @@ def _numbers(row: Published, computed: Computed | Measured) -> dict[str, str | f
         )
         difference = computed.value / row.si - 1 if row.si else math.nan
         tolerance = computed.tolerance
-        if row.relation.startswith(BOUNDS):  # met or not: no number is off by a share of a bound
+        # a bound is met or not; a relative difference has no meaning
+        if row.relation.startswith(BOUNDS):
             difference = math.nan
     return {
         "published": row.text + unit,

@@ -1,4 +1,4 @@
-"""Numbers as a paper prints them: the text, what it says, and how far its last digit reaches."""
+"""Published numbers as printed: text, value, and precision."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from pathlib import Path
 
 from tribolab.core.errors import AnalysisError, ReadError
 
-# What one printed unit is in SI; "h_rms" is a multiple of the roughness.
+# Printed units in SI; "h_rms" is a multiple of the roughness.
 _SI = {"1": 1.0, "m/s": 1.0, "h_rms": 1.0, "MPa": 1e6, "mm": 1e-3, "um": 1e-6, "mJ/m2": 1e-3}
 _NUMBER = re.compile(r"\d+(?:\.(\d+))?(?:e([+-]?\d+))?")
 
 
 @dataclass(frozen=True)
 class Published:
-    """One number that a paper prints.
+    """Number printed in a paper.
 
     Parameters
     ----------
     quantity, surface, condition
-        What it is the value of.
+        Quantity, surface and condition of the value.
     text
         As printed: a number, or words and numbers such as ``"about 8 %"``, ``"1.75 to 1.95"``.
     unit
@@ -29,7 +29,7 @@ class Published:
     where
         Section of the paper.
     kind
-        How the paper comes by it (``"computed"``, ``"fit to measurement"``, ...).
+        Origin in the paper (``"computed"``, ``"fit to measurement"``, ...).
     note
         A reader's remark.
 
@@ -50,7 +50,7 @@ class Published:
     note: str
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be used as a number."""
+        """Raise an error for text without a usable number."""
         if self.unit not in _SI or not _NUMBER.search(self.text):
             raise ReadError(
                 f"published {self.quantity}: '{self.text}' in '{self.unit}' is no number in a unit "
@@ -59,35 +59,35 @@ class Published:
 
     @property
     def factor(self) -> float:
-        """What one of the printed unit is in SI."""
+        """Printed unit in SI."""
         return _SI[self.unit]
 
     @property
     def relation(self) -> str:
-        """The words before the number: ``""``, ``"about"``, ``"at most"``, ``">"``, ``"below"``."""
+        """Words before the number: ``""``, ``"about"``, ``"at most"``, ``">"``, ``"below"``."""
         return self.text[: self._number.start()].strip()
 
     @property
     def si(self) -> float:
-        """The number in SI; of a range its middle."""
+        """Number in SI; the middle of a range."""
         return sum(self.ends) / 2
 
     @property
     def ends(self) -> tuple[float, float]:
-        """The ends of a range in SI; of a single number twice the same."""
+        """Ends of a range in SI; both equal for a single number."""
         numbers = [float(match[0]) * self._scale for match in _NUMBER.finditer(self.text)]
         return min(numbers), max(numbers)
 
     @property
     def last_digit(self) -> float:
-        """One unit of the last digit that is printed, in SI."""
+        """One unit of the last printed digit, in SI."""
         match = self._number
         return 10.0 ** (int(match[2] or 0) - len(match[1] or "")) * self._scale
 
     @property
     def _number(self) -> re.Match[str]:
         match = _NUMBER.search(self.text)
-        assert match is not None  # a text without a number is refused when the row is made
+        assert match is not None  # text without a number is refused when the row is created
         return match
 
     @property
@@ -118,12 +118,12 @@ def read_published(path: str | Path) -> tuple[Published, ...]:
 def find_published(
     table: tuple[Published, ...], quantity: str, surface: str, condition: str = ""
 ) -> Published:
-    """Return the one row of a quantity, a surface and a part of the condition's text.
+    """Find the row of a quantity, a surface and a part of the condition's text.
 
     Raises
     ------
     AnalysisError
-        If there is none, or more than one.
+        If no row or several rows match.
     """
     rows = [
         row

@@ -1,4 +1,4 @@
-"""What the theory gives for the reference system over its pressures, speeds and loads."""
+"""Theoretical results for the reference system over its pressures, speeds and loads."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from tribolab.studies import xu2026
 from tribolab.units.stamping import labelled, stamp
 
 SurfaceGroups = dict[str, xr.Dataset]
-# Work of adhesion [J/m2] as the paper rounds it and goes on with.
+# Work of adhesion [J/m2] as rounded and used in the paper.
 MEDIA = {row.condition: row.si for row in xu2026.published if row.quantity == "work_of_adhesion"}
 _PROFILE_SPEEDS = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2)  # m/s, in App. B
 _PRESSURES = np.geomspace(1e-3, 1.0, 46) * 1e6  # Pa
-# m/s; rounded, so that none stands twice, a last digit apart
+# m/s; rounded, to remove duplicates that differ in the last digit
 _SPEEDS = np.unique([*(float(f"{v:.3g}") for v in np.geomspace(1e-9, 1e-1, 33)), *xu2026.SPEEDS])
-_SEPARATIONS = np.geomspace(0.1, 6.0, 120)  # over h_rms
-_MOST_PRESSED = 0.3  # of E*, up to which the separation is shown
+_SEPARATIONS = np.geomspace(0.1, 6.0, 120)  # relative to h_rms
+_MOST_PRESSED = 0.3  # share of E* up to which the separation is shown
 
 
 def dry_contact(name: str) -> SurfaceGroups:
@@ -39,7 +39,7 @@ def dry_contact(name: str) -> SurfaceGroups:
     >>> sorted(dry_contact("Sb-R"))
     ['adhesion', 'contact', 'effective_work', 'loads', 'psd', 'rubber', 'separation']
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.contact.persson import contact_area_ratio
     from tribolab.contact.separation import separation_table
     from tribolab.rubber.friction import viscoelastic_friction
@@ -78,8 +78,8 @@ def dry_contact(name: str) -> SurfaceGroups:
 
 
 def _adhesion(psd: xr.Dataset, modulus: float) -> tuple[xr.Dataset, xr.Dataset, xr.Dataset]:
-    """Solve at zero pressure, at the loads and over the grid at once."""
-    # late: starting stays quick
+    """Solve adhesion at zero pressure, at the loads and over the grid in one call."""
+    # imported late for a quick start
     from tribolab.contact.adhesion import adhesion
     from tribolab.contact.hertz import hertz_mean_pressure
 
@@ -97,15 +97,15 @@ def _adhesion(psd: xr.Dataset, modulus: float) -> tuple[xr.Dataset, xr.Dataset, 
     parts = [
         xr.concat(both, media, combine_attrs="drop_conflicts") for both in (over, rest, loaded)
     ]
-    # a pressure stands for its load here, so that loads keep their order and their name
+    # pressures replace loads here, so that loads keep their order and name
     loads = parts[2].rename(pressure="load").assign_coords(load=forces / xu2026.contact.length)
     loads = loads.assign(pressure=("load", at_loads), normal_force=("load", forces))
     return stamp(parts[0]), stamp(parts[1]), stamp(loads)
 
 
 def modulus_table() -> xr.Dataset:
-    """Storage and loss modulus of the stand-in for the paper's rubber over angular frequency."""
-    # late: starting stays quick
+    """Storage and loss modulus of the stand-in for the paper's rubber, over angular frequency."""
+    # imported late for a quick start
     from tribolab.rubber.modulus import PDMS_STAND_IN
 
     omega = np.geomspace(1e-2, 1e13, 226)
@@ -131,7 +131,7 @@ def lubricated(name: str, forces: tuple[float, ...] = xu2026.system.loads) -> Su
         ``curve_<force>N`` over the sliding speed, with the shear stress that the paper fitted
         at that force (Smooth: that of the lowest); ``profiles`` at the lowest force; ``factors``.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.lubrication.factors import flow_factors
     from tribolab.lubrication.stribeck import stribeck_curve
 
@@ -153,7 +153,7 @@ def lubricated(name: str, forces: tuple[float, ...] = xu2026.system.loads) -> Su
 
 
 def _profiles(psd: xr.Dataset, load: float) -> xr.Dataset:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.lubrication.film import film_profile
 
     profiles = [

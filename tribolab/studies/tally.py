@@ -1,4 +1,4 @@
-"""How many published numbers hold, and in which sense: one wording for page and terminal."""
+"""Numbers of published values that are reproduced, and their wording."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tribolab.studies.verdict import (
     room_text,
 )
 
-# Each status, in the words that follow one number and those that follow several.
+# Each status, worded for one number and for several.
 _WORDS = {
     REPRODUCED: ("reproduced", "reproduced"),
     BY_CONSTRUCTION: ("by construction", "by construction"),
@@ -31,7 +31,7 @@ STUDY_STATUSES = tuple(_WORDS)
 
 
 def count_statuses(table: pd.DataFrame) -> dict[str, int]:
-    """Return how many numbers have each status, in the order in which they are told.
+    """Count the numbers with each status, in the order of the text.
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def count_statuses(table: pd.DataFrame) -> dict[str, int]:
 
 
 def tell_statuses(table: pd.DataFrame) -> str:
-    """Say how many numbers have each status, and which tolerances are the wide ones.
+    """Text on how many numbers have each status, and on the wide tolerances.
 
     Parameters
     ----------

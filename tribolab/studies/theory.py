@@ -1,4 +1,4 @@
-"""What the theory gives for the reference system, each number computed once."""
+"""Theoretical values of the reference system, each computed once."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _OTHER_PRESSURE = 1e5  # Pa, Sec. 7
 
 
 def _stated(pattern: re.Pattern[str], row: Published) -> float:
-    """Return the number that a condition states."""
+    """Return the number in the text of a condition."""
     match = pattern.search(row.condition)
     if match is None:
         raise AnalysisError(
@@ -44,9 +44,9 @@ def _stated(pattern: re.Pattern[str], row: Published) -> float:
 
 
 class Theory:
-    """The reference system computed: Hertz, JKR, Persson contact, adhesion, rubber, lubrication.
+    """Computed reference system: Hertz, JKR, Persson contact, adhesion, rubber, lubrication.
 
-    A row of published numbers says by its surface and its condition which number is meant.
+    Surface and condition of a row of published numbers select the value.
     """
 
     media = ("dry", "glycerol")
@@ -61,7 +61,7 @@ class Theory:
         self._slow = functools.cache(self._boundary)
 
     def load(self, row: Published) -> float:
-        """Load [N/m] of a condition; a published pressure stands for the load that makes it."""
+        """Load [N/m] of a condition; a published pressure is converted to its load."""
         if match := _LOAD.search(row.condition):
             return float(match[1])
         if match := _PRESSURE.search(row.condition):
@@ -71,34 +71,34 @@ class Theory:
         raise AnalysisError(f"published {row.quantity}: no load in '{row.condition}'")
 
     def has_load(self, row: Published) -> bool:
-        """Whether the condition is one of the loads, or a pressure that the paper assigns one."""
+        """Whether the condition is one of the loads, or a pressure assigned to one."""
         try:
             return self.load(row) > 0
         except AnalysisError:
             return False
 
     def pressure(self, row: Published) -> float:
-        """Exact mean Hertz pressure [Pa] of the load; a pressure without a load as it stands."""
+        """Exact mean Hertz pressure [Pa] of the load; a pressure without a load is unchanged."""
         if not self.has_load(row):
             return 1e6 * _stated(_PRESSURE, row)
         return float(hertz_mean_pressure(self.load(row), self._contact))
 
     def medium(self, row: Published) -> str:
-        """Medium of a condition with adhesion, "" without."""
+        """Medium of a condition with adhesion; "" without."""
         if "no adhesion" in row.condition:
             return ""
         return next((medium for medium in self.media if medium in row.condition), "")
 
     def hertz_half_width(self, row: Published) -> float:
-        """Half-width [m], Eq. (16)."""
+        """Half-width [m] of the Hertz contact, Eq. (16)."""
         return float(hertz_half_width(self.load(row), self._contact))
 
     def hertz_max_pressure(self, row: Published) -> float:
-        """Maximum pressure [Pa]."""
+        """Maximum Hertz pressure [Pa]."""
         return float(hertz_max_pressure(self.load(row), self._contact))
 
     def jkr_half_width(self, row: Published) -> float:
-        """Half-width [m], Eq. (15), with the work of adhesion of the condition."""
+        """Half-width [m] of the JKR contact, Eq. (15), with the condition's work of adhesion."""
         work = _stated(_WORK, row)
         return float(jkr_half_width(self.load(row), self._contact, work))
 
@@ -111,7 +111,7 @@ class Theory:
         return rms_slope(xu2026.psd(surface))
 
     def area(self, row: Published) -> float:
-        """A/A0 without adhesion."""
+        """Real contact area ratio A/A0 without adhesion."""
         return contact_area_ratio(self.pressure(row), xu2026.psd(row.surface), self._modulus)
 
     def work(self, medium: str) -> float:
@@ -119,13 +119,13 @@ class Theory:
         return PDMS_PMMA_GLYCEROL.dry if medium == "dry" else PDMS_PMMA_GLYCEROL.wet
 
     def work_bounds(self, medium: str) -> tuple[float, float]:
-        """Smallest and largest work of adhesion [J/m2] that the surface energies allow."""
+        """Smallest and largest work of adhesion [J/m2] for the surface energies."""
         spread = work_of_adhesion_spread(PDMS_PMMA_GLYCEROL, samples=2)
         mine = spread.sel(medium="dry" if medium == "dry" else "wet")
         return float(mine.work_of_adhesion_low), float(mine.work_of_adhesion_high)
 
     def adhesive_area(self, row: Published, medium: str) -> float:
-        """A/A0 with adhesion."""
+        """Real contact area ratio A/A0 with adhesion."""
         areas, _ = self._adhesive(row.surface, medium)
         return float(areas[np.argmin(np.abs(self._pressures - self.pressure(row)))])
 
@@ -134,7 +134,7 @@ class Theory:
         return self._adhesive(surface, medium)[1][:-1].tolist()
 
     def macroscopic_work(self, surface: str, medium: str) -> float:
-        """gamma_eff(1) [J/m2] as the load vanishes."""
+        """gamma_eff(1) [J/m2] at vanishing load."""
         work = self._published_work(medium)
         macroscopic = macroscopic_work_of_adhesion(xu2026.psd(surface), self._modulus, work)
         return float(macroscopic.macroscopic_work_of_adhesion)
@@ -157,7 +157,7 @@ class Theory:
         return self._lines(row.surface, self.load(row))
 
     def separation_decay(self, surface: str) -> float:
-        """Alpha = h_rms/u0 of p ~ exp(-alpha u/h_rms)."""
+        """Constant alpha = h_rms/u0 of p ~ exp(-alpha u/h_rms)."""
         table = separation_table(xu2026.psd(surface), self._modulus)
         return table.rms_roughness / table.decay_length
 
@@ -173,12 +173,12 @@ class Theory:
         return stops
 
     def boundary_onset(self, row: Published, share: float) -> float:
-        """Speed [m/s] at which friction has fallen to a share of that of the dry contact."""
+        """Speed [m/s] at which friction has fallen to a share of the dry friction."""
         speed, friction = self._slow(row.surface, self.load(row))
         return float(np.exp(np.interp(-share, -friction, np.log(speed))))
 
     def _published_work(self, medium: str) -> float:
-        """Return the rounded work of adhesion that the paper goes on with [J/m2]."""
+        """Return the rounded work of adhesion [J/m2] that the paper uses."""
         return next(
             row.si
             for row in xu2026.published
@@ -195,7 +195,7 @@ class Theory:
         return float(line.max_pressure), float(line.contact_width)
 
     def _boundary(self, surface: str, load: float) -> tuple[np.ndarray, np.ndarray]:
-        """Low speeds [m/s] and friction there over that of the dry contact."""
+        """Low speeds [m/s], and friction there relative to the dry contact."""
         speed = np.append(0.0, np.geomspace(1e-11, 1e-6, 21))
         stress = dict(xu2026.surface(surface).shear_stress)[load * self._contact.length]
         eta = xu2026.system.viscosity

@@ -1,12 +1,12 @@
-"""Whether a printed number holds, by the computed one and by other numbers of the same paper.
+"""Verdict on a published number, from the computed one and the paper's other numbers.
 
-No verdict is written down here. A printed number is called inconsistent only if a power of ten or
-a reciprocal leads from it to the computed one, if other numbers of the paper exclude it, or if the
-paper's own inputs fix it in closed form and it is something else.
+A printed number is called inconsistent only if a power of ten or a reciprocal turns it into the
+computed one, if other numbers of the paper exclude it, or if the paper's own inputs give a
+different value in closed form.
 
-Agreement is not always a test. A number that was put in, that an input was chosen for, or that
-follows from such numbers alone agrees *by construction*; one that needs more than `NARROW` of room
-agrees *within a wide tolerance*. Only what is left is called reproduced.
+Agreement is not always a test. An input, a number to which an input was fitted, or one that follows
+from these agrees *by construction*. A number that needs a tolerance above `NARROW` agrees *within a
+wide tolerance*. Only the others are called reproduced.
 """
 
 from __future__ import annotations
@@ -24,57 +24,57 @@ DIFFERS = "differs"
 INCONSISTENT = "published value inconsistent"
 MEASURED = "measured, not computed"
 
-NARROW = 0.01  # relative; agreement that needs more than this is agreement in a wide tolerance
-_COARSE = 0.05  # half of the last digit, relative: a number printed with one digit says little
+NARROW = 0.01  # relative; a larger tolerance is called wide
+_COARSE = 0.05  # half of the last digit, relative: a number printed with one digit is imprecise
 
 
 class Computed(NamedTuple):
-    """What the theory gives for a published number."""
+    """Theoretical value of a published number."""
 
     value: float  # SI
     tolerance: float  # relative
     note: str = ""
-    exact: bool = False  # a closed form of numbers that the paper prints
-    low: float = math.nan  # where one printed number stands for several, their range
+    exact: bool = False  # closed form of numbers that the paper prints
+    low: float = math.nan  # range, if one printed number summarises several
     high: float = math.nan
-    given: str = ""  # why it agrees by construction
+    given: str = ""  # reason for agreement by construction
 
 
 class Measured(NamedTuple):
-    """Why a published number cannot be computed."""
+    """Reason why a published number cannot be computed."""
 
     note: str
 
 
 class Own(NamedTuple):
-    """What other numbers of the paper say of a published one."""
+    """Value of a published number that follows from others in the paper."""
 
     low: float
     high: float
     words: str
 
 
-BOUNDS = (">", "at most", "below")  # relations that say where a number ends, not where it is
+BOUNDS = (">", "at most", "below")  # relations that give a bound, not a value
 
 
 class Verdict(NamedTuple):
-    """Status of a published number, and why."""
+    """Status of a published number, with the reason."""
 
     status: str
     note: str
 
 
 def verdict_on(row: Published, computed: Computed | Measured, own: Own | None = None) -> Verdict:
-    """Judge a published number by the computed one and by other numbers of the same paper.
+    """Verdict on a published number, from the computed one and others in the paper.
 
     Parameters
     ----------
     row
         The published number.
     computed
-        What the theory gives, or why it gives nothing.
+        Theoretical value, or the reason why there is none.
     own
-        What follows from other numbers of the paper, if anything does.
+        Value that follows from other numbers of the paper, if any.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def verdict_on(row: Published, computed: Computed | Measured, own: Own | None = 
 
 
 def room_text(tolerance: float) -> str:
-    """Return a relative tolerance as a reader says it.
+    """Relative tolerance as text.
 
     Examples
     --------
@@ -123,7 +123,7 @@ def room_text(tolerance: float) -> str:
 
 
 def _grade(row: Published, computed: Computed) -> str:
-    """Say what the agreement of a number is worth."""
+    """Kind of agreement of a number."""
     if computed.given:
         return BY_CONSTRUCTION
     printed = row.last_digit / 2 / abs(row.si) if row.si else 0.0
@@ -132,7 +132,7 @@ def _grade(row: Published, computed: Computed) -> str:
 
 
 def _off(row: Published, computed: Computed) -> float:
-    """How far a computed number, or the range it stands for, lies from the printed one [1]."""
+    """Relative distance of a computed number, or of a range, from the printed one [1]."""
     if row.relation == ">" or not row.si:
         return 0.0
     low, high = _range(computed)
@@ -142,7 +142,7 @@ def _off(row: Published, computed: Computed) -> float:
 
 
 def _room(row: Published, computed: Computed) -> float:
-    """Room that a number was given [1]: its tolerance, or half of the last digit."""
+    """Tolerance of a number [1]: stated, or half of the last digit."""
     if row.relation.startswith(BOUNDS):
         return computed.tolerance
     return max(computed.tolerance, row.last_digit / 2 / abs(row.si))
@@ -166,7 +166,7 @@ def _agrees(row: Published, computed: Computed) -> bool:
 
 
 def _close(row: Published, value: float, tolerance: float) -> bool:
-    """Whether a value agrees with the printed one, within its tolerance or its last digit."""
+    """Whether a value agrees with the printed one, within its tolerance or last digit."""
     return abs(value - row.si) <= max(tolerance * abs(row.si), row.last_digit / 2)
 
 

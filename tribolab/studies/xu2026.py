@@ -1,11 +1,11 @@
-"""The reference system: PMMA cylinders on PDMS, dry and in glycerol (Xu et al. 2026).
+"""Reference system: PMMA cylinders on PDMS, dry and in glycerol (Xu et al. 2026).
 
 R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, "Adhesion-controlled sliding and the Stribeck
 curve in hydrophobic soft contacts" (2026). Section and equation numbers below are that paper's.
 
 The power spectra are **stand-ins**: the measured ones are published as a picture only. Each is a
 plateau and a power law whose roughness and slope are the paper's, and whose exponent H was chosen
-so that the paper's adhesive contact areas come out. Whatever is computed from them says so.
+to reproduce the paper's adhesive contact areas. All results based on them say so.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ STAND_IN = (
 
 @dataclass(frozen=True)
 class ReferenceSystem:
-    """A rigid cylinder on an elastic flat, in a liquid (Sec. 3 and 4).
+    """Rigid cylinder on an elastic flat, in a liquid (Sec. 3 and 4).
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ class ReferenceSystem:
 
 @dataclass(frozen=True)
 class Profilometer:
-    """The stylus instrument, a Surftest SJ-410 (Sec. 3).
+    """Stylus instrument, a Surftest SJ-410 (Sec. 3).
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ class Profilometer:
 
 @dataclass(frozen=True)
 class StudySurface:
-    """One cylinder: its roughness, its contact areas and its fitted shear stresses.
+    """Cylinder with its roughness, contact areas and fitted shear stresses.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ system = ReferenceSystem()
 profilometer = Profilometer()
 contact = LineContact(system.radius, system.length, system.youngs_modulus, system.poisson_ratio)
 
-# The numbers that the paper prints, as it prints them.
+# Numbers exactly as printed in the paper.
 published: tuple[Published, ...] = read_published(Path(__file__).with_name("xu2026_published.csv"))
 
 # 1, 2.15 and 4.64 times each decade: three equal steps on a logarithmic scale.
@@ -188,7 +188,7 @@ _SURFACES = (
         area_ratio_glycerol=0.052,
         area_ratio_dry=0.0528,
         # the last is printed as 0.98, but the figure's own name and the ratio of 1.75 to 1.95
-        # to Sb-S in the text want 0.94; kept as printed
+        # to Sb-S in the text require 0.94; kept as printed
         shear_stress=_pairs(1.08e6, 1.08e6, 1.00e6, 0.98e6),
     ),
 )
@@ -216,7 +216,7 @@ def surface(name: str) -> StudySurface:
 
 
 def psd(name: str | Sequence[str], points: int = 1201) -> xr.Dataset:
-    """Power spectrum of a surface, from q0 to q1 on a logarithmic grid; a stand-in.
+    """Stand-in power spectrum of a surface, from q0 to q1 on a logarithmic grid.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""Units, the register of quantities, and the stamp that every array carries."""
+"""Units, the register of quantities, and the metadata of arrays."""

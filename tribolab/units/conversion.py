@@ -1,4 +1,4 @@
-"""Units at the edge: text such as ``"31 N"`` becomes an SI float; inside are only SI floats."""
+"""Conversion of text such as ``"31 N"`` to SI floats, which are used internally."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _LONGEST = 200  # letters of a number with its unit
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
 
-# How instruments write units that pint reads otherwise or not at all.
+# Units that instruments write differently from pint, or that pint does not know.
 _SPELLINGS = {
     "microns": "um",
     "micron": "um",
@@ -49,7 +49,7 @@ _SPELLINGS = {
     "mPa s": "mPa*s",
     "mPa.s": "mPa*s",
 }
-# torques: pint takes Nm for a count of yarn
+# torques: pint reads Nm as a yarn count
 _SPELLINGS |= {
     f"{prefix}N{sign}{length}": f"{prefix}N*{length}"
     for prefix in ("", "u", "m", "c", "k")
@@ -60,8 +60,8 @@ _SPELLINGS |= {
 
 _PREFIXES = {"p": 1e-12, "n": 1e-9, "u": 1e-6, "\u00b5": 1e-6, "\u03bc": 1e-6, "m": 1e-3}
 _PREFIXES |= {"c": 1e-2, "k": 1e3, "M": 1e6, "G": 1e9}
-# What instruments write most, so that reading a file need not wait half a second for pint; the
-# same numbers as pint's.
+# Units that instruments write most often, to avoid half a second for loading pint; the
+# numbers are equal to pint's.
 _USUAL = {
     ("", "1"): (1.0, 0.0),
     ("-", "1"): (1.0, 0.0),
@@ -85,27 +85,27 @@ _USUAL = {
 
 @functools.lru_cache(maxsize=1)
 def registry() -> pint.UnitRegistry[float]:
-    """Return the one pint registry, made when first asked for."""
-    # late: pint takes long to load
+    """Return the pint registry, created at first use."""
+    # imported late: pint loads slowly
     import pint
 
     return pint.UnitRegistry(autoconvert_offset_to_baseunit=True, cache_folder=None)
 
 
-# exponents and signs of multiplication as typesetters write them
+# exponents and multiplication signs in typeset text
 _SIGNS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻−\u00a0", "0123456789-- ", "")
-_TIMES = re.compile(r"^[x×*·]\s?(?=\d\S*\s+[^\W\d_])")  # "x 1e-4 N", not the x1000 of a name
+_TIMES = re.compile(r"^[x×*·]\s?(?=\d\S*\s+[^\W\d_])")  # "x 1e-4 N", but not the x1000 of a name
 _RAISED = re.compile(r"(?<=10)([⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
-_PRODUCT = re.compile(r"(?<!\s)\s*[·⋅・∙•]\s*")  # tried once for each row of blanks
+_PRODUCT = re.compile(r"(?<!\s)\s*[·⋅・∙•]\s*")  # possessive: no backtracking over blanks
 
 
 def as_pint_writes(unit: str) -> str:
-    """Return a unit, typeset or from netCDF, in the spelling that pint reads."""
+    """Return a unit, typeset or from netCDF, in the spelling of pint."""
     unit = unit.strip().replace("\u00b5", "u").replace("\u03bc", "u")
     unit = _RAISED.sub(r"^\1", _TIMES.sub("", unit))
     unit = _PRODUCT.sub("*", unit.translate(_SIGNS))
     unit = _SPELLINGS.get(unit, unit)
-    # netCDF writes m2 and s-1; the e of 1e-4 is no name
+    # netCDF writes m2 and s-1; the e of 1e-4 is not a name
     unit = re.sub(r"(?<=[A-Za-z])(?<!\d[eE])(-?\d)", r"**\1", unit)
     return unit.replace("^", "**")
 
@@ -116,7 +116,7 @@ class _Units(NamedTuple):
 
 
 def _units(text: str) -> _Units:
-    """Have pint look up the names of a unit; the text itself is parsed here and never evaluated."""
+    """Look up the names of a unit in pint; the text itself is parsed here and never evaluated."""
     factor, powers = parse_unit(as_pint_writes(text))
     ureg = registry()
     product = ureg.Unit("")
@@ -126,17 +126,17 @@ def _units(text: str) -> _Units:
 
 
 def _prefix(unit: str, si_unit: str) -> float | None:
-    """Scale of the SI unit itself with a prefix: mm/s for m/s. Loading pint takes 0.5 s."""
+    """Scale of the SI unit with a prefix, e.g. mm/s for m/s, without loading pint (0.5 s)."""
     unit, si_unit = (text.replace("^2", "2").replace("²", "2") for text in (unit, si_unit))
     if unit == si_unit:
         return 1.0
-    # a prefix is raised with its unit: mm2 is not for here
+    # a prefix is raised with its unit: mm2 is not handled here
     if re.fullmatch(r"(m|s|N|Pa|V|J)(/s|/m2| s)?", si_unit) and unit[1:] == si_unit:
         return _PREFIXES.get(unit[0])
     return None
 
 
-# what instruments write most, and units that are asked for of which no other measures the same
+# units that instruments write most, and those that only measure the wanted quantity
 _EVERYDAY = re.compile(r"[pnu\u00b5\u03bcmckMG]?(s|m|N|Pa|V|m/s)")
 _ASKED = frozenset(
     ("", "1", "s", "m", "m2", "m3", "m4", "m/s", "m2/s", "1/m", "1/s", "Hz", "rad", "rad/s", "N")
@@ -147,7 +147,7 @@ _ASKED = frozenset(
 
 
 def _measures_another(unit: str, si_unit: str) -> bool:
-    """Whether an everyday unit is known to measure something else, without asking pint."""
+    """Whether a common unit is known to measure another quantity, without asking pint."""
     everyday = _EVERYDAY.fullmatch(unit)
     if everyday is None or si_unit not in _ASKED:
         return False
@@ -156,7 +156,7 @@ def _measures_another(unit: str, si_unit: str) -> bool:
 
 @functools.lru_cache(maxsize=512)
 def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[float, float]:
-    """Scale and offset that turn a number in `unit` into `si_unit`: ``si = scale * x + offset``.
+    """Scale and offset from `unit` to `si_unit`: ``si = scale * x + offset``.
 
     Parameters
     ----------
@@ -165,8 +165,8 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
     si_unit
         The unit wanted: ``"m/s"``, ``"K"``.
     bare
-        What a unit per time or length counts that names neither cycles nor radians, like
-        ``"1/min"``; by default as `tribolab.units.reciprocals.usual_reading` says.
+        Meaning of a unit per time or length that names neither cycles nor radians, like
+        ``"1/min"``; default from `tribolab.units.reciprocals.usual_reading`.
 
     Raises
     ------
@@ -186,7 +186,7 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
         raise UnitError(f"'{shown(unit)}' is not a unit: it has more than {_LONGEST} letters")
     if (unit, si_unit) in _USUAL:
         return _USUAL[unit, si_unit]
-    if (unit, si_unit) == ("mS", "s"):  # nobody times in siemens
+    if (unit, si_unit) == ("mS", "s"):  # nobody measures time in siemens
         return 1e-3, 0.0
     if _measures_another(unit, si_unit):
         raise UnitError(f"unit '{shown(unit)}' cannot be turned into '{si_unit}'")
@@ -202,15 +202,16 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
         raise UnitError(
             f"unit '{shown(unit)}' counts an angle or cycles, and cannot become '{si_unit}'"
         )
-    if counted and si_unit != (plain := f"1/{counted.per}"):  # seldom written, as "mm/s/mm" is
+    if counted and si_unit != (plain := f"1/{counted.per}"):  # rarely written, such as "mm/s/mm"
         scale = conversion(unit, plain, "nothing")[0]
         return scale * conversion(plain, si_unit, bare)[0], 0.0
     try:
-        parse_unit(as_pint_writes(unit))  # what is no unit by its grammar is told without pint
+        # text that breaks the grammar of units is rejected without pint
+        parse_unit(as_pint_writes(unit))
     except UnitError as error:
         said = shown(unit)
         raise UnitError(f"'{said}' is not a unit that is known; write e.g. '{si_unit}'") from error
-    # late: pint takes long to load
+    # imported late: pint loads slowly
     import pint
 
     ureg = registry()
@@ -220,16 +221,16 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
         size = ureg.Quantity(source.factor, source.units).to(target.units).magnitude
     except pint.DimensionalityError as error:
         raise UnitError(f"unit '{shown(unit)}' cannot be turned into '{si_unit}'") from error
-    except Exception as error:  # pint raises many kinds on text that is no unit
+    except Exception as error:  # pint raises many kinds of errors for text that is not a unit
         said = shown(unit)
         raise UnitError(f"'{said}' is not a unit that is known; write e.g. '{si_unit}'") from error
     scale = float(size - zero)
-    # a decimal prefix is exact on paper: 1000 um = 1 mm, not 0.9999999999999999
+    # a decimal prefix is exact in text: 1000 um = 1 mm, not 0.9999999999999999
     return float(f"{scale:.15g}"), float(zero)
 
 
 def base_unit(unit: str) -> str:
-    """Return the SI base units of a unit; "m" where it is no unit.
+    """SI base units of a unit; "m" for text that is not a unit.
 
     Examples
     --------
@@ -238,7 +239,7 @@ def base_unit(unit: str) -> str:
     """
     if (spelt := plain_unit(unit)) != unit.strip() and len(unit) < _LONGEST:
         return base_unit(spelt)
-    # late: pint takes long to load
+    # imported late: pint loads slowly
     import pint
 
     try:
@@ -250,7 +251,7 @@ def base_unit(unit: str) -> str:
 def to_si(
     value: str | float | int, si_unit: str, name: str = "value", bare: Counted | None = None
 ) -> float:
-    """Turn ``"31 N"``, or a number that already is SI, into an SI float.
+    """Convert ``"31 N"``, or a number already in SI, to an SI float.
 
     Parameters
     ----------
@@ -259,7 +260,7 @@ def to_si(
     si_unit
         The SI unit wanted.
     name
-        What the value is called where the user wrote it; the error names it.
+        Name of the value for the user, for the error message.
     bare
         As for `conversion`.
 
@@ -305,7 +306,7 @@ def to_si(
 
 
 def positive(value: str | float, unit: str, name: str) -> float:
-    """Return text with a unit, or an SI number, as an SI float above zero.
+    """Convert text with a unit, or an SI number, to a positive SI float.
 
     Raises
     ------

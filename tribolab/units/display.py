@@ -1,4 +1,4 @@
-"""Units in what Jupyter shows of our datasets before anything is opened."""
+"""Units in the Jupyter display of our datasets."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ _HOMES = (("xarray.core.dataset", "Dataset"), ("xarray.core.dataarray", "DataArr
 
 
 def show_units() -> None:
-    """Let the notebook that runs this name units beside the variables of our datasets.
+    """Show units next to the variables of our datasets in the running notebook.
 
-    Without a notebook nothing happens. `import tribolab` does it. What others made is shown as
-    xarray shows it.
+    Called by `import tribolab`; no effect outside a notebook. Other datasets keep the display of
+    xarray.
     """
-    # late: IPython takes long to load
+    # imported late: IPython loads slowly
     from IPython.core.getipython import get_ipython
 
     shell = get_ipython()
     formatters = getattr(getattr(shell, "display_formatter", None), "formatters", {})
     if "text/html" in formatters:
-        for home, name in _HOMES:  # by name: xarray is not loaded for it
+        for home, name in _HOMES:  # by name, without loading xarray
             formatters["text/html"].for_type_by_name(home, name, with_units)
 
 
 def with_units(data: xr.Dataset | xr.DataArray) -> str:
-    """Return xarray's own HTML; of what we made, each variable that has a unit with it.
+    """Return xarray's HTML with the unit of each variable, for our datasets.
 
-    Ours is what has a variable with the unit and the name in words that we give it.
+    Our datasets are recognised by a variable with our unit and long name.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def with_units(data: xr.Dataset | xr.DataArray) -> str:
 
 
 def _is_ours(data: xr.Dataset | xr.DataArray) -> bool:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.units.quantities import QUANTITIES
 
     own: Any = data.data_vars if hasattr(data, "data_vars") else {data.name: data}

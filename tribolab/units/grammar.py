@@ -1,9 +1,9 @@
-"""The grammar of units as text: parsed, never evaluated, and bounded in every way.
+"""Grammar of units as text: parsed, never evaluated, and limited in length and size.
 
     unit   = factor { ("*" | "/" | "." | " ") factor }
     factor = ( name | number | "(" unit ")" ) [ ("**" | "^") exponent | digits | "-" digits ]
 
-Products and quotients are taken from left to right, as pint takes them. Only ten has powers.
+Products and quotients are evaluated from left to right, as in pint. Only the number ten has powers.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _TOKEN = re.compile(
 
 
 class Parsed(NamedTuple):
-    """A number and names of units with their powers: ``10 mm/s2`` is 10, mm: 1, s: -2."""
+    """Number and powers of names of a unit: ``10 mm/s2`` is 10, mm: 1, s: -2."""
 
     factor: float
     powers: dict[str, float]
@@ -36,7 +36,7 @@ def parse_unit(text: str) -> Parsed:
     Parameters
     ----------
     text
-        As an instrument writes it: ``"mm/s"``, ``"N m-2"``, ``"kg*m**2/s^2"``, ``"10^-3 N"``.
+        Unit as text: ``"mm/s"``, ``"N m-2"``, ``"kg*m**2/s^2"``, ``"10^-3 N"``.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def parse_unit(text: str) -> Parsed:
 
 
 class _Reader:
-    """Tokens of a unit, one ahead."""
+    """Tokens of a unit with one token of lookahead."""
 
     def __init__(self, text: str) -> None:
         self.text, self.at = text.strip(), 0
@@ -134,7 +134,7 @@ class _Reader:
         return Parsed(parsed.factor**power, {n: p * power for n, p in parsed.powers.items()})
 
     def power(self, of: str) -> float | None:
-        """Read a power: after a sign for it, or digits right behind a name, as in m2 and s-1."""
+        """Read a power: after a sign for it, or digits directly after a name, as in m2 and s-1."""
         signed = self.kind == "power"
         if signed:
             self.step()

@@ -1,4 +1,4 @@
-"""The one dictionary of variables: what each is called, its symbol, SI unit and long name."""
+"""Dictionary of all variables: name, symbol, SI unit and long name."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from tribolab.units.reciprocals import Counted, reciprocal
 class Quantity(NamedTuple):
     """Name, symbol (as on paper), SI unit (as in netCDF attributes) and long name.
 
-    `bare` is wanted of what is counted per time or per length: what a unit counts that does not
-    say it, like "1/min"; "ask" where cycles and radians are both usual (`units.reciprocals`).
+    Quantities per time or length need `bare`: the meaning of a unit like "1/min"; "ask" if cycles
+    and radians are both usual (`units.reciprocals`).
     """
 
     name: str
@@ -112,7 +112,7 @@ _ROWS = [
     ("peak", "", "1", "whether the start stands out of the sliding that follows"),
     ("breakaway_time", "t_s", "s", "moment of the highest friction at a start"),
     ("waiting_time", "t_w", "s", "time of rest under load before a start"),
-    # cycles of a contact that slides to and fro
+    # cycles of a reciprocating contact
     (
         "friction_coefficient_energy",
         "\\mu_E",
@@ -347,12 +347,12 @@ _ROWS = [
 
 
 def dictionary(rows: Iterable[tuple[Any, ...]]) -> dict[str, Quantity]:
-    """Return quantities by name; two meanings have two names.
+    """Return quantities by name; two meanings need two names.
 
     Raises
     ------
     TribolabError
-        If a name stands there twice, or a quantity per time or length does not name what it counts.
+        If a name occurs twice, or a quantity per time or length does not state what it counts.
 
     Examples
     --------
@@ -388,7 +388,7 @@ _DERIVED = {
     "_u": "standard uncertainty of the {}",
     "_U95": "expanded uncertainty (95 %) of the {}",
 }
-_DOF = "_dof"  # counts, whatever the unit of the base
+_DOF = "_dof"  # counts, in any unit of the base quantity
 
 
 def quantity(name: str) -> Quantity:
@@ -418,7 +418,7 @@ def quantity(name: str) -> Quantity:
 
 
 def unit_conversion(unit: str, name: str) -> tuple[float, float]:
-    """Scale and offset that turn a number in `unit` into the quantity's SI unit.
+    """Scale and offset from `unit` to the quantity's SI unit.
 
     Raises
     ------
@@ -435,7 +435,7 @@ def unit_conversion(unit: str, name: str) -> tuple[float, float]:
 
 
 def si_values(value: str | ArrayLike, name: str) -> np.ndarray:
-    """Return a quantity as an array of SI floats; entries may be text with a unit.
+    """Convert a quantity to an array of SI floats; entries may be text with a unit.
 
     Raises
     ------
@@ -451,7 +451,7 @@ def si_values(value: str | ArrayLike, name: str) -> np.ndarray:
     try:
         if np.asarray(value).dtype.kind in "fiub":
             return np.asarray(value, dtype=float)
-        # as objects: an array of text would turn the numbers beside it into text without a unit
+        # as objects: an array of text would turn numbers into text without a unit
         entries = np.asarray(value, dtype=object)
         numbers = [
             to_si(str(cell), unit, name=name, bare=bare) if isinstance(cell, str) else float(cell)

@@ -1,8 +1,8 @@
-"""What a unit "per time" or "per length" counts: a cycle is 2 pi radians, and SI writes neither.
+"""Units per time or length: cycles or radians, which SI units do not distinguish.
 
-``1/min`` of a rotation speed counts turns, ``1/s`` of a shear rate counts nothing, ``1/s`` of an
-angular frequency may be read as either: what a bare reciprocal means is a fact of the quantity
-(`tribolab.units.quantities`), and where two readings are possible the error asks.
+``1/min`` of a rotation speed counts turns, ``1/s`` of a shear rate counts nothing, and ``1/s`` of
+an angular frequency is ambiguous. The quantity defines the meaning of a bare reciprocal
+(`tribolab.units.quantities`); if both are possible, an error asks for it.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _METRES |= {"micron": 1e-6, "microns": 1e-6, "in": 0.0254, "inch": 0.0254, "mil"
 _LENGTHS = {**dict.fromkeys(_SECONDS, "s"), **dict.fromkeys(_METRES, "m")}
 _PER = _SECONDS | _METRES
 
-# turns as instruments of several countries write them: U/min, tr/min, giri/min, ob/min, omw/min
+# turns in several languages: U/min, tr/min, giri/min, ob/min, omw/min
 _CYCLES = set(
     "r rev revs revolution revolutions rot rots rotation rotations turn turns cycle cycles cyc "
     "u umdr umdrehung umdrehungen tr tour tours giro giri ob obr omw varv period periods "
@@ -51,7 +51,7 @@ _FORMS = (
 
 
 class Reciprocal(NamedTuple):
-    """A unit per time or per length: how many a second or metre, of what."""
+    """Unit per time or length: number of counts, and of seconds or metres."""
 
     scale: float
     counts: Literal["cycles", "radians", "bare"]
@@ -60,7 +60,7 @@ class Reciprocal(NamedTuple):
 
 @functools.lru_cache(maxsize=512)
 def reciprocal(unit: str) -> Reciprocal | None:
-    """Take a unit per time or per length apart; None if it is something else.
+    """Parse a unit per time or length; None for other units.
 
     Examples
     --------
@@ -106,7 +106,7 @@ def counts_turns(unit: str) -> bool:
 
 
 def usual_reading(si_unit: str) -> Counted:
-    """Say what a bare reciprocal means where no quantity tells: asked for where two readings are.
+    """Meaning of a bare reciprocal without a known quantity; "ask" if ambiguous.
 
     Examples
     --------
@@ -118,19 +118,19 @@ def usual_reading(si_unit: str) -> Counted:
 
 
 def scale_of_reciprocal(unit: str, si_unit: str, bare: Counted) -> float | None:
-    """Factor from a unit per time or length to SI; None where either of them is something else.
+    """Factor from a unit per time or length to SI; None for other units.
 
     Parameters
     ----------
     unit, si_unit
-        The unit as it is written, and the one wanted.
+        The unit as written, and the one wanted.
     bare
-        What a unit that names neither cycles nor radians counts.
+        Meaning of a unit that names neither cycles nor radians.
 
     Raises
     ------
     UnitError
-        If the unit may be read in two ways, or counts what the quantity does not.
+        If the unit is ambiguous, or counts something else than the quantity.
 
     Examples
     --------
@@ -162,7 +162,7 @@ _ANGLES = re.compile(
 
 
 def holds_an_angle(unit: str) -> bool:
-    """Whether a unit names cycles or an angle, which a units library takes for pure numbers.
+    """Whether a unit names cycles or an angle, which pint treats as pure numbers.
 
     Examples
     --------

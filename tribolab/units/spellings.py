@@ -1,4 +1,4 @@
-"""Units as instruments of many countries spell them, in the names that the library of units has."""
+"""Spellings of units in many languages, converted to the names of pint."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 
 class _Spellings(NamedTuple):
-    """Names of units by how they are spelt: in words, in signs, and as a whole."""
+    """Names of units by spelling: words, signs, and whole units."""
 
     words: dict[str, str]
     signs: dict[str, str]
@@ -36,7 +36,7 @@ _WRITTEN_AS = {"metre": "meter"} | dict.fromkeys(
     ("angström", "angstroem", "angstrøm", "ångström", "ångstrom"), "angstrom"
 )
 _NAME = re.compile(r"[°]?[^\W\d_]+|℃|℉")
-# pounds, ounces, grams and kilograms that stand for their weight: in forces, and on an arm
+# pounds, ounces, grams and kilograms used as forces, also in torques
 WEIGHTS = {"g": "gf", "kg": "kgf", "lb": "lbf", "lbs": "lbf", "oz": "ozf"}
 _ON_ARM = WEIGHTS | {"lbf": "lbf", "ozf": "ozf", "kgf": "kgf", "gf": "gf", "kp": "kgf"}
 _ARM = r"(?P<arm>mm|cm|m|in|inch|ft)"
@@ -48,7 +48,7 @@ _TORQUES = tuple(
 
 
 def unit_in_words(text: str) -> str:
-    """Return the unit that a word or sign stands for; else the text as it is.
+    """Return the unit that a word or sign means; unknown text is returned unchanged.
 
     >>> unit_in_words("Sekunden"), unit_in_words("kN"), unit_in_words("MM/sec.")
     ('s', 'kN', 'mm/sec.')
@@ -60,7 +60,7 @@ def unit_in_words(text: str) -> str:
 
 
 def plain_unit(unit: str) -> str:
-    """Return a unit in the names of the library of units, as far as it is spelt otherwise.
+    """Return the unit in the names of pint, converted from other spellings.
 
     Examples
     --------
@@ -89,7 +89,7 @@ _LENGTHS = {
 
 
 def unit_of_length(text: str) -> str:
-    """Return the unit of length that a text is and nothing else; or "".
+    """Return the unit of length if the text is exactly that, else "".
 
     >>> unit_of_length("[nm]"), unit_of_length("Mikrometer"), unit_of_length("MM")
     ('nm', 'um', 'mm')
@@ -101,7 +101,7 @@ def unit_of_length(text: str) -> str:
 
 
 def _in_full(name: str) -> str:
-    """Return a unit that is written out, in whatever letters, as the library of units has it.
+    """Return a unit that is spelt out, in the name used by pint.
 
     >>> _in_full("Nanometres"), _in_full("INCHES"), _in_full("Ångström"), _in_full("Fx")
     ('nanometer', 'inch', 'angstrom', 'Fx')

@@ -1,4 +1,4 @@
-"""Arrays and datasets that say what they hold: names and units of the register, and origin."""
+"""Metadata of arrays and datasets: names and units of the register, and origin."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ from tribolab.units.quantities import QUANTITIES, quantity, si_values
 def stamp(data: xr.Dataset, **attrs: str | float | int) -> xr.Dataset:
     """Return the dataset with ``units`` and ``long_name`` of the dictionary on every variable.
 
-    What arithmetic carried along (F_x/F_N would still say "N") is overwritten. Flags (``*_qc``,
-    ``*_qc_tests``) keep their own attributes; text variables get a long name only if known.
+    Attributes left over from arithmetic (F_x/F_N would still have "N") are overwritten. Flags
+    (``*_qc``, ``*_qc_tests``) keep their own attributes; text variables get a long name only if
+    known.
 
     Parameters
     ----------
     data
-        Dataset whose variable names stand in the dictionary.
+        Dataset whose variable names are in the dictionary.
     **attrs
         Attributes to add to the dataset.
 
@@ -47,7 +48,7 @@ def stamp(data: xr.Dataset, **attrs: str | float | int) -> xr.Dataset:
 
 
 def stamp_array(data: xr.DataArray, name: str) -> xr.DataArray:
-    """Return the array under the quantity's name with its ``units`` and ``long_name`` only."""
+    """Return the array under the quantity's name with only its ``units`` and ``long_name``."""
     known = quantity(name)
     result = data.rename(name)
     result.attrs = {"units": known.unit, "long_name": known.long_name}
@@ -55,7 +56,7 @@ def stamp_array(data: xr.DataArray, name: str) -> xr.DataArray:
 
 
 def labelled(value: str | ArrayLike | xr.DataArray, name: str) -> xr.DataArray:
-    """Return a quantity as a DataArray of floats, whichever way it was given.
+    """Convert a quantity in any form to a DataArray of floats.
 
     Parameters
     ----------
@@ -92,7 +93,7 @@ def labelled(value: str | ArrayLike | xr.DataArray, name: str) -> xr.DataArray:
 
 
 def like(values: np.ndarray, given: str | ArrayLike | xr.DataArray, name: str) -> Any:
-    """Return values the way an argument was given: a float, an array or a stamped DataArray."""
+    """Return values in the form of an argument: a float, an array or a stamped DataArray."""
     if isinstance(given, xr.DataArray):
         return stamp_array(xr.DataArray(values, coords=given.coords, dims=given.dims), name)
     return values[()] if np.ndim(values) else float(values)

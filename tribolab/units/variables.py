@@ -1,4 +1,4 @@
-"""What is in a dataset: the meaning and the unit of every variable, as a table."""
+"""Table of the variables of a dataset, with meaning and unit."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 def variables(data: xr.Dataset | xr.DataArray) -> pd.DataFrame:
     """List the variables of a dataset with their meaning, unit and range.
 
-    What Jupyter shows of a dataset hides the units behind an icon for each variable; here they
-    stand beside the names.
+    Jupyter hides the units of a dataset behind an icon for each variable; here they are listed next
+    to the names.
 
     Parameters
     ----------
@@ -26,9 +26,9 @@ def variables(data: xr.Dataset | xr.DataArray) -> pd.DataFrame:
     -------
     pandas.DataFrame
         A row for each variable, coordinates first: ``meaning``, ``unit`` (empty for text), ``dims``
-        with their lengths, ``lowest`` and ``highest`` in that unit (of text the first and the last
-        value), and ``missing``, how many values are NaN. Of a run ``column``, too: what the file
-        calls it.
+        with their lengths, ``lowest`` and ``highest`` in that unit (for text the first and last
+        value), and ``missing``, the number of NaN. For a run also ``column``, the name in the
+        file.
 
     Examples
     --------
@@ -37,7 +37,7 @@ def variables(data: xr.Dataset | xr.DataArray) -> pd.DataFrame:
     >>> variables(run).loc["sliding_velocity", ["meaning", "unit", "dims"]].tolist()
     ['sliding velocity, signed', 'm/s', 'time (1000)']
     """
-    # late: pandas takes long to load
+    # imported late: pandas loads slowly
     import pandas as pd
     import xarray as xr
 
@@ -46,7 +46,7 @@ def variables(data: xr.Dataset | xr.DataArray) -> pd.DataFrame:
     names = [*whole.coords, *whole.data_vars]
     rows = {str(name): _row(whole[name]) for name in names}
     table = pd.DataFrame.from_dict(rows, orient="index")
-    # each number in digits of its own: a column of them would be shown in those of the largest
+    # numbers formatted one by one: a column would use the digits of the largest
     table = table.astype({"lowest": object, "highest": object})
     called = whole.attrs.get("columns_used")
     if isinstance(called, dict):

@@ -1,1 +1,1 @@
-"""Simulated scans of rough surfaces, sound and faulty."""
+"""Simulated scans of rough surfaces, with and without faults."""

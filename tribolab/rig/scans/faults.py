@@ -1,4 +1,4 @@
-"""Faults that real profilometers have, to be put into simulated scans: one for each check."""
+"""Faults of real profilometers for simulated scans, one for each check."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ Strike = Callable[[xr.Dataset, np.random.Generator], xr.Dataset]
 
 @dataclass(frozen=True)
 class ScanFault:
-    """A fault: what happens, how grave it is, and which check has to find it.
+    """Fault of scans with its effect, severity, and the check that must find it.
 
     Attributes
     ----------
     name
-        What it is called.
+        Name of the fault.
     what
-        What it does, in a sentence.
+        Effect, in a sentence.
     severity
-        "suspect" or "fail": what the check should say, at least.
+        "suspect" or "fail": lowest expected status of the check.
     check
         Name of the check on scans that should find it.
     strike
         ``strike(scans, rng) -> scans``; changes nothing in place.
     fewest
-        Scans of one surface in which it can be seen.
+        Smallest number of scans of one surface needed to detect it.
     """
 
     name: str
@@ -49,12 +49,12 @@ class ScanFault:
 
 
 def exported(scans: xr.Dataset) -> xr.Dataset:
-    """Return the rig's scans as they come back from their files, with what the instrument states.
+    """Return the rig's scans as read back from their files, with the stated metadata.
 
     Parameters
     ----------
     scans
-        What `tribolab.rig.scans.profiles.scans` gave.
+        From `tribolab.rig.scans.profiles.scans`.
 
     Returns
     -------
@@ -89,21 +89,21 @@ def exported(scans: xr.Dataset) -> xr.Dataset:
 def strike(
     scans: xr.Dataset, faults: str | Iterable[str], rng: int | np.random.Generator = 0
 ) -> xr.Dataset:
-    """Return exported scans with faults in them.
+    """Add faults to exported scans.
 
     Parameters
     ----------
     scans
-        What `exported` gave; stay as they are.
+        From `exported`; not changed.
     faults
-        Names of faults, in the order in which they strike.
+        Names of faults, in the order of application.
     rng
         Seed or generator.
 
     Raises
     ------
     ConfigError
-        If there is no such fault.
+        If a fault is unknown.
 
     Examples
     --------
@@ -126,7 +126,7 @@ def _joined(values: Iterable[float]) -> str:
 
 
 def _changed(scans: xr.Dataset, height: np.ndarray, **attrs: float | str) -> xr.Dataset:
-    """Return scans of other heights, as the gauge resolves them."""
+    """Return scans with other heights, rounded to the gauge's resolution."""
     digits = np.round(height / 1e-9) * 1e-9
     return scans.assign(height=scans.height.copy(data=digits)).assign_attrs(attrs)
 
@@ -186,7 +186,7 @@ def _uneven(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
     rows = [np.interp(places, x, row) for row in scans.height.values]
     brought = [even("scan", places, row) for row in rows]
     resampled = _changed(scans, np.stack([b[1] for b in brought]), **brought[0][2])
-    return resampled.assign_coords(recorded_x=("x", places))  # as it stands in the file
+    return resampled.assign_coords(recorded_x=("x", places))  # as written in the file
 
 
 def _wrong_length(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:

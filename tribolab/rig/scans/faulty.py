@@ -1,4 +1,4 @@
-"""Scans with faults in them, as a simulated campaign has them: as files, told in its truth."""
+"""Files of simulated scans with faults, for simulated campaigns."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribolab.rig.faults import FAULTS, Fault
 from tribolab.rig.files import scan_file
 from tribolab.rig.scans.faults import SCAN_FAULTS, ScanFault, exported
 
-# Of `simulate_campaign(faults=...)`: a name that runs have too means the fault of runs.
+# Of `simulate_campaign(faults=...)`: a name shared with runs means the fault of runs.
 SCAN_FAULTS_BY_NAME: dict[str, ScanFault] = {
     f"scan_{name}" if name in FAULTS else name: fault for name, fault in SCAN_FAULTS.items()
 }
@@ -25,7 +25,7 @@ def fault_of_campaign(name: str) -> Fault | ScanFault:
     Raises
     ------
     ConfigError
-        If there is none; the message names the nearest, or all.
+        If it is unknown; the message names the nearest, or all.
 
     Examples
     --------
@@ -44,28 +44,28 @@ def write_faulty_scans(
     folder: Path,
     rng: int | np.random.Generator = 0,
 ) -> dict[str, dict[str, list[dict[str, str]]]]:
-    """Write simulated scans with faults in them, as the stylus instrument exports them.
+    """Write simulated scans with faults, as the stylus instrument exports them.
 
     Parameters
     ----------
     scans
-        What `tribolab.rig.scans` gave; stay as they are.
+        From `tribolab.rig.scans`; not changed.
     faults
-        Names, as `fault_of_campaign` knows them, in the order in which they strike.
+        Names accepted by `fault_of_campaign`, in the order of application.
     folder
-        Where to; must be there.
+        Target folder, which must exist.
     rng
         Seed or generator.
 
     Returns
     -------
     dict
-        For each file that carries faults their names, what they do, which check has to find them,
-        and how grave it has to call them at least.
+        For each faulty file, the faults with their effect, the check that must find them, and
+        its lowest expected status.
     """
     rng = np.random.default_rng(rng)
     struck = exported(scans)
-    # the instrument's own results stand in the files only where they are what is wrong
+    # the instrument's own results are exported only if the fault concerns them
     results = any(SCAN_FAULTS_BY_NAME[name].check == "results" for name in faults)
     files = _files(struck, results)
     facts: dict[str, dict[str, list[dict[str, str]]]] = {}
@@ -85,7 +85,7 @@ def write_faulty_scans(
 def _files(scans: xr.Dataset, results: bool) -> dict[str, bytes]:
     """Content of each scan's file."""
     attrs, x, heights = scans.attrs, scans.x.values, scans.height.values
-    if "recorded_x" in scans.coords:  # the traverse wavered
+    if "recorded_x" in scans.coords:  # uneven speed of the traverse
         places = scans.recorded_x.values
         x, heights = places, [np.interp(places, x, row) for row in heights]
     stated = {name: attrs[f"instrument_{name}_m"].split("; ") for name in ("Ra", "Rq")}

@@ -9,7 +9,7 @@ from tribolab.studies import xu2026
 from tribolab.surface.synthesis import synthesise_profiles
 from tribolab.units.stamping import stamp
 
-_OVERSAMPLING = 2  # the surface is finer than the pitch of the instrument
+_OVERSAMPLING = 2  # points of the surface per pitch of the instrument
 _NOISE = 5e-9  # m
 _STEP = 1e-9  # m, resolution of the height
 _TILT = 0.02  # largest slope of the mounting
@@ -29,7 +29,7 @@ def scans(
     surface
         ``"Smooth"``, ``"Sb-S"`` or ``"Sb-R"``.
     profiles
-        Number of scans, on different spots; default the paper's three.
+        Number of scans at different positions; by default three, as in the paper.
     seed
         Seed or generator.
     length
@@ -38,16 +38,15 @@ def scans(
     Returns
     -------
     xarray.Dataset
-        ``height`` [m] (profile, x) as the instrument gives it. Attributes: the truth (``radius_m``,
-        the spectrum's roughness and slope).
+        ``height`` [m] (profile, x) as measured. Attributes: the truth (``radius_m``, the spectrum's
+        roughness and slope).
 
     Notes
     -----
     Roughness is drawn on twice the scan's length, so that it is not periodic, at half the pitch.
     The cylinder is a circle, not a parabola: over 25 mm they differ by 9 um, and a parabola fitted
-    to it has a curvature 0.7 % too large. The stylus is a sphere that touches from above
-    (dilation along the profile; what lies beside the track is not seen). Then noise and
-    resolution.
+    to it has a curvature 0.7 % too large. The stylus is a sphere that touches from above (dilation
+    along the profile, ignoring heights next to the track). Noise and resolution are added last.
 
     Examples
     --------
@@ -95,8 +94,8 @@ def scans(
 
 
 def touch(height: np.ndarray, pitch: float, tip_radius: float) -> np.ndarray:
-    """Height at which a spherical tip rests on profiles [m] (..., x): dilation by the sphere."""
-    # late: scipy takes long to load
+    """Height of a spherical tip that touches profiles [m] (..., x): dilation by the sphere."""
+    # imported late: scipy loads slowly
     from scipy.ndimage import grey_dilation
 
     half = int(tip_radius / pitch)
