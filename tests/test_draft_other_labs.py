@@ -393,8 +393,8 @@ def test_a_ring_s_size_may_stand_behind_it_and_a_lever_s_load_behind_the_lever(t
     ("said", "wrong"),
     [
         ("Stroke: 10 mm\nFrequency: 2 Hz\nNumber of cycles: 30\n", None),
-        ("Stroke: 20 mm\nFrequency: 2 Hz\n", "states 20 mm strokes, its position makes"),
-        ("Stroke: 10 mm\nFrequency: 4 Hz\n", "states 4 Hz, its position makes"),
+        ("Stroke: 20 mm\nFrequency: 2 Hz\n", "states 20 mm strokes, its position signal shows"),
+        ("Stroke: 10 mm\nFrequency: 4 Hz\n", "states 4 Hz, its position signal shows"),
         ("Stroke: 10 mm\nFrequency: 2 Hz\nCycles: 60\n", "states 60 cycles"),
     ],
 )

@@ -88,7 +88,7 @@ def test_a_lone_force_log_is_suspect_for_want_of_a_speed_not_a_crash(tmp_path):
 @pytest.mark.parametrize(
     ("log", "cure"),
     [
-        ("force", "Put sb-r_dry_31N_01_motion.csv beside this file, or give both."),
+        ("force", "Put sb-r_dry_31N_01_motion.csv next to this file, or give both."),
         ("motion", "Give the log of the forces with this one if the instrument writes two"),
     ],
 )
