@@ -1,1 +1,1 @@
-"""Friction coefficients with their errors."""
+"""Friction coefficients with their uncertainty."""

@@ -1,4 +1,4 @@
-"""Friction coefficient of each segment, with offsets removed and honest errors."""
+"""Friction coefficient of each segment, with the zero removed and with its uncertainty."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ from tribolab.friction.zero.words import of_light_rest, of_partial_contact
 from tribolab.units.stamping import stamp
 
 _OFFSETS = ("auto", "half loop", "zero load", "none")
-_LOST = 0.05  # share of samples without contact that spoils a segment
+_LOST = 0.05  # share of samples without contact above which a segment is not evaluated
 
 
 @of_runs
@@ -51,34 +51,34 @@ def friction_coefficient(
     rectified: bool | None = None,
     other_zeros: Sequence[float] = (),
 ) -> xr.Dataset:
-    """Friction coefficient of each segment: the mean of the pointwise ratio F_x / F_N.
+    """Friction coefficient of each segment: mean of the pointwise ratio F_x / F_N.
 
     Parameters
     ----------
     run
         The run, with ``friction_force`` and ``normal_force``, or ``friction_coefficient``, or
-        ``friction_force`` alone (then only forces come out).
+        ``friction_force`` alone (which gives forces only).
     segments
-        From `find_segments` on the same run, or from `decide`: rejected segments tell nothing of
-        the others, and have the values that they would have had. A further dim (of several trims)
-        is one of the result.
+        From `find_segments` on the same run, or from `decide`: rejected segments do not affect
+        the others, and have the values they would have if accepted. A further dim (of several
+        trims) is one of the result.
     offset
         ``"half loop"``: the middle of the loop of two neighbouring strokes of opposite direction,
-        its drift from loop to loop taken out. ``"zero load"``: the reading of rests without load,
-        interpolated in time. ``"none"``. ``"auto"``: half loop where strokes pair, unless rests
-        without load contradict it; else zero load where the run has such a rest; else what is
+        corrected for drift between loops. ``"zero load"``: the reading of unloaded rests,
+        interpolated in time. ``"none"``. ``"auto"``: half loop if strokes pair, unless unloaded
+        rests contradict it; else zero load if the run has an unloaded rest; else the zero that is
         stated or known from other runs; else none. The zero of the normal force is always
         taken from rests without load if there are any, except with ``"none"``.
     pair_tolerance
-        Largest relative difference of speed between the two strokes of a pair, up to which
-        friction is known to be alike. Where the zero would rest on nothing else, strokes whose
-        speeds differ by up to their mean pair as well, and the result is in doubt.
+        Largest relative difference of speed between the two strokes of a pair. If the zero cannot
+        be found otherwise, strokes whose speeds differ by up to their mean pair as well, and the
+        zero is reported as doubtful.
     zero_uncertainty
-        Standard uncertainty of the friction signal's zero, where no stroke or rest tells it
+        Standard uncertainty of the friction signal's zero, if no stroke or rest determines it
         ("0.2 N", or a number in SI); else the attribute ``friction_force_zero_uncertainty_N``.
     rectified
         Whether the friction signal was recorded without its sign; else the run's attribute
-        ``friction_force_rectified``, else the signal at the reversals tells.
+        ``friction_force_rectified``; else it is found from the signal at the reversals.
     other_zeros
         Zeros of other runs on the same instrument, in the unit of the friction signal.
 
@@ -157,9 +157,9 @@ def friction_coefficient(
 
 
 def friction_signal(run: xr.Dataset) -> str:
-    """Return the variable that friction is taken from: a force, or a recorded coefficient; or "".
+    """Name of the friction signal: a force, or a recorded coefficient; or "".
 
-    Of a force under a load that nobody knows a recorded coefficient says more.
+    A recorded coefficient is preferred to a force under an unknown load.
 
     >>> friction_signal(xr.Dataset({"friction_force": 1.0, "friction_coefficient": 0.3}))
     'friction_coefficient'
@@ -189,7 +189,7 @@ def _name(run: xr.Dataset) -> str:
 
 
 def belong(run: xr.Dataset, segments: xr.Dataset) -> None:
-    """Refuse segments of another run."""
+    """Raise an error if the segments belong to another run."""
     mine, theirs = (d.attrs.get("source_sha256") for d in (run, segments))
     outside = False
     if segments.sizes["segment"]:
@@ -210,7 +210,7 @@ def belong(run: xr.Dataset, segments: xr.Dataset) -> None:
 
 
 def trimmed_slices(run: xr.Dataset, segments: xr.Dataset) -> list[slice]:
-    """Find the samples of each trimmed segment."""
+    """Index ranges of the samples of each trimmed segment."""
     time = run["time"].values
     first = np.searchsorted(time, segments["trimmed_start"].values, side="left")
     last = np.searchsorted(time, segments["trimmed_stop"].values, side="right")
@@ -218,7 +218,7 @@ def trimmed_slices(run: xr.Dataset, segments: xr.Dataset) -> list[slice]:
 
 
 def _middles(time: np.ndarray, parts: list[slice], segments: xr.Dataset) -> np.ndarray:
-    """Mean moment of the samples of each segment: that is when a drifting signal has its mean."""
+    """Mean time of the samples of each segment, when a drifting signal equals its mean."""
     ends = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
     means = [
         time[s].mean() if s.stop > s.start else end
@@ -257,13 +257,13 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
     )
     if normal_rests is None and (light := light_rest(run, segments, load, pressed)):
         zero = replace(zero, doubts=(*zero.doubts, of_light_rest(light, load, means.size)))
-    shared = np.zeros(means.size)  # errors of the load that all segments have in common
+    shared = np.zeros(means.size)  # errors of the load that are common to all segments
     if loads and "normal_force" in run:
         reading = load_reading(run, segments, parts, pressed, n0, means, zero)
         shared = reading.error
         zero = replace(zero, doubts=(*zero.doubts, *reading.doubts))
     if partial is not None and settings.offset != "none":
-        shared = np.hypot(shared, partial.level / UNIFORM)  # one zero or the other
+        shared = np.hypot(shared, partial.level / UNIFORM)  # either zero
         if partial.level > limits.DOUBTFUL_REST.value * load:
             doubted = of_partial_contact(partial, load, means.size)
             zero = replace(zero, doubts=(*zero.doubts, doubted))
@@ -311,8 +311,8 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
         in_common = np.hypot(mu * shared, idle.error) / pressed
 
     def whole(scatter: np.ndarray) -> np.ndarray:
-        # the load's fluctuations move friction and load together and leave the ratio alone: its
-        # own scatter, not the force's, says how well friction is known
+        # fluctuations of the load change friction and load together but not the ratio: the scatter
+        # of the ratio, not of the force, determines the error
         known = np.isfinite(scatter)
         errors_by_ratio = zero.error(np.where(known, scatter * held, own_errors))
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -342,7 +342,7 @@ def _errors(
 ) -> dict[str, np.ndarray]:
     """Return standard errors, degrees of freedom and U95, over the path and beyond it (segment).
 
-    `whole` adds to standard errors of the signal what its zeros add.
+    `whole` adds the errors of the zeros to standard errors of the signal.
     """
     errors: dict[str, np.ndarray] = {}
     for end, name in (("", "friction_coefficient"), ("_beyond", "friction_coefficient_beyond")):
@@ -353,27 +353,27 @@ def _errors(
 
 
 def _remark(estimate: Estimate) -> str:
-    """Say why an error is wide, if it is."""
+    """Return the reason why an error is large, as text; else ""."""
     wide = undetermined_remark(estimate) or wander_remark(estimate)
     return "; ".join(filter(None, (turn_remark(estimate.turns), wide)))
 
 
 class _Turning(NamedTuple):
-    """How a rig turns that always turns the same way; both None where none does."""
+    """Rotation of a rig that turns in one direction; both fields None without one."""
 
     time: np.ndarray | None = None
     speed: np.ndarray | None = None
 
     @classmethod
     def of(cls, run: xr.Dataset, segments: xr.Dataset) -> _Turning:
-        # an arc to and fro rubs the same part of the disc: nothing is to be averaged over turns
+        # an oscillating arc rubs the same part of the disc: there are no turns to average over
         direction = segments["direction"].values
         if "rotation_speed" not in run or ((direction > 0).any() and (direction < 0).any()):
             return cls()
         return cls(run["time"].values, run["rotation_speed"].values)
 
     def angle(self, part: slice, at: np.ndarray | None = None) -> tuple[np.ndarray, ...]:
-        """Return the angle [rad] of a part's samples, or of those of some times; () if unknown."""
+        """Return the angle [rad] of a segment's samples, or at given times; () if unknown."""
         if self.time is None or self.speed is None or part.stop - part.start < 2:
             return ()
         time = self.time[part]
@@ -383,13 +383,13 @@ class _Turning(NamedTuple):
 
 
 class _Pointwise(NamedTuple):
-    """What there is to say of the ratio of one segment: why there is none, samples left out."""
+    """Remarks on the ratio of one segment: why it is missing, and samples left out."""
 
     missing: str = ""
     left: int = 0
 
     def remark(self, estimate: Estimate) -> str:
-        """Put it in words, with what the estimate tells."""
+        """Return the remarks as text, with those of the mean."""
         if self.missing or estimate.samples == 0:
             return self.missing or "friction force is not a number"
         said = [f"{self.left} samples without contact left out"] if self.left else []
@@ -405,7 +405,7 @@ def _ratio(
     zero: float,
     usual: float,
 ) -> tuple[np.ndarray, np.ndarray, _Pointwise]:
-    """Give times and ratio of one segment, none without contact; `force` is written over."""
+    """Return the times and ratio of one segment, empty without contact; overwrites `force`."""
     known, nothing = np.isfinite(normal), np.zeros(0)
     if load.samples == 0 or normal.size == 0:
         why = "normal force is not a number" if normal.size else "no samples"
@@ -427,7 +427,7 @@ def _ratio(
 
 
 def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Segments of a run whose instrument records only the coefficient."""
+    """Return the friction of a run whose instrument records only the coefficient."""
     time, ratio = run["time"].values, run["friction_coefficient"].values
     parts = trimmed_slices(run, segments)
     turns = _Turning.of(run, segments)
@@ -456,7 +456,7 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr
         "trend_change": turn * _column(estimates, "trend_change"),
     }
     load = next((name for name in ("normal_force", "set_normal_force") if name in run), None)
-    if load is not None:  # under which the instrument found it
+    if load is not None:  # normal force under which the instrument computed it
         normal = run[load].values
         loads = estimates_of((time[s], normal[s]) for s in one_by_one(parts))
         for end, of in (("", "mean"), ("_std", "std"), ("_sem", "sem")):

@@ -14,15 +14,15 @@ from tribolab.friction.statistics import estimate_of
 from tribolab.units.conversion import to_si
 from tribolab.units.stamping import stamp
 
-_ONE_SIGN = 0.8  # share of the cycles whose strokes have one sign, from which the sign was lost
+_ONE_SIGN = 0.8  # share of the cycles with strokes of equal sign above which the sign was lost
 _FEWEST = 3  # samples in the middle part of a stroke
-_TREND = 0.01  # chance of a trend below which it is one
-_NO_CONTACT = 0.02  # of the usual load
+_TREND = 0.01  # p value below which a trend is significant
+_NO_CONTACT = 0.02  # share of the usual load
 
 
 @of_runs
 def friction_per_cycle(run: xr.Dataset, middle: str | float = 0.5) -> xr.Dataset:
-    """Friction coefficient of each cycle of a contact that slides to and fro.
+    """Friction coefficient of each cycle of a reciprocating contact.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def friction_per_cycle(run: xr.Dataset, middle: str | float = 0.5) -> xr.Dataset
     Returns
     -------
     xarray.Dataset
-        On dim ``cycle`` (a forward stroke and the backward one beside it, from 1): ``time`` [s],
+        On dim ``cycle`` (a forward stroke and the backward one next to it, from 1): ``time`` [s],
         ``friction_coefficient``, ``friction_coefficient_energy`` (where forces are known),
         ``friction_force_offset`` or ``friction_coefficient_offset``, ``normal_force`` [N],
         ``sliding_speed`` (mean over the middle parts) [m/s], ``stroke_length`` [m],
@@ -47,8 +47,8 @@ def friction_per_cycle(run: xr.Dataset, middle: str | float = 0.5) -> xr.Dataset
     Raises
     ------
     AnalysisError
-        If the run does not move to and fro, has no friction, or lost the friction's sign without
-        saying so (attribute ``friction_force_rectified``).
+        If the run does not reciprocate, has no friction, or lost the sign of friction without the
+        attribute stating it (``friction_force_rectified``).
 
     Notes
     -----
@@ -56,9 +56,9 @@ def friction_per_cycle(run: xr.Dataset, middle: str | float = 0.5) -> xr.Dataset
     their mean normal forces, mu = (F_f - F_b)/(N_f + N_b): a constant zero of the force drops out.
     The energy friction coefficient is the area of the loop over the distance,
     mu_E = (closed integral of F dx)/(2 L N) with the stroke L and the mean load N [1]_; the ends,
-    where elastic parts only turn over, are in it. The standard error of the mean is that of the
-    cycles' own memory, as that of a segment is of its samples; where they have a trend (p < 1 %),
-    of what lies about it.
+    where elastic parts only reverse, are included. The standard error of the mean includes the
+    correlation of neighbouring cycles, and is taken about the trend if that is significant
+    (p < 1 %).
 
     References
     ----------
@@ -141,7 +141,7 @@ def _signal(run: xr.Dataset) -> str:
 
 
 def _pairs(strokes: Strokes) -> tuple[np.ndarray, np.ndarray]:
-    """Numbers of the forward and the backward stroke of each cycle; no stroke is in two."""
+    """Return the indices of the forward and backward stroke of each cycle, each used once."""
     whole = np.flatnonzero(strokes.usual)
     follows = np.flatnonzero(np.diff(whole) == 1)
     follows = follows[strokes.way[whole[follows]] == 1]
@@ -183,7 +183,7 @@ def _coefficient(
     forward: np.ndarray,
     backward: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Coefficient of each cycle, and the zero that was in the signal."""
+    """Friction coefficient of each cycle, and the zero of the signal."""
     there, back = force[forward], force[backward]
     lost = bool(run.attrs.get(f"{name}_rectified", False))
     if not lost and np.mean(there * back > 0) > _ONE_SIGN:
@@ -217,7 +217,7 @@ def _energy(
     last: np.ndarray,
     data: dict[str, np.ndarray],
 ) -> np.ndarray:
-    """Area of each cycle's loop over twice the stroke and the load."""
+    """Energy friction coefficient: area of each cycle's loop over twice the stroke and the load."""
     force = np.nan_to_num(np.asarray(run["friction_force"].values, float))
     if run.attrs.get("friction_force_rectified", False):
         return np.full(first.size, np.nan)
@@ -225,7 +225,7 @@ def _energy(
     way = np.append(strokes.way, 0)[number] * np.append(strokes.length, 0.0)[number]
     place = np.where(np.isfinite(strokes.place), strokes.place, 0.0)
     begin, stop = strokes.first[:-1], strokes.first[1:]
-    # within a stroke; at a turn the position hardly moves
+    # within a stroke; at a reversal the position hardly changes
     step = np.diff(place) * way[:-1]
     step[stop[stop - 1 < step.size] - 1] = 0.0
     work = np.append((force[1:] + force[:-1]) / 2 * step, 0.0)

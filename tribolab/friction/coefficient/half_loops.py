@@ -1,4 +1,4 @@
-"""Table of the pairs of strokes that a friction result holds."""
+"""Table of the pairs of strokes in a friction result."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from tribolab.units.stamping import stamp
 
 
 def half_loops(friction: xr.Dataset) -> xr.Dataset:
-    """Table of the pairs of strokes: one row for each half loop.
+    """Table of the pairs of strokes, one row for each half loop.
 
     Parameters
     ----------
@@ -20,7 +20,7 @@ def half_loops(friction: xr.Dataset) -> xr.Dataset:
     -------
     xarray.Dataset
         On dim ``pair``: ``forward_speed``, ``backward_speed`` [m/s], ``half_loop``,
-        ``half_loop_sem``, ``friction_force_offset`` [N] and, where the normal force is known,
+        ``half_loop_sem``, ``friction_force_offset`` [N] and, if the normal force is known,
         ``friction_coefficient`` (the half loop over the mean normal force of both strokes).
 
     Examples

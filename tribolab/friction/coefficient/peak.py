@@ -1,4 +1,4 @@
-"""The height of a peak among noisy readings: of a round one by a parabola, of a pointed one not."""
+"""Height of a peak in noisy readings: from a parabola if it is round, else the maximum."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ import numpy as np
 
 from tribolab.arrays.medians import median
 
-_CLEAR = 3.0  # standard errors of the peak above sliding from which it is one
+_CLEAR = 3.0  # standard errors above sliding friction that make a peak significant
 FEWEST_OF_PEAK = 5  # readings that a parabola is fitted to
 _NOISE = 1.4826 / np.sqrt(2)  # median of the steps between samples -> standard deviation
-# of the way from sliding to the highest reading: what belongs to the peak; of a pointed one less
+# readings above this share of the rise belong to the peak; fewer for a pointed one
 _NEAR = (0.8, 0.9, 0.95, 0.98)
-_MISFIT = 2.0  # standard deviations of a scatter from which it is more than noise
+_MISFIT = 2.0  # standard deviations that exceed noise
 
 
 class Peak(NamedTuple):
-    """When it was [s], its height and standard error, and whether it stands out of what follows."""
+    """Peak with its time [s], height and standard error, and whether it is significant."""
 
     moment: float
     height: float
@@ -26,12 +26,12 @@ class Peak(NamedTuple):
 
 
 def noise_between(values: np.ndarray) -> float:
-    """Return the standard deviation of readings' own noise, from the steps between them.
+    """Return the standard deviation of the readings' noise, from the steps between them.
 
     Parameters
     ----------
     values
-        Readings (time); infinite where there are too few.
+        Readings (time); the result is infinite for too few.
     """
     steps = np.abs(np.diff(values[np.isfinite(values)]))
     return _NOISE * float(median(steps)) if steps.size >= FEWEST_OF_PEAK else np.inf
@@ -40,7 +40,7 @@ def noise_between(values: np.ndarray) -> float:
 def peak_of_start(
     time: np.ndarray, ratio: np.ndarray, sliding: float, sem: float, noise: float
 ) -> Peak:
-    """Tell the height of the highest part of a start.
+    """Height of the peak at the start of sliding.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def peak_of_start(
     Returns
     -------
     Peak
-        NaN where there are too few readings.
+        NaN if there are too few readings.
     """
     known = np.isfinite(ratio)
     time, ratio = time[known], ratio[known]
@@ -64,10 +64,10 @@ def peak_of_start(
     top = int(np.argmax(smooth))
     if clear:
         moment, height, error = _of_top(time, ratio, smooth, width, sliding, noise)
-    else:  # the highest of noise: what a stretch as long as its own mean holds
+    else:  # highest value expected from noise in so many independent readings
         near, when = ratio[top : top + width], time[top : top + width]
         height, error, moment = float(near.mean()), noise / np.sqrt(near.size), float(when.mean())
-        # where the start ends and sliding begins is not seen
+        # the boundary between start and sliding cannot be seen
         error = float(np.hypot(error, height - sliding))
     error = float(np.hypot(error, sem))
     return Peak(moment, height, error, bool(clear and height - sliding > _CLEAR * error))
@@ -81,7 +81,7 @@ def _of_top(
     sliding: float,
     noise: float,
 ) -> tuple[float, float, float]:
-    """Return moment, height and error of a peak that stands out of the noise."""
+    """Return time, height and error of a significant peak."""
     top = int(np.argmax(smooth))
     for share in _NEAR:
         low = np.flatnonzero(smooth < sliding + share * (smooth[top] - sliding))
@@ -102,10 +102,10 @@ def _of_top(
 
 
 def _smoothed(ratio: np.ndarray, sliding: float, noise: float) -> tuple[np.ndarray, int, bool]:
-    """Return running means over the fewest readings in which a peak stands out of the noise.
+    """Return running means over the fewest readings in which the peak is significant.
 
-    Also how many readings these are, and whether there is such a peak at all; where there is none,
-    the means are those over an eighth of the start.
+    Also returns the number of readings, and whether the peak is significant; if not, the means are
+    over an eighth of the start.
     """
     total = np.concatenate([[0.0], np.cumsum(ratio)])
     width = 1
@@ -122,7 +122,7 @@ def _smoothed(ratio: np.ndarray, sliding: float, noise: float) -> tuple[np.ndarr
 def _parabola(
     time: np.ndarray, values: np.ndarray, noise: float
 ) -> tuple[float, float, float, float]:
-    """Moment and height of a parabola's highest point within its readings, its error, scatter."""
+    """Time and height of a parabola's maximum within its readings, its error, and the scatter."""
     middle, half = (time[0] + time[-1]) / 2, (time[-1] - time[0]) / 2
     u = (time - middle) / half
     basis = np.stack([np.ones(u.size), u, u * u], axis=1)

@@ -1,4 +1,4 @@
-"""How well a friction level repeats from run to run: the error that all points of a curve share."""
+"""Repeatability of the friction level between runs, an error that all points of a curve share."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tribolab.friction.stribeck import measured_stribeck_curve
 def run_levels(
     frictions: Sequence[xr.Dataset], speed_tolerance: float = SPEED_TOLERANCE.value
 ) -> np.ndarray:
-    """Friction of each run relative to that of all repeats together, over all speeds.
+    """Friction of each run relative to the mean of all repeats, over all speeds.
 
     Parameters
     ----------
@@ -26,8 +26,8 @@ def run_levels(
     Returns
     -------
     numpy.ndarray
-        Level [1] of each run, 1 where it is as the repeats together; NaN where none of its points
-        has a speed and a positive friction with an error.
+        Level [1] of each run relative to the mean of the repeats; NaN if none of its points has a
+        speed and a positive friction with an error.
 
     Notes
     -----
@@ -38,7 +38,7 @@ def run_levels(
     levels = []
     for friction in frictions:
         own = measured_stribeck_curve([friction], speed_tolerance)
-        if not own.sizes["sliding_speed"]:  # e.g. an instrument's steps, of unknown speed
+        if not own.sizes["sliding_speed"]:  # e.g. steps of unknown speed
             levels.append(np.nan)
             continue
         place = np.abs(np.log(own["sliding_speed"].values)[:, None] - speed).argmin(axis=1)
@@ -51,7 +51,7 @@ def run_levels(
 
 
 def pooled_repeatability(levels: Iterable[np.ndarray]) -> tuple[float, int]:
-    """Relative standard deviation of a run's friction level, pooled over many conditions.
+    """Relative standard deviation of the friction level of a run, pooled over conditions.
 
     Parameters
     ----------
@@ -65,8 +65,8 @@ def pooled_repeatability(levels: Iterable[np.ndarray]) -> tuple[float, int]:
 
     Notes
     -----
-    Two repeats alone tell little of their spread. Where everything was measured in repeats on one
-    rig, the conditions together do: ``s^2 = sum (l - mean)^2 / sum (k - 1)``.
+    Two repeats determine their scatter poorly. If all conditions were repeated on one rig, their
+    scatter is pooled: ``s^2 = sum (l - mean)^2 / sum (k - 1)``.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Friction from both directions of sliding, free of the tilt between force cell and contact."""
+"""Friction from both sliding directions, without the tilt between force cell and contact."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from tribolab.friction.zero import limits
 from tribolab.friction.zero.parts import ZeroReference
 from tribolab.friction.zero.rests import Zeros
 
-# What the middle of a loop was taken for
+# Interpretations of the middle of a loop
 ZERO, RESTS, WEIGHED = "a zero", "told by rests without load", "weighed by what is stated of both"
 
 
 class Reversal(NamedTuple):
-    """What is known of the tilt before the ratios are taken.
+    """Interpretation of the middle of the loops: tilt or zero.
 
     Parameters
     ----------
     pair
         Number of the pair of each segment, -1 for none (segment).
     tilted
-        Part of the loop's middle that is taken for the normal force seen through the tilt, in the
-        unit of the friction signal (segment).
+        Part of the loop's middle that is attributed to the tilt, in the unit of the friction
+        signal (segment).
     most
-        What of it may be: all that no rest without load shows (segment).
+        Largest part that can be due to the tilt: the middle minus the unloaded zero (segment).
     middle
-        What the middle was taken for: `ZERO`, `RESTS` or `WEIGHED`; "" without a loop.
+        Interpretation of the middle: `ZERO`, `RESTS` or `WEIGHED`; "" without a loop.
     """
 
     pair: np.ndarray
@@ -39,22 +39,21 @@ class Reversal(NamedTuple):
     def without_tilt(
         self, ratio: np.ndarray, sign: np.ndarray, load: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the friction coefficients, and the tilt found [rad], NaN without a pair.
+        """Return the friction coefficients without tilt, and the tilt [rad]; NaN without a pair.
 
         Parameters
         ----------
         ratio
-            Mean ratio of the forces of each segment, with what is `tilted` in it (segment).
+            Mean ratio of the forces of each segment, including the tilt (segment).
         sign, load
             Direction and mean normal force of each segment.
 
         Notes
         -----
-        Friction and normal force are what a cell turned by the tilt sees of one force at the
-        angle atan(mu) to the normal, so that forward and backward read tan(atan(mu) + tilt) and
-        tan(atan(mu) - tilt) whatever the loads: mu is the tangent of the mean of the two
-        angles, without a term that is left over. Where the middle of the loop was taken for a zero,
-        the tilt found is the one that it would be.
+        The contact force is at the angle atan(mu) to the normal. A cell turned by the tilt measures
+        tan(atan(mu) + tilt) forward and tan(atan(mu) - tilt) backward at any load, so that mu
+        is the tangent of the mean of the two angles. If the middle of the loop was attributed to
+        the zero, the tilt returned is the one that would explain it.
 
         Examples
         --------
@@ -72,7 +71,7 @@ class Reversal(NamedTuple):
             all_of_it = ratio + sign * (self.most - self.tilted) / load
         middle = _of_pairs(np.arctan(ratio), self.pair)
         tilt = _of_pairs(sign * np.arctan(all_of_it), self.pair)
-        # as before where nothing tilts; and where one of the two strokes has no coefficient
+        # unchanged without tilt, or if one of the strokes has no coefficient
         turned = paired & (self.tilted != 0) & np.isfinite(middle)
         return np.where(turned, np.tan(middle), ratio), tilt
 
@@ -94,7 +93,7 @@ def reversal_of(
     rests: Zeros | None,
     stated: Mapping[str, Mapping[str, Any]],
 ) -> Reversal:
-    """Tell the tilt in the middles of the loops from the zero in them.
+    """Separate tilt and zero in the middles of the loops.
 
     Parameters
     ----------
@@ -127,7 +126,7 @@ def reversal_of(
     most = np.nan_to_num(_of_pairs(apart, members))
     if rests is not None and _is_tilt(apart, members, load, time, ratio, rests):
         return Reversal(members, most, most, RESTS)
-    if rests is not None:  # the zero moved since the rest, or the cell is askew by a little
+    if rests is not None:  # the zero moved since the rest, or the cell is slightly tilted
         return Reversal(members, nothing, most, ZERO)
     tilt, offset = (float(stated.get(n, {}).get("standard", 0)) for n in ("tilt", "friction_zero"))
     if not tilt:
@@ -145,7 +144,7 @@ def _is_tilt(
     ratio: np.ndarray,
     rests: Zeros,
 ) -> bool:
-    """Whether what the middles differ from the rests is a tilt, and not a zero that drifts."""
+    """Whether the difference between middles and rests is a tilt and not a drifting zero."""
     paired = (members >= 0) & np.isfinite(apart) & (load > 0)
     if not paired.any():
         return False
@@ -153,8 +152,8 @@ def _is_tilt(
     several = load[paired].max() > limits.LOADS_DIFFER.value * load[paired].min()
     if not (between or several):
         return False
-    # askew by an angle t, a cell moves the middle by t of the load; by t (1 + mu^2) of it where the
-    # strokes are weighted by loads that are read askew, too
+    # a cell tilted by an angle t moves the middle by t times the load; by t (1 + mu^2) times if
+    # the strokes are weighted by loads measured with the tilt
     ways = (np.zeros(ratio.size), ratio**2)
     felt = [_of_pairs(load, members) * (1 + _of_pairs(way, members)) for way in ways]
     at = _of_pairs(time, members)[paired]
@@ -162,7 +161,7 @@ def _is_tilt(
 
 
 def _is_an_angle(angle: np.ndarray, time: np.ndarray) -> bool:
-    """Whether angles of pairs are plausible and do not change with time."""
+    """Whether the angles of the pairs are plausible and constant in time."""
     mean, moment = float(np.mean(angle)), time - time.mean()
     slope = float(moment @ angle) / max(float(moment @ moment), 1e-300)
     steady = abs(slope) * float(np.ptp(time)) <= limits.TILT_CHANGES.value * abs(mean)

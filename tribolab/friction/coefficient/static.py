@@ -1,7 +1,7 @@
-"""Static friction: the peak of the force at each start of sliding, and how long the contact rested.
+"""Static friction: peak of the force at each start of sliding, and the rest before it.
 
-What sled tests, seals and wipers are measured for. A start is where a rest ends; the force rises
-while nothing slides yet, and falls to the sliding force once the contact has let go.
+It is measured for sleds, seals and wipers. A start is the end of a rest: the force rises before
+sliding begins, and falls to the sliding force after the contact breaks away.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ from tribolab.friction.segments.stretches import name_of
 from tribolab.units.conversion import to_si
 from tribolab.units.stamping import stamp
 
-_BEFORE = 0.5  # of the stroke before: how far back a rise may begin, at most
-_LATEST = 0.5  # of the segment: how far a rise may go on, at most
-_LONGER = 1.5  # times the readings before it, what is looked at where the force still rises
-_SLACK = 0.3  # of the sliding force: with so little a segment begins before anything slides
-_AT_END = 0.1  # of the readings: where their mean is the highest, the force still rises
+_BEFORE = 0.5  # of the stroke before: longest rise before the segment
+_LATEST = 0.5  # of the segment: longest rise within it
+_LONGER = 1.5  # the search is extended by this factor while the force still rises
+_SLACK = 0.3  # share of the sliding force; a segment that begins below it starts before sliding
+_AT_END = 0.1  # share of the readings; if their mean is the highest, the force still rises
 
 
 class _Start(NamedTuple):
-    """Start of one segment: samples before and within it, and how long the contact rested.
+    """Start of one segment: samples before and within it, and the duration of the rest.
 
-    Where the force still rises at `last`, samples up to `latest` belong to it, too.
+    If the force still rises at `last`, samples up to `latest` are included.
     """
 
     number: int
@@ -52,20 +52,20 @@ def static_friction(
     friction: xr.Dataset | None = None,
     within: str | float | None = None,
 ) -> xr.Dataset:
-    """Measure static friction at each start of sliding that follows a rest.
+    """Return the static friction coefficient at each start of sliding that follows a rest.
 
     Parameters
     ----------
     run
         With ``friction_force`` and ``normal_force``, or ``friction_coefficient``.
     segments
-        From `tribolab.find_segments` on the same run: they say where it was at rest.
+        From `tribolab.find_segments` on the same run; they define the rests.
     friction
         From `tribolab.friction_coefficient` on both; computed if not given.
     within
         Distance from the start of motion within which the peak is looked for [m]; by default
-        the untrimmed first part of the segment, and as far as the force still rises beyond it, as
-        where a sled hangs on a soft string (at most half of the segment).
+        the untrimmed first part of the segment, extended while the force still rises, e.g. for a
+        sled on a soft string (at most half of the segment).
 
     Returns
     -------
@@ -73,9 +73,9 @@ def static_friction(
         On dim ``start_of_sliding`` (one for each segment after a rest; its number is the
         coordinate): ``static_friction_coefficient`` with ``_sem``; ``breakaway_force`` [N] with
         ``_sem`` (where forces are known); ``friction_coefficient`` of the sliding that follows;
-        ``static_excess`` (static over sliding, less 1); ``peak`` (1 where the force stands out of
-        what follows, 0 where it only rises to it: then the static coefficient is no more than the
-        highest of the start), ``breakaway_time`` [s], ``waiting_time`` (rest under load before; NaN
+        ``static_excess`` (static over sliding, minus 1); ``peak`` (1 if the peak is significant,
+        0 if not: then the static coefficient is only the highest value of the
+        start), ``breakaway_time`` [s], ``waiting_time`` (rest under load before; NaN
         where a record, or a specimen's, begins with the motion) [s], ``direction``,
         ``sliding_speed`` [m/s].
 
@@ -86,14 +86,13 @@ def static_friction(
 
     Notes
     -----
-    The highest of n noisy readings lies above the true peak. So readings near the top (from 80 %
-    of the way between sliding and the highest reading on) are fitted by a parabola, and the peak
-    is its highest value within them; the error is that of the fit, with the noise between
-    neighbouring samples as the readings' own, and that of the zero. Of a pointed peak that no
-    parabola follows within the noise, fewer readings are taken; with fewer than five the peak is
-    the highest reading, as ASTM D1894 and ISO 8295 have it, and half of the larger step beside it
-    is in its error: so much may lie between two readings. Where a single reading does not stand
-    out of the noise, means over 2, 4, 8 ... readings are looked at.
+    The highest of n noisy readings exceeds the true peak. Therefore a parabola is fitted to the
+    readings in the upper 20 % between sliding and the maximum, and the peak is its maximum; the
+    error is that of the fit, with the noise between neighbouring samples as the readings' own, and
+    that of the zero. For a pointed peak that does not fit a parabola within the noise, fewer
+    readings are used; with fewer than five the peak is the highest reading, as in ASTM D1894 and
+    ISO 8295, and its error includes half of the larger step next to it. If no single reading
+    exceeds the noise, means over 2, 4, 8 ... readings are used.
 
     References
     ----------
@@ -102,7 +101,7 @@ def static_friction(
 
     Examples
     --------
-    A contact that lets go at 0.6 and slides at 0.4, after 4 s of rest:
+    A contact that breaks away at 0.6 and slides at 0.4, after 4 s of rest:
 
     >>> time = np.arange(0, 20, 0.01)
     >>> ratio = np.interp(time, [0, 3.5, 4, 4.5, 20], [0, 0, 0.6, 0.4, 0.4])
@@ -142,7 +141,7 @@ def static_friction(
 
 
 class _Peak(NamedTuple):
-    """What is known of one start, in the names of the result."""
+    """Results for one start; names as in the dataset."""
 
     number: int
     static_friction_coefficient: float
@@ -160,9 +159,10 @@ class _Peak(NamedTuple):
 def _starts(
     run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset, reach: float | None
 ) -> list[_Start]:
-    """Segments that a rest goes before, or the beginning of the record or of a specimen.
+    """Return the starts of segments after a rest, or at the beginning of a record or specimen.
 
-    Of the latter such as begin without friction: a machine that takes up the slack of a string.
+    The latter only if they begin without friction, while the machine takes up the slack of a
+    string.
     """
     time = run.variables["time"].values
     resting = segments.variables["omitted_reason"].values == "at rest"
@@ -189,7 +189,7 @@ def _starts(
         limit, latest = trimmed[i], start[i] + _LATEST * (stop[i] - start[i])
         if reach is not None and speed[i] > 0:
             limit = latest = start[i] + reach / speed[i]
-        # the force may rise before the velocity shows motion
+        # the force may rise before motion is detected
         back = max(begin[rest], start[i] - _BEFORE * (stop[i] - start[i]))
         first, last, end_of_it = np.searchsorted(time, [back, limit, max(limit, latest)])
         if last - first >= FEWEST_OF_PEAK:
@@ -199,7 +199,7 @@ def _starts(
 
 
 def _slack(run: xr.Dataset, friction: xr.Dataset, start: np.ndarray) -> np.ndarray:
-    """Whether a segment begins with the record, or with a specimen, and without friction yet."""
+    """Whether a segment begins a record or specimen, and still without friction."""
     signal = friction_signal(run)
     time, values = run.variables["time"].values, run.variables[signal].values
     begins = np.append(time[:1], begins_of_specimens(run))
@@ -214,7 +214,7 @@ def _slack(run: xr.Dataset, friction: xr.Dataset, start: np.ndarray) -> np.ndarr
 
 
 def _rested(run: xr.Dataset, begin: np.ndarray, end: np.ndarray, rest: int) -> float:
-    """How long the contact rested under load before it moved [s]."""
+    """Return the duration of the rest under load before the motion [s]."""
     time = run.variables["time"].values
     first, last = np.searchsorted(time, [begin[rest], end[rest]])
     if "normal_force" not in run or last <= first:
@@ -257,7 +257,7 @@ def _measured(run: xr.Dataset, friction: xr.Dataset, signal: str, start: _Start)
 
 
 def _load(run: xr.Dataset, friction: xr.Dataset, i: int, part: slice) -> np.ndarray | None:
-    """Return the normal force over a start without its zero; what is not pressed is NaN."""
+    """Return the normal force over a start, without its zero; NaN without contact."""
     if "normal_force" not in run or "friction_force" not in run:
         return None
     zeros = friction.variables.get("normal_force_offset")
@@ -268,7 +268,7 @@ def _load(run: xr.Dataset, friction: xr.Dataset, i: int, part: slice) -> np.ndar
 
 
 def _taken(ratio: np.ndarray, usual: int) -> int:
-    """Return how many readings belong to a start: the usual ones, more where it still rises."""
+    """Return the number of readings of a start: the usual ones, or more while friction rises."""
     taken = usual
     while taken < ratio.size:
         size = max(int(_AT_END * taken), FEWEST_OF_PEAK)

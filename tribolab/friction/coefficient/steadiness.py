@@ -1,4 +1,4 @@
-"""Whether friction is steady along a segment: steady, not steady, or not decided."""
+"""Steadiness of friction along a segment: steady, not steady, or undecided."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ import numpy as np
 if TYPE_CHECKING:
     import xarray as xr
 
-SIGNIFICANT = 0.01  # chance of a trend below which a segment is not steady: runs have hundreds
-SUSPECT_DRIFT = 0.05  # of the run's typical friction: above the usual spread of repeats
-FAILING_DRIFT = 0.50  # of the run's typical friction: a mean over such a change has no meaning
-SAMPLES = 10.0  # fewer effective samples do not tell a trend from slow wandering
+# p value of a trend below which a segment is not steady, small because runs have hundreds
+SIGNIFICANT = 0.01
+SUSPECT_DRIFT = 0.05  # of the run's typical friction: more than the usual scatter of repeats
+FAILING_DRIFT = 0.50  # of the run's typical friction: the mean over a larger change has no meaning
+SAMPLES = 10.0  # fewer effective samples cannot distinguish a trend from slow drift
 _MANY = 20  # segments
 LIMITS = {
     "suspect": SUSPECT_DRIFT,
@@ -27,13 +28,13 @@ STEADINESS_WORDS = {IS_NOT_STEADY: "not steady", IS_STEADY: "steady", NOT_DECIDE
 
 
 def chance_limit(samples: np.ndarray, limits: Mapping[str, float] = LIMITS) -> np.ndarray:
-    """Return the p value below which a line through each segment is a trend (segment).
+    """Return p value below which a line through a segment is a trend (segment).
 
-    Of more than 20 segments the p value has to be smaller, by the square of their number: in a
-    hundred strokes one would be below 0.01 by chance, and of many runs with hundreds each every
-    fifth would hold one if it were in proportion (Bonferroni). A crank makes hundreds of segments
-    of few effective samples. Their memory cannot be seen in so short a record, and in one of
-    twenty noise looks like a trend: no single one of them tells.
+    Above 20 segments the p value must decrease with the square of their number: in a hundred
+    strokes one is below 0.01 by chance, and with Bonferroni's proportional correction every fifth
+    of many such runs would contain one. A crank makes hundreds of segments of few effective
+    samples, whose correlation cannot be resolved; noise in one of twenty looks like a trend, so
+    that no single one is significant.
 
     Parameters
     ----------
@@ -58,15 +59,15 @@ def chance_limit(samples: np.ndarray, limits: Mapping[str, float] = LIMITS) -> n
 def undecided(
     change: np.ndarray, chance: np.ndarray, samples: np.ndarray, limits: Mapping[str, float]
 ) -> np.ndarray:
-    """Return where a line through the friction shows neither a trend nor that there is none.
+    """Return a mask of segments whose trend is neither significant nor excluded.
 
-    It changes by as much as is objected to, but of so few effective samples that the test would
-    hardly have seen it; or by so much that no test makes it steady.
+    The change is as large as the check's limit, but with too few effective samples for the test; or
+    it is so large that no test makes the segment steady.
 
     Parameters
     ----------
     change
-        Along the line, of the typical friction [1] (segment).
+        Change along the line relative to the typical friction [1] (segment).
     chance, samples
         The line's p value, and effective samples (segment).
     limits
@@ -84,9 +85,10 @@ def undecided(
 
 
 def relative_change(friction: xr.Dataset) -> np.ndarray | None:
-    """Change of friction along the trend of each segment, of the run's typical friction [1].
+    """Change of friction along the trend of each segment, relative to typical friction [1].
 
-    At high speed in a liquid hardly any friction is left to divide by: hence the run's.
+    It is relative to the run's friction, because that of a fast segment in a liquid can be almost
+    zero.
 
     Parameters
     ----------

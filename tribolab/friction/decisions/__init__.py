@@ -1,1 +1,1 @@
-"""What a person decided on runs and segments, and what follows from it."""
+"""Decisions of a person on runs and segments."""

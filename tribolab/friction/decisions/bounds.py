@@ -1,4 +1,4 @@
-"""A segment with new bounds: measured anew, what it leaves is omitted, what it takes is not."""
+"""New bounds of a segment, with its mean values and the omitted intervals updated."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tribolab.friction.segments.find import measured
 from tribolab.friction.segments.stretches import Stretch
 
 LEFT = "outside the bounds that a person set"
-_FEWEST = 2  # samples that a mean and its scatter need
+_FEWEST = 2  # samples needed for a mean and its scatter
 
 
 def with_bounds(
@@ -24,17 +24,17 @@ def with_bounds(
     segments
         From `find_segments`.
     place
-        Of the segment, from 0.
+        Number of the segment, from 0.
     decision
-        With the new bounds.
+        Decision with the new bounds.
     run
-        The run that the segments are of.
+        The run of the segments.
 
     Raises
     ------
     AnalysisError
-        If there is no run to measure the segment in, or the bounds lie outside it, beside the
-        segment, in another segment, or too close together.
+        If the run is missing, or the bounds are outside it, do not overlap the segment, are in
+        another segment, or are too close together.
     """
     if run is None:
         cure = Cure(notebook="give it: decide(segments, decisions, run)")
@@ -103,7 +103,7 @@ def _refused(segments: xr.Dataset, decision: Decision, why: str) -> AnalysisErro
 def _with_omitted(
     segments: xr.Dataset, old: tuple[float, float], new: tuple[float, float]
 ) -> xr.Dataset:
-    """Return segments whose omitted stretches end where the new bounds begin, and the reverse."""
+    """Return segments with omitted intervals adjusted to the new bounds."""
     pieces: list[tuple[float, float, str]] = []
     names = ("omitted_start", "omitted_stop", "omitted_reason")
     for start, stop, reason in zip(*(segments[name].values for name in names), strict=True):
@@ -117,7 +117,7 @@ def _with_omitted(
 
 
 def _outside(piece: tuple[float, float], taken: tuple[float, float]) -> list[tuple[float, float]]:
-    """Return what of a stretch of time lies before and after another.
+    """Parts of a time interval before and after another.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Decisions of a person, applied to the segments of a run."""
+"""Application of a person's decisions to the segments of a run."""
 
 from __future__ import annotations
 
@@ -15,34 +15,33 @@ from tribolab.friction.decisions.rejected import REJECTED, rejected
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.units.stamping import stamp
 
-DECISIONS = "decisions"  # attribute: what was decided, in plain data, with the segments it touches
-_MORE_THAN = 0.5  # of the decision's interval lies in the segment that it means
-_SHOWN = 3  # segments that are named where none was found
+DECISIONS = "decisions"  # attribute: decisions as plain data, with the segments they concern
+_MORE_THAN = 0.5  # share of the decision's interval in the segment it concerns
+_SHOWN = 3  # segments listed if none was found
 DECISION_WORDS = {REJECT: "rejected", ACCEPT: "accepted", NEW_BOUNDS: "bounded anew", NOTE: "noted"}
 
 
 def decide(
     segments: xr.Dataset, decisions: Decision | Iterable[Decision], run: xr.Dataset | None = None
 ) -> xr.Dataset:
-    """Apply a person's decisions to segments: reject, accept, bound anew, note.
+    """Apply a person's decisions to segments: reject, accept, change bounds, note.
 
     Parameters
     ----------
     segments
-        From `find_segments`; or a result of `friction_coefficient` whose zero no strokes tell.
+        From `find_segments`; or a result of `friction_coefficient` whose zero is not from strokes.
     decisions
         One `Decision` or several; `load_review` reads them from a file.
     run
-        The run that the segments are of; only new bounds want it.
+        The run of the segments; needed for new bounds only.
 
     Returns
     -------
     xarray.Dataset
-        The same, with ``rejected`` (1 or 0) and ``decision`` (text: what was decided on it, and why
-        it is rejected) on dim ``segment``, and the attribute ``decisions``: a list with all of each
-        decision and the numbers of the ``segments`` that it touches, from 1. What a segment with
-        new bounds no longer holds is ``omitted``. Without decisions the segments come back as they
-        are.
+        The same, with ``rejected`` (1 or 0) and ``decision`` (text, with the reason of a rejection)
+        on dim ``segment``, and the attribute ``decisions``: a list of the decisions with the
+        numbers of the ``segments`` that they concern, from 1. The time that a segment with new
+        bounds no longer includes is ``omitted``. Without decisions the segments are unchanged.
 
     Raises
     ------
@@ -52,10 +51,10 @@ def decide(
 
     Notes
     -----
-    A decision means the segment that holds more than half of its interval, so that it stays with
-    its stroke when segments are found a little otherwise; there is at most one. All decisions look
-    for their segments as they were found, whatever the others do. New bounds are the ends of the
-    segment: the share that is trimmed of every segment is trimmed of it, too.
+    A decision concerns the segment with more than half of its interval (there is at most one), so
+    that it stays with its stroke if the bounds found change slightly. All decisions refer to the
+    segments as found, independent of each other. New bounds are the ends of the segment before
+    trimming.
 
     `friction_coefficient` takes no zero from rejected segments, and `measured_stribeck_curve` and
     `stick_slip_curve` leave them out. In a friction result a stroke cannot be rejected where
@@ -90,7 +89,7 @@ def decide(
     rows: list[Json] = list(segments.attrs.get(DECISIONS, []))
     for decision, places in zip(made, touched, strict=True):
         out[places] |= decision.action == REJECT
-        # what is said of the whole run is not repeated of every segment, but why it is rejected
+        # remarks on the whole run are not repeated for each segment, except the reason of rejection
         spoken = decision.interval is not None or decision.action == REJECT
         for place in places if spoken else ():
             told[place].append(
@@ -103,9 +102,9 @@ def decide(
 
 
 def without_decisions(data: xr.Dataset) -> xr.Dataset:
-    """Return segments, or a result on them, without what `decide` says of them.
+    """Return segments, or a result on them, without the marks of `decide`.
 
-    It undoes notes and acceptance; what was rejected or bounded anew has other numbers.
+    It undoes notes and acceptance; rejection and new bounds change numbers and cannot be undone.
     """
     bare = data.drop_vars([REJECTED, "decision"], errors="ignore")
     bare.attrs = {name: value for name, value in data.attrs.items() if name != DECISIONS}
@@ -113,7 +112,7 @@ def without_decisions(data: xr.Dataset) -> xr.Dataset:
 
 
 def _touched(segments: xr.Dataset, decision: Decision) -> list[int]:
-    """Return the places of the segments that a decision is about."""
+    """Return the indices of the segments that a decision concerns."""
     every = list(range(segments.sizes["segment"]))
     if decision.interval is None:
         places = every
@@ -121,7 +120,7 @@ def _touched(segments: xr.Dataset, decision: Decision) -> list[int]:
         places = [_found(segments, decision, *decision.interval)]
     if "omitted" in segments.dims or decision.action not in (REJECT, NEW_BOUNDS):
         return places
-    # it is a result: what was computed from signals cannot be made again from it
+    # results cannot be recomputed without the signals
     if decision.action == NEW_BOUNDS:
         raise _refused(segments, decision, "new bounds want the friction computed anew")
     if len(places) < len(every) and segments.attrs.get("offset") in PAIRED:
@@ -130,7 +129,7 @@ def _touched(segments: xr.Dataset, decision: Decision) -> list[int]:
 
 
 def _found(segments: xr.Dataset, decision: Decision, low: float, high: float) -> int:
-    """Return the place of the segment that holds more than half of an interval."""
+    """Return the index of the segment with more than half of an interval."""
     start, stop = segments["start"].values, segments["stop"].values
     common = np.minimum(stop, high) - np.maximum(start, low)
     if common.size and common.max() > _MORE_THAN * (high - low):
@@ -156,7 +155,7 @@ def _refused(segments: xr.Dataset, decision: Decision, why: str) -> AnalysisErro
 def _refuse_contradictions(
     segments: xr.Dataset, made: tuple[Decision, ...], touched: list[list[int]]
 ) -> None:
-    """Refuse to accept what is rejected, and to bound anew twice; a run may be accepted in part."""
+    """Raise if a segment is both accepted and rejected, or has two new bounds."""
     for number, decision in enumerate(made):
         for other, places in zip(made[:number], touched[:number], strict=True):
             common = set(places) & set(touched[number]) or decision.interval == other.interval

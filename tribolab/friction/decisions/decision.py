@@ -1,4 +1,4 @@
-"""A decision of a person on a run or on one of its segments: typed, with reason, author, date."""
+"""Record of a person's decision on a run or segment, with reason, author and date."""
 
 from __future__ import annotations
 
@@ -17,23 +17,23 @@ _TIMES = ("start", "stop", "new_start", "new_stop")
 
 @dataclass(frozen=True)
 class Decision:
-    """What a person decided on a run, or on the segment in an interval of its time.
+    """Decision of a person on a run, or on the segment in an interval of its time.
 
     Parameters
     ----------
     action
-        ``"reject"``: it goes into no curve. ``"accept"``: it does, in spite of what checks object
-        to it. ``"bounds"``: the segment begins or ends elsewhere. ``"note"``: a remark.
+        ``"reject"``: exclude from curves. ``"accept"``: include in spite of objections of checks.
+        ``"bounds"``: change the start or end of the segment. ``"note"``: a remark.
     reason
-        Why.
+        Reason.
     author
-        Who decided.
+        Person who decided.
     date
-        When, as ``"2026-11-20"``.
+        Date, as ``"2026-11-20"``.
     start, stop
-        Interval of the run's time [s] that tells the segment; without it the whole run is meant.
+        Interval of the run's time [s] that identifies the segment; without it the whole run.
     new_start, new_stop
-        Where the segment begins and ends [s], for ``"bounds"``: one of them or both.
+        New start and end of the segment [s] for ``"bounds"``: one of them or both.
 
     Examples
     --------
@@ -54,7 +54,7 @@ class Decision:
     new_stop: float | None = None
 
     def __post_init__(self) -> None:
-        """Turn text into SI floats and refuse what is no decision."""
+        """Convert text to SI values and raise an error for invalid decisions."""
         if self.action not in ACTIONS:
             known = nearest(self.action, ACTIONS)
             raise AnalysisError(f"'{shown(self.action)}' is no decision{known}")
@@ -69,23 +69,23 @@ class Decision:
 
     @property
     def interval(self) -> tuple[float, float] | None:
-        """Interval of the run's time that tells the segment [s]; None: the whole run."""
+        """Interval of the run's time [s] that identifies the segment; None: the whole run."""
         return None if self.start is None or self.stop is None else (self.start, self.stop)
 
     @property
     def moves_numbers(self) -> bool:
-        """Whether friction may be another with it; notes and acceptance leave it as it is."""
+        """Whether friction may change; not for notes and acceptance."""
         return self.action in (REJECT, NEW_BOUNDS)
 
     def __str__(self) -> str:
-        """Say in a few words which decision this is."""
+        """Return a short description of the decision."""
         where = "the whole run"
         if self.interval is not None:
             where = f"{self.interval[0]:.6g} to {self.interval[1]:.6g} s"
         return f"{self.action}, {where} ({shown(self.author)}, {self.date})"
 
     def plain(self) -> Json:
-        """Return it as plain data, ready for JSON, with units in the names."""
+        """Return the decision as plain data for JSON, with units in the names."""
         facts: Json = {"action": self.action}
         facts |= {f"{name}_s": getattr(self, name) for name in _TIMES}
         return facts | {"reason": self.reason, "author": self.author, "date": str(self.date)}

@@ -1,7 +1,7 @@
-"""Segments that a person rejected: which they are, results without them, and both side by side.
+"""Rejected segments: which they are, and results with and without them.
 
-What is rejected stays in every dataset, marked by ``rejected``, so that it can be shown; what
-combines segments leaves it out by `kept`.
+Rejected segments stay in every dataset, marked by ``rejected``, so that they can be shown.
+Functions that combine segments exclude them by `kept`.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ REJECTED = "rejected"
 
 
 def rejected(data: xr.Dataset) -> np.ndarray:
-    """Return which segments a person rejected (segment); none where nobody decided.
+    """Return a mask of the rejected segments (segment).
 
     Examples
     --------
@@ -32,7 +32,7 @@ def rejected(data: xr.Dataset) -> np.ndarray:
 
 
 def kept(data: xr.Dataset) -> xr.Dataset:
-    """Return the data without the segments that a person rejected, and without their events."""
+    """Return the data without rejected segments and their events."""
     out = rejected(data)
     if not out.any():
         return data
@@ -46,17 +46,17 @@ def kept(data: xr.Dataset) -> xr.Dataset:
 def beside_rejected(
     segments: xr.Dataset, compute: Callable[[xr.Dataset], xr.Dataset]
 ) -> xr.Dataset:
-    """Compute segments as if the rejected ones were not there, and these as if they were.
+    """Compute results of accepted segments without the rejected ones, and add the latter.
 
-    A stroke that slipped off the sample must not tell the zero of its neighbours; what it would
-    have been stands beside them, to be shown.
+    A stroke that slipped off the sample must not affect the zero of its neighbours; its own result
+    is added for display.
 
     Parameters
     ----------
     segments
-        With ``rejected`` where a person decided.
+        With ``rejected`` if a person decided.
     compute
-        Makes a result on the same segments from segments.
+        Computes a result from segments.
     """
     out = rejected(segments)
     result = compute(segments)
@@ -69,6 +69,6 @@ def beside_rejected(
             values[~out] = variable.values
             result[name] = "segment", values, variable.attrs
         result = result.assign_attrs(own.attrs)
-    if "pair" in result:  # the pairs are those of the others
+    if "pair" in result:  # the pairs are those of the accepted segments
         result["pair"] = result["pair"].copy(data=np.where(out, -1, result["pair"].values))
     return result

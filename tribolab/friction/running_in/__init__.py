@@ -1,1 +1,1 @@
-"""Running-in: from where on friction is steady, and what it is then."""
+"""Running-in of friction, and its steady value."""

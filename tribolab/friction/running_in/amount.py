@@ -1,4 +1,4 @@
-"""How much of the beginning of a run is left out."""
+"""Amount of running-in to discard at the beginning of a run."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ _CYCLES = ("cycle", "cycles")
 
 
 def discard_amount(text: str) -> tuple[float, str]:
-    """Return how much of a run's beginning is left out, and "m", "s" or "cycles".
+    """Return the amount to discard at the beginning of a run, and its unit "m", "s" or "cycles".
 
     Raises
     ------
     UnitError
-        If it is no distance, time or number of cycles.
+        If it is not a distance, time or number of cycles.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Friction along a run, and from where on it is steady."""
+"""Friction along a run, and the beginning of its steady state."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ _READ = (
     "normal_force_offset",
     "friction_coefficient_offset",
 )
-_MIN_TIME_SHARE = 0.8  # of the sliding: the rest of a run at one speed is start and stop
-_MIN_LOAD = 0.2  # of the usual load, below which a ratio is noise over nothing
+_MIN_TIME_SHARE = 0.8  # share of the sliding; other parts at this speed are start and stop
+_MIN_LOAD = 0.2  # share of the usual load below which a ratio is noise
 
 
 class Mean(NamedTuple):
@@ -48,11 +48,11 @@ class Mean(NamedTuple):
 
 
 class History(NamedTuple):
-    """Friction along a run at one speed [m/s]: arrays have an entry per cycle or stretch.
+    """Friction along a run at one speed [m/s], with an entry for each cycle or interval.
 
-    `time` [s] and `distance` [m] are of the middles, the latter without rests; `work` [J] is that
-    of each cycle, `wear` [m] the displacement normal to the contact since the beginning; both are
-    empty if they are not known.
+    `time` [s] and `distance` [m] are at the middle of each, the latter without rests. `work` [J] is
+    done in each cycle, `wear` [m] is the displacement normal to the contact since the beginning;
+    both are empty if unknown.
     """
 
     speed: float
@@ -67,7 +67,7 @@ class History(NamedTuple):
     wear: np.ndarray
 
     def places(self, values: np.ndarray) -> tuple[float, float, float]:
-        """Return where the steady part starts and stops on an axis, and the axis's end."""
+        """Return the start and end of the steady part on an axis, and the end of the axis."""
         edges = np.concatenate([[0.0], (values[1:] + values[:-1]) / 2, [0.0]])
         edges[0], edges[-1] = 1.5 * values[0] - values[1] / 2, 1.5 * values[-1] - values[-2] / 2
         if not self.settling.is_steady:
@@ -81,7 +81,7 @@ def running_in(
     segments: xr.Dataset | None = None,
     friction: xr.Dataset | None = None,
 ) -> xr.Dataset:
-    """Friction along a run at one speed, where running-in ends, and the steady value.
+    """Friction along a run at one speed, the end of running-in, and the steady value.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def running_in(
 
 
 def histories_of(run: xr.Dataset, friction: xr.Dataset) -> list[History]:
-    """Return friction along a run at each speed at which it slides long enough.
+    """Friction along a run at each speed with enough sliding.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def histories_of(run: xr.Dataset, friction: xr.Dataset) -> list[History]:
 
 
 def _cycles_of(run: xr.Dataset) -> xr.Dataset | None:
-    """Return the cycles of a reciprocating run; None of another."""
+    """Cycles of a reciprocating run; None for other runs."""
     try:
         return friction_per_cycle(run)
     except AnalysisError:
@@ -192,7 +192,7 @@ def _of_strokes(
 
 
 def _of_stretches(run: xr.Dataset, friction: xr.Dataset) -> History | None:
-    """Return the history of sliding in one direction at one speed; None of other runs."""
+    """Return the history of sliding in one direction at one speed; None for other runs."""
     speed, direction = friction["sliding_speed"].values, friction["direction"].values
     start, stop = friction["start"].values, friction["stop"].values
     lasted = stop - start
@@ -221,7 +221,7 @@ def _of_stretches(run: xr.Dataset, friction: xr.Dataset) -> History | None:
 
 
 def _sliding_clock(start: np.ndarray, stop: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return moments and the time slid until then, without the rests between segments."""
+    """Return the times, and the time slid until then without rests between segments."""
     slid = np.cumsum(stop - start)
     before = slid - (stop - start)
     return np.stack([start, stop], axis=1).ravel(), np.stack([before, slid], axis=1).ravel()
@@ -230,9 +230,9 @@ def _sliding_clock(start: np.ndarray, stop: np.ndarray) -> tuple[np.ndarray, np.
 def _coefficients(
     run: xr.Dataset, friction: xr.Dataset, number: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return time and friction coefficient of the samples of a segment, its ends included.
+    """Return the times and friction coefficients of the samples of a segment before trimming.
 
-    Their mean over the trimmed segment is its friction coefficient.
+    Their mean over the trimmed segment equals its friction coefficient.
     """
     own = {str(name): float(friction[name].values[number]) for name in _READ if name in friction}
     time = run["time"].values
@@ -273,7 +273,7 @@ def _history(
 
 
 def _common_error(friction: xr.Dataset) -> float:
-    """Return the standard error that all values share: the zero, and the stated calibration."""
+    """Return the standard error common to all values: the zero and the stated calibration."""
 
     def middle(name: str) -> float:
         known = friction[name].values.astype(float) if name in friction else np.zeros(0)
@@ -295,7 +295,7 @@ def _mean(values: np.ndarray, common: float) -> Mean:
 
 
 def _wear(run: xr.Dataset, time: np.ndarray) -> np.ndarray:
-    """Return the mean displacement normal to the contact around each moment, from the first."""
+    """Mean displacement normal to the contact around each time, relative to the first."""
     if "height_displacement" not in run:
         return np.zeros(0)
     edges = np.concatenate([[-np.inf], (time[1:] + time[:-1]) / 2, [np.inf]])

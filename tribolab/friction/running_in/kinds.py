@@ -1,4 +1,4 @@
-"""How a run may become steady, and what its friction is averaged over."""
+"""Kinds of running-in, and of the intervals that friction is averaged over."""
 
 CYCLES, STROKES, STRETCHES = "cycles", "strokes", "stretches"
 NONE, RUN_IN, STEP, NOT_FINISHED = "none", "running-in", "step", "not finished"

@@ -1,4 +1,4 @@
-"""Numbers that decide running-in; calibrated by ``tests/benchmarks/running_in_coverage.py``."""
+"""Limits for running-in, calibrated by ``tests/benchmarks/running_in_coverage.py``."""
 
 from tribolab.core.limit import Limit
 

@@ -1,11 +1,11 @@
-"""From where on a sequence of values is steady: an exponential, a step or a line is fitted to it.
+"""Start of the steady part of a sequence, from a fitted exponential, step or line.
 
 Notes
 -----
-Oscillations are taken out first [1]_. Of a step, a line and ``a + b exp(-t/c)`` the one that leaves
-the least squares is tested against the spectrum of the rest. The sequence is steady from where
-``b exp(-t/c)`` is below 1 % of ``a``, or below the standard error of ``a`` if that is larger. A
-change at the end of the run is found by the same test, backwards.
+Oscillations are removed first [1]_. The best fit of a step, a line and ``a + b exp(-t/c)`` is
+tested against the spectrum of the residuals. The sequence is steady when ``b exp(-t/c)`` is below 1
+% of ``a``, or below the standard error of ``a`` if that is larger. A change at the end of the run
+is found by the same test, backwards.
 
 Over 120 records of 1000 values each, a running-in is found in up to 1 % of steady records; one of
 five standard deviations and a time constant of 2 to 25 % of the run in 98 % of records in white
@@ -31,17 +31,17 @@ from tribolab.friction.mean_error.lines import lines_of, waves_of
 from tribolab.friction.running_in import limits
 from tribolab.friction.running_in.kinds import NONE, NOT_FINISHED, RUN_IN, STEP
 
-_TIMES = np.geomspace(0.004, 1.0, 24)  # of the sequence
-_BESIDE = (0.03, 0.15)  # exponentials that are no oscillation
+_TIMES = np.geomspace(0.004, 1.0, 24)  # share of the sequence
+_BESIDE = (0.03, 0.15)  # numbers of exponentials that are not oscillations
 _ROUNDS, _GOLDEN = 20, 0.382
 
 
 class Settling(NamedTuple):
-    """Whether and where a sequence becomes steady; values in its unit, places in values.
+    """Steady part of a sequence, if any; values in its unit, positions in values.
 
     The steady part is ``values[start:stop]``; without one, both are the length of the sequence.
-    `start_u` is the standard uncertainty of `start`; `first` the value at the beginning by the fit;
-    `more` says that one exponential does not describe the running-in.
+    `start_u` is the standard uncertainty of `start`, and `first` the fitted initial value. `more`
+    means that one exponential does not describe the running-in.
     """
 
     kind: str
@@ -58,7 +58,7 @@ class Settling(NamedTuple):
 
 
 def blocks_of(values: np.ndarray, most: int) -> np.ndarray:
-    """Return means over at most so many equal stretches (stretch)."""
+    """Means over at most so many equal intervals (stretch)."""
     if values.size <= most:
         return values
     edges = np.linspace(0, values.size, most + 1).astype(int)
@@ -66,12 +66,12 @@ def blocks_of(values: np.ndarray, most: int) -> np.ndarray:
 
 
 def settling_of(values: np.ndarray) -> Settling:
-    """Return from where to where a sequence is steady.
+    """Find the steady part of a sequence.
 
     Parameters
     ----------
     values
-        Of equal strokes or stretches, in order, all of them numbers (stroke).
+        Values of equal strokes or intervals, in order, without NaN (stroke).
 
     Examples
     --------
@@ -86,7 +86,7 @@ def settling_of(values: np.ndarray) -> Settling:
     if size < limits.MIN_VALUES.value or np.ptp(values) <= 1e-12 * np.abs(values).max(initial=0):
         return Settling(NONE, 0, size, 0.0, float(values[:1].mean()) if size else np.nan)
     stop = size
-    last = _settling(values[size // 3 :][::-1])  # without what may be its running-in
+    last = _settling(values[size // 3 :][::-1])  # without its possible running-in
     if last.kind in (RUN_IN, STEP) and last.start <= limits.LONGEST_CHANGE_AT_END.value * size:
         stop = size - last.start
     found = _settling(values[:stop])
@@ -98,14 +98,14 @@ def settling_of(values: np.ndarray) -> Settling:
 
 
 class _Fit(NamedTuple):
-    """A sequence with mean 0 and deviation 1 in at most 384 stretches, and what was fitted."""
+    """Normalised sequence of at most 384 intervals, and the fitted terms."""
 
     values: np.ndarray
     waves: np.ndarray
-    time: np.ndarray  # of the stretches' middles, of the whole
+    time: np.ndarray  # middles of the intervals, relative to the whole
 
     def rest(self, *shapes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Fit a mean, shapes and the waves: what is left, coefficients, design."""
+        """Return residuals, coefficients and design of a fit of mean, shapes and waves."""
         design = np.column_stack([np.ones(self.values.size), *shapes, self.waves])
         size, *_ = np.linalg.lstsq(design, self.values, rcond=None)
         return self.values - design @ size, size, design
@@ -159,12 +159,12 @@ def _settling(values: np.ndarray) -> Settling:
 
 
 def _shape(time: np.ndarray, constant: float | None) -> np.ndarray:
-    """Return a line, or an exponential with a time constant (stretch)."""
+    """Line, or exponential with a time constant (stretch)."""
     return time if constant is None else np.exp(-time / constant)
 
 
 def _best_course(fit: _Fit) -> tuple[float | None, float]:
-    """Return the time constant that leaves the least squares, None for a line, and the squares."""
+    """Best time constant, None for a line, and the sum of squares."""
     squares = []
     times = [None, *_TIMES[_TIMES > 1.2 / fit.time.size].tolist()]
     for constant in times:
@@ -176,7 +176,7 @@ def _best_course(fit: _Fit) -> tuple[float | None, float]:
 
 
 def _refined(fit: _Fit, constant: float) -> float:
-    """Return the time constant that leaves the least squares, by the golden section."""
+    """Return the time constant with the least squares, by golden-section search."""
 
     def squares(time: float) -> float:
         rest, *_ = fit.rest(np.exp(-fit.time / time))
@@ -193,7 +193,7 @@ def _refined(fit: _Fit, constant: float) -> float:
 
 
 def _coarse_noise(rest: np.ndarray, fitted: int) -> tuple[float, float]:
-    """Return the variance of the rest at the lowest frequencies, and its degrees of freedom."""
+    """Variance of the residuals at the lowest frequencies, and its degrees of freedom."""
     coarse = blocks_of(rest, int(of_means.COARSE_BLOCKS.value))
     sieve = sieve_of((coarse - coarse.mean())[None], fitted)
     noise = float(sieve.long_run_variance[0]) * rest.size / coarse.size
@@ -201,7 +201,7 @@ def _coarse_noise(rest: np.ndarray, fitted: int) -> tuple[float, float]:
 
 
 def _noise(rest: np.ndarray, shape: np.ndarray, constant: float | None) -> tuple[float, float]:
-    """Return the variance of the rest that a course competes with, and its degrees of freedom."""
+    """Variance of the residuals against which a fit is tested, and its degrees of freedom."""
     noise, freedom = _coarse_noise(rest, 3)
     if constant is None or constant > limits.SHORT_TIME.value:
         return noise, freedom
@@ -213,7 +213,7 @@ def _noise(rest: np.ndarray, shape: np.ndarray, constant: float | None) -> tuple
 
 
 def _step(fit: _Fit, least: float, size: int) -> Settling | None:
-    """Return the step that describes the sequence better than any course; None if none does."""
+    """Step that describes the sequence better than line and exponential; else None."""
     values, count = fit.values, fit.values.size
     edge = max(4, count // 50)
     total = np.concatenate([[0.0], np.cumsum(values)])
@@ -233,7 +233,7 @@ def _step(fit: _Fit, least: float, size: int) -> Settling | None:
 
 
 def _is_more(fit: _Fit, constant: float, own: np.ndarray, freedom: float) -> bool:
-    """Whether a line or a slower exponential is left in the rest of the fit."""
+    """Whether a line or a slower exponential remains in the residuals of the fit."""
     sure = special.stdtrit(freedom, 1 - limits.BY_CHANCE.value)
     for other in (fit.time, np.exp(-fit.time / (4 * constant))):
         rest, size, design = fit.rest(np.exp(-fit.time / constant), own, other)

@@ -1,4 +1,4 @@
-"""Segments without the running-in of a run, or without its first metres, seconds or cycles."""
+"""Segments without the running-in, or without a given distance, time or number of cycles."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def without_start(segments: xr.Dataset, discard: str) -> xr.Dataset:
     Raises
     ------
     AnalysisError
-        If nothing would be left.
+        If no segment would remain.
     """
     amount, unit = discard_amount(discard)
     start, stop = segments["start"].values, segments["stop"].values
@@ -54,7 +54,7 @@ def without_start(segments: xr.Dataset, discard: str) -> xr.Dataset:
 
 
 def steady_segments(run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset) -> xr.Dataset:
-    """Return the segments in the steady part of a run; all of them if it has no running-in.
+    """Return the segments in the steady part of a run; all if it has no running-in.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def steady_segments(run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset)
     Returns
     -------
     xarray.Dataset
-        Of a run that does not become steady, all segments: its record says so.
+        All segments if the run does not become steady, which its record states.
     """
     part = segments
     for history in histories_of(run, friction):
@@ -78,7 +78,7 @@ def steady_segments(run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset)
 
 
 def _between(segments: xr.Dataset, first: float, last: float, reason: str) -> xr.Dataset:
-    """Return segments between two moments [s], with what is left out among the omitted."""
+    """Return segments between two times [s]; the rest becomes omitted."""
     begin, end = segments["trimmed_start"].values, segments["trimmed_stop"].values
     new_begin, new_end = np.maximum(begin, first), np.minimum(end, last)
     left = new_end > new_begin
