@@ -1,4 +1,4 @@
-"""The measured curves of a campaign: repeats of a measurement taken together."""
+"""Measured curves of a campaign, each from repeats of one measurement."""
 
 from __future__ import annotations
 
@@ -32,21 +32,21 @@ if TYPE_CHECKING:
 
     from tribolab.reading.dialect.uncertainty import Known
 
-    Parts = dict[str | None, xr.Dataset]  # of a data file, by group
+    Parts = dict[str | None, xr.Dataset]  # groups of a data file
 
-SLIP = "stick_slip"  # group of the stick-slip over speed
+SLIP = "stick_slip"  # group of stick-slip over speed
 _AS_FOUND = "as_found"  # group of the curve without a person's decisions
 Condition = tuple[str, str, float | None, str]
 
 
 class _Levels(NamedTuple):
-    """Measured loads [N] of a run under several, and which belong to a curve; none under one."""
+    """Measured loads [N] of a run under several loads, and those of this curve; else empty."""
 
     measured: tuple[float, ...]
     wanted: tuple[bool, ...]
 
     def of(self, friction: xr.Dataset) -> np.ndarray | slice:
-        """Return which segments belong to the curve."""
+        """Return a mask of the segments that belong to the curve."""
         if not self.measured:
             return slice(None)
         force = friction["normal_force"].values
@@ -55,10 +55,10 @@ class _Levels(NamedTuple):
 
 @dataclass(frozen=True)
 class CurveTask:
-    """Data files of the runs that make one measured curve.
+    """Data files of the runs of one measured curve.
 
-    `found_files` are those that would make it without a person's decisions; none if nobody decided.
-    Of each run `levels` (and `found_levels`) tell which of its loads are this curve's.
+    `found_files` are those used without a person's decisions; empty if nobody decided. `levels`
+    (and `found_levels`) state the loads of each run that belong to this curve.
     """
 
     curve: CurveOutcome
@@ -72,19 +72,19 @@ class CurveTask:
 
     @property
     def name(self) -> str:
-        """Of the curve."""
+        """Name of the curve."""
         return self.curve.name
 
 
 class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
-    """The stage of the measured curves.
+    """Stage of the measured curves.
 
     Parameters
     ----------
     runs
-        What the runs came to; those that failed, or their checks, are left out.
+        Outcomes of the runs; failed and rejected ones are left out.
     store
-        What is known, and where it is written down.
+        Known results, and storage of new ones.
     speed_tolerance
         Largest relative difference of the speeds of one point.
     """
@@ -103,13 +103,13 @@ class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
         self._runs, self._tolerance = runs, speed_tolerance
 
     def plan(self) -> list[CurveTask]:
-        """Put together what is stated to be the same: surface, medium and load."""
+        """Group the runs by surface, medium and load."""
         groups: dict[Condition, list[RunCame]] = {}
         for came in self._runs:
             if came.outcome.in_curves or came.outcome.in_curves_as_found:
                 for condition in _conditions(came.outcome):
                     groups.setdefault(condition, []).append(came)
-        # a curve whose runs are all rejected is none
+        # a curve whose runs are all rejected is dropped
         groups = {
             key: members
             for key, members in groups.items()
@@ -156,7 +156,7 @@ class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
         )
 
     def taken(self, task: CurveTask, record: CurveRecord) -> CurveRecord | None:
-        """Take a curve over that is called and labelled the same."""
+        """Reuse a curve with the same name and labels."""
         file = task.curve.data_file
         return record if record.outcome == task.curve and self.linked(task, file, file) else None
 
@@ -166,7 +166,7 @@ class Curves(Recorded[CurveTask, CurveRecord, CurveRecord]):
         return process_curve(task)
 
     def failed(self, task: CurveTask, error: BaseException) -> CurveRecord:
-        """Return the record of a curve that could not be made."""
+        """Return the record of a curve that could not be computed."""
         crash = "" if isinstance(error, TribolabError) else "".join(format_exception(error))
         reason = explain(error)[0]
         return CurveRecord(
@@ -180,9 +180,9 @@ def process_curve(task: CurveTask) -> CurveRecord:
     Raises
     ------
     TribolabError
-        If the runs make no curve.
+        If the runs give no curve.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.friction.coefficient.repeatability import run_levels
     from tribolab.friction.oscillation.slip_curve import NEEDED, stick_slip_curve
     from tribolab.reading.netcdf.netcdf import read_groups
@@ -202,7 +202,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
     reason = ""
     try:
         groups[SLIP] = stick_slip_curve([part[SLIP] for part in parts])
-    except Exception as error:  # recorded: the curve stands without it
+    except Exception as error:  # recorded: the curve is kept without it
         reason = explain(error)[0]
     shaped = [friction.attrs.get("config_sha256", "") for friction in frictions]
     curve.attrs |= _labels(task.curve) | {"config_sha256": sha256_of(shaped)}
@@ -232,8 +232,8 @@ def process_curve(task: CurveTask) -> CurveRecord:
 def _with_budget(
     frictions: list[xr.Dataset], speed_tolerance: float
 ) -> tuple[xr.Dataset, Mapping[str, Known]]:
-    """Combine runs into a curve whose points have their whole uncertainty; and what is stated."""
-    # late: starting stays quick
+    """Return the curve of the runs with its full uncertainty, and the stated inputs."""
+    # imported late for a quick start
     from tribolab.metrology.budget import uncertainty_budget
 
     budget = uncertainty_budget(frictions, speed_tolerance=speed_tolerance)
@@ -241,8 +241,8 @@ def _with_budget(
 
 
 def _model_inputs(frictions: Sequence[xr.Dataset]) -> dict[str, float]:
-    """Return what the runs state of what a model takes as given; of several, the largest."""
-    # late: starting stays quick
+    """Stated uncertainties of the model inputs; the largest of several runs."""
+    # imported late for a quick start
     from tribolab.metrology.budget import known_uncertainties
 
     stated = [known_uncertainties(friction) for friction in frictions]
@@ -254,8 +254,8 @@ def _model_inputs(frictions: Sequence[xr.Dataset]) -> dict[str, float]:
 
 
 def _as_found(task: CurveTask) -> xr.Dataset | None:
-    """Return the curve as it would be without a person's decisions; None if nobody decided."""
-    # late: starting stays quick
+    """Return the curve without a person's decisions; None if nobody decided."""
+    # imported late for a quick start
     from tribolab.reading.netcdf.netcdf import read_groups
 
     if not task.found_files:
@@ -269,13 +269,13 @@ def _as_found(task: CurveTask) -> xr.Dataset | None:
 
 
 def _at_load(part: Parts, own: _Levels) -> Parts:
-    """Return the segments of a run that were measured under a curve's load."""
+    """Return the segments of a run measured under a curve's load."""
     segments = own.of(part["friction"])
     return {name: data.isel(segment=segments) for name, data in part.items()}
 
 
 def _load_from(runs: Iterable[RunOutcome]) -> str:
-    """Return where the load of a curve is from: stated of one run, it is that of all."""
+    """Source of the load of a curve: stated, if it is stated for one run."""
     known = {LOAD_MEASURED if _measured_levels(run) else run.load_from for run in runs}
     return next((s for s in (LOAD_STATED, LOAD_MEASURED, LOAD_VARIES) if s in known), "")
 
@@ -285,7 +285,7 @@ def _measured_levels(run: RunOutcome) -> bool:
 
 
 def _conditions(run: RunOutcome) -> list[Condition]:
-    """Return what runs of one curve have in common: each load that a run was measured under."""
+    """Return the common conditions of the runs of a curve, for each load of a run."""
     alone = "" if run.surface or run.medium else run.name
     loads = dict.fromkeys(run.load_levels or (run.normal_force,))
     return [(run.surface, run.medium, load_label(load), alone) for load in loads]

@@ -1,1 +1,1 @@
-"""What is recorded of runs, curves, surfaces and models: typed, made by whoever has the data."""
+"""Typed records of runs, curves, surfaces and models."""

@@ -1,4 +1,4 @@
-"""What a type does not say of a field, for the schema that is generated from the records."""
+"""Annotations of record fields for the generated schema."""
 
 from __future__ import annotations
 
@@ -17,32 +17,31 @@ _NUMBER = ["number", "null"]
 
 
 def one_of(*values: str, meaning: str | None = None) -> FieldInfo:
-    """Say which values a text may have, and what it means."""
+    """Annotate a text with its possible values and their meaning."""
     return Field(description=meaning, json_schema_extra={"enum": [*values]})
 
 
 def means(meaning: str) -> FieldInfo:
-    """Say what a field means."""
+    """Annotate a field with its meaning."""
     return Field(description=meaning)
 
 
-@dataclass(frozen=True, eq=False)  # as an annotation it has to have a hash
+@dataclass(frozen=True, eq=False)  # annotations must be hashable
 class Columns:
-    """Which columns the rows of a table have; a column is a number, or null, unless it is said.
+    """Columns of the rows of a table: numbers or null by default.
 
     Parameters
     ----------
     always, some
-        Those that every row has, and those that it may lack. A mapping also says what they mean,
-        where that is not plain.
+        Columns of every row, and optional ones. A mapping adds their meanings where needed.
     texts, counts, known
-        Which of them are texts, whole numbers, and numbers that are always known.
+        Columns that are texts, whole numbers, and numbers that are never null.
     values
-        What a column may hold, where that is little.
+        Possible values of a column, if there are few.
     row
-        What a row is.
+        Description of a row.
     open
-        Whether rows may have more, of any kind.
+        Whether rows may have further columns.
     """
 
     always: Collection[str]
@@ -55,7 +54,7 @@ class Columns:
     open: bool = False
 
     def __get_pydantic_json_schema__(self, _: CoreSchema, handler: GetJsonSchemaHandler) -> Json:
-        """Return what the schema says of a row."""
+        """Return the schema of a row."""
         columns = (*self.always, *self.some)
         return {
             "type": "object",

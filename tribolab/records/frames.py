@@ -1,4 +1,4 @@
-"""Results over one dimension as tables: a row per segment or point, units in the names."""
+"""Tables of results over one dimension, with units in the column names."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ _CURVE = [
 
 
 def frame(data: xr.Dataset, dim: str, first: Sequence[str] = ()) -> pd.DataFrame:
-    """Return the variables over one dimension as a table.
+    """Table of the variables over one dimension.
 
     Parameters
     ----------
@@ -68,20 +68,20 @@ def frame(data: xr.Dataset, dim: str, first: Sequence[str] = ()) -> pd.DataFrame
     dim
         The dimension whose entries become rows.
     first
-        Variables that stand first, in this order; the others follow as in the dataset.
+        First variables, in this order; the others follow as in the dataset.
 
     Returns
     -------
     pandas.DataFrame
-        Columns are called as the variables with their unit; text stays text.
+        Columns are named after the variables, with their unit; text stays text.
     """
     return pd.DataFrame(columns_of(data, dim, first))
 
 
 def columns_of(data: xr.Dataset, dim: str, first: Sequence[str] = ()) -> dict[str, np.ndarray]:
-    """Return the columns of the table that `frame` makes, of the same arguments."""
-    # not data[name], which puts coordinates around each: of a hundred variables that takes longer
-    # than all the rest
+    """Columns of the table that `frame` makes, for the same arguments."""
+    # not data[name], which adds coordinates to each: for a hundred variables that takes longer
+    # than the rest
     names = [str(n) for n, variable in data.variables.items() if variable.dims == (dim,)]
     ordered = [n for n in first if n in names] + [n for n in names if n not in first]
     columns = {}
@@ -92,7 +92,7 @@ def columns_of(data: xr.Dataset, dim: str, first: Sequence[str] = ()) -> dict[st
 
 
 def rows_of(table: pd.DataFrame | Mapping[str, np.ndarray]) -> list[Row]:
-    """Return the rows of a table, each by the names of the columns.
+    """Rows of a table as dictionaries by column.
 
     Examples
     --------
@@ -105,14 +105,14 @@ def rows_of(table: pd.DataFrame | Mapping[str, np.ndarray]) -> list[Row]:
 
 
 def plain_rows(table: pd.DataFrame | Mapping[str, np.ndarray]) -> tuple[Row, ...]:
-    """Return the rows of a table as a record keeps them: plain numbers, None where not known."""
+    """Rows of a table for a record: plain numbers, None if unknown."""
     return tuple(plain_value(rows_of(table)))
 
 
 def friction_columns(friction: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return the columns of a run's friction result, a row per segment, numbered from 1.
+    """Columns of a run's friction result, a row per segment, numbered from 1.
 
-    Of these no `pandas.DataFrame` is made: that would take most of the time of a small run's rows.
+    No `pandas.DataFrame` is made, which would take most of the time for a small run.
     """
     columns = columns_of(friction, "segment", _FRICTION_FIRST)
     if "steady" in columns:
@@ -126,7 +126,7 @@ def _but(name: str, columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 
 def curve_table(curve: xr.Dataset) -> pd.DataFrame:
-    """Return a measured curve as a table, a row per sliding speed."""
+    """Table of a measured curve, a row per sliding speed."""
     return frame(curve, "sliding_speed", _CURVE)
 
 
@@ -143,7 +143,7 @@ _START = [
 
 
 def static_friction_columns(starts: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return the columns of a run's static friction, a row per start, its segment from 1."""
+    """Columns of a run's static friction, a row per start, with its segment from 1."""
     columns = _but("start_of_sliding", columns_of(starts, "start_of_sliding", _START))
     return {"segment": starts["start_of_sliding"].values + 1} | columns
 
@@ -163,7 +163,7 @@ _FIRST = [
 
 
 def stick_slip_columns(slip: xr.Dataset) -> dict[str, np.ndarray]:
-    """Return the columns of a run's stick-slip, a row per segment, numbered from 1."""
+    """Columns of a run's stick-slip, a row per segment, numbered from 1."""
     number = {"segment": np.arange(1, slip.sizes["segment"] + 1)}
     columns = list(_but("segment", columns_of(slip, "segment", _FIRST)).items())
     probability = slip["class_probability"].max("waveform_class").values

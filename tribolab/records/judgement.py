@@ -1,4 +1,4 @@
-"""What the table of runs says of a run at a glance: a word for its state, why, and how it looks."""
+"""Status of a run in the table of runs: word, reason and colour."""
 
 from __future__ import annotations
 
@@ -12,25 +12,25 @@ from tribolab.records.parts import BAD
 
 @dataclass(frozen=True)
 class Limits:
-    """From where on a number is suspect, and from where on it is beyond the limit."""
+    """Limits above which a number is suspect, or fails."""
 
     suspect: float
     fail: float
 
 
 _STEADINESS = {name: limit.value for name, limit in RUN_CHECKS["steadiness"].limits.items()}
-# A number at or above these is marked in the table of runs. Drift is judged as the check on
-# steadiness does; friction of soft contacts scatters by 2 to 10 % around a segment's mean.
+# Numbers above these are marked in the table of runs. Drift is judged by the limits of the check
+# on steadiness; friction of soft contacts scatters by 2 to 10 % around a segment's mean.
 THRESHOLDS = {
     "noise": Limits(0.10, 0.50),
     "drift": Limits(_STEADINESS["suspect"], _STEADINESS["fail"]),
 }
 _GRAVE = ("error", "fail", "suspect")
-_BY_HAND = {"rejected": "reject", "accepted": "accept"}  # a person's verdict, and the action
+_BY_HAND = {"rejected": "reject", "accepted": "accept"}  # verdict of a person, and the action
 
 
 def judge(kind: str, value: float | None) -> str:
-    """Return ``"fail"``, ``"suspect"`` or nothing for a number of a kind.
+    """Status of a number of a kind: ``"fail"``, ``"suspect"`` or empty.
 
     Examples
     --------
@@ -44,14 +44,14 @@ def judge(kind: str, value: float | None) -> str:
 
 
 def is_bad(run: Mapping[str, Any]) -> bool:
-    """Return whether nothing of a run went into the curves: failed, or rejected by whomever."""
+    """Whether a run is excluded from the curves: failed, or rejected by a check or a person."""
     return run["status"] != "done" or run["quality"] in BAD
 
 
 def status_word(run: Mapping[str, Any]) -> str:
-    """Return failed, rejected, rejected by hand, kept, accepted, suspect or done.
+    """Status: failed, rejected, rejected by hand, kept, accepted, suspect or done.
 
-    One that failed could not be read; one that its checks rejected has numbers that count nowhere.
+    A failed run could not be read; the numbers of a rejected run are not used.
 
     Examples
     --------
@@ -70,7 +70,7 @@ def status_word(run: Mapping[str, Any]) -> str:
 
 
 def check_words(name: str) -> str:
-    """Return a check, and what it looked at, as they are called in words.
+    """Name of a check and its variable, in words.
 
     Examples
     --------
@@ -87,7 +87,7 @@ _CAUSE = "saturation"
 
 
 def why(run: Mapping[str, Any]) -> str:
-    """Return why a run stands as it does: error, decision, or gravest objection of its checks.
+    """Return the reason for the status of a run: error, decision, or worst objection of its checks.
 
     Examples
     --------
@@ -104,14 +104,14 @@ def why(run: Mapping[str, Any]) -> str:
     grave = [row for row in run["checks"] if row["status"] in _GRAVE and not row.get("decision")]
     if not grave:
         return ""
-    # what a clipped signal does to other checks is not told before the clipping
+    # a clipped signal triggers other checks, so clipping is named first
     first = min(grave, key=lambda row: (_GRAVE.index(row["status"]), row["check"] != _CAUSE))
     more = f" (and {len(grave) - 1} more)" if len(grave) > 1 else ""
     return f"{check_words(first['check'])}: {first['message']}{more}"
 
 
 def _decided(run: Mapping[str, Any], action: str) -> str:
-    """Say who rejected or accepted a run, in spite of what, and why."""
+    """Return who rejected or accepted a run, against which objections, and why."""
     said = [
         f"{run['quality']} by {row['author']}: {row['reason']}"
         for row in run["decisions"]

@@ -1,4 +1,4 @@
-"""Points of a signal, and longer texts, packed small enough to stand inside the page."""
+"""Compact encoding of signals and long texts for the page."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import numpy as np
 from tribolab.arrays.chunks import pieces
 from tribolab.core.untyped import Json
 
-_TOP = 65534  # a value, as a share of its range; 65535 is "not a number"
-_WITHIN = 0.25  # of a sample's distance from its neighbours: how well a time is kept
+_TOP = 65534  # resolution of a value as a share of its range; 65535 is NaN
+_WITHIN = 0.25  # accuracy of a time as a share of the distance to the next sample
 _MOST_KNOTS = 1000
-_FINER, _MOST_TICKS = 16, 2**32 - 1  # ticks in the shortest steps of a clock without any order
+_FINER, _MOST_TICKS = 16, 2**32 - 1  # ticks in the shortest steps of an irregular clock
 
 
 def deflated(raw: bytes) -> str:
-    """Return bytes compressed (zlib) and as text (base64), which can end no script element.
+    """Return bytes compressed (zlib) as text (base64), safe inside a script element.
 
     Examples
     --------
@@ -31,16 +31,16 @@ def deflated(raw: bytes) -> str:
 
 @dataclass(frozen=True)
 class Clock:
-    """When the samples of a record were taken, in small numbers.
+    """Sampling times of a record as small numbers.
 
     Parameters
     ----------
     ticks
-        Of every sample (time): whole numbers that rise; None if they are the samples' own numbers.
+        Increasing whole number of every sample (time); None if they are the samples' indices.
     knots
-        Some places, the first and the last among them.
+        Some positions, including the first and the last.
     at_s
-        When these are [s] since the first sample; in between the clock goes evenly.
+        Their times [s] since the first sample; linear in between.
     """
 
     ticks: np.ndarray | None
@@ -48,23 +48,23 @@ class Clock:
     at_s: list[float]
 
     def places(self, chosen: np.ndarray) -> np.ndarray:
-        """Return the places of some samples, given by their numbers."""
+        """Return the positions of samples given by their numbers."""
         return chosen if self.ticks is None else self.ticks[chosen]
 
 
 def clock_of(time: np.ndarray) -> Clock:
-    """Return a clock that keeps every time to a quarter of the distance to the next sample.
+    """Clock that keeps every time to a quarter of the distance to the next sample.
 
     Parameters
     ----------
     time
-        Of all samples [s] (time), rising.
+        Times of all samples [s] (time), increasing.
 
     Returns
     -------
     Clock
-        Its places are the samples' numbers, with knots where the rate of sampling changes. A clock
-        with too many of these counts ticks instead, sixteen in its shortest steps.
+        Its positions are the samples' indices, with knots where the sampling rate changes. A clock
+        with too many knots counts ticks instead, sixteen in its shortest steps.
 
     Examples
     --------
@@ -89,7 +89,7 @@ def _rises(since: np.ndarray) -> bool:
 
 
 def _knots(since: np.ndarray) -> list[int] | None:
-    """Return samples between which all others are even, by halving where they are least so.
+    """Return the samples between which sampling is uniform, by bisection at the largest deviation.
 
     After D. H. Douglas and T. K. Peucker, Cartographica 10, 112 (1973).
     """
@@ -110,7 +110,7 @@ def _knots(since: np.ndarray) -> list[int] | None:
 
 
 def _least_even(since: np.ndarray, first: int, last: int) -> tuple[int, float]:
-    """Sample between two that is least where even steps would put it, and how far, of its share."""
+    """Sample that deviates most from uniform steps, and its deviation over the tolerance."""
     worst, most = first + 1, -np.inf
     rate = (since[last] - since[first]) / (last - first)
     for a, b in pieces(first + 1, last):  # a long record is not copied as a whole
@@ -123,16 +123,16 @@ def _least_even(since: np.ndarray, first: int, last: int) -> tuple[int, float]:
 
 
 def packed_points(place: np.ndarray, value: np.ndarray, *, deflate: bool) -> Json:
-    """Pack points: when as steps from place to place, values as shares of their range in 16 bits.
+    """Return points packed for JSON: position steps, and values as 16-bit shares of their range.
 
     Parameters
     ----------
     place
-        Of the points on the record's `Clock` (point).
+        Positions of the points on the record's `Clock` (point).
     value
         In any unit (point).
     deflate
-        Compress; what a page shows at once is left as it is, for browsers that cannot unpack it.
+        Compress; data shown on opening the page are not, for browsers that cannot decompress.
 
     Returns
     -------
@@ -143,7 +143,7 @@ def packed_points(place: np.ndarray, value: np.ndarray, *, deflate: bool) -> Jso
 
     Notes
     -----
-    Bytes of one kind side by side compress best.
+    Grouping bytes by significance compresses best.
     """
     finite = value[np.isfinite(value)]
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
@@ -167,7 +167,7 @@ def _planes(whole: np.ndarray, width: int) -> bytes:
 
 
 def unpacked_points(packed: Json) -> tuple[np.ndarray, np.ndarray]:
-    """Return places on the clock and values of what `packed_points` packed (point).
+    """Return positions on the clock and values from `packed_points` (point).
 
     Examples
     --------

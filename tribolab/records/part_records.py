@@ -1,4 +1,4 @@
-"""All that is recorded of curves, surfaces, models and figures."""
+"""Records of curves, surfaces, models and figures."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tribolab.records.parts import CurveOutcome, ModelOutcome, Row, Source, Surf
 
 @dataclass(frozen=True)
 class Origin:
-    """Files that a product was made from, and their checksums, as its attributes name them."""
+    """Files that a product was made from, and their checksums, as in its attributes."""
 
     source: str = ""
     source_sha256: str = ""
@@ -51,32 +51,31 @@ BudgetRow = Annotated[Row, _PART]  # of a measured curve
 
 @dataclass(frozen=True)
 class CurveRecord:
-    """One measured curve.
+    """Record of one measured curve.
 
     Parameters
     ----------
     outcome
-        The little that the rest of a campaign has to know.
+        Summary for the later stages of a campaign.
     points
         A row per sliding speed.
     levels
-        Friction level of each run over that of all [1], None where it is not known; none of a
-        curve of one run.
+        Friction level of each run over that of all [1], None if unknown; empty for a single run.
     digest
         Checksum of the curve's values.
     origin
-        What it was made from.
+        Source files.
     no_slip
-        Why there is no stick-slip over speed; "" if there is.
+        Reason why stick-slip over speed is missing; "" if present.
     points_as_found
-        What `points` would be without a person's decisions; none where that is the same.
+        `points` without a person's decisions; empty if equal.
     budget
         A row for each point and each part of its uncertainty.
     uncertainty_says
-        What the uncertainty does not hold; "" where it holds all.
+        What the uncertainty does not include; "" if it is complete.
     model_inputs
-        Standard uncertainties of what a model takes as given, by name, as its runs' instrument
-        and campaign state them: relative, of temperature [K], of water content absolute.
+        Stated standard uncertainties of the model's inputs, by name: relative, except temperature
+        [K] and water content (absolute).
     """
 
     outcome: CurveOutcome
@@ -98,22 +97,22 @@ class CurveRecord:
 
 @dataclass(frozen=True)
 class ModelRows:
-    """Rows of one model; `fit` is None where no shear stress could be fitted.
+    """Rows of one model; `fit` is None if no shear stress could be fitted.
 
     Parameters
     ----------
     fit
-        By the columns of the table of shear stresses.
+        Fit by the columns of the table of shear stresses.
     curve
         A row per sliding speed.
     sensitivity
-        A row per variation of what is not known.
+        A row per variation of an uncertain input.
     not_varied
-        What was held fixed.
+        Inputs kept fixed.
     shift
-        Relative change of the shear stress, downwards and upwards, that the spectrum's error makes.
+        Relative change of the shear stress due to the spectrum's error, downwards and upwards.
     validity
-        Why the model is not sure, beyond the limits of the theory.
+        Limits of the theory that the model exceeds.
     """
 
     fit: Row | None
@@ -126,9 +125,9 @@ class ModelRows:
 
 @dataclass(frozen=True)
 class SurfaceRows:
-    """Rows of one surface: of roughness one, of contact one per load, of adhesion per medium too.
+    """Rows of one surface: roughness, contact per load, and adhesion per load and medium.
 
-    Keys are the tables' columns, with their unit in the name; None where it is not known.
+    Keys are the tables' columns, with their unit in the name; None if unknown.
     """
 
     name: str
@@ -143,16 +142,16 @@ class SurfaceRows:
 
 @dataclass(frozen=True)
 class SurfaceRecord:
-    """One surface.
+    """Record of one surface.
 
     Parameters
     ----------
     outcome
-        The little that the rest of a campaign has to know.
+        Summary for the later stages of a campaign.
     sources
         Its scans, and the file of the modulus.
     rows
-        What is shown of it; None of one that failed.
+        Rows for display; None if it failed.
     digest
         Checksum of the values that models are made from.
     """
@@ -164,26 +163,26 @@ class SurfaceRecord:
 
     @property
     def done(self) -> bool:
-        """Whether there are results, and not those of before."""
+        """Whether there are new results."""
         return self.outcome.done and not self.outcome.kept
 
 
 @dataclass(frozen=True)
 class ModelRecord:
-    """One model, and what is shown of it; None of one that failed."""
+    """Record of one model; its rows are None if it failed."""
 
     outcome: ModelOutcome
     rows: ModelRows | None = None
 
     @property
     def done(self) -> bool:
-        """Whether there are results, and not those of before."""
+        """Whether there are new results."""
         return self.outcome.done and not self.outcome.kept
 
 
 @dataclass(frozen=True)
 class FigureRecord:
-    """One figure in the results folder."""
+    """Record of one figure in the results folder."""
 
     file: Annotated[str, means("SVG, relative to the results folder")]
     data: Annotated[

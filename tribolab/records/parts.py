@@ -1,4 +1,4 @@
-"""One small record per run, curve, surface and model, and what is said of them."""
+"""Short records of each run, curve, surface and model, and of findings."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-BAD = ("fail", "error", "rejected")  # qualities of a run of which nothing goes into the curves
+BAD = ("fail", "error", "rejected")  # qualities that exclude a run from the curves
 
 
 class HasStatus:
-    """What says by its status what it came to."""
+    """Record with a status."""
 
     status: str
 
@@ -29,27 +29,26 @@ class HasStatus:
 
 @dataclass(frozen=True, kw_only=True)
 class PartOutcome(HasStatus):
-    """What a part that files are read for came to, and where its data are.
+    """Outcome of a part of a campaign that is computed from files.
 
     Parameters
     ----------
     name
         Unique among parts of its kind.
     status
-        "done", "failed", or "skipped" if the campaign file knows too little for it.
+        "done", "failed", or "skipped" if the campaign file lacks information.
     reason
-        Why it failed, in one line; "" for a part that is done.
+        Reason of failure in one line; "" for a part that is done.
     error
         Class name of the error; "" for a part that is done.
     data_file
         Path of the netCDF file relative to the results folder; "" for a failed part.
     reused
-        Whether the data file was taken over from the previous results.
+        Whether the data file was reused from the previous results.
     seconds
         Time [s] that the part took.
     kept
-        Since when and why these are earlier results, because a file cannot be read now; "" for
-        everything else.
+        Date and reason of earlier results that are kept because a file cannot be read; else "".
     """
 
     name: str
@@ -64,34 +63,34 @@ class PartOutcome(HasStatus):
 
 @dataclass(frozen=True, kw_only=True)
 class RunOutcome(PartOutcome):
-    """One run: done or failed; its name is safe as a file name.
+    """Outcome of one run; its name is safe as a file name.
 
     Parameters
     ----------
     files
         Raw files, relative to the campaign file.
     surface, medium
-        As the campaign file calls them; "" where it says nothing.
+        Names in the campaign file; "" if not stated.
     normal_force
-        Set-point [N] of the campaign file, else of the raw file; else the mean of what was
-        measured, the same for repeats; None where neither is known.
+        Set-point [N] of the campaign file, else of the raw file; else the mean measured load,
+        equal for repeats; None if unknown.
     load_from
-        Where that is from: `LOAD_STATED`, `LOAD_MEASURED`, `LOAD_VARIES` where the run has several
-        loads, "" where nothing tells.
+        Source of the load: `LOAD_STATED`, `LOAD_MEASURED`, `LOAD_VARIES` if the run has several
+        loads, "" if unknown.
     measured_load
-        Mean load [N] while the run slides, where none is stated.
+        Mean load [N] while the run slides, if none is stated.
     measured_levels, load_levels
-        Where it slides under several loads, mean [N] of each and the load [N] it is filed under,
-        the same for repeats; none where the load rises or falls all the time.
+        For a run under several loads, the mean [N] of each and the load [N] assigned to it, equal
+        for repeats; empty if the load changes continuously.
     segments
         Number of segments found.
     quality
-        Gravest finding of the checks on the raw data: "pass", "suspect", "fail", "error", or "" for
-        a run that could not be checked; "accepted" or "rejected" where a person decided.
+        Worst status of the checks on the raw data: "pass", "suspect", "fail", "error", or "" for
+        a run that could not be checked; "accepted" or "rejected" if a person decided.
     segments_rejected
-        Number of segments, among those found, that a person rejected.
+        Number of found segments that a person rejected.
     quality_as_found
-        What `quality` would be without decisions; "" where nobody decided.
+        `quality` without decisions; "" if nobody decided.
     """
 
     files: tuple[str, ...]
@@ -109,23 +108,23 @@ class RunOutcome(PartOutcome):
 
     @property
     def in_curves(self) -> bool:
-        """Whether it goes into the measured curves."""
+        """Whether the run is used in the measured curves."""
         left = self.segments - self.segments_rejected
         return self.done and left > 0 and self.quality not in BAD
 
     @property
     def in_curves_as_found(self) -> bool:
-        """Whether it would without a person's decisions."""
+        """Whether the run would be used without a person's decisions."""
         quality = self.quality_as_found or self.quality
         return self.done and self.segments > 0 and quality not in BAD
 
 
 @dataclass(frozen=True)
 class CurveOutcome(HasStatus):
-    """One measured curve: the runs of one surface, medium and load, taken together.
+    """Outcome of one measured curve, from the runs of one surface, medium and load.
 
     `status`, `reason` and `load_from` are as for a run; `data_file` is "" for a curve that failed.
-    `crash` is the traceback of an error that nobody raised on purpose, else "".
+    `crash` is the traceback of an unexpected error, else "".
     """
 
     name: str
@@ -141,16 +140,16 @@ class CurveOutcome(HasStatus):
 
 
 Cell = float | int | str | bool | None
-Row = dict[str, Cell]  # of a table: by the column's name, with its unit; None where not known
+Row = dict[str, Cell]  # row of a table: column name with unit -> value; None if unknown
 
 
 def number_of(row: Row, column: str) -> float | None:
-    """Return the number in a column of a row; None where it is not known.
+    """Return the number in a column of a row; None if unknown.
 
     Raises
     ------
     TypeError
-        If the column has texts.
+        If the column contains text.
 
     Examples
     --------
@@ -167,7 +166,7 @@ Source = tuple[str, str, int]  # label, sha256 ("" if it cannot be read), bytes
 
 
 class Notice(NamedTuple):
-    """A finding as the report shows it: how grave, of which run, where, and what."""
+    """Finding in the report: severity, run, place, and text."""
 
     severity: str
     run: str
@@ -176,16 +175,16 @@ class Notice(NamedTuple):
 
 
 class RunZero(NamedTuple):
-    """What a run's result says of its zero.
+    """Zero of the friction force of a run, for lending between runs.
 
     Parameters
     ----------
     instrument
-        What recorded it; "" where that is not known, and then nothing is lent.
+        Instrument; "" if unknown, and then no zero is lent.
     own
         Its own zero [N], or None.
     lent
-        What other runs lent to it, as text; None where it wants nothing.
+        Zeros lent by other runs, as text; None if not needed.
     """
 
     instrument: str
@@ -194,9 +193,9 @@ class RunZero(NamedTuple):
 
 
 class Finding(NamedTuple):
-    """Something that a reader of the results should know: "fail", "error", "suspect", "note".
+    """Finding for a reader of the results: "fail", "error", "suspect" or "note".
 
-    `check` is the name of the check on the raw data that says so; "" for everything else.
+    `check` is the name of the check on the raw data that found it; else "".
     """
 
     severity: str
@@ -205,7 +204,7 @@ class Finding(NamedTuple):
 
 
 def beyond_limits(groups: Mapping[str, xr.Dataset]) -> list[Finding]:
-    """Return a finding for each limit of the theory that a result leaves, see `validity`.
+    """Return a finding for each limit of the theory that a result exceeds, see `validity`.
 
     Parameters
     ----------
@@ -221,20 +220,20 @@ def beyond_limits(groups: Mapping[str, xr.Dataset]) -> list[Finding]:
 
 @dataclass(frozen=True, kw_only=True)
 class SurfaceOutcome(PartOutcome):
-    """One surface: its spectrum, contact and adhesion, as far as they could be computed.
+    """Outcome of one surface: spectrum, contact and adhesion, as far as computable.
 
     Parameters
     ----------
     files
-        Scans, relative to the campaign file; those that could not be used are in the findings.
+        Scans, relative to the campaign file; unusable ones are in the findings.
     parts
         Names of the groups in the data file.
     findings
-        What went wrong, what was left out, and why.
+        Errors and omissions, with reasons.
     quality
         Gravest finding of the checks on the scans that were used, as for a run.
     checks
-        What every check said of every scan: a row each, with the scan's file as "scan".
+        Result of every check on every scan, one row each, with the scan's file as "scan".
     """
 
     files: tuple[str, ...]
@@ -245,35 +244,35 @@ class SurfaceOutcome(PartOutcome):
 
     @property
     def label(self) -> str:
-        """Its name; what follows from bad scans must not be taken for the others' like."""
+        """Name of the surface, marked if its scans failed checks."""
         return self.name + (" (bad scans)" if self.quality in ("fail", "error") else "")
 
     @property
     def unreadable(self) -> tuple[Finding, ...]:
-        """What could not be read or computed."""
+        """Findings on files that could not be read or results not computed."""
         grave = ("fail", "error")
         return tuple(f for f in self.findings if f.severity in grave and not f.check)
 
     @property
     def objections(self) -> set[str]:
-        """Every status that the checks gave to the scans, also to those that were left out."""
+        """Statuses of the checks on all scans, including unused ones."""
         return {f.severity for f in self.findings if f.check and f.severity != "note"}
 
 
 @dataclass(frozen=True, kw_only=True)
 class ModelOutcome(PartOutcome):
-    """The model of one measured curve, with the shear stress that was fitted to it.
+    """Outcome of the model of one measured curve, with the fitted shear stress.
 
     Its name is that of the data file: ``model_`` and the curve's name.
 
     Parameters
     ----------
     curve, surface, medium, normal_force
-        The measured curve that it belongs to, as in its `CurveOutcome`.
+        The measured curve, as in its `CurveOutcome`.
     parts
         Names of the groups in the data file.
     findings
-        What went wrong, what was left out, and why.
+        Errors and omissions, with reasons.
     """
 
     curve: str
@@ -286,7 +285,7 @@ class ModelOutcome(PartOutcome):
 
 @dataclass(frozen=True)
 class FlaggedSpan:
-    """Where checks objected to a signal: suspect or fail, from when to when [s], which checks."""
+    """Interval in which checks objected to a signal: severity, start and stop [s], checks."""
 
     signal: str
     severity: Annotated[str, one_of("suspect", "fail")]
@@ -297,14 +296,14 @@ class FlaggedSpan:
 
 @dataclass(frozen=True)
 class PageTrace:
-    """A run's trace for the page, as JSON that may stand in a script element.
+    """Trace of a run for the page, as JSON that is safe in a script element.
 
     Parameters
     ----------
     coarse
-        What is shown at once.
+        Points shown on opening.
     fine
-        With more points, to zoom into; "" if there is none.
+        More points, for zooming; "" if there are none.
     """
 
     coarse: str

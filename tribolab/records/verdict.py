@@ -1,4 +1,4 @@
-"""The verdict on a campaign in one word and its counts, as terminal and page show it."""
+"""Verdict on a campaign in one word, with counts."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ _BAD = ("fail", "error", "rejected")
 
 
 class Verdict(NamedTuple):
-    """One of OK, SUSPECT, CHECK (some cannot be used) and FAIL (none can), and the counts."""
+    """Verdict OK, SUSPECT, CHECK (some unusable) or FAIL (all unusable), with counts."""
 
     word: str
     counts: str
 
 
 def is_usable(run: RunOutcome) -> bool:
-    """Whether a run is in the curves: it was read, slides, and no check or person rejects it."""
+    """Whether a run is used in the curves: readable, sliding, and not rejected."""
     return run.done and bool(run.segments) and run.quality not in _BAD
 
 
 def verdict_of(runs: Sequence[RunOutcome], surfaces: Sequence[SurfaceOutcome]) -> Verdict:
-    """Return the verdict on a campaign.
+    """Verdict on a campaign.
 
     Parameters
     ----------
     runs, surfaces
-        What came of them.
+        Their outcomes.
     """
     scanned = [surface for surface in surfaces if surface.files]
     usable = [run for run in runs if is_usable(run)]

@@ -1,4 +1,4 @@
-"""Numbers as a reader wants them: a value with its error, durations, ranges."""
+"""Formats of numbers: values with errors, durations, ranges."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from tribolab.core.validity import together
 from tribolab.core.wording import MINUS, number
 
 UNITS = {"friction_coefficient": "", "half_loop": " N", "friction_force": " N"}
-# whose standard deviation and error are those of the quantity
+# quantities whose standard deviation and error have their unit
 SPREAD_OF = {"half_loop": "friction_force"}
-NORMAL = 1.959963984540054  # standard errors in U95, of a normal distribution
+NORMAL = 1.959963984540054  # standard errors in U95 of a normal distribution
 SYMBOLS = {"friction_coefficient": "µ", "half_loop": "half loop", "friction_force": "F"}
 
 
 def with_error(value: float | None, error: float | None, unit: str = "") -> str:
-    """Return value and error with the digits that the error leaves meaningful.
+    """Return value and error as text, rounded to the significant digits of the error.
 
     Examples
     --------
@@ -33,14 +33,14 @@ def with_error(value: float | None, error: float | None, unit: str = "") -> str:
     # two digits of an error that begins with 1, else one
     place = math.floor(math.log10(error))
     decimals = min(max((error / 10**place < 1.95) - place, 0), 6)
-    if round(error, decimals) == 0.0:  # far below what anyone reads
+    if round(error, decimals) == 0.0:  # smaller numbers are not written out
         return number(value) + unit
     text = f"{value:.{decimals}f} ± {error:.{decimals}f}".replace("-", MINUS)
     return f"({text}){unit}" if unit else text
 
 
 def validity_of(groups: Iterable[Any]) -> str:
-    """Return why results are not sure, beyond the limits of the theory; "" where they are.
+    """Return the limits of the theory that results exceed, as text; "" if none.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def validity_of(groups: Iterable[Any]) -> str:
 
 
 def plain_value(value: Any) -> Any:
-    """Return a value as JSON can hold it: NaN and infinity become null, numpy becomes Python.
+    """Convert a value for JSON: NaN and infinity become null, numpy becomes Python.
 
     Examples
     --------

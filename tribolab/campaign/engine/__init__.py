@@ -1,1 +1,1 @@
-"""Where and how work is done: stages, executors, pools and clusters."""
+"""Execution of work: stages, executors, pools and clusters."""

@@ -1,4 +1,4 @@
-"""A Dask cluster as an executor, and how it is told that it is gone."""
+"""Dask cluster as an executor, with detection of its loss."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from tribolab.arrays.threads import one_thread
 from tribolab.core.errors import ConfigError, OutputError
 
 DASK_TIMEOUT = "20s"
-LOOK = 1.0  # s between two looks at a cluster
-ANSWER = 5.0  # s within which a scheduler answers: it does so within some ms
-PATIENCE = 20.0  # s without any worker, or without the scheduler, after which it counts as gone
-SILENCE = 40.0  # s without a sign of life of a worker; up to 200 workers give one every 2 s
+LOOK = 1.0  # s between two checks of a cluster
+ANSWER = 5.0  # s; a scheduler answers within some ms
+PATIENCE = 20.0  # s without any worker, or without the scheduler, after which the cluster is lost
+SILENCE = 40.0  # s without a heartbeat; up to 200 workers send one every 2 s
 _LOG = logging.getLogger("tribolab")
 
 
 class ClusterGone(OutputError):
-    """The scheduler or all of its workers are gone, and nothing more can be done there."""
+    """Raised if the scheduler or all of its workers are lost."""
 
 
 class ClusterAbsent(ConfigError):
-    """No scheduler answers at the address, or it has no workers."""
+    """Raised if no scheduler answers at the address, or it has no workers."""
 
 
 def gone(why: str, done: int, of: int) -> str:
-    """Say that the cluster is lost, why, and what of the work was done."""
+    """Error for a lost cluster, with the reason and the finished work."""
     said = f"; {done} of {of} pieces of work were done" if of else ""
     return (
         f"the Dask cluster is lost: {why}{said}. Nothing was written, results of before are as "
@@ -52,7 +52,7 @@ def dask_executor(scheduler: str) -> Iterator[Executor]:
         If no scheduler answers there, or it has no workers.
     """
     try:
-        # late: distributed takes long to load
+        # imported late: distributed loads slowly
         from distributed import Client
         from distributed.comm.addressing import get_address_host_port
     except ImportError as error:
@@ -60,7 +60,7 @@ def dask_executor(scheduler: str) -> Iterator[Executor]:
             "a scheduler wants Dask, which is not installed: pip install 'tribolab[cluster]'"
         ) from error
 
-    # one that was never open waits long in its __del__, and for ever if a web server answers it
+    # a client that never connected waits long in its __del__, and forever if a web server answers
     client_class: Any = type("OpenClient", (Client,), {"__del__": lambda self: None})
     opened: Future[Any] = Future()
 
@@ -74,24 +74,24 @@ def dask_executor(scheduler: str) -> Iterator[Executor]:
         get_address_host_port(scheduler)
         threading.Thread(target=open_client, daemon=True).start()
         client = opened.result(float(DASK_TIMEOUT.removesuffix("s")) + ANSWER)
-    except Exception as error:  # what answers may be any server, e.g. that of the dashboard
+    except Exception as error:  # any server may answer, e.g. that of the dashboard
         raise ClusterAbsent(
             f"no Dask scheduler answers at {scheduler}; start one with 'dask scheduler' and give "
             "its address, e.g. tcp://localhost:8786"
         ) from error
     try:
-        with _silent("distributed"):  # what it would say of a lost worker is said by us
+        with _silent("distributed"):  # lost workers are reported by us instead of Dask
             if not client.scheduler_info()["workers"]:
                 raise ClusterAbsent(f"the Dask scheduler at {scheduler} has no workers")
             yield Cluster(client)
     finally:
         with contextlib.suppress(Exception), _silent("distributed"):
-            client.close(timeout=2)  # a scheduler that is gone cannot be told goodbye
+            client.close(timeout=2)  # a lost scheduler cannot be closed
 
 
 @contextlib.contextmanager
 def _silent(package: str) -> Iterator[None]:
-    """Hear only what is critical of a package's loggers, those with a level of their own too."""
+    """Suppress all but critical log messages of a package, including loggers with own levels."""
     names = [package, *(n for n in logging.root.manager.loggerDict if n.startswith(f"{package}."))]
     levels = {name: logging.getLogger(name).level for name in names}
     try:
@@ -105,7 +105,7 @@ def _silent(package: str) -> Iterator[None]:
 
 
 class Cluster(Executor):
-    """The workers of a Dask scheduler, and whether they are still there."""
+    """Workers of a Dask scheduler, with detection of their loss."""
 
     def __init__(self, client: Any) -> None:
         self._client = client
@@ -119,7 +119,7 @@ class Cluster(Executor):
         return self._inner.submit(_called, pickle.dumps((function, args, kwargs)))
 
     def lost(self) -> str:
-        """Return why no answer will come any more; "" as long as one may."""
+        """Return the reason why no answer can come any more; "" if one can."""
         now = time.monotonic()
         if now < self._looked + LOOK:
             return ""
@@ -132,7 +132,7 @@ class Cluster(Executor):
         return why if final or time.monotonic() - self._missed > PATIENCE else ""
 
     def _missing(self, now: float) -> tuple[str, bool]:
-        """Return what no work can be done without, and whether waiting is over already."""
+        """Return what is missing for any work, and whether the waiting time is over."""
         try:
             if self._client.status != "running":
                 raise OSError
@@ -153,8 +153,8 @@ class Cluster(Executor):
         return "", False
 
     def _silent(self, workers: Mapping[str, Any], now: float) -> list[str]:
-        """Return the addresses of workers that have given no sign of life for long."""
-        if now > self._looked + PATIENCE:  # what happened while nobody looked counts for nothing
+        """Return the addresses of workers without a recent heartbeat."""
+        if now > self._looked + PATIENCE:  # time in which nothing was checked does not count
             self._heard = {}
         seen = {address: worker["last_seen"] for address, worker in workers.items()}
         before = self._heard
@@ -165,9 +165,10 @@ class Cluster(Executor):
         return [name for name, (_, since) in self._heard.items() if now - since > SILENCE]
 
     def _remove(self, silent: Sequence[str]) -> None:
-        """Have the work of silent workers done by the others."""
+        """Reassign the work of silent workers to the others."""
 
-        async def remove(dask_scheduler: Any) -> None:  # travels as text: no module is needed there
+        # sent as bytes: no module is needed on that side
+        async def remove(dask_scheduler: Any) -> None:
             for address in silent:
                 await dask_scheduler.remove_worker(address, stimulus_id="tribolab")
 
@@ -179,10 +180,10 @@ class Cluster(Executor):
 
 
 def _called(packed: bytes) -> Any:
-    """Call a packed function in a worker's thread.
+    """Call a packed function in a thread of a worker.
 
-    Dask unpacks what it is given, with the imports of that, in the thread that gives signs of life.
-    More threads for linear algebra than processes here use may change the last digits of sums.
+    Dask would unpack arguments, with their imports, in the heartbeat thread. Linear algebra uses as
+    many threads as in local processes, so that the last digits of sums agree.
     """
     function, args, kwargs = pickle.loads(packed)
     with one_thread():
@@ -190,6 +191,6 @@ def _called(packed: bytes) -> Any:
 
 
 def _is_out_of_memory(worker: Mapping[str, Any]) -> bool:
-    """Whether a worker takes no work because of its memory, and does none that could end."""
+    """Whether a worker refuses work for lack of memory while it has none that could end."""
     doing = worker["metrics"].get("task_counts", {}).get("executing", 0)
     return worker["status"] == "paused" and not doing

@@ -1,4 +1,4 @@
-"""Where work is done: processes that outlive a crash, a Dask cluster, or this process."""
+"""Executors: processes that survive a crash, a Dask cluster, or this process."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ def default_jobs() -> int:
 def completed(
     executor: Executor | None, function: Callable[[Any], Any], tasks: Iterable[Any]
 ) -> Iterator[tuple[Any, Future[Any]]]:
-    """Give (task, its finished future) as the tasks end; without executor, here and in order.
+    """Yield (task, finished future) as the tasks end; without executor, here and in order.
 
-    With an executor the tasks begin at once, whenever the caller asks for what they came to. If
-    it stops asking early, what has not begun is cancelled.
+    With an executor the tasks start immediately, before results are requested. If the caller stops
+    early, tasks that have not started are cancelled.
     """
     if executor is None:
         return _here(function, tasks)
@@ -53,7 +53,7 @@ def _here(
         try:
             with one_thread():  # as in the workers
                 future.set_result(function(task))
-        except Exception as error:  # handed on: whoever asks for the result gets it
+        except Exception as error:  # stored in the future and raised when the result is requested
             future.set_exception(error)
         yield task, future
 
@@ -75,7 +75,7 @@ def _as_they_end(
                 text = text or "its scheduler dropped the work"
             if text:
                 raise ClusterGone(gone(text, count - len(futures), count))
-            while come:  # what was answered is held no longer
+            while come:  # release finished results
                 yield futures.pop(come[0]), _explained(come.pop())
     finally:
         for future in futures:
@@ -83,7 +83,7 @@ def _as_they_end(
 
 
 def _explained(future: Future[Any]) -> Future[Any]:
-    """Return the future of a task; of one whose Dask workers died, one that says so."""
+    """Return the future of a task, with an explanation if its Dask workers died."""
     if type(future.exception()).__name__ != "KilledWorker":
         return future
     died: Future[Any] = Future()
@@ -95,17 +95,17 @@ def _explained(future: Future[Any]) -> Future[Any]:
 def workers(
     jobs: int | None = None, scheduler: str | None = None, modules: Sequence[str] = ()
 ) -> Iterator[Executor | None]:
-    """Yield an executor: Dask's for a scheduler's address, else processes, else none.
+    """Yield an executor: Dask for a scheduler's address, else processes, else None.
 
     Parameters
     ----------
     jobs
-        Number of processes; 1 means none (all is done here). By default one per processor.
+        Number of processes; 1 means this process only. By default one per processor.
     scheduler
-        Address of a Dask scheduler, e.g. ``"tcp://10.0.0.5:8786"``. Its workers have to see the
-        raw files and the results folder under the same paths.
+        Address of a Dask scheduler, e.g. ``"tcp://10.0.0.5:8786"``. Its workers must have access to
+        the raw files and the results folder under the same paths.
     modules
-        What the work imports, by name: `LastingPool` has it imported but once.
+        Names of the modules that the work needs; `LastingPool` imports them only once.
 
     Raises
     ------

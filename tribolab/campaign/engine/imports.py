@@ -1,7 +1,7 @@
-"""Imported first by a nursery: no garbage is looked for until its copies begin to work.
+"""First import of a nursery: disables garbage collection until its copies start.
 
-All that is imported stays. Its hundred thousands of small objects would be gone through again and
-again, which takes as long as a third of the imports; the copies look for garbage (`begin_worker`).
+Imported modules stay in memory. Scanning their hundreds of thousands of objects repeatedly takes a
+third of the import time; the copies enable collection again (`begin_worker`).
 """
 
 import gc

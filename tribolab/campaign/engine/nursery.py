@@ -1,7 +1,7 @@
-"""Processes that are copies of one, the nursery, which has imported what they need.
+"""Nursery: a process with all imports done, of which worker processes are copies.
 
-To import all that a worker needs takes as long as the work on several runs. Where the system can
-copy a process safely, one without threads imports it once, while its parent goes on with its own.
+Importing the modules of a worker takes as long as analysing several runs. If the system can copy a
+process safely, one process without threads imports them once, in parallel with its parent.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import Any
 
 from tribolab.campaign.engine.processes import ONE_THREAD, Fresh, with_environment
 
-# Arrow's allocator has a thread of its own, beside which a process should not be copied.
+# Arrow's allocator has a thread, with which a process should not be copied.
 _NO_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}
 
 
@@ -28,52 +28,52 @@ _FIRST = "tribolab.campaign.engine.imports"
 
 
 class Nursery(ForkServer):
-    """The process that the workers of a pool are copies of; it ends with the pool.
+    """Process that is copied for the workers of a pool; it ends with the pool.
 
-    The standard library has one for all that a program does, with the environment and the imports
-    of whoever was first, and waits for it nowhere: what its copies cost would not be counted.
+    The standard library has one such process per program, with the environment and imports of its
+    first user, and never waits for it, so that the time of its copies would not be counted.
 
     Parameters
     ----------
     modules
-        What it imports, by name. What is not there is left to the work that needs it.
+        Names of the modules to import. Missing ones are left to the work that needs them.
     """
 
     def __init__(self, modules: Sequence[str] = ()) -> None:
         super().__init__()
-        # refuses to begin in a worker that still imports a script without its guard: at once, as
-        # what such a worker leaves half begun nobody tidies up
+        # fails immediately in a worker that imports a script without main guard, because
+        # nobody would clean up what such a worker starts
         spawn.get_preparation_data("nursery")
         self.set_forkserver_preload([_FIRST, *modules])
 
     def ensure_running(self) -> None:
-        """Start it, unless it runs, with our own search path, and BLAS on one thread."""
+        """Start the nursery if needed, with our search path and BLAS on one thread."""
         paths = {"PYTHONPATH": os.pathsep.join(sys.path), "PYTHONSAFEPATH": "1"}
         with with_environment(ONE_THREAD | _NO_THREAD | paths):
             super().ensure_running()
 
     def connect_to_new_process(self, fds: Sequence[int]) -> tuple[int, int]:
-        """Copy it; if it was killed meanwhile, another one."""
+        """Copy the nursery; if it was killed, start another one first."""
         try:
             return super().connect_to_new_process(fds)
         except ConnectionError:
             pid = self._forkserver_pid  # type: ignore[attr-defined]
-            if pid is not None:  # it may be about to end still: then nobody would start another
+            if pid is not None:  # it may still be ending: then nobody would start another
                 with contextlib.suppress(OSError):
                     os.kill(pid, signal.SIGKILL)
                     os.waitid(os.P_PID, pid, os.WEXITED | os.WNOWAIT)
             return super().connect_to_new_process(fds)
 
     def close(self) -> None:
-        """End it, when its copies have ended."""
+        """End the nursery after its copies."""
         pid = self._forkserver_pid  # type: ignore[attr-defined]
-        if pid is not None:  # it would wait for all who hold its pipe, whoever has inherited that
+        if pid is not None:  # avoids waiting for all processes that inherited its pipe
             os.kill(pid, signal.SIGKILL)
         self._stop()  # type: ignore[attr-defined]
 
 
 class Copied(Fresh):
-    """Copies of a nursery, with BLAS on one thread, that can be ended."""
+    """Multiprocessing context of copies of a nursery, with BLAS on one thread."""
 
     def __init__(self, nursery: Nursery) -> None:
         super().__init__()
@@ -89,7 +89,7 @@ class _CopiedProcess(ForkServerProcess):
         super().__init__(*args, **kwargs)
         self._nursery = nursery
 
-    def __getstate__(self) -> dict[str, object]:  # what travels to the worker
+    def __getstate__(self) -> dict[str, object]:  # data sent to the worker
         return {name: value for name, value in vars(self).items() if name != "_nursery"}
 
     def _Popen(  # type: ignore[override]  # noqa: N802
@@ -104,7 +104,7 @@ class _CopiedPopen(popen_forkserver.Popen):
         super().__init__(process)
 
     def _launch(self, process: BaseProcess) -> None:
-        """Do what the standard library does, in a nursery of our own."""
+        """Launch a process as the standard library does, from our own nursery."""
         data = io.BytesIO()
         set_spawning_popen(self)
         try:
@@ -114,7 +114,7 @@ class _CopiedPopen(popen_forkserver.Popen):
             set_spawning_popen(None)
         passed = self._fds  # type: ignore[attr-defined]
         self.sentinel, ours = self._nursery.connect_to_new_process(passed)
-        # as long as it is open, the worker sees that its parent lives
+        # while it is open, the worker knows that its parent lives
         held = os.dup(ours)
         self.finalizer = util.Finalize(
             self,

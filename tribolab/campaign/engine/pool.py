@@ -1,4 +1,4 @@
-"""A pool of processes that outlives a crash, and can be stopped at any moment."""
+"""Process pool that survives crashes and can be stopped at any moment."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from typing import Any
 from tribolab.campaign.engine.processes import MASKS, Fresh, begin_worker
 from tribolab.core.errors import AnalysisError
 
-if sys.platform == "linux":  # macOS can copy a process, but some of its libraries do not bear it
+if sys.platform == "linux":  # macOS can copy a process, but some of its libraries fail afterwards
     from tribolab.campaign.engine.nursery import Copied, Nursery
 
-# what ends a program, so far as the system knows it; blocked in a thread, where it can be
+# signals that end a program, if the system has them; blocked in threads where possible
 _ENDING = tuple(getattr(signal, n) for n in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, n))
 
 
@@ -34,23 +34,23 @@ _DIED = (
 
 
 class WorkerDied(AnalysisError):
-    """A worker process ended without an answer, twice."""
+    """Raised if a worker process ended without an answer, twice."""
 
 
 class LastingPool(Executor):
-    """A pool of processes in which a crash costs the work that crashed, and no other.
+    """Process pool in which a crash loses only the work that crashed.
 
-    A `ProcessPoolExecutor` is lost as a whole when one of its processes dies. Here what was
-    under way is tried once more, each piece alone in a fresh process; what then kills its process
-    again fails with `WorkerDied`, and all the rest is done.
+    A `ProcessPoolExecutor` breaks when one of its processes dies. Here the interrupted calls are
+    repeated once, each alone in a fresh process; a call that kills its process again fails with
+    `WorkerDied`, and all others are completed.
 
     Parameters
     ----------
     jobs
         Number of processes.
     modules
-        What the work imports, by name: where the system allows it, it is imported once, in a
-        process that all others are copies of.
+        Names of the modules that the work needs; if the system allows it, they are imported once,
+        in a process that is copied for the workers.
 
     Examples
     --------
@@ -67,7 +67,7 @@ class LastingPool(Executor):
         self._closed = False
 
     def prepare(self) -> None:
-        """Have the modules of the work imported, while the caller goes on with its own."""
+        """Start importing the modules of the work in parallel with the caller."""
         with _undisturbed(), self._lock:
             if self._nursery is not None and not self._closed:
                 self._nursery.ensure_running()
@@ -83,7 +83,7 @@ class LastingPool(Executor):
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Take no more work; with `wait`, return when all that was submitted has ended."""
+        """Accept no more work; with `wait`, return when all submitted work has ended."""
         with self._lock:
             self._closed = True
             lanes = (self._main, self._alone)
@@ -99,7 +99,7 @@ class LastingPool(Executor):
             self._close_nursery()
 
     def end(self) -> None:
-        """Drop all work and end the processes at once."""
+        """Drop all work and end the processes immediately."""
         self.shutdown(wait=False, cancel_futures=True)
         for lane in (self._main, self._alone):
             lane.kill()
@@ -157,7 +157,7 @@ class LastingPool(Executor):
 
 
 class _Lane:
-    """A process pool, what waits for it and what is under way in it."""
+    """Process pool with its waiting and running work."""
 
     def __init__(self, jobs: int, context: Callable[[], Fresh]) -> None:
         self.jobs = jobs
@@ -180,7 +180,7 @@ class _Lane:
         return self._pool
 
     def forget(self, pool: ProcessPoolExecutor) -> None:
-        """Leave a broken pool; the next call gets a fresh one."""
+        """Abandon a broken pool; the next call gets a fresh one."""
         if self._pool is pool:
             self._pool = None
 
@@ -208,9 +208,9 @@ class _Lane:
 
 @contextlib.contextmanager
 def _undisturbed() -> Iterator[None]:
-    """Let signals wait until processes and threads are started, and Ctrl-C until it is ignored.
+    """Defer signals until processes and threads are started, and Ctrl-C until it is ignored.
 
-    What is interrupted while it starts a process leaves one that dies with a traceback.
+    An interruption during the start of a process leaves one that dies with a traceback.
     """
     if threading.current_thread() is not threading.main_thread():  # signals go to the main one
         yield

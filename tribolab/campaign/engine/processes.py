@@ -1,4 +1,4 @@
-"""How the processes of a pool begin: fresh, with BLAS on one thread, and bound to their parent."""
+"""Start of the processes of a pool: fresh, with BLAS on one thread, ending with their parent."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class ResultPipe:
 
 
 class Fresh(SpawnContext):
-    """Fresh interpreters with BLAS on one thread: safe beside threads, and can be ended."""
+    """Multiprocessing context of fresh interpreters (safe with threads); BLAS uses one thread."""
 
     def __init__(self) -> None:
         self.started: list[BaseProcess] = []
@@ -84,7 +84,7 @@ class Fresh(SpawnContext):
         return _FreshProcess(*args, **kwargs)
 
     def kill(self) -> None:
-        """End all processes at once."""
+        """Kill all processes."""
         for process in self.started:
             if process.pid is not None:  # else it was interrupted while starting
                 process.kill()
@@ -92,14 +92,14 @@ class Fresh(SpawnContext):
 
 class _FreshProcess(SpawnProcess):
     def start(self) -> None:
-        """Start with the environment in which BLAS, loaded there anew, takes one thread."""
+        """Start with an environment in which BLAS, loaded there, uses one thread."""
         with with_environment(ONE_THREAD):
             super().start()
 
 
 @contextlib.contextmanager
 def with_environment(changed: Mapping[str, str]) -> Iterator[None]:
-    """Have variables of the environment changed for a while, for processes that start in it."""
+    """Change environment variables temporarily, for processes started meanwhile."""
     before = {name: os.environ.get(name) for name in changed}
     os.environ.update(changed)
     try:
@@ -113,12 +113,12 @@ def with_environment(changed: Mapping[str, str]) -> Iterator[None]:
 
 
 def begin_worker(variables: Mapping[str, str]) -> None:
-    """Leave Ctrl-C to the parent, and end when the parent is gone, however it went.
+    """Leave Ctrl-C to the parent, and end when the parent has ended.
 
     Parameters
     ----------
     variables
-        The environment of the parent: that of a copied process is as old as what it is copied of.
+        The environment of the parent; that of a copied process is as old as its original.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if MASKS:

@@ -1,8 +1,8 @@
-"""One way to do every kind of work: plan it, take over what is known, do the rest, record failures.
+"""Common interface of all kinds of work: plan, reuse of known results, work, failures.
 
-Runs, curves, surfaces, models and figures are stages. A stage says what is to be done, what is
-known of it already, what a worker does (pure: a task in, a record out), and what stands in the
-place of a record when that failed. Where the work is done is any `concurrent.futures.Executor`.
+Runs, curves, surfaces, models and figures are stages. A stage defines its tasks, reuses known
+results, has a pure function for workers (from task to record), and makes a record of a failure. The
+work is done in any `concurrent.futures.Executor`.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ Progress = Callable[[str, int, int], None]
 
 
 class Stage(ABC, Generic[Task, Record, Came]):
-    """One kind of work in a campaign.
+    """Kind of work in a campaign.
 
     Attributes
     ----------
     name
-        What the progress calls it.
+        Name in the progress display.
     """
 
     name: ClassVar[str]
@@ -35,59 +35,59 @@ class Stage(ABC, Generic[Task, Record, Came]):
     @staticmethod
     @abstractmethod
     def work(task: Task) -> Record:
-        """Do one task; static, that it may travel to a worker.
+        """Do one task; static, so that it can be sent to a worker.
 
-        What goes wrong with the task itself is in the record; it raises `OutputError` where
-        results cannot be written, and nothing else on purpose.
+        Errors of the task itself are recorded; only `OutputError` is raised, if results cannot be
+        written.
         """
 
     @abstractmethod
     def plan(self) -> Sequence[Task]:
-        """Return what is to be done, in the order of the results."""
+        """Return the tasks in the order of the results."""
 
     def known(self, task: Task, place: int) -> Came | None:
-        """Take over what is known, and return what it came to; None if it has to be done."""
+        """Reuse a known result and return its outcome; None if there is none."""
         return None
 
     def prepared(self, task: Task) -> Task:
-        """Return a task as a worker gets it, with what is known of a part of it."""
+        """Return a task for a worker, with reusable parts of earlier results."""
         return task
 
     def order(self, tasks: Sequence[tuple[int, Task]]) -> list[tuple[int, Task]]:
-        """Return tasks in the order in which they should begin."""
+        """Return the tasks in the order in which they should start."""
         return list(tasks)
 
     @abstractmethod
     def failed(self, task: Task, error: BaseException) -> Record:
-        """Return the record of a task whose worker could not even say what went wrong."""
+        """Return the record of a task whose worker died."""
 
     @abstractmethod
     def keep(self, task: Task, place: int, record: Record) -> Came:
-        """Write a record down; return the little that the next stages have to know of it."""
+        """Store a record, and return the summary for later stages."""
 
 
 def silent(stage: str, done: int, total: int) -> None:
-    """Say nothing of the progress."""
+    """Show no progress."""
 
 
 def perform(
     stage: Stage[Task, Record, Came], executor: Executor | None = None, tell: Progress | None = None
 ) -> list[Came]:
-    """Do the work of a stage, and return what each task came to, in the order of the plan.
+    """Do the work of a stage, and return the outcome of each task in the order of the plan.
 
     Parameters
     ----------
     stage
-        What is to be done.
+        The stage.
     executor
-        Where; None does it here, task by task.
+        Executor; None does the work here, task by task.
     tell
-        Called as ``tell(stage, done, total)``; None says nothing.
+        Called as ``tell(stage, done, total)``; None shows no progress.
 
     Raises
     ------
     OutputError
-        If results cannot be written. What else goes wrong is in the records.
+        If results cannot be written. Other errors are in the records.
     """
     return begun(stage, executor, tell)()
 
@@ -95,10 +95,9 @@ def perform(
 def begun(
     stage: Stage[Task, Record, Came], executor: Executor | None = None, tell: Progress | None = None
 ) -> Callable[[], list[Came]]:
-    """Begin the work of a stage, and return what waits for it and gives what `perform` gives.
+    """Start the work of a stage, and return a function that waits for its outcomes.
 
-    What is called in between is done while workers work; without an executor nothing is done
-    before it is waited for.
+    The caller can work in the meantime; without an executor the work is done when it is waited for.
 
     Parameters
     ----------
@@ -137,7 +136,7 @@ def answers(
     tasks: Sequence[tuple[int, Task]],
     executor: Executor | None,
 ) -> Iterator[tuple[int, Task, Record | BaseException]]:
-    """Give (place, task, record or error) as the tasks end; nothing of them is held here."""
+    """Yield (index, task, record or error) as the tasks end, without keeping them."""
     places = {id(task): place for place, task in tasks}
     return _answered(places, completed(executor, work, [task for _, task in tasks]))
 

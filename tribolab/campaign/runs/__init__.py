@@ -1,1 +1,1 @@
-"""The runs of a campaign: analysed, checked, written and recorded."""
+"""Runs of a campaign: analysis, checks, files and records."""

@@ -1,4 +1,4 @@
-"""The analysis of one run: read, segments, decisions, friction, stick-slip, checks."""
+"""Analysis of one run: reading, segments, decisions, friction, stick-slip, checks."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
     from tribolab.qc.findings import Findings
 
-# Attributes of a data file's run: the gravest status of its checks, and what they said.
+# Attributes of a run in a data file: worst status of its checks, and their results.
 QUALITY, _FINDINGS = "quality", "findings"
-_LOADS = {"normal_force", "normal_stress", "friction_coefficient"}  # any of them tells the load
+_LOADS = {"normal_force", "normal_stress", "friction_coefficient"}  # any of them gives the load
 AS_FOUND = "friction_as_found"  # group of a data file: friction without a person's decisions
 
 
 class Analysed(NamedTuple):
-    """What a run came to.
+    """Results of a run.
 
     Parameters
     ----------
@@ -35,11 +35,11 @@ class Analysed(NamedTuple):
     segments, friction, slip
         Its results (segment).
     quality
-        Gravest finding of its checks, or what a person decided.
+        Worst status of its checks, or a person's decision.
     friction_as_found, quality_as_found
-        The same without a person's decisions; None and "" where there are none.
+        The same without a person's decisions; None and "" if nobody decided.
     whole
-        Friction with the part of the run that `discard` and `steady` leave out; None without them.
+        Friction including the part that `discard` and `steady` leave out; None without them.
     """
 
     signals: xr.Dataset
@@ -53,7 +53,7 @@ class Analysed(NamedTuple):
 
     @property
     def groups(self) -> dict[str | None, xr.Dataset]:
-        """The groups of the data file."""
+        """Groups of the data file."""
         groups: dict[str | None, xr.Dataset] = {"run": self.signals, "segments": self.segments}
         groups |= {"friction": self.friction, "stick_slip": self.slip}
         if self.friction_as_found is not None:
@@ -62,21 +62,21 @@ class Analysed(NamedTuple):
 
 
 def analyse_run(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
-    """Read a run, find its segments and its friction, and check it, with what was decided on it.
+    """Read a run, find segments and friction, apply decisions, and check it.
 
     Parameters
     ----------
     run
-        What is to be done.
+        The planned run.
     earlier
-        Where its signals are found without reading its raw files.
+        Earlier results with its signals, to avoid reading its raw files.
 
     Raises
     ------
     TribolabError
         If it cannot be read or analysed, or a decision finds no segment.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.friction.decisions.decide import decide, without_decisions
     from tribolab.friction.segments.find import find_segments
 
@@ -113,10 +113,10 @@ def _steady_part(
     discard: str | None,
     steady: str | None,
 ) -> tuple[xr.Dataset, xr.Dataset | None]:
-    """Return the segments that count, and the friction of all of them if some are left out."""
+    """Segments that are used, and the friction of all if some are left out."""
     if discard is None and steady is None:
         return segments, None
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.friction.coefficient.coefficient import friction_coefficient
     from tribolab.friction.running_in.steady_part import steady_segments, without_start
 
@@ -129,7 +129,7 @@ def _steady_part(
 
 
 def run_labels(run: PlannedRun) -> dict[str, str]:
-    """Return what every dataset of a run is labelled with."""
+    """Labels that every dataset of a run gets as attributes."""
     return {"run_name": run.name} | {
         key: value
         for key in ("surface", "medium", "mount", "specimen")
@@ -140,7 +140,7 @@ def run_labels(run: PlannedRun) -> dict[str, str]:
 def _examined(
     run: PlannedRun, signals: xr.Dataset, segments: xr.Dataset
 ) -> tuple[xr.Dataset, xr.Dataset, Findings]:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.friction.coefficient.coefficient import friction_coefficient
     from tribolab.friction.oscillation.stick_slip import stick_slip
     from tribolab.friction.zero.of_run import StatedZeroError
@@ -150,7 +150,7 @@ def _examined(
     let_go()
     try:
         friction = friction_coefficient(_stated(run, signals), segments, **run.friction)
-    except StatedZeroError as error:  # a mistake of the campaign file, not of the raw file
+    except StatedZeroError as error:  # an error of the campaign file, not of the raw file
         raise ConfigError(error.what, where=run.zero_uncertainty_at) from error
     if "friction_coefficient" in friction:
         friction = with_uncertainty(friction, known_uncertainties(friction))
@@ -162,13 +162,13 @@ def _examined(
 
 
 def _stated(run: PlannedRun, signals: xr.Dataset) -> xr.Dataset:
-    """Return the signals with all that is stated of their calibration: the campaign file first."""
+    """Return the signals with all stated calibration uncertainties, first the campaign's."""
     stated = signals.attrs.get("uncertainty", {}) | run.uncertainty
     return signals.assign_attrs(uncertainty=stated) if stated else signals
 
 
 def _read(run: PlannedRun) -> xr.Dataset:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.friction.moving_mass import without_inertia
     from tribolab.reading.unknown_run import read_run
 
@@ -180,11 +180,11 @@ def _read(run: PlannedRun) -> xr.Dataset:
         zero=run.zero,
         moving_mass=run.moving_mass,
     )
-    return without_inertia(read)  # where none is stated, the data may tell a mass
+    return without_inertia(read)  # if no mass is stated, the data may show one
 
 
 def _with_set_points(run: PlannedRun, read: xr.Dataset) -> xr.Dataset:
-    """Return the signals with what the campaign file says of them."""
+    """Return the signals with the set-points of the campaign file."""
     signals = read.copy()
     if run.clock_shift is not None and "clock_shift_source" not in signals.attrs:
         missing = signals.attrs.get("companion_missing", "")
@@ -196,7 +196,7 @@ def _with_set_points(run: PlannedRun, read: xr.Dataset) -> xr.Dataset:
     if run.normal_force is not None:
         signals.attrs["set_normal_force_N"] = run.normal_force
     if run.stiffness is not None:
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.friction.oscillation.critical_stiffness import STIFFNESS
 
         signals.attrs[STIFFNESS] = run.stiffness
@@ -206,7 +206,7 @@ def _with_set_points(run: PlannedRun, read: xr.Dataset) -> xr.Dataset:
 
 
 def _under_stated_load(signals: xr.Dataset) -> xr.Dataset:
-    """Return the signals with the load that was stated, where friction was recorded and no load."""
+    """Return the signals with the stated load, if friction but no load was recorded."""
     load = signals.get("set_normal_force", signals.attrs.get("set_normal_force_N"))
     if load is None or "friction_force" not in signals or _LOADS & set(signals.variables):
         return signals
@@ -216,9 +216,9 @@ def _under_stated_load(signals: xr.Dataset) -> xr.Dataset:
 
 
 def _stated_speed(signals: xr.Dataset, speed: float) -> dict[str, str | float]:
-    """Attributes of a run whose speed the campaign file says.
+    """Return the attributes of a run whose speed is stated in the campaign file.
 
-    The segments take it where nothing was recorded; else the check of the speed compares with it.
+    Segments use it if no speed was recorded; else the check of the speed compares with it.
     """
     own = signals.attrs.get("set_speed_m_s", speed)
     if "set_speed" in signals or not math.isclose(own, speed, rel_tol=1e-6):

@@ -1,4 +1,4 @@
-"""Earlier runs that are kept because their raw files cannot be read now."""
+"""Earlier results of runs that are kept because their raw files cannot be read."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ _LATER = "what was decided since reaches no segment of it, only the run as a who
 
 
 def keep_runs(campaign: Campaign, store: Store, runs: Sequence[RunCame]) -> list[RunCame]:
-    """Put earlier results in the place of runs whose files cannot be read now.
+    """Replace runs whose files cannot be read by their earlier results.
 
     Parameters
     ----------
     campaign
-        It says which files it still names.
+        Campaign with the files it still names.
     store
-        It knows the results of before, and what is kept is written down there.
+        Earlier results, and storage of those kept.
     runs
-        What the runs came to now.
+        Present outcomes of the runs.
 
     Returns
     -------
     list of RunCame
-        In the same order; runs of files that are gone come last.
+        Runs in the same order; those of missing files come last.
     """
     kept = list(runs)
     bad = {
@@ -102,7 +102,7 @@ def _kept_run(run: RunOutcome, entry: RunEntry, path: Path, why: str) -> RunOutc
 def _with_decisions(
     outcome: RunOutcome, known: Entry[RunRecord], decided: tuple[Decision, ...]
 ) -> tuple[RunOutcome, Entry[RunRecord]]:
-    """Return an earlier run with what was decided on it since, as far as that needs no file."""
+    """Return an earlier run with the decisions made since, if they need no raw file."""
     record = known.record
     plain = [decision.plain() for decision in decided]
     if plain == [_plain(row) for row in record.facts.decisions]:
@@ -119,13 +119,13 @@ def _with_decisions(
 
 
 def _plain(row: DecisionRow) -> dict[str, object]:
-    """Return a decision as `Decision.plain` does."""
+    """Decision as plain data, as from `Decision.plain`."""
     names = ("action", "start_s", "stop_s", "new_start_s", "new_stop_s", "reason", "author", "date")
     return {name: getattr(row, name) for name in names}
 
 
 def _entry_of(campaign: Campaign, labels: Iterable[str]) -> RunEntry | None:
-    """Return the [[run]] that names all these files, also if they are not there now."""
+    """Find the [[run]] that names all these files, even if they are missing now."""
     labels = list(labels)
     for entry in campaign.run:
         if all(is_named(campaign, entry.files, label) for label in labels):

@@ -1,11 +1,11 @@
-"""The load that a run is known by: as stated, else as measured, one or several levels of it.
+"""Load of a run: stated, or measured at one or several levels.
 
 Notes
 -----
-Where none is stated, the load of a segment is its measured mean. Sorted, two neighbours that differ
-by more than a tenth belong to different levels: set loads differ by more, and what a load wanders
-by, or a disc that wobbles moves it, is less. Segments of one level that nevertheless spread by more
-than a tenth are a load that rises or falls all the time, which has no levels.
+If no load is stated, that of a segment is its measured mean. In sorted order, two neighbours that
+differ by more than a tenth belong to different levels: set-points differ by more, while drift and
+the wobble of a disc are smaller. If the segments of one level spread by more than a tenth, the load
+changes continuously and has no levels.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from tribolab.core.wording import LOAD_MEASURED, LOAD_STATED, LOAD_VARIES, load_
 if TYPE_CHECKING:
     import xarray as xr
 
-_VARIES = 1.1  # largest over smallest load of the segments of one level
+_VARIES = 1.1  # ratio of the largest to the smallest load of the segments of one level
 
 
 class RunLoad(NamedTuple):
-    """Load [N] of a run, where it is from, what was measured while it slid, and its levels.
+    """Load [N] of a run, its source, the load measured while sliding, and its levels.
 
-    Of several levels that were set it is stated, too, and `normal_force` is None.
+    For several set levels the load counts as stated, and `normal_force` is None.
     """
 
     normal_force: float | None
@@ -35,14 +35,14 @@ class RunLoad(NamedTuple):
 
 
 def load_of(stated: float | None, signals: xr.Dataset, friction: xr.Dataset) -> RunLoad:
-    """Return the load that a run is known by: as stated, else as measured while it slid.
+    """Load that identifies a run: stated, or else measured while it slid.
 
     Parameters
     ----------
     stated
         Set-point [N] of the campaign file.
     signals, friction
-        Of the run; its own file may state a set-point, too.
+        Signals and friction of the run; its file may also state a set-point.
     """
     if stated is None:
         stated = signals.attrs.get("set_normal_force_N")
@@ -52,7 +52,7 @@ def load_of(stated: float | None, signals: xr.Dataset, friction: xr.Dataset) -> 
         return RunLoad(None, "", None)
     force = friction["normal_force"].values
     lasts = friction["trimmed_stop"].values - friction["trimmed_start"].values
-    lasts = lasts if (lasts > 0).any() else np.ones(force.size)  # of results each counts as much
+    lasts = lasts if (lasts > 0).any() else np.ones(force.size)  # each result has the same weight
     good = np.isfinite(force) & (force > 0) & (lasts > 0)
     if not good.any():
         return RunLoad(None, "", None)
@@ -67,7 +67,7 @@ def load_of(stated: float | None, signals: xr.Dataset, friction: xr.Dataset) -> 
 
 
 def _was_set(signals: xr.Dataset) -> bool:
-    """Whether the load of a run is that of its steps' set-points: nothing measured it."""
+    """Whether the load of a run is only a set-point of its steps, not measured."""
     names = ("normal_force", "set_normal_force")
     if any(name not in signals or signals[name].dims != ("time",) for name in names):
         return False
@@ -76,17 +76,17 @@ def _was_set(signals: xr.Dataset) -> bool:
 
 
 def load_levels(force: np.ndarray, lasts: np.ndarray) -> tuple[float, ...]:
-    """Return the loads of a run whose segments were measured under several, the smallest first.
+    """Load levels of a run whose segments were measured under several, smallest first.
 
     Parameters
     ----------
     force, lasts
-        Mean load [N] of each segment, above 0, and how long it lasts, its weight (segment).
+        Mean load [N] of each segment, above 0, and its duration as weight (segment).
 
     Returns
     -------
     tuple
-        Mean load [N] of each level; none where the load rises or falls from segment to segment.
+        Mean load [N] of each level; empty if the load changes continuously.
 
     Examples
     --------
@@ -105,12 +105,12 @@ def load_levels(force: np.ndarray, lasts: np.ndarray) -> tuple[float, ...]:
 
 
 def at_level(force: np.ndarray, levels: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return which segments were measured at the wanted ones of the levels of a run.
+    """Return a mask of the segments measured at the wanted load levels of a run.
 
     Parameters
     ----------
     force
-        Mean load [N] (segment); a segment without one is at none.
+        Mean load [N] (segment); a segment without load belongs to no level.
     levels, wanted
         Load [N] of each level and whether it is wanted (level).
 
@@ -126,5 +126,5 @@ def at_level(force: np.ndarray, levels: np.ndarray, wanted: np.ndarray) -> np.nd
 
 
 def rounded_load(load: float) -> float:
-    """Return a measured load to three digits: it is a label, its error stands elsewhere."""
+    """Return a measured load rounded to three digits, as a label."""
     return float(f"{load:.3g}")

@@ -1,8 +1,9 @@
-"""Signals of a run, as its raw files gave them, from the data file that was made of them before.
+"""Reuse of the signals of a run from an earlier data file instead of its raw files.
 
-To read the raw files of a run and to set its two clocks right takes as long as all the rest. A
-data file holds the same signals, with what the checks said of them: it keeps beside them what the
-analysis changed, so that this can be taken back, and a mark of all that reading depends on.
+Reading the raw files of a run and aligning its two clocks takes as long as the rest of the
+analysis. A data file contains the same signals with the results of the checks. It also records the
+changes of the analysis, so that they can be undone, and a checksum of everything that affects
+reading.
 """
 
 from __future__ import annotations
@@ -25,18 +26,18 @@ if TYPE_CHECKING:
     from tribolab.core.untyped import Json
     from tribolab.records.parts import Source
 
-READING = "reading"  # attribute of a data file's run: its mark, and what the analysis changed
+READING = "reading"  # attribute of a run in a data file: checksum, and changes of the analysis
 
 
 class Earlier(NamedTuple):
-    """A data file of earlier results, and the mark of the reading that is wanted of it."""
+    """Earlier data file, and the checksum of the wanted reading."""
 
     file: Path
     mark: str
 
 
 def mark_of(run: PlannedRun, sources: Sequence[Source]) -> str:
-    """Return the checksum of all that shapes the signals of a run; "" if a file is not known."""
+    """Return the checksum of all that affects the signals of a run; "" if a file is unknown."""
     sums = [checksum for _, checksum, _ in sources]
     if not all(sums):
         return ""
@@ -45,16 +46,16 @@ def mark_of(run: PlannedRun, sources: Sequence[Source]) -> str:
 
 
 def note_reading(run: PlannedRun, read: xr.Dataset, marked: xr.Dataset) -> None:
-    """Note on the signals that the analysis marked how they were read; in place.
+    """Record in the analysed signals how they were read, in place.
 
     Parameters
     ----------
     run
-        What was asked for.
+        The planned run.
     read
         The signals as they were read (time).
     marked
-        The same with what the analysis added.
+        The same with the changes of the analysis.
     """
     attrs = read.attrs
     if not _is_of_its_files(run, attrs):
@@ -71,9 +72,9 @@ def note_reading(run: PlannedRun, read: xr.Dataset, marked: xr.Dataset) -> None:
 
 
 def _is_of_its_files(run: PlannedRun, attrs: Json) -> bool:
-    """Whether nothing was read but the files that are known to belong to the run.
+    """Whether only files that are known to belong to the run were read.
 
-    A second log that is not named among them may come, go and change; so may a blank run.
+    A second log or blank run that is not among them may appear, disappear or change.
     """
     alone = len(str(attrs.get("source", "")).split("; ")) == len(run.files)
     blank = any(parse_zero(str(text)).file for text in attrs.get("zeros_read", {}).values())
@@ -81,24 +82,24 @@ def _is_of_its_files(run: PlannedRun, attrs: Json) -> bool:
 
 
 def earlier_signals(earlier: Earlier) -> xr.Dataset | None:
-    """Return the signals of a run as they were read before; None if they cannot be had.
+    """Return the signals of a run from an earlier reading; None if unavailable.
 
     Parameters
     ----------
     earlier
-        Where they are.
+        Earlier data file.
 
     Returns
     -------
     xarray.Dataset or None
-        What reading the raw files would give (time).
+        The same signals as from the raw files (time).
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.netcdf.netcdf import read_netcdf
 
     try:
         marked = read_netcdf(earlier.file, "run")
-    except ReadError:  # gone or damaged: the raw files are there
+    except ReadError:  # missing or damaged: the raw files are read
         return None
     noted = marked.attrs.get(READING)
     if not earlier.mark or not isinstance(noted, dict) or noted.get("mark") != earlier.mark:
@@ -111,7 +112,7 @@ def earlier_signals(earlier: Earlier) -> xr.Dataset | None:
 
 
 def _changed(before: Mapping[object, object], after: Mapping[object, object]) -> Json:
-    """Return what has to be done to attributes to have those of before."""
+    """Return the changes that restore earlier attributes."""
     was = {str(k): v for k, v in before.items() if k not in after or after[k] is not v}
     return {"was": was, "new": [str(k) for k in after if k not in before]}
 
@@ -122,7 +123,7 @@ def _before(after: Mapping[object, object], changed: Json) -> Json:
 
 
 def _is_plain(changed: Json) -> bool:
-    """Whether JSON gives the same again."""
+    """Whether a value is unchanged by JSON."""
     try:
         return bool(json.loads(json.dumps(changed)) == changed)
     except (TypeError, ValueError):

@@ -1,4 +1,4 @@
-"""Repeats of which no load was stated, under one load: no two measure quite the same."""
+"""Common load of repeats without a stated load, whose measured loads differ slightly."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from tribolab.campaign.store.catalogue import Store
     from tribolab.records.parts import RunOutcome
 
-_Own = tuple[str, float]  # name of a run, and a load that was measured in it [N]
-_ALIKE = 1.05  # largest over smallest of the loads of runs that are meant to be one
+_Own = tuple[str, float]  # name of a run, and a load measured in it [N]
+_ALIKE = 1.05  # ratio of the largest to the smallest load of repeats
 
 
 def with_loads_alike(store: Store, came: Sequence[RunCame]) -> list[RunCame]:
-    """Give repeats whose load was measured one load, that which others state if there is one."""
+    """Assign one load to repeats with measured loads; a stated one if another run has it."""
     systems: dict[tuple[str, str], list[RunOutcome]] = {}
     for run in came:
         systems.setdefault((run.outcome.surface, run.outcome.medium), []).append(run.outcome)
@@ -29,7 +29,7 @@ def with_loads_alike(store: Store, came: Sequence[RunCame]) -> list[RunCame]:
 
 
 def _filed(store: Store, run: RunCame, place: int, loads: dict[_Own, float]) -> RunCame:
-    """Write a run down under its load, if that is another."""
+    """Store a run under its new load, if that has changed."""
     name, measured = run.outcome.name, run.outcome.measured_load
     load = run.outcome.normal_force if measured is None else loads[name, measured]
     levels = tuple(loads[name, level] for level in run.outcome.measured_levels)
@@ -44,7 +44,7 @@ def _filed(store: Store, run: RunCame, place: int, loads: dict[_Own, float]) -> 
 
 
 def _alike(runs: Iterable[RunOutcome]) -> Iterable[tuple[_Own, float]]:
-    """Return runs and their measured loads, each with the load that it is filed under."""
+    """Return runs and measured loads, each with the load assigned to it."""
     stated = [run.normal_force for run in runs if run.load_from == LOAD_STATED]
     known = [load for load in stated if load is not None and load > 0]
     measured = [(load, run.name) for run in runs for load in _measured(run)]

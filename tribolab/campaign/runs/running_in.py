@@ -1,4 +1,4 @@
-"""The record of a run's running-in, and friction along the run for figures."""
+"""Record of a run's running-in, and friction along the run for figures."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from tribolab.records.parts import Row
 from tribolab.records.runs.running_in_record import RunningIn
 from tribolab.records.wording import NORMAL, plain_value
 
-_MOST_POINTS = 384  # of friction along a run that figures draw
+_MOST_POINTS = 384  # columns of friction along a run for figures
 
 
 def running_in_of(
     run: xr.Dataset, friction: xr.Dataset
 ) -> tuple[tuple[RunningIn, ...], tuple[Row, ...]]:
-    """Return the running-in of a run at each speed, and the courses that figures draw.
+    """Running-in of a run at each speed, and friction along the run for figures.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The raw files of a run, by what is in them."""
+"""Raw files of a run, with checksums."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def sources_of_run(run: PlannedRun, attrs: Json) -> tuple[Source, ...]:
-    """Return the files of a run with the checksums that were taken while reading."""
+    """Files of a run with the checksums taken while reading."""
     names, sums = (str(attrs.get(key, "")).split("; ") for key in ("source", "source_sha256"))
     known = dict(zip(names, sums, strict=False))
     return tuple(
@@ -26,8 +26,8 @@ def sources_of_run(run: PlannedRun, attrs: Json) -> tuple[Source, ...]:
 
 
 def source_of(file: Path, label: str) -> Source:
-    """Return label, checksum and size of a file; no checksum if it cannot be read."""
+    """Label, checksum and size of a file; no checksum if it cannot be read."""
     try:
         return label, sha256_of_file(file), file.stat().st_size
-    except OSError:  # vanished or unreadable: the outcome of its part says so
+    except OSError:  # missing or unreadable: the outcome of its run reports it
         return label, "", 0

@@ -1,4 +1,4 @@
-"""The runs of a campaign: each read, analysed, checked, written and recorded by one worker."""
+"""Stage of the runs of a campaign: each is read, analysed, checked and recorded by a worker."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ _KIND = "run"
 
 @dataclass(frozen=True)
 class RunTask:
-    """A run to process, the folder for its data file, and what its traces may have.
+    """Run to process, the folder for its data file, and the size of its traces.
 
-    `points` of each signal are shown at once; the finer trace, into which the page zooms, may
-    have `fine_size` characters. `earlier` results may hold its signals.
+    `points` of each signal are shown on opening; the finer trace for zooming may have `fine_size`
+    characters. `earlier` results may contain its signals.
     """
 
     run: PlannedRun
@@ -53,14 +53,14 @@ class RunTask:
 
 
 class RunAnswer(NamedTuple):
-    """What a worker hands back; nothing that is as large as a signal travels."""
+    """Result of a worker, without signals, which would be too large to send."""
 
     record: RunRecord
     trace: PageTrace | None = None
 
 
 class RunCame(NamedTuple):
-    """What the rest of a campaign has to know of a run."""
+    """Outcome of a run for the later stages of a campaign."""
 
     outcome: RunOutcome
     sources: tuple[Source, ...]
@@ -69,20 +69,20 @@ class RunCame(NamedTuple):
 
     @property
     def content(self) -> tuple[str, ...]:
-        """All that shapes the results of the run."""
+        """Checksum of all that affects the results of the run."""
         lent = "" if self.zero is None else str(self.zero.lent)
         return self.fingerprint, lent, *(checksum for _, checksum, _ in self.sources)
 
 
 class Runs(Stage[RunTask, RunAnswer, RunCame]):
-    """The stage of the runs.
+    """Stage of the runs.
 
     Parameters
     ----------
     runs
-        What is to be done.
+        The planned runs.
     store
-        What is known, and where it is written down.
+        Known results, and storage of new ones.
     """
 
     name = _KIND + "s"
@@ -94,18 +94,18 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
         self._began = time.time_ns()
 
     def again(self, runs: Sequence[PlannedRun]) -> Self:
-        """Do these anew, with other settings than those that their fingerprints tell of."""
+        """Repeat these runs with settings other than those of their fingerprints."""
         self._lent = {run.name: run for run in runs}
         return self
 
     def plan(self) -> list[RunTask]:
-        """Return the tasks; what the trace of a run may have follows from their number."""
+        """Return the tasks; the size of the traces depends on their number."""
         points, fine_size = trace_size(len(self._runs))
         runs = self._runs if self._lent is None else self._lent.values()
         return [RunTask(run, self._store.folder, points, fine_size) for run in runs]
 
     def known(self, task: RunTask, place: int) -> RunCame | None:
-        """Take over a run whose settings, version and files (by their checksums) are the same."""
+        """Reuse a run with the same settings, version and files (by their checksums)."""
         if self._lent is not None:
             return None
         run = task.run
@@ -131,7 +131,7 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
         return RunCame(outcome, sources, record.zero, mark)
 
     def prepared(self, task: RunTask) -> RunTask:
-        """Say where the signals are, if the raw files and how they are read are the same."""
+        """Add the place of the signals, if the raw files and their reading are unchanged."""
         run = task.run
         entry = self._store.before.get(_KIND, run.name, RunRecord)
         if entry is None or not entry.record.outcome.done:
@@ -143,7 +143,7 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
         return replace(task, earlier=Earlier(file, mark_of(run, sources)))
 
     def _unchanged(self, run: PlannedRun, record: RunRecord) -> tuple[Source, ...] | None:
-        """Return the raw files of a run; None if they are not those of its record."""
+        """Return the raw files of a run if they match its record; else None."""
         sources = self._store.sources(zip(run.files, run.labels, strict=True))
         same = sorted(s[1] for s in sources) == sorted(s[1] for s in record.sources)
         return sources if same else None
@@ -160,7 +160,7 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
         return RunAnswer(RunRecord(failed_run(task.run, *explain(error)), ()))
 
     def keep(self, task: RunTask, place: int, record: RunAnswer) -> RunCame:
-        """Write down what came of a run."""
+        """Store the record of a run."""
         run = record.record
         if run.outcome.done and not (task.folder / run.outcome.data_file).is_file():
             raise OutputError(
@@ -168,7 +168,7 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
                 f"{task.folder}; do the workers share this folder?"
             )
         mark = fingerprint_of(task.run.config_sha256)
-        if self._lent is not None:  # it stands where it stood
+        if self._lent is not None:  # keep its position
             place = next(k for k, run in enumerate(self._runs) if run.name == task.run.name)
         self._store.put(_KIND, task.run.name, place, mark, run, record.trace)
         self._store.note_sources(zip(task.run.files, run.sources, strict=False), self._began)
@@ -178,9 +178,9 @@ class Runs(Stage[RunTask, RunAnswer, RunCame]):
 def keep_earlier(
     store: Store, entry: Entry[RunRecord], outcome: RunOutcome, place: int
 ) -> RunCame | None:
-    """Write down an earlier run in the place of one whose files cannot be read now.
+    """Store an earlier result in place of a run whose files cannot be read.
 
-    None if its data file is not as it was written.
+    Returns None if its data file was changed.
     """
     record = replace(entry.record, outcome=outcome)
     data_file = entry.record.outcome.data_file
@@ -190,16 +190,16 @@ def keep_earlier(
 
 
 def process_run(task: RunTask) -> RunAnswer:
-    """Read a run, find its segments, compute its friction, write and record everything of it.
+    """Read and analyse a run, then write and record its results.
 
-    What goes wrong with the run is in the record.
+    Errors of the run are recorded.
 
     Raises
     ------
     OutputError
-        If the results cannot be written: that is no fault of the run.
+        If the results cannot be written.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.campaign.runs.running_in import running_in_of
     from tribolab.records.frames import plain_rows, stick_slip_columns
     from tribolab.records.runs.decision_rows import not_applied
@@ -263,22 +263,22 @@ def process_run(task: RunTask) -> RunAnswer:
 
 
 def _with_dead_weight(facts: RunFacts, run: PlannedRun, signals: xr.Dataset) -> RunFacts:
-    """Add the gain that a dead weight tells, where it is put on or taken off in the record."""
-    # late: starting stays quick
+    """Add the gain from a dead weight that is placed or removed in the record."""
+    # imported late for a quick start
     from tribolab.metrology.dead_weight import dead_weight_gain
 
     if run.dead_weight is None:
         return facts
     try:
         weighed = dead_weight_gain(signals, run.dead_weight)
-    except AnalysisError:  # it lies on all the time, and the load of the strokes tells the gain
+    except AnalysisError:  # it is applied all the time, and the load of the strokes gives the gain
         return facts
     return replace(facts, dead_weight_gain=weighed.gain, dead_weight_gain_sem=weighed.error)
 
 
 def _starts(signals: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset) -> tuple[Row, ...]:
-    """Rows of static friction; none where no coefficient is known."""
-    # late: starting stays quick
+    """Rows of static friction; empty without a coefficient."""
+    # imported late for a quick start
     from tribolab.friction.coefficient.static import static_friction
     from tribolab.records.frames import plain_rows, static_friction_columns
 
@@ -288,7 +288,7 @@ def _starts(signals: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset) -> 
 
 
 def failed_run(run: PlannedRun, reason: str, error: str, seconds: float = 0.0) -> RunOutcome:
-    """Return the outcome of a run that has no results."""
+    """Return the outcome of a run without results."""
     return RunOutcome(
         name=run.name,
         files=run.labels,
@@ -308,13 +308,13 @@ def _trace(
 ) -> tuple[PageTrace | None, list[Notice]]:
     try:
         return page_trace(run, segments, friction, task.points, task.fine_size), []
-    except AnalysisError as error:  # recorded: the run's numbers stand without it
+    except AnalysisError as error:  # recorded: the run's numbers are kept without it
         text = f"no trace to show: {told(error, 'campaign')}"
         return None, [Notice("error", task.run.name, "trace", text)]
 
 
 def _root(run: PlannedRun, attrs: Json) -> xr.Dataset:
-    """Attributes of the whole file, for those who open it without naming a group."""
+    """Attributes of the whole file, for users who open it without a group."""
     origin = made(
         f"friction of {run.name}",
         source=attrs["source"],

@@ -1,4 +1,4 @@
-"""Zeros of the friction force that runs of one instrument lend to those that have none."""
+"""Zeros of the friction force lent by runs to others of the same instrument."""
 
 from __future__ import annotations
 
@@ -13,14 +13,15 @@ from tribolab.records.parts import RunZero
 if TYPE_CHECKING:
     import xarray as xr
 
-_OWN = "own_zero_N"  # attribute of a friction result: its zero, where it is sure of it
-_LENT = "zeros_of_other_runs_N"  # attribute: what others lent; there, if empty, where it has none
-_FEWEST = 2  # zeros without which their scatter is not known
+_OWN = "own_zero_N"  # attribute of a friction result: its zero, if certain
+# attribute: zeros lent by others; present but empty if it has no zero
+_LENT = "zeros_of_other_runs_N"
+_FEWEST = 2  # smallest number of zeros for a known scatter
 _DIGITS = 6
 
 
 def attributes(friction: xr.Dataset, lent: Iterable[float]) -> dict[str, str | float]:
-    """Attributes of a friction result that later say what `zero_of` returns."""
+    """Return the attributes of a friction result from which `zero_of` reads the zero."""
     method = str(friction.attrs.get("offset", ""))
     sure = all(d["status"] == "pass" for d in friction.attrs.get("zero_doubts", []))
     friction = kept(friction)
@@ -34,17 +35,17 @@ def attributes(friction: xr.Dataset, lent: Iterable[float]) -> dict[str, str | f
 
 
 def zero_of(attrs: Mapping[str, Any], run: Mapping[str, Any], stated: str | None) -> RunZero:
-    """Return what the attributes of a friction result say of its zero.
+    """Zero of a run from the attributes of its friction result.
 
     Parameters
     ----------
     attrs
-        Of the friction result.
+        Attributes of the friction result.
     run
-        Attributes of the run: the instrument that the file was read as, and its layout where that
-        was drafted from the file.
+        Attributes of the run: the instrument of the file, and its layout if that was drafted from
+        the file.
     stated
-        Dialect that the campaign names: two files of one name may be two instruments.
+        Dialect named in the campaign: two files of one name may be two instruments.
     """
     recorded = f"{run.get('instrument', '')} {run.get('drafted_layout', '')}".strip()
     instrument = stated if stated and stated.endswith((".toml", ".py")) else recorded
@@ -54,17 +55,17 @@ def zero_of(attrs: Mapping[str, Any], run: Mapping[str, Any], stated: str | None
 
 
 def zeros_text(zeros: Iterable[float]) -> str:
-    """Write zeros so that equal ones are equal text."""
+    """Text of zeros, equal for equal zeros."""
     return "; ".join(f"{zero:.{_DIGITS}g}" for zero in zeros)
 
 
 def to_lend(zeros: Mapping[str, RunZero | None]) -> dict[str, tuple[float, ...]]:
-    """Return which runs have to be done again, and with which zeros of others.
+    """Return the runs to be repeated, with the zeros of others.
 
     Parameters
     ----------
     zeros
-        By name of the run, in the order of the campaign; None for a run that failed.
+        Zero by name of the run, in the order of the campaign; None for a failed run.
 
     Examples
     --------
@@ -82,7 +83,7 @@ def to_lend(zeros: Mapping[str, RunZero | None]) -> dict[str, tuple[float, ...]]
         others = tuple(
             other.own
             for other in zeros.values()
-            # what no dialect names may be any instrument
+            # a file without a dialect may be of any instrument
             if other and other.own is not None and zero.instrument == other.instrument != ""
         )
         others = others if len(others) >= _FEWEST else ()

@@ -1,1 +1,1 @@
-"""The surfaces of a campaign: scans, spectrum, roughness, contact and adhesion."""
+"""Surfaces of a campaign: scans, spectrum, roughness, contact and adhesion."""

@@ -39,13 +39,13 @@ _ENDINGS = ("", "_low", "_high")
 
 
 def contact_of(surface: PlannedSurface) -> Contact | None:
-    """Return the contact, if the campaign file knows all of it."""
+    """Return the contact, if the campaign file defines it completely."""
     known = all(value is not None for value in surface.contact.values())
     return make_contact(**surface.contact) if known else None
 
 
 def lowest_wavenumber(surface: PlannedSurface) -> float | None:
-    """Return q0 = pi / (width of the Hertz contact at the lowest load) [1/m], if it is known."""
+    """Return q0 = pi / (width of the Hertz contact at the lowest load) [1/m], if known."""
     contact = contact_of(surface)
     if contact is None or surface.lowest_force is None:
         return None
@@ -53,12 +53,12 @@ def lowest_wavenumber(surface: PlannedSurface) -> float | None:
 
 
 def contact_groups(surface: PlannedSurface, psd: xr.Dataset) -> tuple[Groups, list[Finding]]:
-    """Compute what is known enough, and say what is not.
+    """Compute contact, adhesion and rubber friction where defined, with findings.
 
     Parameters
     ----------
     surface
-        What the campaign file knows.
+        The surface in the campaign file.
     psd
         Extrapolated spectrum with its band.
 
@@ -89,9 +89,9 @@ def contact_groups(surface: PlannedSurface, psd: xr.Dataset) -> tuple[Groups, li
     ) -> None:
         try:
             groups.update(zip(names, compute(), strict=True))
-        except Exception as error:  # recorded: the other parts have their place in the results
+        except Exception as error:  # recorded: the other parts are kept in the results
             severity = "suspect" if isinstance(error, TribolabError) else "error"
-            if isinstance(error, ReadError):  # a file that the campaign names
+            if isinstance(error, ReadError):  # a file named in the campaign
                 severity = "fail"
             findings.append(Finding(severity, f"{what}: {explain(error)[0]}"))
 
@@ -124,7 +124,7 @@ def contact_groups(surface: PlannedSurface, psd: xr.Dataset) -> tuple[Groups, li
 
 
 def _bounds(psd: xr.Dataset) -> dict[str, xr.Dataset]:
-    """Return the spectrum, and the two that bound a contact area from below and above."""
+    """Spectrum, and the two that give the lower and upper bound of a contact area."""
     ends = {"": "", "_low": "_high", "_high": "_low"}  # more roughness, less contact
     return {
         ending: psd[["psd_2d"]].assign(psd_2d=psd[f"psd_2d{other}"])
@@ -172,7 +172,7 @@ def _loads(forces: np.ndarray, contact: Contact, psd: xr.Dataset, theory: AreaTh
 
 
 def _lines(forces: np.ndarray, contact: Contact, psd: xr.Dataset, theory: AreaTheory) -> xr.Dataset:
-    """Dry rough line contact at each load; every load has its own x."""
+    """Dry rough line contact at each load, each with its own x."""
     parts = []
     for force in forces:
         load = contact.load(float(force))
@@ -199,20 +199,20 @@ def _adhesion(
     psd: xr.Dataset,
     modulus: float,
 ) -> tuple[xr.Dataset, xr.Dataset]:
-    """Solve for each medium the pressures of the grid, of the loads, and zero.
+    """Solve adhesion in each medium at the pressures of the grid, of the loads, and at zero.
 
-    Zero pressure is the limit of vanishing load, in which gamma_eff(1) tells of a pull-off force.
+    Zero pressure is the limit of vanishing load, where gamma_eff(1) indicates a pull-off force.
     """
     at_loads = np.array([]) if loads is None else loads.pressure.values
     pressures = np.concatenate([[0.0], at_loads, grid])
-    # a band is smooth, so a third of the grid tells it
+    # a band is smooth, so a third of the grid is enough
     bounding = np.concatenate([[0.0], at_loads, grid[::3]])
     spectra = _bounds(psd)
     works = {"": [medium.work_of_adhesion for medium in surface.media]}
     works |= {"_low": [max(medium.low, 0.0) for medium in surface.media]}
     works |= {"_high": [max(medium.high, 0.0) for medium in surface.media]}
     middle = adhesion_by_works(pressures, psd, modulus, works[""], surface.area)
-    # the ratio of two areas need not be extreme where an area is: each end's works on both spectra
+    # the bounds of a ratio need not be at those of the areas: each end's works with both spectra
     both = [*works["_low"], *works["_high"]]
     ends = {
         ending: adhesion_by_works(bounding, spectra[ending], modulus, both, surface.area)
@@ -277,7 +277,7 @@ def _adhesion(
 
 
 def _undecided(points: xr.Dataset) -> list[Finding]:
-    """Say where the bounds do not agree on whether there is a pull-off force."""
+    """Return a finding if the bounds disagree on a pull-off force."""
     low, high = (
         points[f"macroscopic_work_of_adhesion{ending}"].values > 0 for ending in _ENDINGS[1:]
     )

@@ -1,4 +1,4 @@
-"""Earlier surfaces that are kept because their scans or their modulus cannot be read now."""
+"""Earlier surfaces that are kept because their scans or modulus cannot be read."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 def kept_surface(
     campaign: Campaign, planned: PlannedSurface, store: Store, record: SurfaceRecord
 ) -> SurfaceRecord:
-    """Return the earlier record of a surface some of whose files cannot be read now.
+    """Return the earlier record of a surface some of whose files cannot be read.
 
-    They are its scans and its modulus. It says in its outcome that it is kept; without such files,
-    or without earlier results, the record comes back as it is.
+    These files are its scans and its modulus. The outcome states that it is kept. Without such
+    files, or without earlier results, the record is returned unchanged.
     """
     now = record.outcome
     known = store.before.get("surface", now.name, SurfaceRecord)
@@ -60,6 +60,6 @@ def kept_surface(
 
 
 def _left_out(findings: Iterable[Finding], labels: Iterable[str]) -> set[str]:
-    """Return the files of which findings say that they could not be read."""
+    """Return the files that could not be read, from the findings."""
     grave = [f.message for f in findings if f.severity == "fail" and not f.check]
     return {label for label in labels for text in grave if f"scan {label} is left out" in text}

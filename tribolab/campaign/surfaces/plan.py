@@ -1,4 +1,4 @@
-"""What is to be computed of each surface: its scans, and what the campaign file knows beside."""
+"""Plan for each surface: its scans, and properties from the campaign file."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class PlannedMedium:
-    """A medium with its work of adhesion [J/m2]; bounds that are not given are equal to it."""
+    """Medium with its work of adhesion [J/m2]; missing bounds are equal to it."""
 
     name: str
     work_of_adhesion: float
@@ -30,12 +30,12 @@ class PlannedMedium:
 
 @dataclass(frozen=True)
 class PlannedSurface:
-    """One surface to be processed: all that a worker needs to know.
+    """Surface to be processed, with all that a worker needs.
 
     Parameters
     ----------
     name
-        As the campaign file calls it.
+        Name in the campaign file.
     data_file
         Path of its data file relative to the results folder.
     files, labels
@@ -45,7 +45,7 @@ class PlannedSurface:
     roughness
         The table [roughness].
     contact
-        The table [contact]; None where it says nothing.
+        The table [contact]; None if empty.
     forces
         Normal forces of the runs on this surface, and those of [contact] [N], increasing.
     lowest_force
@@ -55,7 +55,7 @@ class PlannedSurface:
     modulus_file
         File of the viscoelastic modulus, and its label; None if there is none.
     modulus_read
-        Which of its sweeps, and the unit that it does not state.
+        Sweep to use, and the unit if the file does not state it.
     rubber
         The table [rubber].
     rubber_work
@@ -65,7 +65,7 @@ class PlannedSurface:
     area
         Theory of the contact area.
     config_sha256
-        Checksum of all of these, but of the scans.
+        Checksum of all of these except the scans.
     """
 
     name: str
@@ -88,14 +88,14 @@ class PlannedSurface:
 
 
 def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[PlannedSurface, ...]:
-    """Collect what is known of each surface, in the order of the campaign file.
+    """Collect the properties of each surface, in the order of the campaign file.
 
     Parameters
     ----------
     campaign
         From `load_campaign`.
     runs
-        What the runs came to: they tell the normal forces.
+        Outcomes of the runs, for the normal forces.
     """
     known = [
         (run.surface, float(f"{load:.4g}"))
@@ -108,7 +108,7 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
     media = tuple(
         PlannedMedium(name, work, *(medium.work_of_adhesion_range or (work, work)))
         for name, medium in campaign.medium.items()
-        # at or below zero the liquid keeps the surfaces apart: there is no adhesion to compute
+        # at or below zero the liquid separates the surfaces: there is no adhesion to compute
         if (work := medium.work_of_adhesion) is not None and work > 0
     )
     files = distinct(f"surface_{safe_name(surface.name)}" for surface in campaign.surface)

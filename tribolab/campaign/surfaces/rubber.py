@@ -1,4 +1,4 @@
-"""Friction of the rubber itself on one surface, with the modulus that the campaign file names."""
+"""Hysteresis friction of the rubber on one surface, with the modulus of the campaign file."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
     from tribolab.campaign.surfaces.plan import PlannedSurface
     from tribolab.core.untyped import Arguments
 
-_STIFFEST_RUBBER = 20e6  # Pa: beyond, the stand-in modulus of a rubber says nothing
-_SAME_RUBBER = 2.0  # between a modulus measured slowly and the contact's
+_STIFFEST_RUBBER = 20e6  # Pa; the stand-in modulus of a rubber does not apply beyond
+_SAME_RUBBER = 2.0  # ratio of a slowly measured modulus to that of the contact
 _PER_DECADE = 10
-_BEYOND = 1e2  # that a series is drawn beyond its slowest and fastest relaxation
+_BEYOND = 1e2  # decades that a series is drawn beyond its slowest and fastest relaxation
 _ICE = 273.15  # K at 0 °C
 
 
 class _Rubber(NamedTuple):
-    """A modulus, whence it is in words, and the angular frequencies [rad/s] where it is shown."""
+    """Modulus, its source in words, and the angular frequencies [rad/s] for display."""
 
     modulus: Shiftable
     origin: str
@@ -36,7 +36,7 @@ class _Rubber(NamedTuple):
 
 
 def no_rubber(surface: PlannedSurface) -> Finding | None:
-    """Return why the friction of the rubber is not computed; None if it is."""
+    """Reason why the friction of the rubber is not computed; None if it is."""
     stiffness = surface.contact["youngs_modulus"]
     known = surface.modulus_file is not None or surface.rubber.get("prony_moduli")
     if known or stiffness <= _STIFFEST_RUBBER:
@@ -51,23 +51,23 @@ def no_rubber(surface: PlannedSurface) -> Finding | None:
 def rubber_groups(
     surface: PlannedSurface, loads: xr.Dataset, psd: xr.Dataset, findings: list[Finding]
 ) -> tuple[xr.Dataset, xr.Dataset]:
-    """Return the friction of the rubber over the loads and speed, and its modulus over frequency.
+    """Friction of the rubber over the loads and speed, and its modulus over frequency.
 
     Parameters
     ----------
     surface
-        What the campaign file knows.
+        The surface in the campaign file.
     loads
         Hertz contact at each load.
     psd
         Extrapolated spectrum.
     findings
-        To which is added what a reader should know of the modulus.
+        Extended by findings on the modulus.
 
     Raises
     ------
     TribolabError
-        If the modulus cannot be read or shifted, or does not reach the frequencies that count.
+        If the modulus cannot be read or shifted, or does not cover the relevant frequencies.
     """
     rubber = _modulus(surface, findings)
     if surface.rubber.get("temperature") is not None:
@@ -99,7 +99,7 @@ def rubber_groups(
 
 
 def _modulus(surface: PlannedSurface, findings: list[Finding]) -> _Rubber:
-    """Return the modulus of a file, of a Prony series, or else a stand-in for a rubber."""
+    """Modulus from a file, a Prony series, or else a stand-in for a rubber."""
     stiffness = surface.contact["youngs_modulus"]
     if surface.modulus_file is not None:
         path, label = surface.modulus_file
@@ -132,7 +132,7 @@ def _modulus(surface: PlannedSurface, findings: list[Finding]) -> _Rubber:
 
 
 def _shifted(rubber: _Rubber, stated: Arguments) -> _Rubber:
-    """Shift a modulus from the temperature that it is for to that of the rubber."""
+    """Shift a modulus from its temperature to that of the rubber."""
     law = WilliamsLandelFerry(stated["c1"], stated["c2"], stated["reference_temperature"])
     kelvin = stated["temperature"]
     modulus = modulus_at(rubber.modulus, kelvin, law)
@@ -144,7 +144,7 @@ def _shifted(rubber: _Rubber, stated: Arguments) -> _Rubber:
 
 
 def _far_from(stiffness: float, slow: float, frequency: float, label: str) -> list[Finding]:
-    """Say where a measured modulus cannot be that of the body whose contact is computed."""
+    """Return text if a measured modulus does not match that of the contact."""
     if 1 / _SAME_RUBBER <= slow / stiffness <= _SAME_RUBBER:
         return []
     text = (

@@ -1,4 +1,4 @@
-"""Scans of one surface, those that can be used, and its power spectrum."""
+"""Usable scans of one surface, and its power spectrum."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ if TYPE_CHECKING:
     from tribolab.qc.findings import FindingRow, Findings
 
 _FAILED = ("fail", "error")
-# shares of the mean square slope that come from extrapolation, from which on that is said
+# shares of the mean square slope from extrapolation above which it is reported
 _NOTED, _SUSPECT = 0.5, 0.8
-# Pq with a circle over Pq without it: between these it matters, and may be waviness
+# ratio of Pq with and without a circle: in this range the circle may be waviness
 _CIRCLE_COUNTS, _CIRCLE_CLEAR = 1.02, 2.0
 
 
 class CheckedScans(NamedTuple):
-    """Scans that can be used, and what is known of all that were named.
+    """Usable scans, with the checks of all scans.
 
     Parameters
     ----------
@@ -49,9 +49,9 @@ class CheckedScans(NamedTuple):
     raw
         The same with their dropouts and quality flags.
     findings
-        On each file that is not in them, and on what the checks object to.
+        Findings on unusable files, and objections of the checks.
     quality
-        Gravest status of the checks on the scans that are used.
+        Worst status of the checks on the scans used.
     checks
         A row for each scan and check.
     """
@@ -64,10 +64,10 @@ class CheckedScans(NamedTuple):
 
 
 def usable_scans(surface: PlannedSurface) -> CheckedScans:
-    """Read and check the scans; those that cannot be used or do not fit the others are left out.
+    """Read and check the scans, without unusable ones and those that do not fit the others.
 
-    A scan that fails its checks is left out if there is one that does not; else all are used and
-    the quality says that they failed.
+    Scans that fail their checks are left out unless all fail; then all are used and the quality
+    is "fail".
 
     Raises
     ------
@@ -88,7 +88,7 @@ def usable_scans(surface: PlannedSurface) -> CheckedScans:
         if path in alike:
             continue
         why, severity = "it differs in pitch or length", "suspect"
-        if path not in sound:  # the failure itself is a finding already
+        if path not in sound:  # the failure itself is already a finding
             why, severity = "its checks failed", "note"
         findings.append(Finding(severity, f"scan {label[path]} is left out: {why}"))
     quality = max((checked[path].status for path in alike), key=STATUSES.index)
@@ -122,7 +122,7 @@ def _as_row(scan: str, said: FindingRow) -> Row:
 def _read(
     surface: PlannedSurface,
 ) -> tuple[dict[Path, xr.Dataset], list[Finding], dict[Path, str]]:
-    """Read each scan alone; a finding for each that cannot be read, and what each is called."""
+    """Read each scan separately; return a finding for each unreadable one, and the names."""
     scans: dict[Path, xr.Dataset] = {}
     findings: list[Finding] = []
     called: dict[Path, str] = {}
@@ -144,13 +144,13 @@ def _read(
 
 
 def _shape(scan: xr.Dataset) -> tuple[Any, ...]:
-    """Points and extent along each direction."""
+    """Return the number of points and extent along each direction."""
     extent = tuple(f"{float(np.ptp(scan[dim].values)):.4g}" for dim in scan.height.dims)
     return tuple(scan.sizes.items()), extent
 
 
 def _said_of(label: str, message: str) -> str:
-    """Return a message without the file's name, which the label before it ends with."""
+    """Return a message without the file name, which the label already contains."""
     name, colon, rest = message.partition(": ")
     return rest if colon and label.endswith(name) else message
 
@@ -171,7 +171,7 @@ def _objections(label: str, said: Findings) -> list[Finding]:
 
 
 def _with_flags(scans: xr.Dataset, flagged: list[xr.Dataset]) -> xr.Dataset:
-    """Put the flags of each scan on the heights of all."""
+    """Add the flags of each scan to the heights of all."""
     height = scans.height.assign_attrs(ancillary_variables="height_qc height_qc_tests")
     variables: dict[str, object] = {"height": height}
     for name in ("height_qc", "height_qc_tests"):
@@ -188,20 +188,20 @@ def _without_folder(message: str, path: Path) -> str:
 def spectra_of_scans(
     surface: PlannedSurface, scans: xr.Dataset, q_low: float | None
 ) -> tuple[dict[str, xr.Dataset], list[Finding]]:
-    """Remove form, compute the spectra, extrapolate them and take roughness from both.
+    """Remove form, compute and extrapolate the spectra, and compute roughness.
 
     Parameters
     ----------
     surface, scans
         From `usable_scans`.
     q_low
-        Smallest wavenumber of the contact [1/m], if it is known.
+        Smallest wavenumber of the contact [1/m], if known.
 
     Returns
     -------
     tuple
-        ``psd_1d`` (of profiles), ``psd`` (extrapolated) and ``roughness``, and the findings. Where
-        no contact is asked about, a surface that has no spectrum has its roughness all the same.
+        ``psd_1d`` (of profiles), ``psd`` (extrapolated) and ``roughness``, and the findings. If no
+        contact is computed, roughness does not require a spectrum.
     """
     options, groups, findings = dict(surface.roughness), {}, []
     form = options.get("form", "auto")
@@ -218,7 +218,7 @@ def spectra_of_scans(
     removed = {"form_removed": form}
     removed |= {k: v for k, v in flat.attrs.items() if k == "form_radius_m"}
     tip = options.get("tip_radius")
-    # by the theory of a contact
+    # by contact theory
     asked = q_low is not None or "q_low" in options or contact_of(surface) is not None
     try:
         if is_map:
@@ -264,7 +264,7 @@ def spectra_of_scans(
 
 
 def _what_is_lacking(iso: xr.Dataset, held: float, seen: np.ndarray) -> list[Finding]:
-    """Say which waves the rms height of the measured spectrum lacks."""
+    """Return a finding on waves missing from the rms height of the spectrum."""
     name, what = ("Sq", "map") if "Sq" in iso else ("Pq", "profile")
     whole = float(iso[name].mean())
     if held >= MIN_SHARE_OF_HEIGHT.value * whole:
@@ -279,7 +279,7 @@ def _what_is_lacking(iso: xr.Dataset, held: float, seen: np.ndarray) -> list[Fin
 
 
 def _extrapolated_slope(share: float, slope: float, last: float, asked: bool) -> Finding:
-    """Say by what the extrapolation multiplies the measured slope, and how to do without it."""
+    """Return a finding on the increase of slope due to extrapolation."""
     whole = slope / np.sqrt(share)
     text = (
         f"the extrapolation multiplies the measured rms slope by {number(whole / slope)}: it is "
@@ -295,9 +295,9 @@ def _extrapolated_slope(share: float, slope: float, last: float, asked: bool) ->
 def _extrapolated(
     measured: xr.Dataset, options: Json, q_low: float | None
 ) -> tuple[xr.Dataset, list[Finding]]:
-    """Extrapolate a spectrum; where no power law leads on, take what was measured alone.
+    """Extrapolate a spectrum; if no power law fits, keep the measured part only.
 
-    The roughness of a profile does not wait for that of waves it does not show.
+    The roughness of a profile does not depend on waves it does not resolve.
     """
     limits = {key: options[key] for key in ("q_high", "fit_decade") if key in options}
     low = options.get("q_low", q_low)
@@ -324,7 +324,7 @@ def _extrapolated(
 
 
 def _doubtful_circle(scans: xr.Dataset, flat: xr.Dataset) -> str:
-    """Say that a circle which was taken off may as well be waviness; "" if it is clear or small."""
+    """Return text if the circle removed may be waviness; "" if it is clear or small."""
     with_it, without = (
         float(primary_roughness(each).mean()) for each in (remove_form(scans, "tilt"), flat)
     )

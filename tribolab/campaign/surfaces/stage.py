@@ -1,4 +1,4 @@
-"""The surfaces of a campaign: spectrum, roughness, contact and adhesion, each by one worker."""
+"""Stage of the surfaces: spectrum, roughness, contact and adhesion, one worker each."""
 
 from __future__ import annotations
 
@@ -27,38 +27,38 @@ if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
     from tribolab.campaign.surfaces.scans import CheckedScans
 
-_SCANS = "scans"  # group of the scans as they were read, with their quality flags
+_SCANS = "scans"  # group of the scans as read, with their quality flags
 
 
 @dataclass(frozen=True)
 class SurfaceTask:
-    """A surface to process, and the folder of the results."""
+    """Surface to process, and the folder of the results."""
 
     surface: PlannedSurface
     folder: Path
 
     @property
     def name(self) -> str:
-        """Of the surface."""
+        """Name of the surface."""
         return self.surface.name
 
     @property
     def fingerprint(self) -> str:
-        """Of settings and version; the scans are compared by themselves."""
+        """Checksum of settings and version; scans are compared separately."""
         return fingerprint_of(self.surface.config_sha256)
 
 
 class Surfaces(Recorded[SurfaceTask, SurfaceRecord, SurfaceRecord]):
-    """The stage of the surfaces.
+    """Stage of the surfaces.
 
     Parameters
     ----------
     campaign
-        It names their scans.
+        Campaign with the scans.
     runs
-        What the runs came to: they tell at which loads.
+        Outcomes of the runs, for the loads.
     store
-        What is known, and where it is written down.
+        Known results, and storage of new ones.
     """
 
     name = "surfaces"
@@ -76,7 +76,7 @@ class Surfaces(Recorded[SurfaceTask, SurfaceRecord, SurfaceRecord]):
         return [SurfaceTask(surface, self._store.folder) for surface in planned]
 
     def taken(self, task: SurfaceTask, record: SurfaceRecord) -> SurfaceRecord | None:
-        """Take over a surface whose files are the same by their checksums, too."""
+        """Reuse a surface whose files have the same checksums."""
         surface, before = task.surface, record.outcome
         same = record.done and self._store.sources(_files(surface)) == record.sources
         if not same or not self.linked(task, before.data_file, surface.data_file):
@@ -94,7 +94,7 @@ class Surfaces(Recorded[SurfaceTask, SurfaceRecord, SurfaceRecord]):
         return SurfaceRecord(failed_surface(task.surface, *explain(error)))
 
     def keep(self, task: SurfaceTask, place: int, record: SurfaceRecord) -> SurfaceRecord:
-        """Write down what came of a surface; earlier results stay where scans cannot be read."""
+        """Store the record of a surface; earlier results stay if scans cannot be read."""
         record = kept_surface(self._campaign, task.surface, self._store, record)
         super().keep(task, place, record)
         files = [path for path, _ in _files(task.surface)]
@@ -103,16 +103,16 @@ class Surfaces(Recorded[SurfaceTask, SurfaceRecord, SurfaceRecord]):
 
 
 def process_surface(task: SurfaceTask) -> SurfaceRecord:
-    """Compute spectrum, roughness, contact, adhesion and rubber friction; write and record them.
+    """Compute all results of a surface, write and record them.
 
-    What goes wrong with the surface is in the record.
+    Errors of the surface are recorded.
 
     Raises
     ------
     OutputError
-        If the results cannot be written: that is no fault of the surface.
+        If the results cannot be written.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.records.surfaces.surface_rows import surface_rows
 
     began = time.monotonic()
@@ -123,7 +123,7 @@ def process_surface(task: SurfaceTask) -> SurfaceRecord:
         return SurfaceRecord(
             SurfaceOutcome(name=surface.name, files=(), status="skipped", findings=(note,))
         )
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.campaign.surfaces.scans import usable_scans
 
     sources = sources_of_surface(surface)
@@ -151,7 +151,7 @@ def process_surface(task: SurfaceTask) -> SurfaceRecord:
         raise
     except Exception as error:  # recorded: one bad surface must not stop the others
         outcome = failed_surface(surface, *explain(error), time.monotonic() - began)
-        if checked is not None:  # what the checks said may be why
+        if checked is not None:  # results of the checks may explain it
             said = (*outcome.findings, *checked.findings)
             outcome = replace(outcome, findings=said, checks=tuple(plain_value(checked.checks)))
         return SurfaceRecord(outcome, sources)
@@ -161,14 +161,14 @@ def process_surface(task: SurfaceTask) -> SurfaceRecord:
 def analyse_surface(
     surface: PlannedSurface, checked: CheckedScans
 ) -> tuple[dict[str, xr.Dataset], list[Finding]]:
-    """Return the groups of a surface's data file, and the findings.
+    """Compute the groups of a surface's data file, and the findings.
 
     Raises
     ------
     TribolabError
         If the scans have no spectrum.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.campaign.surfaces.contact import contact_groups, lowest_wavenumber
     from tribolab.campaign.surfaces.scans import spectra_of_scans
 
@@ -188,7 +188,7 @@ def analyse_surface(
 def failed_surface(
     surface: PlannedSurface, reason: str, error: str, seconds: float = 0.0
 ) -> SurfaceOutcome:
-    """Return the outcome of a surface that has no results."""
+    """Return the outcome of a surface without results."""
     return SurfaceOutcome(
         name=surface.name,
         files=surface.labels,
@@ -201,19 +201,19 @@ def failed_surface(
 
 
 def _files(surface: PlannedSurface) -> list[tuple[Path, str]]:
-    """Return the scans and the modulus file, with their labels."""
+    """Return the scans and modulus file, with their labels."""
     files = list(zip(surface.files, surface.labels, strict=True))
     return files if surface.modulus_file is None else [*files, surface.modulus_file]
 
 
 def sources_of_surface(surface: PlannedSurface) -> tuple[Source, ...]:
-    """Return label, checksum and size of the scans and of the modulus file."""
+    """Label, checksum and size of the scans and of the modulus file."""
     return tuple(source_of(path, label) for path, label in _files(surface))
 
 
 def _root(surface: PlannedSurface, sources: tuple[Source, ...], quality: str) -> xr.Dataset:
-    """Attributes of the whole file; checksums also of what could not be used."""
-    # late: xarray takes long to load
+    """Attributes of the whole file, with checksums also of unused files."""
+    # imported late: xarray loads slowly
     import xarray as xr
 
     what = f"spectrum and contact of {surface.name}"

@@ -1,1 +1,1 @@
-"""What a model leaves: fits, budgets, regimes, and the words for them."""
+"""Records of models: fits, budgets and regimes, with their wording."""

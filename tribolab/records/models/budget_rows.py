@@ -1,4 +1,4 @@
-"""Rows of the table of uncertainty budgets: one for each point and each part."""
+"""Rows of the table of uncertainty budgets, for each point and each part."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 
 def budget_rows(curve: xr.Dataset, known: Mapping[str, Known]) -> Iterator[Row]:
-    """Give the parts of the uncertainty of each point of a curve, the largest of a point first.
+    """Parts of the uncertainty of each point of a curve, largest first.
 
     Parameters
     ----------
     curve
         With ``uncertainty_part`` (part, sliding_speed).
     known
-        What was stated, by the names of the parts.
+        Stated uncertainties by the names of the parts.
     """
     parts, dof = curve["uncertainty_part"].values, curve["uncertainty_part_dof"].values
     inputs = curve["part"].values.astype(str).tolist()

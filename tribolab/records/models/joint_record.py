@@ -1,4 +1,4 @@
-"""All that is recorded of a joint fit: its parameters, what it says, and the models compared."""
+"""Record of a joint fit: parameters, statements, and compared models."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class JointParameter:
-    """What is known of one parameter, in the unit that is said."""
+    """Posterior of one parameter, in its stated unit."""
 
     parameter: str
     value: Annotated[float, means("median")]
@@ -36,7 +36,7 @@ class JointParameter:
 
 @dataclass(frozen=True)
 class JointModelRow:
-    """One model of the same curves, held against the first."""
+    """Model of the same curves, compared with the first."""
 
     model: str
     evidence: Annotated[float, means("ln of the odds for it against the first, from all points")]
@@ -62,30 +62,30 @@ class JointCorrelation:
 
 @dataclass(frozen=True)
 class JointRecord(HasStatus):
-    """The joint fit of all loads of a surface, or of several surfaces, in one liquid.
+    """Joint fit of all loads of one or several surfaces in one liquid.
 
     Parameters
     ----------
     name
         Of the fit and of its data file.
     surface, medium
-        What it is of; several surfaces with "and" between them.
+        Surface and medium; several surfaces are joined by "and".
     curves
         Names of the measured curves.
     status, reason
         "done", or "failed" and why.
     file
-        Data file relative to the results folder; "" of one that failed.
+        Data file relative to the results folder; "" for a failed fit.
     reference_speed_m_s, reference_load_N_m
-        Speed and load that the shear stress is for.
+        Speed and load to which the shear stress refers.
     described
         Whether the model describes the curves.
     parameters, correlations
         The posterior.
     sentences
-        What the data do not tell, and what goes together.
+        Statements on undetermined and correlated parameters.
     models
-        What the data say of several models, the first being that of the parameters.
+        Comparison of several models; the first is that of the parameters.
     """
 
     name: str
@@ -105,8 +105,8 @@ class JointRecord(HasStatus):
 
 
 def parameter_rows(fit: JointFit) -> tuple[JointParameter, ...]:
-    """Return what is known of each parameter of a fit."""
-    # late: starting stays quick
+    """Posterior of each parameter of a fit, one row each."""
+    # imported late for a quick start
     from tribolab.fit.joint.result import in_words
 
     return tuple(
@@ -128,7 +128,7 @@ def parameter_rows(fit: JointFit) -> tuple[JointParameter, ...]:
 
 
 def correlation_rows(fit: JointFit) -> tuple[JointCorrelation, ...]:
-    """Return the correlation of every two parameters."""
+    """Correlation of every two parameters, one row each."""
     names = [" of ".join(filter(None, (m.name, m.surface))) for m in fit.marginals]
     size = len(fit.correlation)
     return tuple(
@@ -139,7 +139,7 @@ def correlation_rows(fit: JointFit) -> tuple[JointCorrelation, ...]:
 
 
 def model_rows_of_comparison(comparison: ModelComparison) -> tuple[JointModelRow, ...]:
-    """Return what the data say of each model."""
+    """Evidence for each model, one row each."""
     return tuple(
         JointModelRow(
             model=model.name,
@@ -156,7 +156,7 @@ def model_rows_of_comparison(comparison: ModelComparison) -> tuple[JointModelRow
 
 
 def parameter_table_rows(records: Sequence[JointRecord]) -> list[Row]:
-    """Return the rows of the table of joint fits."""
+    """Rows of the table of joint fits."""
     return [
         {
             "fit": record.name,
@@ -172,7 +172,7 @@ def parameter_table_rows(records: Sequence[JointRecord]) -> list[Row]:
 
 
 def comparison_table_rows(records: Sequence[JointRecord]) -> list[Row]:
-    """Return the rows of the table of compared models."""
+    """Rows of the table of compared models."""
     return [
         {"fit": record.name, "surface": record.surface, "medium": record.medium, **vars(row)}
         for record in records

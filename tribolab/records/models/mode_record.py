@@ -1,4 +1,4 @@
-"""All that is recorded of how one measured contact slides."""
+"""Record of the sliding mode of one measured contact."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tribolab.records.parts import CurveOutcome, ModelOutcome, Row
 
 @dataclass(frozen=True)
 class EvidenceRow:
-    """One piece of evidence: for or against an adhesion-controlled mode, or neutral."""
+    """Piece of evidence: for or against an adhesion-controlled mode, or neutral."""
 
     side: Annotated[str, one_of("for", "against", "neutral")]
     text: str
@@ -20,28 +20,28 @@ class EvidenceRow:
 
 @dataclass(frozen=True)
 class ModeRecord:
-    """The sliding mode of one measured curve.
+    """Sliding mode of one measured curve.
 
     Parameters
     ----------
     curve
-        Name of the measured curve; "" where the mode could not be judged.
+        Name of the measured curve; "" if the mode could not be assessed.
     condition
         Its surface, medium and load in words.
     verdict, text, paragraph, decide
         See `tribolab.regime.verdict.SlidingMode`.
     evidence
-        What it rests on.
+        Evidence for the verdict.
     numbers
         By name, with their unit in it.
     segments, segments_oscillating
-        How many were looked at, and how many oscillate.
+        Number examined, and number that oscillate.
     scaling, scaling_exponent, scaling_error
-        Whether the frequency goes with the speed.
+        Whether the frequency is proportional to speed.
     speeds
         A row per sliding speed.
     moves
-        Whether stick-slip is claimed at any speed.
+        Whether stick-slip is significant at any speed.
     """
 
     curve: str
@@ -65,9 +65,9 @@ _MOST_NAMED = 3  # runs
 
 
 def condition(curve: CurveOutcome | ModelOutcome) -> str:
-    """Name a curve or its model by its surface, medium and load.
+    """Name of a curve or its model by surface, medium and load.
 
-    A curve whose runs name neither surface nor medium is called by them.
+    Without surface and medium the runs give the name.
     """
     words = curve.surface
     if curve.medium:

@@ -1,4 +1,4 @@
-"""Rows of one model: its fit, its curve, and what moves it."""
+"""Rows of one model: fit, curve, and sensitivities."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 MODEL_LABELS = ("surface", "medium", "normal_force_N")
 
 
-FITTED = {  # columns of a fit, and what they mean where the name does not say it
+FITTED = {  # columns of a fit, with their meaning if the name does not explain it
     "shear_stress_Pa": "effective, for the contact area by `area` and `adhesion`",
     "shear_stress_error_Pa": "standard error from those of the points",
     "shear_stress_common_error_Pa": "standard error that all points share: repeatability of a "
@@ -59,18 +59,18 @@ def model_rows(
     normal_force: float,
     adhesion: xr.Dataset | None,
 ) -> ModelRows:
-    """Return the rows of a model from the groups of its data file.
+    """Rows of a model from the groups of its data file.
 
     Parameters
     ----------
     groups
-        ``curve``; where there: ``fit``, ``uncertainty``.
+        ``curve``; if present: ``fit``, ``uncertainty``.
     medium, normal_force
-        In which, and at which load [N].
+        Medium and load [N] of the model.
     adhesion
-        Adhesion of the surface at the loads (medium, load); None if it is not known.
+        Adhesion of the surface at the loads (medium, load); None if unknown.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.fit.spectrum_error import shear_stress_shift
 
     curve = frame(groups["curve"], "sliding_speed").assign(cells=groups["curve"].attrs["cells"])
@@ -93,7 +93,7 @@ def model_rows(
 
 
 def _dry_over_wet(adhesion: xr.Dataset | None, medium: str, normal_force: float) -> float | None:
-    """Real contact area dry over that in the medium, at the same load; None if not known."""
+    """Ratio of the real contact areas, dry and in the medium, at equal load; None if unknown."""
     if adhesion is None:
         return None
     dry = [name for name in adhesion.medium.values.tolist() if is_dry(name)]

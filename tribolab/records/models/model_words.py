@@ -1,4 +1,4 @@
-"""Where measurement and model part, said in words from the residuals."""
+"""Text on the agreement of measurement and model, from the residuals."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from tribolab.records.wording import NORMAL
 if TYPE_CHECKING:
     import xarray as xr
 
-_UNLIKELY = 0.05  # probability under which the order of the residuals' signs is no chance
-_LARGE = 0.10  # of the measured friction: a miss that any reader sees
-_CLOSE = 0.02  # of the curve's height
+_UNLIKELY = 0.05  # p value below which the order of the residuals' signs is significant
+_LARGE = 0.10  # share of the measured friction that any reader notices
+_CLOSE = 0.02  # share of the curve's peak
 _FAR = 0.3
-_APART = 2.0  # as a factor: what is off by more no reader calls described
+_APART = 2.0  # as a factor; a larger one is not called described
 _BEYOND = 3.0  # standard errors
 _NOT_DESCRIBED = "the model does not describe this curve"
 _NO_STRESS = "no shear stress describes this curve"
 
 
 def has_shear_stress(fit: xr.Dataset) -> bool:
-    """Whether the fit found a shear stress; one that is not positive is none."""
+    """Whether the fit found a positive shear stress."""
     return bool(fit.attrs["shear_stress_Pa"] > 0)
 
 
 def stress_interval(low: float | None, high: float | None) -> str:
-    """Return the 95 % interval [Pa] of a shear stress in MPa; a shear stress is never negative.
+    """95 % interval [Pa] of a shear stress in MPa, never negative.
 
     Examples
     --------
@@ -44,10 +44,10 @@ def stress_interval(low: float | None, high: float | None) -> str:
 
 
 def shear_stress_u95(fit: Mapping[str, Any], error: float) -> float:
-    """Return U95 [Pa] of a shear stress, or of what is computed from it, with a standard error.
+    """U95 [Pa] of a shear stress, or of a quantity computed from it, from its standard error.
 
-    The coverage factor is that of the fitted stress: half its 95 % interval, at the wider side,
-    over its standard error; 1.96 if there is no interval.
+    The coverage factor is that of the fitted stress: the wider half of its 95 % interval over its
+    standard error; 1.96 without an interval.
 
     Examples
     --------
@@ -63,7 +63,7 @@ def shear_stress_u95(fit: Mapping[str, Any], error: float) -> float:
 
 
 def is_described(words: str) -> bool:
-    """Whether a `judgement` says that the model describes the curve, be it beyond the errors.
+    """Whether a `judgement` states that the model describes the curve.
 
     Examples
     --------
@@ -74,7 +74,7 @@ def is_described(words: str) -> bool:
 
 
 def judgement(fit: xr.Dataset) -> str:
-    """Return a sentence on how well one shear stress describes the measured curve.
+    """Sentence on how well one shear stress describes the measured curve.
 
     Parameters
     ----------
@@ -83,9 +83,9 @@ def judgement(fit: xr.Dataset) -> str:
 
     Notes
     -----
-    Whether the two part is told by chi-square and by the order of the residuals' signs; where,
-    by the range of speeds that one shear stress describes within the errors, and by the points
-    that are off by more than a tenth of the friction.
+    Disagreement is tested by chi-square and by the order of the residuals' signs. Its place is
+    given by the range of speeds that one shear stress describes within the errors, and by the
+    points that deviate by more than a tenth of the friction.
     """
     if not has_shear_stress(fit):
         why = "the fitted one is not positive, so no model is drawn"
@@ -124,7 +124,7 @@ def judgement(fit: xr.Dataset) -> str:
 
 
 def _stretches(speed: np.ndarray, chosen: np.ndarray) -> str:
-    """Say at which speeds [m/s] something holds, without those between at which it does not."""
+    """Text on the speeds [m/s] at which a condition is true."""
     ends = np.flatnonzero(np.diff(np.r_[False, chosen, False].astype(int)))
     words = []
     for first, beyond in ends.reshape(-1, 2):
@@ -135,9 +135,9 @@ def _stretches(speed: np.ndarray, chosen: np.ndarray) -> str:
 
 
 def _verdict(attrs: Mapping[str, Any], largest: float, factor: float) -> str:
-    """Say first whether the two agree, then whether what is left has an order.
+    """Text on the agreement, and on systematic residuals.
 
-    The largest miss is a share of the curve's height, or, where friction is low, a factor.
+    The largest residual is a share of the peak friction or, at low friction, a factor.
     """
     ordered = attrs["runs_p_value"] < _UNLIKELY
     if attrs["chi_square_p_value"] >= _UNLIKELY and not ordered:

@@ -1,1 +1,1 @@
-"""What a run leaves: facts, traces, trends, decisions and notices."""
+"""Records of runs: facts, traces, trends, decisions and notices."""

@@ -1,4 +1,4 @@
-"""What a person decided on a run, and what came of it: a row for each decision."""
+"""Decisions on a run and their consequences, a row for each."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _NOT_APPLIED = "not applied: the run failed"
 def decision_rows(
     friction: xr.Dataset, as_found: xr.Dataset, checks: Sequence[Mapping[str, Any]]
 ) -> tuple[DecisionRow, ...]:
-    """Return what was decided on a run, and what came of it.
+    """Decisions on a run and their consequences, a row for each.
 
     Parameters
     ----------
@@ -45,12 +45,12 @@ def decision_rows(
 
 
 def not_applied(decisions: Iterable[Decision]) -> tuple[DecisionRow, ...]:
-    """Return what was decided on a run that failed."""
+    """Return the decisions on a run that failed."""
     return tuple(DecisionRow(**decision.plain(), effect=_NOT_APPLIED) for decision in decisions)
 
 
 def decision_notices(run: str, rows: Sequence[DecisionRow]) -> list[Notice]:
-    """Return what a reader should know of the decisions on a run."""
+    """Notices for the reader on the decisions on a run."""
     return [
         Notice(
             "note",
@@ -85,9 +85,9 @@ def _effect(
 
 
 def _accepted(decision: Mapping[str, Any], checks: Sequence[Mapping[str, Any]]) -> str:
-    """Say in spite of which checks something was accepted."""
+    """Return the checks against whose objection something was accepted, as text."""
     said = [(row["check"], str(row.get("decision", ""))) for row in checks]
-    by = f", {decision['author']}, "  # among those who did
+    by = f", {decision['author']}, "  # authors of this decision
     names = [
         check
         for check, text in said
@@ -101,7 +101,7 @@ def _accepted(decision: Mapping[str, Any], checks: Sequence[Mapping[str, Any]]) 
 
 
 def _mean(friction: xr.Dataset, numbers: Sequence[int]) -> float | None:
-    """Mean friction coefficient of segments, without those that are rejected."""
+    """Mean friction coefficient of the segments that are not rejected."""
     if "friction_coefficient" not in friction:
         return None
     out = rejected(friction)

@@ -1,10 +1,10 @@
-"""What the notices of a run are about, as the terminal and the page's first lines pick them out."""
+"""Topics of the notices of a run, used to select them in the terminal and on the page."""
 
 from __future__ import annotations
 
-STROKE_ENDS = "stroke ends"  # parts of strokes that do not count
-DOUBTFUL_COLUMNS = "doubtful columns"  # whose unit or name is in doubt
-STICK_SLIP = "stick-slip"  # the stiffness of the rig beside the critical one
-STEPS = "steps"  # friction that differs from step to step
+STROKE_ENDS = "stroke ends"  # parts of strokes that are not used
+DOUBTFUL_COLUMNS = "doubtful columns"  # columns with a doubtful unit or name
+STICK_SLIP = "stick-slip"  # stiffness of the rig compared with the critical one
+STEPS = "steps"  # friction that differs between steps
 RUNNING_IN = "running-in"  # or wear
 CHANGES = (RUNNING_IN, STEPS)

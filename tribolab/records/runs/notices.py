@@ -1,4 +1,4 @@
-"""What a reader should know of one run: decisions, objections of its checks, oddities."""
+"""Notices on one run: decisions, objections of checks, peculiarities."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def notices_of(
     slip: xr.Dataset | None = None,
     running_in: Sequence[RunningIn] = (),
 ) -> list[Notice]:
-    """Return what a reader should know of a run, from decisions, its checks and its results."""
+    """Return the notices on a run from its decisions, checks and results."""
     notices = decision_notices(name, decisions)
     notices += [
         _of_check(name, row)
@@ -82,7 +82,7 @@ def notices_of(
         if quantity == "friction_coefficient" and (against := int((values < 0).sum())):
             text = f"{many(against, 'segment')} of {count} with friction along the motion (µ < 0)"
             say("suspect", "friction", text + "; is the sign of the force or the offset right?")
-    # as the check on steadiness and the page's table count them
+    # counted as in the check on steadiness and the page's table
     limit = chance_limit(values_of(friction, "effective_samples", count))
     drift = int((values_of(friction, "trend_p_value", count) < limit).sum())
     if drift:
@@ -129,7 +129,7 @@ def notices_of(
 
 
 def _remarks(friction: xr.Dataset) -> list[str]:
-    """Return what is remarked of single segments, what differs by its numbers alone once."""
+    """Remarks on single segments; those that differ only by numbers appear once."""
     if "remark" not in friction:
         return []
     alike: dict[str, list[tuple[int, str]]] = {}
@@ -153,7 +153,7 @@ def _of_check(name: str, row: Mapping[str, Any]) -> Notice:
 
 
 def distance_to_critical(slip: xr.Dataset) -> str:
-    """Say how far the stated stiffness of the rig is from the critical one; "" if none is stated.
+    """Text on the ratio of the stated rig stiffness to the critical one; "" if not stated.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What is said of one run in numbers."""
+"""Numbers that describe one run."""
 
 from __future__ import annotations
 
@@ -43,14 +43,14 @@ def facts_of(
     slip: xr.Dataset,
     as_found: xr.Dataset | None = None,
 ) -> RunFacts:
-    """Return the numbers of a run.
+    """Return the numbers that describe a run.
 
     Parameters
     ----------
     run, segments, friction, slip
         The run with the flags and the findings of its checks (time), and its results (segment).
     as_found
-        Its friction without a person's decisions, where there are any.
+        Its friction without a person's decisions, if there are any.
     """
     decided = () if as_found is None else decision_rows(friction, as_found, findings_of(run))
     return replace(
@@ -66,13 +66,13 @@ def facts_of(
 
 
 def position_range(segments: xr.Dataset) -> tuple[float, float] | None:
-    """Return the part of the track that counts [m], where the campaign file names one."""
+    """Part of the track that is used [m], if the campaign file states one."""
     low, high = (segments.attrs.get(f"position_{end}_m") for end in ("low", "high"))
     return None if low is None or high is None else (float(low), float(high))
 
 
 def main_quantity(friction: xr.Dataset) -> str:
-    """Return the quantity that the report speaks of: mu, else the half loop, else the force."""
+    """Return the main quantity of the report: mu, else the half loop, else the force."""
     for name in ("friction_coefficient", "half_loop", "friction_force"):
         if name in friction and np.isfinite(np.asarray(friction[name], float)).any():
             return name
@@ -80,7 +80,7 @@ def main_quantity(friction: xr.Dataset) -> str:
 
 
 def _of_record(run: xr.Dataset, facts: RunFacts) -> RunFacts:
-    """Add what the run itself says."""
+    """Return the facts extended by those of the run itself."""
     time = np.asarray(run["time"], float)
     attrs = run.attrs
     shift = {k: float(v) for k, v in attrs.items() if k in _SHIFT and not isinstance(v, str)}
@@ -114,7 +114,7 @@ def _of_record(run: xr.Dataset, facts: RunFacts) -> RunFacts:
 
 
 def findings_of(run: xr.Dataset) -> list[FindingRow]:
-    """Return what the checks said of a run, in plain rows."""
+    """Return the results of the checks on a run as plain rows."""
     rows: list[FindingRow] = run.attrs.get("findings", [])
     return rows
 
@@ -123,9 +123,9 @@ _SHIFT = ("clock_shift_s", "clock_shift_uncertainty_s")
 
 
 def friction_facts(friction: xr.Dataset) -> RunFacts:
-    """Return what a run's friction says of it; the other facts are not known yet.
+    """Facts from a run's friction; the other facts have their defaults.
 
-    Of segments that a person rejected it says nothing, unless all of them are.
+    Rejected segments are ignored, unless all are rejected.
     """
     friction = counting(friction)
     name = main_quantity(friction)
@@ -147,7 +147,7 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
     )
     middle = friction.attrs.get("stroke_middle")
     told = value[finite]
-    if middle is not None:  # one of hundreds of strokes tells little
+    if middle is not None:  # one of hundreds of strokes has little weight
         told = np.array([value[part].mean() for part in of_one_speed(speed, finite)])
     return RunFacts(
         quantity=name,
@@ -166,7 +166,7 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
 
 
 def _speed_told(attrs: Mapping[str, Any]) -> str:
-    """Say what the speed is from, and which part of each stroke was used where that was chosen."""
+    """Return the source of the speed, and the part of each stroke used, as text."""
     source = str(attrs.get("velocity_source", ""))
     if source == "recorded":
         source = _SPEED_FROM.get(str(attrs.get("speed_from", "")), source)
@@ -176,7 +176,7 @@ def _speed_told(attrs: Mapping[str, Any]) -> str:
 
 
 def inertia_said(attrs: Mapping[str, Any]) -> str:
-    """Say what of a run's friction force was the inertia of a moving mass; "" if none is known.
+    """Return text on the inertia of a moving mass in the friction force; "" if unknown.
 
     Parameters
     ----------
@@ -193,14 +193,14 @@ def inertia_said(attrs: Mapping[str, Any]) -> str:
 
 
 def stick_slip_of(slip: xr.Dataset) -> Waveform:
-    """Return the class of waveform of a run and where it is seen, for the table of runs.
+    """Return the waveform class of a run and where it occurs, for the table of runs.
 
     Parameters
     ----------
     slip
         From `tribolab.friction.oscillation.stick_slip.stick_slip`.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.friction.oscillation.slip_curve import STEADY_SLIDING, stick_slip_curve
 
     curve = stick_slip_curve([slip])
@@ -214,7 +214,7 @@ def stick_slip_of(slip: xr.Dataset) -> Waveform:
         what = "speed" if over_speed else "segment"
         count = f"{(kind == NOT_CLEAR).sum()} of {many(kind.size, what)}"
         return Waveform(NOT_CLEAR, f"{'at' if over_speed else 'in'} {count}")
-    if not moving.any():  # without a speed, standing still may be among the sliding
+    if not moving.any():  # without a speed, rests may be among the sliding
         return Waveform(STEADY_SLIDING, "" if over_speed else "if it slides: speed not known")
     names, counts = np.unique(kind[moving], return_counts=True)
     ordered = [str(name) for name in names[np.argsort(-counts, kind="stable")]]
@@ -227,16 +227,16 @@ def stick_slip_of(slip: xr.Dataset) -> Waveform:
 
 
 def counting(friction: xr.Dataset) -> xr.Dataset:
-    """Return the segments of which the numbers of a run are made."""
+    """Return the segments used for the numbers of a run."""
     left = kept(friction)
     return left if left.sizes["segment"] else friction
 
 
 def drift_of(friction: xr.Dataset, value: np.ndarray) -> float | None:
-    """Return the largest significant change along a segment, of the run's typical friction.
+    """Return the largest significant change along a segment, relative to typical friction.
 
-    Measured as the check on steadiness does: at high speed in a liquid hardly any friction is
-    left to divide by. None where there may be one that could not be told from chance.
+    As in the check on steadiness, it is relative to the run's friction, because that of a fast
+    segment in a liquid can be almost zero. None if a trend is undecided.
     """
     size = friction.sizes["segment"]
     change = values_of(friction, "trend_change", size)
@@ -257,26 +257,26 @@ def drift_of(friction: xr.Dataset, value: np.ndarray) -> float | None:
 
 
 def values_of(data: xr.Dataset, name: str, size: int) -> np.ndarray:
-    """Return a variable as floats; NaN where there is none."""
+    """Return a variable as floats; NaN if missing."""
     return np.asarray(data[name], float) if name in data else np.full(size, np.nan)
 
 
 def wider_error(friction: xr.Dataset, name: str, ending: str) -> np.ndarray:
-    """Return the error of each segment over the path or beyond it, whichever is wider (segment)."""
+    """Return the larger error of each segment: over the path, or beyond it (segment)."""
     size = friction.sizes["segment"]
     own, beyond = (values_of(friction, f"{name}{end}_{ending}", size) for end in ("", "_beyond"))
     return np.fmax(own, beyond)
 
 
 def pairs_of(friction: xr.Dataset) -> np.ndarray:
-    """Return the number of the pair that each segment is one observation with; -1 for none."""
+    """Return the number of the pair of each segment; -1 for none."""
     if "pair" not in friction or friction.attrs.get("offset") not in PAIRED:
         return np.full(friction.sizes["segment"], -1.0)
     return np.asarray(friction["pair"], float)
 
 
 class _Strokes(NamedTuple):
-    """A run's strokes in the order of time; the value in the unit of its quantity."""
+    """Strokes of a run in temporal order; values in the unit of its quantity."""
 
     speed: np.ndarray
     value: np.ndarray
@@ -288,10 +288,10 @@ class _Strokes(NamedTuple):
 
 
 def _highlights(strokes: _Strokes) -> list[Highlight]:
-    """Mean at the slowest, the middle and the fastest speed, over the strokes at that speed."""
+    """Mean over the strokes at the lowest, the middle and the highest speed."""
     u95 = np.where(np.isfinite(strokes.u95), strokes.u95, NORMAL * strokes.sem)
     speed, known = strokes.speed, np.isfinite(strokes.value)
-    if not (known & (speed > 0)).any():  # one group of all that there is
+    if not (known & (speed > 0)).any():  # one group of all strokes
         speed = np.ones(speed.size)
     means = run_means(speed, strokes.value, strokes.sem, u95, strokes.pairs, shared=strokes.shared)
     if not means:
@@ -315,7 +315,7 @@ def _highlights(strokes: _Strokes) -> list[Highlight]:
 
 
 def times_of_strokes(segments: xr.Dataset) -> tuple[float, float]:
-    """Return how long all strokes last, and the parts of them that count [s]."""
+    """Return the total duration of the strokes, and of the parts used [s]."""
     whole, used = (
         float((segments[f"{part}stop"] - segments[f"{part}start"]).sum())
         for part in ("", "trimmed_")
@@ -324,7 +324,7 @@ def times_of_strokes(segments: xr.Dataset) -> tuple[float, float]:
 
 
 def ends_of_strokes(segments: xr.Dataset) -> list[LeftOut]:
-    """Return what a chosen middle part leaves of the strokes, in a row of its own."""
+    """Return the parts of the strokes outside a chosen middle, as a row."""
     share = segments.attrs.get("stroke_middle")
     if share is None or not segments.sizes["segment"]:
         return []
@@ -334,7 +334,7 @@ def ends_of_strokes(segments: xr.Dataset) -> list[LeftOut]:
 
 
 def left_out(segments: xr.Dataset) -> list[LeftOut]:
-    """Return what was left out of a run, a row for each reason."""
+    """Return the omitted parts of a run, a row for each reason."""
     if "omitted_reason" not in segments:
         return []
     reasons = np.asarray(segments["omitted_reason"]).astype(str)

@@ -1,4 +1,4 @@
-"""All that is recorded of one run."""
+"""Record of one run."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _SEGMENT = Columns(
 
 @dataclass(frozen=True)
 class Highlight:
-    """Mean friction over the strokes at one speed [m/s], with its scatter and its error."""
+    """Mean friction of the strokes at one speed [m/s], with its scatter and error."""
 
     where: Annotated[str, one_of("slowest", "middle", "fastest", "all")]
     sliding_speed_m_s: float | None
@@ -58,7 +58,7 @@ class Highlight:
 
 @dataclass(frozen=True)
 class LeftOut:
-    """What was left out of a run for one reason: how often, how long [s]."""
+    """Parts of a run omitted for one reason: number and duration [s]."""
 
     reason: str
     intervals: Natural
@@ -67,7 +67,7 @@ class LeftOut:
 
 @dataclass(frozen=True)
 class CheckRow:
-    """What one check said of a run, and how a person settled it, if one did."""
+    """Result of one check on a run, and the person's decision on it, if any."""
 
     check: str
     status: Annotated[str, one_of(*STATUSES)]
@@ -80,7 +80,7 @@ class CheckRow:
 
 @dataclass(frozen=True)
 class DecisionRow:
-    """One decision on a run: what, when in the run [s], why, by whom, and what came of it."""
+    """Decision on a run: action, interval [s], reason, author, and consequence."""
 
     action: Annotated[str, one_of(*ACTIONS)]
     start_s: Annotated[
@@ -105,13 +105,13 @@ class DecisionRow:
 
     @property
     def where(self) -> str:
-        """What of the run it is about."""
+        """Return the part of the run it concerns."""
         if self.start_s is None:
             return "the run"
         return f"segment {self.segments[0]}" if self.segments else "a segment"
 
     def row(self) -> Row:
-        """Return it as a row of a table."""
+        """Return the decision as a row of a table."""
         facts: Row = {
             name: getattr(self, name) for name in self.__dataclass_fields__ if name != "segments"
         }
@@ -120,7 +120,7 @@ class DecisionRow:
 
 @dataclass(frozen=True)
 class Waveform:
-    """The class of stick-slip of a run, and where it is seen."""
+    """Stick-slip class of a run, and where it occurs."""
 
     class_: Annotated[str, Field(serialization_alias="class")]
     detail: str
@@ -128,7 +128,7 @@ class Waveform:
 
 @dataclass(frozen=True)
 class RunFacts:
-    """Numbers of a run, as report.json has them: SI, units in the names, None if not known.
+    """Numbers of a run as in report.json: SI, units in the names, None if unknown.
 
     A run that failed has the defaults.
     """
@@ -176,20 +176,20 @@ class RunFacts:
 
 @dataclass(frozen=True)
 class RunRecord:
-    """One run: what it came to, from which files, its numbers, and what is said of it.
+    """Run with its outcome, source files, numbers and notices.
 
     Parameters
     ----------
     outcome
-        The little that the rest of a campaign has to know.
+        Summary for the later stages of a campaign.
     sources
         The files that were read.
     zero
-        What it says of the zero of its friction force; None of a run that failed.
+        Zero of its friction force; None for a failed run.
     facts
         Its numbers.
     notices
-        What a reader should know of it.
+        Notices for the reader.
     slip
         Its stick-slip, a row per segment.
     starts

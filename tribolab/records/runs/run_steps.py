@@ -1,4 +1,4 @@
-"""Whether friction at one speed differs from step to step of a run, as at several temperatures."""
+"""Differences of friction at one speed between steps of a run, e.g. of temperature."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ import xarray as xr
 from tribolab.core.wording import many, percent
 from tribolab.records.runs.same_speed import of_one_speed
 
-_FEWEST = 3  # speeds that several steps have in common
-_DIFFERS = 0.1  # of the friction, from step to step
+_FEWEST = 3  # speeds common to several steps
+_DIFFERS = 0.1  # relative difference of friction between steps
 
 
 def steps_that_differ(friction: xr.Dataset, values: np.ndarray) -> str:
-    """Say that the mean over steps is one of different conditions; "" where it is not.
+    """Return text if steps have different friction, so that their mean mixes conditions.
 
     Parameters
     ----------
     friction
         From `friction_coefficient`: ``sliding_speed`` and ``step`` (segment).
     values
-        Friction coefficient of each (segment); NaN where it is not known.
+        Friction coefficient of each segment; NaN if unknown.
 
     Examples
     --------

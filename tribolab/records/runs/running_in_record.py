@@ -1,4 +1,4 @@
-"""Running-in of a run as report.json, its table and the page have it."""
+"""Record of the running-in of a run for report.json, table and page."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tribolab.records.annotations import Natural, means, one_of
 from tribolab.records.parts import Row
 from tribolab.records.wording import with_error
 
-_MATTERS = 0.02  # change of friction over its mean: repeats scatter as much
+_MATTERS = 0.02  # change of friction over its mean; smaller than the scatter of repeats
 _COUNTED = "what friction is averaged over: cycles, single strokes, or stretches of equal time"
 _WEAR = "displacement normal to the contact at the end, from that at the beginning"
 
@@ -59,12 +59,12 @@ class RunningIn:
 
     @property
     def is_unsteady(self) -> bool:
-        """Whether the run never becomes steady: its mean depends on its length."""
+        """Whether the run never becomes steady, so that its mean depends on its length."""
         return self.verdict == NOT_FINISHED
 
     @property
     def changes(self) -> bool:
-        """Whether friction changes along the run by as much as matters."""
+        """Whether friction changes significantly along the run."""
         return self._moves(self.first_friction_coefficient) or self._changes_at_end
 
     @property
@@ -84,7 +84,7 @@ class RunningIn:
 
     @property
     def text(self) -> str:
-        """What a reader has to know; "" if friction does not change."""
+        """Return text on the running-in; "" if friction does not change."""
         if not self.changes:
             return ""
         first, last = self.first_friction_coefficient, self.last_friction_coefficient
@@ -114,7 +114,7 @@ class RunningIn:
         return f"{' '.join(parts)}; the mean over all is {mean}. {cure}"
 
     def row(self) -> Row:
-        """Return it as a row of a table."""
+        """Return the running-in as a row of a table."""
         return {name: getattr(self, name) for name in self.__dataclass_fields__}
 
 
@@ -123,7 +123,7 @@ def _verb(before: float | None, after: float | None) -> str:
 
 
 def length_text(metres: float | None) -> str:
-    """Return a sliding distance in words.
+    """Sliding distance as text.
 
     Examples
     --------

@@ -1,21 +1,21 @@
-"""Which segments of a run slide at one speed."""
+"""Grouping of the segments of a run by speed."""
 
 from __future__ import annotations
 
 import numpy as np
 
-_SAME_SPEED = 0.05  # relative difference of the speeds of alike segments
+_SAME_SPEED = 0.05  # relative difference of speed within a group
 
 
 def of_one_speed(speed: np.ndarray, known: np.ndarray) -> list[np.ndarray]:
-    """Return the places of segments of alike speeds, a group for each speed, the slowest first.
+    """Return the indices of segments grouped by speed, the lowest speed first.
 
     Parameters
     ----------
     speed
         [m/s] (segment).
     known
-        Which of them count (segment); those whose speed is not above zero do not.
+        Mask of segments to use (segment); those without a positive speed are ignored.
 
     Examples
     --------

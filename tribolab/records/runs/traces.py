@@ -1,4 +1,4 @@
-"""The traces that the page zooms into: few points, no spike lost, packed as text."""
+"""Traces for zooming on the page: few points that keep every spike, packed as text."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 _MOTION = {"sliding_velocity": "velocity", "set_speed": "set speed", "position": "position"}
 _LABELS = {**_MOTION, "inertial_force": "inertia"}
 _MOST_SPANS = 400
-_FINE_CHARACTERS = 4.0  # of a point of two noisy signals, compressed, or somewhat more
-_FEWER = 1.3  # power of the share of points that fits: fewer of them compress worse
-_FINEST = 24_000  # points of a signal that the page zooms into
+_FINE_CHARACTERS = 4.0  # upper estimate per point of two noisy signals, compressed
+_FEWER = 1.3  # exponent of the share of points that fits: fewer points compress worse
+_FINEST = 24_000  # points of a signal available for zooming
 _POINT_BYTES = 8.0  # of a point of two signals, compressed and as text
-_BYTES, _FEW = 1.25e6, 32  # of all traces together, of so many runs or fewer
-_COARSE_SHARE = 0.3  # of that for what is shown at once
+_BYTES, _FEW = 1.25e6, 32  # of all traces together, up to so many runs
+_COARSE_SHARE = 0.3  # share for the points shown on opening
 
 
 def page_trace(
@@ -41,7 +41,7 @@ def page_trace(
     points: int,
     fine_size: int,
 ) -> PageTrace:
-    """Return what the page draws of a run; parameters as of `decimated_trace` and `finer_trace`."""
+    """Trace of a run for the page; parameters as of `decimated_trace` and `finer_trace`."""
     shared = shared_by_signals(run, friction)
     return PageTrace(
         script_json(decimated_trace(run, segments, friction, points, shared)),
@@ -50,14 +50,14 @@ def page_trace(
 
 
 class SharedTrace(NamedTuple):
-    """What a trace and its finer one share, as long as the run: clock and main signal."""
+    """Data shared by a trace and its finer one: clock and main signal."""
 
     clock: Clock
     main: Signal
 
 
 def shared_by_signals(run: xr.Dataset, friction: xr.Dataset | None) -> SharedTrace:
-    """Return what all traces of a run share.
+    """Return the data that all traces of a run share.
 
     Raises
     ------
@@ -68,21 +68,21 @@ def shared_by_signals(run: xr.Dataset, friction: xr.Dataset | None) -> SharedTra
 
 
 def trace_size(runs: int) -> tuple[int, int]:
-    """Return how many points a signal of a run has at once, and how long its finer trace may be.
+    """Return the number of points of a signal shown on opening, and size of its finer trace.
 
-    The page of many runs shall stay one that can be sent.
+    This limits the size of a page with many runs.
 
     Returns
     -------
     points
-        Of each signal, to be shown when a run is opened.
+        Points of each signal shown when a run is opened.
     size
-        Of the finer trace, in characters of the page.
+        Size of the finer trace, in characters of the page.
 
     Notes
     -----
-    The number of runs counts as the next power of two, so that one run more does not change what
-    is kept of the others.
+    The number of runs is rounded up to a power of two, so that one more run rarely changes the
+    traces of the others.
 
     Examples
     --------
@@ -90,7 +90,7 @@ def trace_size(runs: int) -> tuple[int, int]:
     ((2000, 109375), (517, 9667), (300, 3417))
     """
     runs = 1 << max(runs - 1, 0).bit_length()
-    # of many runs the page grows, but more slowly than their number
+    # with many runs the page grows, but more slowly than their number
     each = _BYTES * max(1.0, (runs / _FEW) ** 0.5) / runs
     points = _COARSE_SHARE * each / _POINT_BYTES
     return int(np.clip(points, 300, 2000)), int((1 - _COARSE_SHARE) * each)
@@ -114,12 +114,12 @@ def decimated_trace(
         parts of the record, half those of equal parts of each segment, so that a fast stroke
         can be zoomed into as a slow one can.
     shared
-        What is known of the run already.
+        Data of the run already computed.
 
     Returns
     -------
     dict
-        Ready for JSON; `assets/trace.js` reads it. ``complete`` says that nothing was left out.
+        Ready for JSON; `assets/trace.js` reads it. ``complete`` states that it contains all points.
 
     Raises
     ------
@@ -146,18 +146,18 @@ def finer_trace(
     size: int,
     shared: SharedTrace | None = None,
 ) -> str:
-    """Return the signals of a run with as many points as fit, for the page to zoom into.
+    """Signals of a run with as many points as fit, for zooming on the page.
 
     Parameters
     ----------
     run, segments, friction
         As for `decimated_trace`.
     points
-        What the trace has that the page shows at once: with no more there is nothing to zoom into.
+        Points of the trace shown on opening; a finer trace needs more.
     size
         Length of the text [characters]; there are fewer points until it is met.
     shared
-        What is known of the run already.
+        Data of the run already computed.
 
     Returns
     -------
@@ -191,7 +191,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset, shared: SharedTrace, points:
     for name, values in one_by_one(signals):
         chosen = _chosen(time, values, bounds, points)
         known = quantity(name)
-        # speeds span decades: packed as they are drawn, linear only below the slowest segment
+        # speeds cover decades: packed as drawn, linear only below the slowest segment
         below = _slowest(segments) if name in ("sliding_velocity", "set_speed") else None
         levels = values[chosen] if below is None else np.arcsinh(values[chosen] / below)
         packed.append(
@@ -210,7 +210,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset, shared: SharedTrace, points:
 
 
 def _varies(values: np.ndarray) -> bool:
-    """Whether a signal has more than one value; gaps are none."""
+    """Whether a signal has more than one value, ignoring gaps."""
     return bool(np.fmax.reduce(values) > np.fmin.reduce(values))
 
 
@@ -225,7 +225,8 @@ def _chosen(time: np.ndarray, values: np.ndarray, bounds: np.ndarray, points: in
         if b - a > 1:
             parts.append(a + envelope_index(time[a:b], values[a:b], columns))
     chosen = np.sort(np.concatenate([*parts, [0, time.size - 1]]))
-    return chosen[np.diff(chosen, prepend=-1) > 0]  # each once: `numpy.unique` would hash them
+    # unique values without hashing by `numpy.unique`
+    return chosen[np.diff(chosen, prepend=-1) > 0]
 
 
 def _slowest(segments: xr.Dataset) -> float | None:
@@ -235,7 +236,7 @@ def _slowest(segments: xr.Dataset) -> float | None:
 
 
 def _segments(segments: xr.Dataset, friction: xr.Dataset | None, name: str) -> list[list[Any]]:
-    """Start, stop, both after trimming, direction, mean where the trace runs, and the speed."""
+    """Start, stop, both after trimming, direction, mean in the unit of the trace, and speed."""
     names = ("start", "stop", "trimmed_start", "trimmed_stop")
     bounds = np.column_stack([np.asarray(segments[n], float) for n in names])
     direction = np.asarray(segments["direction"], int)
@@ -256,7 +257,7 @@ def _short(value: float) -> float | None:
 
 
 def flagged_spans(run: xr.Dataset) -> list[FlaggedSpan]:
-    """Return where checks objected to a run's signals.
+    """Return the intervals in which checks objected to a run's signals.
 
     Parameters
     ----------
@@ -267,8 +268,8 @@ def flagged_spans(run: xr.Dataset) -> list[FlaggedSpan]:
     -------
     list of FlaggedSpan
         ``signal``, ``severity`` (suspect or fail), ``start_s``, ``stop_s`` and ``checks``. Spans
-        nearer to each other than a thousandth of the record are one, and of very many only the
-        longest are kept.
+        closer than a thousandth of the record are merged, and only the longest are kept if there
+        are very many.
     """
     time = np.asarray(run["time"], float)
     if time.size < 2:
@@ -307,6 +308,6 @@ def _checks(run: xr.Dataset, name: str, tests: np.ndarray) -> tuple[str, ...]:
 
 
 def script_json(data: Any) -> str:
-    """Return data as JSON that may stand in a script element: nothing in it can end that."""
+    """JSON text that is safe in a script element."""
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029")

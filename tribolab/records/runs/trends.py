@@ -1,4 +1,4 @@
-"""Trends along the segments of a run, as the page and the terminal tell them."""
+"""Trends along the segments of a run, for the page and the terminal."""
 
 from __future__ import annotations
 
@@ -12,19 +12,19 @@ from tribolab.friction.coefficient.steadiness import LIMITS, undecided
 
 
 def not_decided(change: np.ndarray, chance: np.ndarray, samples: np.ndarray) -> np.ndarray:
-    """Return where there may be a trend or none, as the check on steadiness has it."""
+    """Return a mask of segments whose trend is undecided, as in the check on steadiness."""
     return undecided(change, chance, samples, LIMITS)
 
 
 def trend_texts(rows: Sequence[Mapping[str, Any]], quantity: str) -> list[tuple[float, str]]:
-    """Return the trend of each segment as a number to sort by and a text.
+    """Trend of each segment as a number for sorting and a text.
 
     Parameters
     ----------
     rows
         The segments of a run, as in report.json.
     quantity
-        What the run is told by: a friction coefficient, else a force.
+        Main quantity of the run: a friction coefficient, else a force.
 
     Examples
     --------
@@ -41,7 +41,7 @@ def trend_texts(rows: Sequence[Mapping[str, Any]], quantity: str) -> list[tuple[
 
 
 def undecided_trends(runs: Iterable[tuple[str, Sequence[Mapping[str, Any]], str]]) -> str:
-    """Return in how many segments a large trend is undecided, and the largest, or "".
+    """Text on the number of segments with an undecided trend, and the largest; else "".
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ tell drift from noise'
 def _trends(
     rows: Sequence[Mapping[str, Any]], quantity: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-    """Return change of the typical friction, p value, and where the trend is undecided."""
+    """Relative change of friction, p value, and mask of undecided trends."""
 
     def column(name: str) -> np.ndarray:
         return np.array([np.nan if (v := row.get(name)) is None else v for row in rows], float)

@@ -1,1 +1,1 @@
-"""What a surface leaves: its scans, its roughness, and the words for them."""
+"""Records of surfaces: scans and roughness, with their wording."""

@@ -1,4 +1,4 @@
-"""What a Hurst exponent says of a surface, above all where it exceeds 1."""
+"""Text on the Hurst exponent of a surface, above all if it exceeds 1."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ _OPEN = (
     "not told from 1: within its error the surface may be a self-affine fractal (H below 1), or "
     "one whose slope stays finite however short the waves are that count (above 1)"
 )
-_SIGMAS = 2.0  # that an exponent must lie above 1 to be told from it
+_SIGMAS = 2.0  # standard errors by which an exponent must exceed 1
 
 
 def is_steep(hurst: float | None, error: float | None = None) -> bool:
-    """Whether a Hurst exponent lies above 1 by more than its error allows."""
+    """Whether a Hurst exponent exceeds 1 significantly."""
     if hurst is None or not math.isfinite(hurst):
         return False
     return hurst - _SIGMAS * _known(error) > 1
 
 
 def hurst_verdict(hurst: float | None, error: float | None = None) -> str:
-    """Say what an exponent at or above 1 means; "" for one between 0 and 1.
+    """Text on an exponent at or above 1; "" between 0 and 1.
 
     Parameters
     ----------
     hurst
         Exponent H [1] of the power law ``C ~ q^(-2(1+H))``.
     error
-        Its standard error [1]; None if it is no estimate.
+        Its standard error [1]; None if it was not estimated.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""The roughness of surfaces in a line, as drawings and instruments state it."""
+"""Roughness of surfaces in one line, as on drawings and instruments."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from tribolab.core.wording import Count, number
 from tribolab.records.parts import Row, number_of
 from tribolab.records.wording import NORMAL, with_error
 
-_BEND = 0.1  # of Pq, by which a circle is none to speak of
-_MOST = 5  # surfaces that are named
-FORM = "form"  # what a finding on a form that may be waviness is about
+_BEND = 0.1  # share of Pq below which a circle is negligible
+_MOST = 5  # surfaces that are listed
+FORM = "form"  # topic of a finding on form that may be waviness
 _FORMS = {"polynomial": "polynomial of degree 2"}
 
 
 def form_in_words(row: Row, *, radius: bool = True) -> str:
-    """Return which form was taken off a surface's scans; "" if that is not known.
+    """Name of the form removed from a surface's scans; "" if unknown.
 
     Examples
     --------
     >>> form_in_words({"form_removed": "circle", "form_radius_m": 0.0702})
     'circle of R = 0.0702 m taken off'
 
-    A circle that hardly bends the profile is little but its tilt:
+    A circle with negligible curvature counts as tilt:
 
     >>> flat = {"form_radius_m": 400.0, "evaluation_length_m": 4e-3, "Pq_m": 1e-6}
     >>> form_in_words({"form_removed": "circle"} | flat)
@@ -43,7 +43,7 @@ def form_in_words(row: Row, *, radius: bool = True) -> str:
 
 
 def hardly_bends(radius: float, length: float | None, roughness: float | None) -> bool:
-    """Whether a circle [m] over a length [m] bends by far less than the heights' Pq [m].
+    """Whether the sag of a circle [m] over a length [m] is far below the heights' Pq [m].
 
     >>> hardly_bends(400.0, 4e-3, 1e-6), hardly_bends(0.07, 4e-3, 1e-6)
     (True, False)
@@ -54,7 +54,7 @@ def hardly_bends(radius: float, length: float | None, roughness: float | None) -
 
 
 def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
-    """Return Rq and Ra of surfaces, Sq and Sa of maps, a line for each form and cut-off.
+    """Rq and Ra of surfaces, Sq and Sa of maps, a line for each form and cut-off.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
     """
     told: dict[str, list[str]] = {}
     for name, row in rows:
-        if number_of(row, "Sq_m") is not None:  # of a map: of its area, not of its rows
+        if number_of(row, "Sq_m") is not None:  # for a map: over its area, not its rows
             form = form_in_words(row, radius=False)
             heading = f"Sq ({form})" if form else "Sq"
             said = _with_mean_deviation(row, "Sq", "Sa")
@@ -92,17 +92,17 @@ def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
 
 
 def roughness_u95(row: Row, name: str) -> float:
-    """Return U95 [m] of a roughness parameter; 0 if nothing is known of its error.
+    """U95 [m] of a roughness parameter; 0 if its error is unknown.
 
-    Student's t of the scans; of a single profile, of its sampling lengths. What missing heights
-    bring counts where it is larger.
+    From Student's t over the scans or, for a single profile, its sampling lengths; the error due to
+    missing heights if larger.
 
     Examples
     --------
     >>> round(roughness_u95({"scans": 3, "Ra_sem_m": 1e-9}, "Ra") * 1e9, 2)
     4.3
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from scipy import special
 
     scatter, gaps = (number_of(row, f"{name}_{what}_m") or 0.0 for what in ("sem", "gap_error"))
@@ -113,7 +113,7 @@ def roughness_u95(row: Row, name: str) -> float:
 
 
 def _evaluated(row: Row) -> str:
-    """Say what was taken off a profile, and over how many sampling lengths."""
+    """Return the cut-off and form removed from a profile, and its sampling lengths, as text."""
     cut, lengths = number_of(row, "lambda_c_m"), number_of(row, "sampling_lengths")
     parts = [form_in_words(row, radius=False)]
     parts.append("no cut-off" if cut is None else f"cut-off {1e3 * cut:.3g} mm")
@@ -123,7 +123,7 @@ def _evaluated(row: Row) -> str:
 
 
 def _with_mean_deviation(row: Row, quadratic: str, mean: str) -> str:
-    """Return the root mean square roughness with its error, and the mean deviation behind it."""
+    """Return rms roughness with its error, followed by the mean deviation, as text."""
     value, behind = (number_of(row, f"{name}_m") for name in (quadratic, mean))
     error = roughness_u95(row, quadratic)
     scaled = 1e6 * (value or 0.0)

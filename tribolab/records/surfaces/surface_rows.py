@@ -1,4 +1,4 @@
-"""Rows of one surface: its roughness, its contact at the loads, its adhesion."""
+"""Rows of one surface: roughness, contact at the loads, and adhesion."""
 
 from __future__ import annotations
 
@@ -57,17 +57,17 @@ ADHESION = [
 
 
 def surface_rows(name: str, groups: Mapping[str, xr.Dataset], quality: str) -> SurfaceRows:
-    """Return the rows of a surface from the groups of its data file.
+    """Rows of a surface from the groups of its data file.
 
     Parameters
     ----------
     name
-        Of the surface.
+        Name of the surface.
     groups
         ``roughness``; where there: ``psd``, ``contact``, ``loads``, ``line``, ``rubber``,
         ``adhesion_loads``.
     quality
-        Gravest status of the checks on its scans.
+        Worst status of the checks on its scans.
     """
     return SurfaceRows(
         name,
@@ -104,7 +104,7 @@ def _roughness(moments: xr.Dataset, psd: xr.Dataset | None) -> Row:
 
 
 def _error_over_scans(moments: xr.Dataset, name: str) -> float | None:
-    """Return the standard error of a mean over scans, of a single one from its own parts."""
+    """Return the standard error of a mean over scans; for one scan, from its parts."""
     values = moments[name]
     scans = values.mean("y") if "y" in values.dims else values
     if scans.size > 1:
@@ -113,13 +113,13 @@ def _error_over_scans(moments: xr.Dataset, name: str) -> float | None:
 
 
 def _error_of_mean(error: xr.DataArray) -> float:
-    """Return the standard error of a mean over scans; the rows of a map err together."""
+    """Return the standard error of a mean over scans; rows of a map are correlated."""
     scans = error.mean("y") if "y" in error.dims else error
     return float(np.sqrt((scans**2).sum()) / scans.size)
 
 
 def _contact(groups: Mapping[str, xr.Dataset]) -> list[Row]:
-    """One row per load; without loads one per pressure."""
+    """Rows of contact results, per load or else per pressure."""
     if "contact" not in groups:
         return []
     if "loads" not in groups:
@@ -162,7 +162,7 @@ def _adhesion(groups: Mapping[str, xr.Dataset]) -> list[Row]:
 
 
 def _rows(data: xr.Dataset, dim: str) -> list[Row]:
-    """Return the variables over one dimension, a row per entry, named as the tables' columns."""
+    """Rows of the variables over one dimension, with names of the tables' columns."""
     names = [str(name) for name in data.variables if data[name].dims == (dim,)]
     values = {column(name): data[name].values.tolist() for name in names}
     return [dict(zip(values, row, strict=True)) for row in zip(*values.values(), strict=True)]
