@@ -15,5 +15,5 @@ MIN_GAP = Limit(
     5.0,
     "1",
     "intervals of the rows around it, from which an interval is a gap that nothing was recorded in",
-    "buffers that arrive late stretch 2 to 3 intervals",
+    "late buffers cause gaps of 2 to 3 intervals",
 )

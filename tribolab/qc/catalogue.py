@@ -1,4 +1,4 @@
-"""Catalogue of all checks and their limits (raw_data_schema/CHECKS.md)."""
+"""Generate raw_data_schema/CHECKS.md: all checks with their limits."""
 
 from __future__ import annotations
 
@@ -12,24 +12,29 @@ from tribolab.qc.scan.checks import SCAN_CHECKS
 CHECKS_PAGE = "CHECKS.md"
 _HEAD = """# The checks
 
-What `tribolab check` and `tribolab run` ask of every run and scan. Limits are set in the campaign
-file under `[qc]`, as text with a unit or as numbers in SI: `limits.spikes.noise = 10`;
-`skip = ["hum"]` leaves a check out. Each answers pass, suspect, fail, skipped (and why) or error
-(and which). In a campaign `repeats` also compares the runs of one condition with each other, and
-with how well runs repeat under all other conditions. This page is made from the code, and a test
-keeps the two equal.
+The checks that `tribolab check` and `tribolab run` apply to every run and scan. Set limits in the
+campaign file under `[qc]`, as text with a unit or as numbers in SI: `limits.spikes.noise = 10`;
+`skip = ["hum"]` disables a check. The result is pass, suspect, fail, skipped (with the reason) or
+error (with the message). In a campaign, `repeats` also compares the runs of one condition with each
+other and with the repeatability under all other conditions. This page is generated from the code.
 """
 
 
 def catalogue() -> str:
-    """Page of all checks: question, limits with units and reasons, and what to do.
+    """Return the page: each check's question, remedy, and limits with units and reasons.
 
     Examples
     --------
     >>> "### spikes" in catalogue()
     True
     """
-    parts = [_HEAD, "## On runs\n", *_chapter(RUN_CHECKS), "## On scans\n", *_chapter(SCAN_CHECKS)]
+    parts = [
+        _HEAD,
+        "## Checks of runs\n",
+        *_chapter(RUN_CHECKS),
+        "## Checks of scans\n",
+        *_chapter(SCAN_CHECKS),
+    ]
     return "\n".join(parts)
 
 
@@ -38,7 +43,7 @@ def _chapter(checks: Mapping[str, Check[Never]]) -> list[str]:
     for check in checks.values():
         lines += [f"### {check.name}\n", f"{check.question} {check.cure}\n"]
         if check.limits:
-            lines += ["| limit | default | unit | why |", "| --- | --- | --- | --- |"]
+            lines += ["| limit | default | unit | reason |", "| --- | --- | --- | --- |"]
             for name, limit in check.limits.items():
                 lines.append(f"| {name} | {limit.value:g} | {limit.unit} | {limit.reason} |")
             lines.append("")

@@ -22,12 +22,12 @@ _POINT = Columns(
     ("sliding_speed_m_s", "friction_coefficient"),
     {
         "friction_coefficient_std": "pooled standard deviation within the segments",
-        "friction_coefficient_sem": "standard error of the mean: between runs where `runs` is 2 or "
+        "friction_coefficient_sem": "standard error of the mean: between runs if `runs` is 2 or "
         "more, else within the run",
         "friction_coefficient_u": "combined standard uncertainty, without Student's factor",
-        "friction_coefficient_dof": "its degrees of freedom; null where they are without limit",
-        "friction_coefficient_U95": "expanded uncertainty: the friction coefficient lies within "
-        "it with 95 %, as far as uncertainty_says does not say what is left out",
+        "friction_coefficient_dof": "degrees of freedom; null if infinite",
+        "friction_coefficient_U95": "expanded uncertainty (95 % coverage), without contributions "
+        "named in uncertainty_says",
     },
     known=("sliding_speed_m_s",),
     open=True,
@@ -37,14 +37,14 @@ _PART = Columns(
     {
         "sliding_speed_m_s": "",
         "part": "name of the input, or of the scatter",
-        "varies": "with what it takes another value, as stated; empty for the scatter",
-        "contribution": "by how much one standard uncertainty of it moves the coefficient, signed",
+        "varies": "what changes its value, as stated; empty for the scatter",
+        "contribution": "signed change of the coefficient per standard uncertainty of the input",
         "share": "of the variance",
-        "dof": "degrees of freedom; null where they are without limit",
+        "dof": "degrees of freedom; null if infinite",
     },
     texts=("part", "varies"),
     known=("sliding_speed_m_s",),
-    row="one part of the uncertainty of one point",
+    row="one contribution to the uncertainty of one point",
 )
 BudgetRow = Annotated[Row, _PART]  # of a measured curve
 
@@ -189,6 +189,6 @@ class FigureRecord:
         str,
         means("CSV with the numbers that it shows, relative to the results folder; empty if none"),
     ]
-    caption: Annotated[str, means("what stands below it")]
+    caption: Annotated[str, means("caption below the figure")]
     alt: Annotated[str, means("what the figure shows, in words and numbers")]
-    kind: Annotated[str, means("what the page groups it by")] = ""
+    kind: Annotated[str, means("group on the page")] = ""

@@ -285,7 +285,7 @@ class ModelOutcome(PartOutcome):
 
 @dataclass(frozen=True)
 class FlaggedSpan:
-    """Interval in which checks objected to a signal: severity, start and stop [s], checks."""
+    """Interval [s] of a signal flagged as suspect or fail, and by which checks."""
 
     signal: str
     severity: Annotated[str, one_of("suspect", "fail")]

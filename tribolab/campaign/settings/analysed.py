@@ -21,62 +21,62 @@ from tribolab.core.untyped import Arguments
 
 
 class Segments(Table):
-    """How segments of constant speed are found."""
+    """Detection of segments of constant speed."""
 
     trim: ShareOfEnds = 0.10
-    """Share of a segment that is left out at each end."""
+    """Fraction of a segment that is trimmed at each end."""
     position_range: (
         tuple[Annotated[float, Si("m", "5 mm")], Annotated[float, Si("m", "32 mm")]] | None
     ) = None
-    """Only this part of the track is used."""
+    """Part of the track to use."""
     stroke_middle: MiddleShare | None = None
-    """Of a slider that moves to and fro without a constant speed: the share of each stroke's length
-    about its middle that is used, e.g. "40 %"; by default half where the instrument states stroke
-    and frequency, or the position tells that each stroke is like the last."""
+    """Reciprocating motion without constant speed: central fraction of each stroke's length to use,
+    e.g. "40 %". Default: half, if the instrument states stroke and frequency or if the position
+    shows that all strokes are equal."""
     discard: Discard | None = None
-    """What is left out at the beginning of each run: a sliding distance, a time, or cycles."""
+    """Initial part of each run to leave out: a sliding distance, a time, or cycles."""
     steady: Literal["auto"] | None = None
-    """"auto": of each run the part after running-in counts, as `running_in.csv` has it."""
+    """Set "auto" to use only the part after running-in (see `running_in.csv`)."""
     resolution: Annotated[float, Field(gt=0, lt=1)] | None = None
-    """Relative difference of speed that separates two neighbouring plateaus."""
+    """Relative speed difference that separates two neighbouring plateaus."""
     drift: Annotated[float, Field(gt=0)] | None = None
-    """Relative change of speed within one plateau above which it is a ramp."""
+    """Relative speed change above which a plateau is a ramp."""
     min_samples: Annotated[int, Field(ge=2)] | None = None
     """Fewest samples in a segment."""
     min_duration: Annotated[float, PositiveSi("s", "0.5 s")] | None = None
     """Shorter segments are left out."""
     max_gap: Annotated[float, PositiveSi("s", "2 s")] | None = None
-    """Longest pause between two samples within a segment; by default a twentieth of it."""
+    """Longest gap between two samples of a segment; default: a twentieth of the segment."""
     speed_tolerance: Annotated[float, Field(gt=0, lt=1)] = 0.1
-    """Largest relative difference of the speeds that make one point of a curve. Speeds are grouped
-    by the gaps between them; set speeds, where they are known, decide."""
+    """Largest relative speed difference within one point of a curve. Speeds are grouped by
+    set-point, if known; otherwise by the gaps between them."""
     rest_speed: Annotated[float, PositiveSi("m/s", "0.1 um/s")] | None = None
-    """Speed below which the slider is at rest; by default 1e-5 of the highest."""
+    """Speed below which the slider is at rest; default: 1e-5 of the highest speed."""
 
 
 class Friction(Table):
-    """How the friction coefficient is computed."""
+    """Computation of the friction coefficient."""
 
     offset: Literal["auto", "half loop", "zero load", "none"] = "auto"
-    """Which offset of the friction force is removed."""
+    """Method for the zero of the friction force."""
     pair_tolerance: Annotated[float, Field(gt=0, lt=2)] = 0.25
-    """Up to which difference of speed, over their mean, two strokes have the same friction."""
+    """Largest relative speed difference between the two strokes of a half loop."""
 
 
 class Roughness(Table):
-    """How the power spectrum is made from the scans."""
+    """Power spectrum and roughness from the scans."""
 
     form: Literal["auto", "none", "mean", "tilt", "circle", "polynomial"] = "auto"
-    """What is taken away from the scans first; by default a circle from profiles, a polynomial of
-    the second degree from maps."""
+    """Form to remove from the scans. Default: a circle from profiles, a second-degree polynomial
+    from maps."""
     lambda_c: Annotated[float, PositiveSi("m", "0.8 mm")] | None = None
-    """Cut-off of Ra, Rq and the like; by default none where the instrument filtered, else 0.8 mm,
-    or a fifth of a shorter scan."""
+    """Cut-off wavelength of Ra, Rq and related parameters. Default: none if the instrument
+    filtered, otherwise 0.8 mm, or a fifth of a short scan."""
     q_low: Annotated[float, PositiveSi("1/m", "423 1/m")] | None = None
-    """Smallest wavenumber; by default pi over the Hertz width at the lowest load."""
+    """Smallest wavenumber; default: pi divided by the Hertz width at the lowest load."""
     q_high: Annotated[float, PositiveSi("1/m", "3.14e9 1/m")] | Literal["measured"] | None = None
-    """Largest wavenumber; by default pi / 1 nm. "measured": nothing is extrapolated to shorter
-    waves than each surface's scans show."""
+    """Largest wavenumber; default: pi / 1 nm. "measured": no extrapolation to wavelengths shorter
+    than those of the scans."""
     fit_decade: (
         tuple[
             Annotated[float, PositiveSi("1/m", "1e5 1/m")],
@@ -84,20 +84,20 @@ class Roughness(Table):
         ]
         | None
     ) = None
-    """Wavenumbers between which the power law is fitted that goes on to the largest."""
+    """Wavenumber range for the fit of the power law used for extrapolation."""
     tip_radius: Annotated[float, PositiveSi("m", "2 um")] | None = None
-    """Radius of the stylus, if the files do not say it."""
+    """Radius of the stylus, if the files do not state it."""
 
 
 class Qc(Table):
-    """When a finding makes the whole run count as failed."""
+    """Data-quality checks: limits, checks to skip, and the exit code."""
 
     fail_on: Literal["suspect", "fail", "never"] = "fail"
-    """The mildest finding that gives exit code 1."""
+    """Lowest severity of a finding that gives exit code 1."""
     skip: tuple[SomeText, ...] = ()
-    """Checks on runs and on scans that are left out."""
+    """Checks of runs and scans to skip."""
     limits: dict[SomeText, dict[SomeText, float | SomeText]] = {}
-    """Limits of checks by name, e.g. limits.spikes.noise = 10; numbers in SI or with a unit."""
+    """Limits of checks, e.g. limits.spikes.noise = 10: numbers in SI, or text with a unit."""
 
     @property
     def _by_default(self) -> bool:

@@ -31,7 +31,7 @@ CAMPAIGN_SCHEMA_FILE = "campaign.schema.json"
 
 
 class About(Table):
-    """What the campaign is called and where its files lie."""
+    """Title of the campaign and its folders."""
 
     name: SomeText
     """Title of the report."""
@@ -40,11 +40,11 @@ class About(Table):
     output: SomeText = "results"
     """Folder of the results, relative to this file."""
     files_named: LabelPattern | None = None
-    """What the names of the runs' files say, without their endings:
+    """Pattern of the run files' names, without extension:
     "{surface}_{medium}_{normal_force}_{repeat}"; also {sliding_speed}, {mount}, {specimen},
-    {operator}, {day} and your own. What a [[run]] states goes first."""
+    {operator}, {day} and your own labels. Values stated in a [[run]] take precedence."""
     note: SomeText | None = None
-    """What every reader of the report should know first; it stands at its top."""
+    """Note at the top of the report."""
 
 
 class Campaign(Table):

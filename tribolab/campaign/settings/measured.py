@@ -26,14 +26,14 @@ if TYPE_CHECKING:
 
 
 class Contact(Table):
-    """The cylinder or ball and the elastomer, as far as they are known."""
+    """The cylinder or ball, and the elastomer. State what you know."""
 
     geometry: Literal["cylinder", "ball"] = "cylinder"
-    """Which body is pressed on the flat."""
+    """Shape of the body pressed on the flat."""
     radius: Annotated[float, PositiveSi("m", "7 cm")] | None = None
     """Radius of the cylinder or ball."""
     length: Annotated[float, PositiveSi("m", "10 cm")] | None = None
-    """Length of the line contact; a ball has none."""
+    """Length of the line contact (not for a ball)."""
     youngs_modulus: Annotated[float, PositiveSi("Pa", "1.5 MPa")] | None = None
     """Young's modulus of the elastomer at low frequency."""
     youngs_modulus_range: (
@@ -43,24 +43,24 @@ class Contact(Table):
         ]
         | None
     ) = None
-    """Between which values it is uncertain; model curves get a band from it."""
+    """Uncertainty range; contributes to the band of the model curves."""
     poisson_ratio: Annotated[float, Field(gt=-1, le=0.5)] | None = None
     """Poisson's ratio of the elastomer."""
     thickness: Annotated[float, PositiveSi("m", "5 mm")] | None = None
-    """Thickness of the elastomer, bonded to a rigid base; by default it is a half-space."""
+    """Thickness of the elastomer, bonded to a rigid base; default: a half-space."""
     counter_modulus: Annotated[float, PositiveSi("Pa", "2 MPa")] | None = None
-    """Young's modulus of the cylinder or ball; by default it is rigid."""
+    """Young's modulus of the cylinder or ball; default: rigid."""
     counter_poisson_ratio: Annotated[float, Field(gt=-1, le=0.5)] | None = None
     """Poisson's ratio of the cylinder or ball."""
     area: Literal["persson", "corrected", "numerics"] = "persson"
-    """Theory of the contact area: Persson's as in the paper; corrected for the elastic energy that
-    partial contact saves; or as fitted to boundary elements."""
+    """Theory of the contact area: Persson's original theory; corrected for the lower elastic energy
+    of partial contact; or fitted to boundary elements."""
     normal_forces: tuple[Annotated[float, PositiveSi("N", "31 N")], ...] = ()
-    """Normal forces at which contact and adhesion are computed, beside those of the runs."""
+    """Additional normal forces for contact and adhesion; those of the runs are included."""
     modulus_file: SomeText | None = None
-    """Storage and loss modulus over frequency (DMA, rheometer), relative to the raw folder."""
+    """File of storage and loss modulus over frequency, relative to the raw folder."""
     sweep: int | SomeText | None = None
-    """Which sweep of `modulus_file`, if it holds several: its number from 0, or "25 C"."""
+    """Sweep of `modulus_file`, if it contains several: number from 0, or "25 C"."""
     modulus_unit: SomeText | None = None
     """Unit of the moduli in `modulus_file`, if the file does not state it."""
 
@@ -83,7 +83,7 @@ class Contact(Table):
 
 
 class Medium(Table):
-    """What is between the surfaces, as far as it is known."""
+    """The medium between the surfaces. State what you know."""
 
     viscosity: Annotated[float, PositiveSi("Pa s", "1.4 Pa s")] | None = None
     """Dynamic viscosity."""
@@ -94,36 +94,36 @@ class Medium(Table):
         ]
         | None
     ) = None
-    """Between which values it is uncertain; model curves get a band from it."""
+    """Uncertainty range; contributes to the band of the model curves."""
     work_of_adhesion: Annotated[float, Si("J/m2", "51 mJ/m^2")] | None = None
     """Work of adhesion of the surfaces in this medium."""
     work_of_adhesion_range: (
         tuple[Annotated[float, Si("J/m2", "21 mJ/m^2")], Annotated[float, Si("J/m2", "59 mJ/m^2")]]
         | None
     ) = None
-    """Between which values it is uncertain; contact areas get bounds from it."""
+    """Uncertainty range; gives bounds on the contact areas."""
     temperature: Annotated[float, PositiveSi("K", "20 °C")] | None = None
-    """Temperature at which it was measured; with it the viscosity of "glycerol", "water" and
-    "silicone oil 1000 cSt" (any grade) is known where none is stated."""
+    """Temperature of the measurement. Gives the viscosity of "glycerol", "water" and "silicone oil
+    1000 cSt" (any grade) if none is stated."""
     water_content: ShareOfMass | None = None
     """Mass fraction of water in glycerol."""
     liquid: SomeText | None = None
-    """What it is, where the table's name does not say it: "silicone oil 350 cSt"."""
+    """Liquid, if it differs from the table's name: "silicone oil 350 cSt"."""
 
 
 class Surface(Table):
     """One surface and its topography scans."""
 
     name: SomeText
-    """What it is called in the [[run]] tables and in the report."""
+    """Name of the surface in the [[run]] tables and in the report."""
     scans: Patterns | None = None
     """Profilometer files, relative to the raw folder."""
     instrument: SomeText | None = None
-    """Dialect of the scans; left out, the files tell by themselves."""
+    """Dialect of the scans; default: recognised from the files."""
 
 
 class RunEntry(Table):
-    """Runs that were measured alike."""
+    """Runs under the same conditions."""
 
     files: Patterns
     """Raw files, relative to the raw folder: a pattern, or a list of patterns."""
@@ -132,66 +132,66 @@ class RunEntry(Table):
     medium: SomeText | None = None
     """Name of a [medium.*] table."""
     normal_force: Annotated[float, PositiveSi("N", "31 N")] | None = None
-    """Set-point of the normal force; it is the load where the files record none, and left out, the
-    measured load tells which runs are under the same."""
+    """Set-point of the normal force; used as the load if the files record none. Default: runs are
+    grouped by measured load."""
     sliding_speed: Annotated[float, PositiveSi("m/s", "6 mm/min")] | None = None
-    """Set-point of the speed; it is the sliding speed where the files record none."""
+    """Set-point of the speed; used as the sliding speed if the files record none."""
     clock_shift: Annotated[float, Si("s", "0.42 s")] | None = None
-    """What added to the companion log's clock gives the main log's; else the signals tell."""
+    """Time to add to the clock of the companion log; default: estimated from the signals."""
     instrument: SomeText | None = None
-    """Name of a dialect, or a dialect's TOML file; left out, the files tell by themselves."""
+    """Name or TOML file of a dialect; default: recognised from the files."""
     zero_uncertainty: Spread | None = None
-    """Standard uncertainty of the zero of the friction signal, where no stroke or rest tells it: a
-    force, a torque where one was measured, or a pure number of a coefficient."""
+    """Standard uncertainty of the zero of the friction signal, if neither strokes nor rests
+    determine it: a force, a torque (if measured), or a number (if a coefficient was recorded)."""
     zero: ZeroPlace | None = None
-    """Where the zero of the friction signal is read: "first 200 samples", "first 2 s",
+    """Interval in which the zero of the friction signal is read: "first 200 samples", "first 2 s",
     "1.5 s to 3 s", or "file blank.csv", a run without contact in the raw folder."""
     moving_mass: Annotated[float, PositiveSi("kg", "1.2 kg")] | None = None
-    """Mass between the contact and the force sensor, whose inertia is taken out of the force."""
+    """Mass between contact and force sensor; its inertia is subtracted from the force."""
     stiffness: Annotated[float, PositiveSi("N/m", "12 kN/m")] | None = None
-    """Stiffness of the rig between drive and contact, in the direction of sliding: stick-slip says
-    how far it is from the critical stiffness."""
+    """Stiffness of the rig between drive and contact, in the direction of sliding; compared with
+    the critical stiffness for stick-slip."""
     rectified: bool | None = None
-    """Whether friction was recorded without its sign; left out, the reversals tell."""
+    """Whether friction was recorded without its sign; default: found from the reversals."""
     operator: SomeText | None = None
-    """Who measured these runs: for `tribolab lab repeatability`, as are the next five."""
+    """Operator. This and the next five keys are for `tribolab lab repeatability`."""
     mount: SomeText | None = None
-    """Which mounting of the specimen they belong to."""
+    """Mounting of the specimen."""
     day: SomeText | None = None
-    """Day on which they were measured; by default as the files say."""
+    """Day of the measurement; default: from the files."""
     specimen: SomeText | None = None
-    """Which specimen was measured."""
+    """Specimen."""
     labels: dict[SomeText, SomeText] = {}
-    """Whatever else may tell runs apart, e.g. labels.batch = "7"."""
+    """Other labels that distinguish runs, e.g. labels.batch = "7"."""
     labels_in_name: LabelPattern | None = None
-    """Where such labels stand in a file's name, without its ending: "*_{mount}_{operator}_*"; {}
-    stands for letters and digits, * for anything."""
+    """Position of labels in a file's name, without extension: "*_{mount}_{operator}_*". {} matches
+    letters and digits, * matches anything."""
     cycles: bool = False
-    """The files are consecutive cycles of one run, not runs of their own."""
+    """Whether the files are consecutive cycles of one run instead of separate runs."""
     segments: Segments | None = None
     """Overrides of [segments] for these runs."""
 
 
 class Reference(Table):
-    """Runs on a reference sample, by which `tribolab lab history` tells whether the rig changed."""
+    """Runs on a reference sample: `tribolab lab history` uses them to detect changes of the rig."""
 
     files: Patterns | None = None
-    """Their raw files, as in [[run]]."""
+    """Raw files, as in [[run]]."""
     dead_weight: Annotated[float, PositiveSi("N", "19.62 N")] | None = None
-    """The weight that loads them, where it is a dead weight: it tells the gain of the force. Put
-    on or taken off within a record that need not slide, or lying on during the strokes."""
+    """Dead weight that applies the load, for the gain of the normal force: put on or removed during
+    a record (sliding is not necessary), or present during the strokes."""
 
 
 class CalibrationTable(Table):
     """The last calibration of the instrument, for `tribolab lab history` and `tribolab pack`."""
 
     date: dt.date | None = None
-    """When it was, e.g. 2026-03-02."""
+    """Date, e.g. 2026-03-02."""
     interval: Annotated[float, PositiveSi("s", "1 year")] | None = None
-    """How long it holds at most."""
+    """Calibration interval."""
     limit: Annotated[float, PositiveSi("1", "2 %")] | None = None
-    """How far gain or reference may drift until it wants to be done anew."""
+    """Drift of gain or reference at which a new calibration is due."""
     serial: SomeText | None = None
     """Serial number of the instrument."""
     certificate: SomeText | None = None
-    """Number or place of the certificate."""
+    """Number or location of the certificate."""

@@ -1,4 +1,4 @@
-"""All keys of a campaign file, and what a column may hold, as a page: CAMPAIGN.md."""
+"""Generate CAMPAIGN.md: all keys of a campaign file, and all quantities of columns."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from tribolab.units.reciprocals import reciprocal
 CAMPAIGN_PAGE = "CAMPAIGN.md"
 _HEAD = """# The campaign file
 
-Every table and key that a campaign file may have. A quantity is text with a unit, any that
-converts to the one named here: `"31 N"`, `"6 mm/min"`, `"20 °C"`. Defaults are in that unit. A key
-that is not listed is an error. `campaign.schema.json` says the same to editors. At the end:
-[what a column may be](#what-a-column-may-be) and
-[what a header may give](#what-a-header-or-a-file-name-may-give). This page is
-made from the code, and a test keeps the two equal.
+All tables and keys of a campaign file. A quantity is text with any unit that converts to the one
+listed here: `"31 N"`, `"6 mm/min"`, `"20 °C"`. Defaults are in the listed unit. A key that is not
+listed is an error. `campaign.schema.json` contains the same for editors. At the end:
+[quantities of columns](#quantities-of-columns) and
+[values in a header or file name](#values-in-a-header-or-file-name). This page is generated from the
+code.
 """
-_COLUMNS = """## What a column may be
+_COLUMNS = """## Quantities of columns
 
 `quantity` of a `[[column]]` in a dialect (see [README.md](README.md)). Signals of a run:
 """
-_SCANS = """Of a scan:
+_SCANS = """Heights of a scan:
 """
-_VALUES = """## What a header or a file name may give
+_VALUES = """## Values in a header or file name
 
-`name` of a `[[value]]` in a dialect: a single value that stands outside the table. Any name
-will do; it becomes an attribute of the run: a number in SI with its unit in the name
-(`set_speed_m_s`), or, without `unit`, a text. A name that is no quantity also wants `to`, the SI
-unit to keep it in. These are not only kept but used:
+`name` of a `[[value]]` in a dialect: a single value outside the table. Any name is possible; the
+value becomes an attribute of the run: a number in SI with its unit in the name (`set_speed_m_s`),
+or, without `unit`, a text. A name that is not a quantity also needs `to`, the SI unit in which to
+keep it. The following names are used by the analysis:
 """
 
 # Names of tables that hold tables of the user's own names, and of lists of tables.
@@ -49,25 +49,25 @@ _SCAN_COLUMNS = ("x", "y", "height")
 _USED_VALUES = {
     "set_speed": (
         "m/s",
-        "the sliding speed where the file records neither velocity nor position; in checks the "
-        "speed that was asked for",
+        "the sliding speed if the file records neither velocity nor position; the set-point in "
+        "checks",
     ),
     "set_normal_force": (
         "N",
-        "the load of the run where `[[run]]` gives no `normal_force`; in checks the load asked for",
+        "the load of the run if `[[run]]` states no `normal_force`; the set-point in checks",
     ),
-    "recorded_at": ("", "date and time (ISO 8601), to join two clocks and for the report"),
+    "recorded_at": ("", "date and time (ISO 8601), to match two clocks and for the report"),
     "track_radius": (
         "m",
-        'the radius for `[speed] source = "rotation"`; any name does that `radius_value` repeats',
+        'the radius for `[speed] source = "rotation"` (or any name stated as `radius_value`)',
     ),
-    "tip_radius": ("m", "of a scan: radius of the stylus; below its reach the spectrum ends"),
-    "stated_length": ("m", "of a scan: its length as the instrument says, checked"),
-    "stated_points": ("1", "of a scan: the number of its points as the file says, checked"),
-    "stated_pitch": ("m", "of a scan: the distance of its points as the instrument says, checked"),
+    "tip_radius": ("m", "scan: stylus radius, which limits the spectrum"),
+    "stated_length": ("m", "scan: stated length, checked"),
+    "stated_points": ("1", "scan: stated number of points, checked"),
+    "stated_pitch": ("m", "scan: stated point spacing, checked"),
     "instrument_Ra": (
         "m",
-        "of a scan: Ra as the instrument computed it, checked; also `instrument_Rq`",
+        "scan: Ra computed by the instrument, checked; also `instrument_Rq`",
     ),
 }
 
@@ -86,7 +86,7 @@ def campaign_page() -> str:
     for name, field in schema["properties"].items():
         table = schema["$defs"][_reference(field)]
         title = _TABLE_NAMES.get(name, f"[{name}]")
-        wanted = "At least one is wanted." if name == "run" else "Required."
+        wanted = "At least one is required." if name == "run" else "Required."
         needed = f" {wanted}" if name in required else ""
         known = inspect.signature(find_segments).parameters if name == "segments" else {}
         parts += [f"## {title}\n", f"{table['description']}{needed}\n"]
@@ -158,7 +158,7 @@ def _kind(field: Mapping[str, Any]) -> tuple[str, str]:
     if "prefixItems" in kind:
         ends = kind["prefixItems"]
         shown = ", ".join(f'"{end["examples"][0]}"' for end in ends)
-        return f"{ends[0]['unit']}, two of them", f"`[{shown}]`"
+        return f"two values in {ends[0]['unit']}", f"`[{shown}]`"
     if "unit" in kind:
         return kind["unit"], f'`"{kind["examples"][0]}"`'
     if kind["type"] == "object":
@@ -194,7 +194,7 @@ def _meaning(known: Quantity) -> str:
     if known.bare is None:
         return known.long_name
     if known.bare == "ask":
-        return f"{known.long_name}; the unit has to say whether it counts cycles or radians"
+        return f"{known.long_name}; the unit must state whether it counts cycles or radians"
     inverse = reciprocal(known.unit)
     bare = f"1/{inverse.per if inverse else 's'}"
     return f"{known.long_name}; a bare {bare} counts {known.bare}"

@@ -1,4 +1,4 @@
-"""The review file: what a person decided on runs and segments, beside the campaign file."""
+"""The review file: manual decisions on runs and segments, next to the campaign file."""
 
 from __future__ import annotations
 
@@ -22,28 +22,28 @@ REVIEW_SCHEMA_FILE = "review.schema.json"
 
 
 class DecisionEntry(NoSwitches):
-    """One decision on a run, or on the segment in an interval of its time."""
+    """A manual decision on a run, or on the segment in a time interval of it."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     run: SomeText
     """Name of the run, as in the tables."""
     action: Literal["reject", "accept", "bounds", "note"]
-    """Leave it out; use it in spite of a check; bound the segment anew; only remark something."""
+    """Leave out; use despite a check; set new bounds of the segment; add a note."""
     start: Annotated[float, Si("s", "12.5 s")] | None = Field(default=None, alias="from")
-    """Where the interval begins; the segment that holds more than half of it is meant."""
+    """Start of the interval; it selects the segment that contains more than half of it."""
     stop: Annotated[float, Si("s", "31 s")] | None = Field(default=None, alias="to")
-    """Where it ends; without both the whole run is meant."""
+    """End of the interval; without start and end the decision is on the whole run."""
     new_start: Annotated[float, Si("s", "14 s")] | None = Field(default=None, alias="new_from")
-    """Where the segment begins now, for "bounds"; it is trimmed from there."""
+    """New start of the segment, before trimming, for "bounds"."""
     new_stop: Annotated[float, Si("s", "30 s")] | None = Field(default=None, alias="new_to")
-    """Where it ends now."""
+    """New end of the segment, for "bounds"."""
     reason: SomeText
-    """Why."""
+    """Reason for the decision."""
     author: SomeText
-    """Who decided."""
+    """Author of the decision."""
     date: dt.date
-    """When."""
+    """Date of the decision."""
 
     @property
     def decision(self) -> Decision:
@@ -60,7 +60,7 @@ class DecisionEntry(NoSwitches):
 
 
 class Review(BaseModel):
-    """What a person decided on the runs of a campaign."""
+    """Manual decisions on the runs of a campaign."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
@@ -105,7 +105,7 @@ def load_review(path: str | Path) -> dict[str, tuple[Decision, ...]]:
     ...     print(*load_review(folder)["sb-r_1"])
     reject, 12.5 to 31 s (A. Person, 2026-11-20)
     """
-    missing = "decisions stand in [[decision]] tables"
+    missing = "write decisions in [[decision]] tables"
     return _opened(settings_path(path, REVIEW_FILE), missing).content.by_run
 
 

@@ -11,26 +11,26 @@ from tribolab.campaign.settings.table import Table
 
 
 class Model(Table):
-    """How the model Stribeck curves beside the measured ones are computed."""
+    """Model Stribeck curves for comparison with the measured ones."""
 
     compute: bool = True
-    """Whether they are computed."""
+    """Whether to compute them."""
     slowest: Annotated[float, PositiveSi("m/s", "1 nm/s")] = 1e-9
     """Lowest sliding speed."""
     fastest: Annotated[float, PositiveSi("m/s", "10 cm/s")] = 0.1
     """Highest sliding speed."""
     points: Annotated[int, Field(ge=5, le=200)] = 33
-    """Number of speeds, evenly over their logarithm."""
+    """Number of speeds, logarithmically spaced."""
     rough_body: Literal["stationary", "moving"] = "stationary"
-    """Which body is the rough one: it sets the sign of the shear flow factor."""
+    """Which body is rough; it determines the sign of the shear flow factor."""
     friction_factors: bool = True
-    """Whether the fluid's friction takes the friction factors of the roughness."""
+    """Whether the friction factors of the roughness apply to the friction of the liquid."""
     inlet_length: Annotated[float, PositiveSi("m", "20 mm")] | None = None
-    """Where the liquid begins, before the contact's middle, and around a ball ends; by default a
-    line's is everywhere, and a ball's ends at its radius."""
+    """Distance from the contact centre at which the liquid begins (for a ball: ends). Default:
+    unlimited for a line contact, the radius for a ball."""
     outlet: Literal["vented", "flooded"] | None = None
-    """Whether gas gets into the gap behind the contact ("vented"), or the liquid holds tension
-    there ("flooded"); left out, it is vented, and the band includes both."""
+    """Whether gas enters the gap behind the contact ("vented") or the liquid sustains tension there
+    ("flooded"). Default: vented, with both in the uncertainty band."""
     fit_speeds: (
         tuple[
             Annotated[float, PositiveSi("m/s", "1 um/s")],
@@ -38,12 +38,12 @@ class Model(Table):
         ]
         | None
     ) = None
-    """Between which speeds the shear stress is fitted; by default all that were measured."""
+    """Speed range for the fit of the shear stress; default: all measured speeds."""
     adhesion: bool = False
-    """Whether the solid contact under the liquid has the area that the medium's work_of_adhesion
-    gives it; the shear stresses are then those in that area."""
+    """Whether adhesion (the medium's work_of_adhesion) increases the solid contact area in the
+    liquid; fitted shear stresses then refer to that area."""
     uncertainty: Literal["lowest load", "all", "none"] = "lowest load"
-    """For which loads of a surface the model's own uncertainty is computed."""
+    """Loads of a surface for which the model uncertainty is computed."""
 
     @model_validator(mode="after")
     def _ends_are_in_order(self) -> Self:
@@ -57,16 +57,16 @@ class Model(Table):
 
 
 class Joint(Table):
-    """How all loads of a surface in one liquid are fitted at once, beside the single fits."""
+    """Joint fit of all loads of a surface in one liquid, in addition to the single fits."""
 
     compute: Literal["always", "two loads", "never"] = "always"
-    """Whether it is done: also of one load, which leaves the exponent of load as assumed; where
-    there are two loads or more; or not."""
+    """When to do it: always (with one load the load exponent keeps its prior), with at least two
+    loads, or never."""
     together: tuple[SomeText, ...] = ()
-    """Surfaces that are also fitted with each other: in one liquid they share its viscosity."""
+    """Surfaces to fit together; in one liquid they share its viscosity."""
     dry: SomeText | None = None
-    """Medium without liquid whose friction tells beforehand of the shear stress. Works of adhesion
-    and their ranges say how much larger the area is in it."""
+    """Medium without liquid whose friction constrains the shear stress. The works of adhesion and
+    their ranges determine its larger contact area."""
 
     @model_validator(mode="after")
     def _are_several(self) -> Self:
@@ -76,22 +76,22 @@ class Joint(Table):
 
 
 class Rubber(Table):
-    """What the friction of the rubber itself is computed with, beside [contact] modulus_file."""
+    """Input for the rubber hysteresis, in addition to modulus_file in [contact]."""
 
     prony_moduli: tuple[Annotated[float, PositiveSi("Pa", "1 MPa")], ...] = ()
-    """Moduli of the relaxations of a Prony series; at rest it has [contact] youngs_modulus."""
+    """Moduli of a Prony series; its static modulus is youngs_modulus in [contact]."""
     prony_times: tuple[Annotated[float, PositiveSi("s", "1 ms")], ...] = ()
-    """Its relaxation times, one for each modulus."""
+    """Relaxation times of the Prony series, one for each modulus."""
     temperature: Annotated[float, PositiveSi("K", "40 °C")] | None = None
-    """Temperature of the rubber when it slid; modulus_file or the series is shifted to it."""
+    """Rubber temperature during sliding; the modulus is shifted to it."""
     reference_temperature: Annotated[float, PositiveSi("K", "20 °C")] | None = None
-    """Temperature that modulus_file or the series is for."""
+    """Temperature at which modulus_file or the Prony series is valid."""
     c1: Annotated[float, Field(gt=0)] | None = None
-    """Constant C1 of the law of Williams, Landel and Ferry about the reference temperature."""
+    """Constant C1 of the Williams-Landel-Ferry equation at the reference temperature."""
     c2: Annotated[float, PositiveSi("K", "51.6 K")] | None = None
-    """Constant C2 of that law."""
+    """Constant C2 of the Williams-Landel-Ferry equation."""
     adhesion: SomeText | None = None
-    """Medium whose work_of_adhesion adds to the contact at every wavenumber; by default none."""
+    """Medium whose work_of_adhesion increases the contact at every wavenumber; default: none."""
 
     @model_validator(mode="after")
     def _belong_together(self) -> Self:

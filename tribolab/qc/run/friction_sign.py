@@ -140,12 +140,12 @@ FRICTION_SIGN = Check(
     "Set `sign = -1` for the force or the velocity in the dialect.",
     {
         "errors": Limit(3.0, "1", "friction that is zero within its error has no sign"),
-        "share": Limit(0.01, "1", "nor has what is below 1 % of the run's typical friction"),
+        "share": Limit(0.01, "1", "friction below 1 % of the run's typical value has no sign"),
         "of_load": Limit(
             0.5,
             "1",
-            "relative scatter of the load over that of friction, from which on the "
-            "load makes it: cross-talk of stick-slip into the load is far smaller",
+            "relative scatter of the load divided by that of friction, above which the "
+            "load causes it: cross-talk of stick-slip into the load is far smaller",
         ),  # fmt: skip
     },
     _sign,

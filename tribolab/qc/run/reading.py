@@ -179,21 +179,24 @@ READING_CHECKS = (
         "rows_left_out",
         25,
         "Was every row of the file read?",
-        "Let the dialect say how to keep them (restart, on_repeat, end in the dialect), or, if it "
-        "is meant, how many may be lost: [rows] left_out = 0.2.",
+        "State in the dialect how to keep them (restart, on_repeat, end) or, if this is "
+        "intended, how many may be left out: [rows] left_out = 0.2.",
         {
-            "suspect": Limit(0.01, "1", "a row cut short and a few repeated stamps are no loss"),
-            "fail": Limit(0.10, "1", "a tenth of the record holds whole segments"),
-            "not_covered": Limit(5.0, "s", "people start two logs within some seconds"),
+            "suspect": Limit(
+                0.01, "1", "one incomplete row or a few repeated time stamps are no loss"
+            ),
+            "fail": Limit(0.10, "1", "a tenth of the record contains whole segments"),
+            "not_covered": Limit(5.0, "s", "two logs are started within some seconds"),
         },
         _rows_left_out,
     ),
     Check(
         "said_elsewhere",
         27,
-        "Do the values assumed for the file apply, and do values that it states twice agree?",
-        "Correct the default of the [[value]] in a copy of the instrument's description.",
-        {"apart": Limit(0.1, "1", "an instrument's own filter and zero make less")},
+        "Do default values apply to this file, and do redundant data in it agree?",
+        "State the values of this machine in a copy of the instrument's dialect: the "
+        "default of its [[value]].",
+        {"apart": Limit(0.1, "1", "filter and zero of an instrument cause smaller differences")},
         _assumed_values,
     ),
 )

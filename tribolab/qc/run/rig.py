@@ -219,51 +219,56 @@ _CURE_OF_STANDSTILL = (
     "column out in the dialect."
 )
 
-_OFF = "Calibrate or zero the instrument; check the unit stated in the file."
+_OFF = "Calibrate or tare the instrument; check the unit stated in the file."
 
 RIG_CHECKS = (
     Check(
         "zero_offset",
         11,
-        "Does the friction force read zero when nothing slides?",
-        "Zero the force cell before loading. The offset was removed, and is listed.",
+        "Is the friction force zero without sliding?",
+        "Tare the force cell before loading. The offset was removed and is listed.",
         {
             "suspect": Limit(
-                0.5, "1", "zeros hold to a tenth of themselves: 5 % of the friction is in doubt"
+                0.5,
+                "1",
+                "zeros are stable to a tenth of their value: 5 % of the friction is doubtful",
             ),
-            "fail": Limit(5.0, "1", "a tenth of the zero is then half of the friction"),
+            "fail": Limit(5.0, "1", "a tenth of the zero is then half the friction"),
         },
         _zero_offset,
     ),
     Check(
         "zero_drift",
         12,
-        "Is the zero stable?",
-        "Let the amplifier warm up. Measure strokes in both directions: half loops cancel drift.",
+        "Is the zero of the friction force stable?",
+        "Let the amplifier warm up, and measure in both directions: half loops follow a drift.",
         {
             "suspect": Limit(
-                0.10, "1", "a tenth of such a drift may not be steady, and is not followed: 1 %"
+                0.10,
+                "1",
+                "a tenth of such a drift may be irregular and is not corrected: 1 % of "
+                "the friction",
             ),
-            "fail": Limit(1.0, "1", "the zero moves as much as friction does"),
+            "fail": Limit(1.0, "1", "the zero changes by as much as the friction"),
         },
         _zero_drift,
     ),
     Check(
         "normal_force_error",
         13,
-        "Is the normal force at its set-point?",
+        "Does the normal force agree with its set-point?",
         _OFF,
         {
-            "suspect": Limit(0.03, "1", "friction coefficients of Hertz contacts go as F^-1/3"),
-            "fail": Limit(0.15, "1", "half the step to the next load that is usually chosen"),
-            "change": Limit(0.03, "1", "change along the run; cells creep by 0.1 % and less"),
-            "programme": Limit(1.4, "1", "larger ratios of loads are meant, as of a programme"),
-            "same_speed": Limit(0.1, "1", "friction changes by a few per cent within it"),
+            "suspect": Limit(0.03, "1", "friction coefficients of Hertz contacts vary as F^-1/3"),
+            "fail": Limit(0.15, "1", "half the usual step between loads"),
+            "change": Limit(0.03, "1", "change along the run; force cells creep by 0.1 % or less"),
+            "programme": Limit(1.4, "1", "larger load ratios are intended, as in a load programme"),
+            "same_speed": Limit(0.1, "1", "friction changes by only a few per cent in this range"),
             "follows": Limit(
                 0.3,
                 "1",
-                "least exponent of the load in the friction force: 1 by Amontons, 2/3 of a Hertz "
-                "contact of constant shear stress",
+                "smallest exponent of the load in the friction force: 1 for Amontons' "
+                "law, 2/3 for a Hertz contact with constant shear stress",
             ),
         },
         _normal_force_error,
@@ -271,22 +276,22 @@ RIG_CHECKS = (
     Check(
         "normal_force_scatter",
         14,
-        "Is the normal force kept constant by its control?",
-        "Check the control loop and the flatness of the counter body.",
+        "Is the normal force constant?",
+        "Check the load control and the flatness of the counter body.",
         {
-            "suspect": Limit(0.03, "1", "three times what a good control leaves"),
-            "fail": Limit(0.20, "1", "the load is not one load any more"),
+            "suspect": Limit(0.03, "1", "three times the scatter of a good load control"),
+            "fail": Limit(0.20, "1", "this is no longer one load"),
         },
         _normal_force_scatter,
     ),
     Check(
         "velocity_set",
         15,
-        "Is the speed at its set-point?",
+        "Does the speed agree with its set-point?",
         _OFF,
         {
-            "suspect": Limit(0.03, "1", "stages keep their speed to 1 %"),
-            "fail": Limit(0.20, "1", "a fifth moves the point on a Stribeck curve visibly"),
+            "suspect": Limit(0.03, "1", "stages keep their speed within 1 %"),
+            "fail": Limit(0.20, "1", "20 % visibly shifts the point on a Stribeck curve"),
         },
         _velocity_set,
     ),
@@ -294,11 +299,11 @@ RIG_CHECKS = (
         "velocity_position",
         16,
         "Do velocity and position agree?",
-        "One of the two has a wrong scale or unit; compare with a ruler and a watch.",
+        "One of them has a wrong scale or unit. Compare with a ruler and a watch.",
         {
-            "suspect": Limit(0.03, "1", "encoder and tachometer agree to 1 %"),
+            "suspect": Limit(0.03, "1", "encoder and tachometer agree within 1 %"),
             "fail": Limit(0.20, "1", "one of the two is wrong"),
-            "errors": Limit(3.0, "1", "what three standard errors hide is not known"),
+            "errors": Limit(3.0, "1", "differences below three standard errors are not detectable"),
         },
         _velocity_position,
     ),
@@ -306,12 +311,12 @@ RIG_CHECKS = (
         "clock_shift",
         17,
         "Are the clocks of the two logs matched?",
-        "Give the shift (clock_shift in its [[run]]), or record a common mark, e.g. a start.",
+        "State clock_shift in [[run]], or record a common mark, e.g. a start.",
         {
             "suspect": Limit(
-                0.10, "1", "the usual trim, 10 % of the duration, takes up two standard errors"
+                0.10, "1", "the usual trim, 10 % of the duration, covers two standard errors"
             ),
-            "fail": Limit(0.50, "1", "segments and forces no longer belong together"),
+            "fail": Limit(0.50, "1", "segments and forces no longer match"),
         },
         _clock_shift,
     ),

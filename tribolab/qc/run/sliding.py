@@ -154,7 +154,7 @@ def _load_groups(friction: xr.Dataset) -> list[np.ndarray]:
 
 
 _LINE = {
-    "suspect": Limit(0.02, "1", "as much as friction coefficients usually scatter in a segment"),
+    "suspect": Limit(0.02, "1", "usual scatter of friction coefficients in a segment"),
     "fail": Limit(0.50, "1", "the signal is mostly disturbance"),
 }
 
@@ -162,16 +162,16 @@ SLIDING_CHECKS = (
     Check(
         "segments",
         28,
-        "Does the run slide at constant speed anywhere, and could anything be examined?",
-        "Record position or speed, slide longer at one speed, or state `sliding_speed` in the "
-        "campaign file; of what a crank drives, take the middle of each stroke "
-        "(`segments.stroke_middle = 0.5` in its [[run]] takes half of it); see `drift` and "
-        "`min_samples` under [segments].",
+        "Are there segments of constant speed, and could any check be evaluated?",
+        "Record position or speed, slide longer at one speed, or state `sliding_speed` "
+        "in the campaign file. With a crank drive, use the middle of each stroke "
+        "(`segments.stroke_middle = 0.5` in [[run]] uses half of it). See also `drift` "
+        "and `min_samples` in [segments].",
         {
             "uncertain": Limit(0.3, "1", "a third of the value: surfaces cannot be distinguished"),
-            "known_to": Limit(0.005, "1", "a full film has 0.001 to 0.01: known to half of that"),
+            "known_to": Limit(0.005, "1", "a full film has 0.001 to 0.01: half the smaller value"),
             "lost_strokes": Limit(
-                0.05, "1", "share of the strokes; the first and the last may be cut, others not"
+                0.05, "1", "fraction of the strokes; only the first and the last may be incomplete"
             ),
         },
         _segments,
@@ -179,7 +179,7 @@ SLIDING_CHECKS = (
     Check(
         "hum",
         18,
-        "Does the mains hum in the friction signal?",
+        "Is there mains hum in the friction signal?",
         "Look for ground loops and unshielded cables.",
         _LINE,
         _hum,
@@ -187,12 +187,15 @@ SLIDING_CHECKS = (
     Check(
         "resonance",
         19,
-        "Does the rig itself ring?",
-        "A line that stays at its frequency at any speed is the rig's; stiffen or damp it.",
+        "Does the rig resonate?",
+        "A spectral line at the same frequency at all speeds is a resonance of the rig. "
+        "Stiffen or damp it.",
         {
             **_LINE,
-            "width": Limit(0.03, "1", "a line of the rig stays within 3 % of its frequency"),
-            "speeds": Limit(2.0, "1", "stick-slip at twice the speed is faster by more than 3 %"),
+            "width": Limit(0.03, "1", "a resonance of the rig is constant within 3 %"),
+            "speeds": Limit(
+                2.0, "1", "at twice the speed the stick-slip frequency changes by more than 3 %"
+            ),
         },
         _resonance,
     ),
@@ -201,17 +204,17 @@ SLIDING_CHECKS = (
         "steadiness",
         21,
         "Is friction steady within each trimmed segment?",
-        "Slide longer, or trim more: the mean of a trend is a mean over the run-in.",
+        "Slide longer, or trim more: with a trend, the mean includes the running-in.",
         {
             "suspect": Limit(
-                steadiness.SUSPECT_DRIFT, "1", "5 % is above the usual spread of repeats"
+                steadiness.SUSPECT_DRIFT, "1", "5 % is above the usual scatter of repeats"
             ),
-            "fail": Limit(steadiness.FAILING_DRIFT, "1", "the number has no meaning as a mean"),
-            "chance": Limit(steadiness.SIGNIFICANT, "1", "so that noise is rarely called a trend"),
+            "fail": Limit(steadiness.FAILING_DRIFT, "1", "the mean has no meaning"),
+            "chance": Limit(steadiness.SIGNIFICANT, "1", "noise is rarely reported as a trend"),
             "samples": Limit(
                 steadiness.SAMPLES,
                 "1",
-                "fewer effective samples cannot distinguish a trend from slow drift",
+                "with fewer effective samples, a trend cannot be distinguished from slow drift",
             ),
         },
         _steadiness,

@@ -27,7 +27,9 @@ _CURE_OF_OTHER_STROKES = (
     "column, or as values with the source step or programme in the dialect."
 )
 
-_STRENGTH = Limit(0.03, "1", "a weaker oscillation moves a mean over four periods by 0.3 %")
+_STRENGTH = Limit(
+    0.03, "1", "a weaker oscillation changes a mean over four periods by at most 0.3 %"
+)
 
 
 def find_lost_strokes(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:
@@ -167,9 +169,9 @@ DISTANCE = Check(
     "Slide further at this speed.",
     {
         "contact_widths": Limit(
-            0.01, "1", "up to about a hundredth of its width a contact shears, not slides"
+            0.01, "1", "up to about 1 % of its width a contact shears without sliding"
         ),
-        "periods": Limit(4.0, "1", "a mean over fewer periods depends on where it is cut"),
+        "periods": Limit(4.0, "1", "a mean over fewer periods depends on where it ends"),
         "strength": _STRENGTH,
     },
     _distance,
@@ -179,9 +181,9 @@ SAMPLING = Check(
     "sampling",
     23,
     "Is stick-slip sampled fast enough?",
-    "Sample faster at this speed.",
+    "Increase the sampling rate at this speed.",
     {
-        "samples": Limit(8.0, "1", "fewer than 8 in a period round off the drop"),
+        "samples": Limit(8.0, "1", "fewer than 8 per period underestimate the drop"),
         "strength": _STRENGTH,
     },
     _sampling,
@@ -191,7 +193,7 @@ SEGMENT_SPEED = Check(
     "segment_speed",
     24,
     "Is the speed of every segment known?",
-    "Look at the strokes figure and set `trim` under [segments], or record position or speed.",
+    "Look at the figure of the strokes and set `trim` in [segments], or record position or speed.",
     {},
     _segment_speed,
 )

@@ -50,17 +50,17 @@ ZERO_CHECKS = (
     Check(
         "zero_reference",
         29,
-        "Is the zero of the friction force known, and do all that tell it agree?",
-        "Measure strokes both ways at one speed, or a rest without load; or state "
-        "`zero_uncertainty` in the [[run]].",
+        "Is the zero of the friction force known, and do all its sources agree?",
+        "Measure both directions at one speed, or an unloaded rest; or state "
+        "`zero_uncertainty` in [[run]].",
         {},
         _zero_reference,
     ),
     Check(
         "rectified",
         30,
-        "Does the friction signal hold its sign?",
-        "State `rectified` in the [[run]], or of the column in the dialect.",
+        "Was the friction force recorded with its sign?",
+        "State `rectified` in [[run]], or for the column in the dialect.",
         {},
         _rectified_signal,
     ),

@@ -117,13 +117,13 @@ ARTEFACT_CHECKS = (
     Check(
         "outliers",
         12,
-        "Do a few peaks or valleys stand out from all others: dust, scratches?",
-        "Look at the place; clean the specimen and scan again, or cut the place out.",
+        "Are there single high peaks or deep valleys, such as dust or scratches?",
+        "Inspect this place. Clean the specimen and scan again, or cut this part out.",
         {
-            "sigma": Limit(6.0, "1", "peaks of rough surfaces lie within 4 or 5", _CALIBRATED),
-            "factor": Limit(2.0, "1", "of random heights the largest is 1.5 times the next"),
-            "most": Limit(3.0, "1", "more valleys or pores of one size are the surface's own"),
-            "effect": Limit(0.05, "1", "Rq of one surface scatters by as much from spot to spot"),
+            "sigma": Limit(6.0, "1", "peaks of rough surfaces are within 4 to 5", _CALIBRATED),
+            "factor": Limit(2.0, "1", "for random heights the largest is 1.5 times the next"),
+            "most": Limit(3.0, "1", "more valleys or pores of one size belong to the surface"),
+            "effect": Limit(0.05, "1", "Rq of one surface varies as much from spot to spot"),
         },
         _outliers,
     ),
@@ -131,11 +131,16 @@ ARTEFACT_CHECKS = (
         "stuck_stylus",
         13,
         "Does the stylus stay at one height?",
-        "Cut the scan there, or scan again; look for a stylus that sticks or was lifted.",
+        "Cut the scan there, or scan again. Check whether the stylus sticks or was lifted.",
         {
-            "share": Limit(0.08, "1", "shorter flats are plateaus and dropouts", _CALIBRATED),
-            "quiet": Limit(0.5, "1", "noise of a gauge at rest over short waves", _CALIBRATED),
-            "missing": Limit(0.5, "1", "more missing heights are a dropout, found there"),
+            "share": Limit(0.08, "1", "shorter flat parts are plateaus or dropouts", _CALIBRATED),
+            "quiet": Limit(
+                0.5,
+                "1",
+                "noise of a resting gauge divided by the short-wave roughness",
+                _CALIBRATED,
+            ),
+            "missing": Limit(0.5, "1", "more missing heights are reported as dropouts"),
         },
         _stuck,
     ),
@@ -143,9 +148,9 @@ ARTEFACT_CHECKS = (
         "rounding",
         14,
         "Do the heights have enough digits?",
-        "Export more digits or take a smaller range; Rdq and the spectrum's short waves are those "
-        "of the rounding.",
-        {"digits": Limit(5.0, "1", "rounding to 0.2 Rq adds half to Rdq", _CALIBRATED)},
+        "Export more digits or choose a smaller range: rounding dominates Rdq and the "
+        "short waves of the spectrum.",
+        {"digits": Limit(5.0, "1", "rounding to 0.2 Rq increases Rdq by half", _CALIBRATED)},
         _rounding,
     ),
 )

@@ -304,14 +304,14 @@ _PROFILE_CHECKS = (
         "dropouts",
         1,
         "Are heights missing?",
-        "Gaps are bridged, and the error they bring is in the bands; a cleaner or coated surface "
-        "has fewer.",
+        "Gaps are interpolated, and the bands include the resulting error. Clean or "
+        "coat the surface.",
         {
-            "suspect": Limit(1e-3, "1", "bridged singly, they change no spectrum"),
-            "in_a_row": Limit(8.0, "1", "a bridge this long takes waves of its length away"),
-            "fail": Limit(0.5, "1", "of less than half a scan nothing is computed"),
+            "suspect": Limit(1e-3, "1", "single interpolated points do not change the spectrum"),
+            "in_a_row": Limit(8.0, "1", "a longer gap removes waves of its length"),
+            "fail": Limit(0.5, "1", "with less than half a scan, nothing is computed"),
             "stretch": Limit(
-                0.05, "1", "a profile without so much of its length scatters by per cents"
+                0.05, "1", "a gap of this fraction of the length causes errors of some per cent"
             ),
         },
         _dropouts,
@@ -319,34 +319,34 @@ _PROFILE_CHECKS = (
     Check(
         "steps",
         2,
-        "Does the height jump between neighbouring points?",
-        "Look for a slipping specimen, an edge or a scratch there; cut the scan before it.",
+        "Are there jumps in height between neighbouring points?",
+        "Look for a slipping specimen, an edge or a scratch, and cut the scan there.",
         {
             "factor": Limit(12.0, "1", "slopes of ground and blasted surfaces reach 7"),
-            "fail": Limit(1e-3, "1", "one jump may be an edge; one in a thousand points is none"),
+            "fail": Limit(1e-3, "1", "one jump may be an edge; one in a thousand points is not"),
         },
         _steps,
     ),
     Check(
         "clipping",
         3,
-        "Does the profile run into the end of the gauge's range?",
+        "Does the profile reach the end of the gauge's range?",
         "Level the specimen or choose a larger range, and scan again.",
         {
-            "points": Limit(8.0, "1", "a stylus rests on one height for some points by chance"),
-            "noisy": Limit(0.01, "1", "fewer points at the end, spread by noise, are summits"),
-            "fail": Limit(0.01, "1", "a hundredth cut off changes Rq and spectrum"),
+            "points": Limit(8.0, "1", "by chance, a stylus has equal heights at some points"),
+            "noisy": Limit(0.01, "1", "fewer points at the limit, scattered by noise, are summits"),
+            "fail": Limit(0.01, "1", "clipping of 1 % changes Rq and the spectrum"),
         },
         _clipping,
     ),
     Check(
         "form",
         4,
-        "How much of the range do tilt and form take?",
-        "Level the specimen; choose the smaller range that this allows.",
+        "How much of the range do tilt and form use?",
+        "Level the specimen, then choose a smaller range.",
         {
             "tilt": Limit(0.0873, "rad", "5 deg: lengths along the surface are 0.4 % longer"),
-            "fail": Limit(0.349, "rad", "20 deg: the flank of a stylus begins to touch"),
+            "fail": Limit(0.349, "rad", "20 deg: the flank of the stylus may touch"),
         },
         _form,
     ),
@@ -354,29 +354,34 @@ _PROFILE_CHECKS = (
         "tip",
         5,
         "Is the tip sharp enough for this surface?",
-        "Use a sharper tip, or trust the spectrum only up to the wavenumber named.",
+        "Use a sharper tip, or use the spectrum only up to the stated wavenumber.",
         {
-            "suspect": Limit(0.5, "1", "half of the mean square slope cannot be trusted"),
-            "fail": Limit(0.95, "1", "what is left says nothing of the surface's slopes"),
+            "suspect": Limit(0.5, "1", "half of the mean square slope is unreliable"),
+            "fail": Limit(0.95, "1", "the rest does not represent the surface's slopes"),
         },
         _tip,
     ),
     Check(
         "level",
         10,
-        "Do the heights vary at all?",
-        "Look whether the export holds the heights, and enough of their digits; leave the scan "
-        "out.",
+        "Do the heights vary?",
+        "Check that the export contains the heights with enough digits, or leave the scan out.",
         {},
         _level,
     ),
     Check(
         "self_affine",
         11,
-        "May a self-affine law carry the spectrum on to shorter waves?",
-        "Trust the measured part of the spectrum; contact and adhesion that rest on the "
-        "extrapolated part are not those of this surface.",
-        {"told": Limit(0.003, "1", "a wave with less of the mean square height moves no result")},
+        "Can the spectrum be extrapolated to shorter waves with a self-affine law?",
+        "Use only the measured part of the spectrum: contact and adhesion computed from "
+        "the extrapolated part do not represent this surface.",
+        {
+            "told": Limit(
+                0.003,
+                "1",
+                "a wave with a smaller share of the mean square height changes no result",
+            )
+        },
         _self_affine,
     ),
 )
@@ -386,12 +391,12 @@ _REPEAT_CHECKS = (
         "repeats",
         8,
         "Do the scans of one surface agree with each other?",
-        "Look at the scan named: another surface, another filter, dirt, or a lifted stylus.",
+        "Check the named scan: a different surface or filter, dirt, or a lifted stylus.",
         {
             "values": Limit(20.0, "1", "fewer independent values scatter by a quarter or more"),
-            "sigma": Limit(6.0, "1", "chance alone goes so far once in a billion bands"),
-            "factor": Limit(2.0, "1", "spots of one surface differ by less in C; Rq by 1.4"),
-            "fail": Limit(4.0, "1", "a factor 4 in C is twice the roughness"),
+            "sigma": Limit(6.0, "1", "exceeded by chance once in a billion bands"),
+            "factor": Limit(2.0, "1", "spots of one surface differ by less in C, and by 1.4 in Rq"),
+            "fail": Limit(4.0, "1", "a factor of 4 in C means twice the roughness"),
         },
         _repeats,
     ),

@@ -186,22 +186,22 @@ INSTRUMENT_CHECKS = (
         "spacing",
         6,
         "Are the points of the scan evenly spaced?",
-        "Export x with more digits, or heights with the pitch alone.",
+        "Export x with more digits, or the heights with only the pitch.",
         {
-            "even": Limit(0.01, "1", "a hundredth of a step moves no wave"),
+            "even": Limit(0.01, "1", "1 % of a step does not affect any wave"),
         },
         _spacing,
     ),
     Check(
         "length",
         7,
-        "Is the scan as long and as fine as the file states?",
-        "Find out whether the units of the heights and of x are right and the scan was whole.",
+        "Do length and pitch agree with those stated in the file?",
+        "Check the units of heights and x, and whether the scan is complete.",
         {
-            "suspect": Limit(0.01, "1", "run-in and rounding stay below a hundredth"),
-            "fail": Limit(0.1, "1", "wavenumbers wrong by a tenth change C by a third"),
-            "profile": Limit(1.0, "m", "drive units are a fifth of it long"),
-            "map": Limit(0.5, "m", "few areal instruments reach as far"),
+            "suspect": Limit(0.01, "1", "run-in and rounding cause less than 1 %"),
+            "fail": Limit(0.1, "1", "an error of 10 % in the wavenumbers changes C by a third"),
+            "profile": Limit(1.0, "m", "drive units are a fifth as long"),
+            "map": Limit(0.5, "m", "few areal instruments have this range"),
             "slope": Limit(20.0, "1", "87 deg: no gauge follows such flanks everywhere"),
         },
         _length,
@@ -209,13 +209,15 @@ INSTRUMENT_CHECKS = (
     Check(
         "results",
         9,
-        "Do the instrument's own Ra and Rq fit the profile?",
-        "Check units, filter and which profile they belong to; for missing values, scan longer or "
-        "cleaner.",
+        "Do the Ra and Rq of the instrument agree with the profile?",
+        "Check units, filter and whether they belong to this profile. If values are "
+        "missing, make a longer or cleaner scan.",
         {
-            "suspect": Limit(0.1, "1", "ends of the filter and form make up to a tenth"),
-            "fail": Limit(0.5, "1", "with a known filter, half as much again is another profile"),
-            "unknown_filter": Limit(9.0, "1", "a factor ten is a wrong unit, whatever the filter"),
+            "suspect": Limit(0.1, "1", "end effects of filter and form cause up to 10 %"),
+            "fail": Limit(
+                0.5, "1", "with a known filter, a difference of 50 % means a different profile"
+            ),
+            "unknown_filter": Limit(9.0, "1", "a factor of ten means a wrong unit, for any filter"),
         },
         _results,
     ),

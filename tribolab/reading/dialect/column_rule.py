@@ -25,43 +25,43 @@ FRICTION_SIGNALS = ("friction_force", "friction_coefficient")  # signals whose z
 
 
 class Column(Strict):
-    """Which column is which quantity: value in SI = sign * (scale * x + offset) * unit."""
+    """Quantity of a column: value in SI = sign * (scale * x + offset) * unit."""
 
     quantity: QuantityName | None = None
     symbol: Symbol | None = Field(
-        None, description="instead of a quantity: a name of your own, for formulas of [[derived]]"
+        None, description="instead of a quantity: your own name, for formulas of [[derived]]"
     )
     name: str | None = Field(None, description="name in the header without its unit")
     name_pattern: Pattern | None = Field(
-        None, description="instead of a name: the whole name without its unit matches this"
+        None, description="instead of a name: pattern for the whole name without its unit"
     )
-    occurrence: PositiveInt = Field(1, description="which one, when a name is used twice")
+    occurrence: PositiveInt = Field(1, description="which column, if a name is used twice")
     position: PositiveInt | None = Field(None, description="number of the column, from 1")
     group: str | None = Field(None, description="TDMS only: the channel's group")
-    unit: str | None = Field(None, description="goes before the unit in the file")
+    unit: str | None = Field(None, description="overrides the unit in the file")
     scale: float = 1.0
     offset: float = 0.0
     sign: Sign | Literal["pressed"] = Field(
         1,
-        description="'pressed', of a normal force: the sign by which its largest numbers are "
-        "positive, where programs write a load either way",
+        description="1 or -1; 'pressed' for a normal force of either sign: chosen so that its "
+        "largest values are positive",
     )
     optional: bool = Field(
         False,
         description="may be missing or empty in some files; of several such columns for one "
-        "quantity the first that is filled is taken",
+        "quantity, the first with values is used",
     )
     zero_uncertainty: str | None = Field(
-        None, description="standard uncertainty of its zero with unit, e.g. '0.2 N': friction only"
+        None, description="friction only: standard uncertainty of the zero with unit, e.g. '0.2 N'"
     )
     zero: ZeroText | None = Field(
         None,
-        description="where its zero is read and taken off: 'first 200 samples', 'first 2 s', "
-        "'1.5 s to 3 s', 'file blank.csv' for a run without contact next to it, 'table zero' for "
-        "such a table in the file, 'table zero to table after' for one before and one after it",
+        description="interval of the zero to subtract: 'first 200 samples', 'first 2 s', "
+        "'1.5 s to 3 s', 'file blank.csv' (a run without contact in the same folder), 'table "
+        "zero' (a table without contact), 'table zero to table after' (before and after the run)",
     )
     rectified: bool | None = Field(
-        None, description="recorded without sign (true) or surely with it (false): friction only"
+        None, description="friction only: recorded without sign (true) or with it (false)"
     )
 
     @model_validator(mode="after")

@@ -13,44 +13,44 @@ TEXT_CONTAINERS = ("json", "declared records")  # files that begin as text and n
 
 
 class Recognise(Strict):
-    """Rules that must all hold for a file to be taken for this instrument's; none: never."""
+    """Rules to recognise a file of this instrument; all must match. No rules: never recognised."""
 
-    preamble: tuple[Pattern, ...] = Field((), description="patterns found in the file's first text")
-    header: tuple[str, ...] = Field((), description="names that the header has, units included")
-    columns: PositiveInt | None = Field(None, description="columns of a file without a header")
-    linked: tuple[tuple[PositiveInt, PositiveInt], ...] = Field(
-        (), description="pairs of columns (counted from 1), each a straight line of the other"
+    preamble: tuple[Pattern, ...] = Field((), description="patterns in the text before the table")
+    header: tuple[str, ...] = Field((), description="names in the header, units included")
+    columns: PositiveInt | None = Field(
+        None, description="number of columns, if there is no header"
     )
-    file_name: Pattern | None = Field(None, description="pattern found in the file's name")
+    linked: tuple[tuple[PositiveInt, PositiveInt], ...] = Field(
+        (), description="pairs of columns (from 1) that are linear functions of each other"
+    )
+    file_name: Pattern | None = Field(None, description="pattern in the file name")
 
 
 class Text(Strict):
-    """How delimited text is written."""
+    """Format of delimited text."""
 
     encoding: Encoding = Field("utf-8", description="utf-8 (a BOM is ignored), latin-1, ...")
     delimiter: str = Field(
         ",",
-        description="one character, 'whitespace', or 'any': that which parts the header's line "
-        "most; decimal mark, encoding and a line of units below the names are then as in the file",
+        description="one character, 'whitespace', or 'any': detected from the header, with decimal "
+        "mark, encoding and a line of units below the names",
     )
     decimal: Literal[".", ","] = Field(
         ".",
-        description="decimal mark; a comma may part the cells, too, where numbers are in quotes",
+        description="decimal mark; may equal the delimiter if numbers are in quotes",
     )
     thousands: Literal["", ".", ",", "'", " ", "\u00a0", "\u202f"] = Field(
-        "", description="mark between the thousands of a number, as the comma of '1,234.5'"
+        "", description="thousands separator, like the comma of '1,234.5'"
     )
-    missing: tuple[str, ...] = Field(
-        (), description="texts that mean no value, such as error codes"
-    )
+    missing: tuple[str, ...] = Field((), description="marks of missing values, error codes")
     arrangement: Literal["below names", "json", "declared records"] = Field(
         "below names",
-        description="'json', or the 'declared records' of binary numbers behind text, where the "
-        "numbers are not in lines below a line of names",
+        description="'json', or 'declared records' (binary numbers after a text header); default: "
+        "rows below a line of names",
     )
-    end: Pattern | None = Field(None, description="a line matching this ends the table")
+    end: Pattern | None = Field(None, description="the first line matching this ends the table")
     skip_lines: Pattern | None = Field(
-        None, description="lines below the header matching this are passed over: comments, marks"
+        None, description="lines below the header to ignore: comments, marks"
     )
 
     @model_validator(mode="after")
@@ -80,25 +80,26 @@ class Text(Strict):
 
 
 class Header(Strict):
-    """How the table's header is found; with neither `line` nor `pattern` there is none."""
+    """Header of the table; omit `line` and `pattern` if there is no header."""
 
-    line: PositiveInt | None = Field(None, description="number of the header's line, from 1")
+    line: PositiveInt | None = Field(None, description="line number of the header, from 1")
     pattern: Pattern | None = Field(None, description="the first line matching this is the header")
     units: Literal["brackets", "row", "dialect"] = Field(
-        "brackets", description="in brackets after the name, in the next row, or only here"
+        "brackets",
+        description="in brackets after the name, in the next row, or only in the dialect",
     )
     units_line: PositiveInt = Field(
-        1, description="for units = 'row': in which line below the names, from 1"
+        1, description="for units = 'row': number of the line below the names, from 1"
     )
-    repeats: bool = Field(False, description="each step begins with a header block")
+    repeats: bool = Field(False, description="each step begins with a header")
     only: Pattern | None = Field(
-        None, description="profiles only: of several tables those whose title matches this"
+        None, description="profiles only: pattern for the titles of the tables to read"
     )
     step: Pattern | None = Field(
-        None, description="group 1 is the step's number in the text before its header"
+        None, description="group 1 is the step number in the text above its header"
     )
-    skip: NonNegativeInt = Field(0, description="lines to pass over after the header")
-    sheet: str | None = Field(None, description="Excel only: name of the sheet; else the first")
+    skip: NonNegativeInt = Field(0, description="number of lines to skip after the header")
+    sheet: str | None = Field(None, description="Excel only: name of the sheet; default: the first")
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:
@@ -110,20 +111,20 @@ class Header(Strict):
 
 
 class Rows(Strict):
-    """What rows are, and what may be lost of them."""
+    """Meaning of the rows, and how many may be left out."""
 
     are: Literal["samples", "points", "either"] = Field(
         "samples",
-        description="'points': each row is a result of the instrument's own, the mean at one "
-        "speed; 'either': where no speed is held over several rows",
+        description="'points': each row is a result, the mean at one speed; 'either': only if no "
+        "speed is kept over several rows",
     )
 
     left_out: float = Field(
         0.0,
         ge=0,
         le=1,
-        description="share of the rows that may be left out because it is meant; beyond it, and "
-        "beyond the limits of the check `rows_left_out`, the run is suspect or fails",
+        description="fraction of the rows that may be left out; if more are, and more than the "
+        "limits of the check `rows_left_out`, the run is suspect or fails",
     )
 
 
@@ -131,42 +132,42 @@ _IN_A_NAME = r"^[^/\\\x00]+$"  # the companion lies beside the file
 
 
 class Pair(Strict):
-    """A second log with a clock of its own: the names differ by one ending."""
+    """A second log with its own clock; the file names differ only in their ending."""
 
-    own: str = Field(description="ending of this file's stem, e.g. '_force'", pattern=_IN_A_NAME)
+    own: str = Field(description="ending of this file's name, e.g. '_force'", pattern=_IN_A_NAME)
     other: str = Field(
-        description="ending of the companion's stem, e.g. '_motion'", pattern=_IN_A_NAME
+        description="ending of the companion's name, e.g. '_motion'", pattern=_IN_A_NAME
     )
     instrument: str = Field(description="dialect of the companion")
 
 
 class Marks(Strict):
-    """TDMS only: the group whose channel of times divides the run into steps."""
+    """TDMS only: a group with a channel of times that divide the run into steps."""
 
     group: str
-    time: str = Field(description="name of the channel of times, without its unit")
+    time: str = Field(description="name of the time channel, without its unit")
     unit: str | None = None
-    labels: Pattern | None = Field(None, description="properties of the group that hold labels")
+    labels: Pattern | None = Field(None, description="properties of the group to use as labels")
 
 
 class Tables(Strict):
-    """Several tables of the same columns in one file: sheets, groups, elements of a structure."""
+    """Several tables with the same columns in one file: sheets, groups, structure elements."""
 
     steps: Pattern = Field(
-        description="tables whose name matches are steps of the run, in the order of the file: a "
-        "sheet, the path of an HDF5 group, a TDMS group, an element of a structure as in MATLAB "
-        "('exp.stage(2)'); columns are named without it, settings of a step are its text"
+        description="tables with matching names are steps of the run, in file order: a sheet, the "
+        "path of an HDF5 group, a TDMS group, a structure element as in MATLAB "
+        "('exp.stage(2)'); column names do not include it, settings of a step are its text"
     )
 
 
 class Binary(Strict):
-    """Binary only: records of one kind, one behind the other."""
+    """Binary only: consecutive records of one type."""
 
     offset: NonNegativeInt = Field(0, description="bytes before the first record")
     fields: tuple[BinaryField, ...] = Field(
         min_length=1,
-        description="name and type of each field in order, '<f8', '<f4', '>i2' ... as in numpy: "
-        "'Fx <f4'; the names are those of [[column]]",
+        description="name and NumPy type ('<f8', '<f4', '>i2' ...) of each field in order, e.g. "
+        "'Fx <f4'; use these names in [[column]]",
     )
 
     @property

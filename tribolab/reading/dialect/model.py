@@ -33,7 +33,7 @@ from tribolab.units.conversion import positive
 
 
 class Derived(Strict):
-    """A quantity that no column holds: a formula of columns, values and quantities with units."""
+    """A quantity computed from columns, values and numbers with units."""
 
     quantity: QuantityName
     formula: Formula = Field(
@@ -42,38 +42,38 @@ class Derived(Strict):
     )
     optional: bool = Field(
         False,
-        description="left out of files that do not hold all that the formula needs; of several "
-        "such formulas for one quantity the first that can be worked out is taken",
+        description="omitted for files that lack an input of the formula; of several such "
+        "formulas for one quantity, the first that can be computed is used",
     )
     way: Literal["both", "out"] = Field(
         "both",
-        description="'out': on ways back, against the first way, it is zero, as of a normal force "
-        "where a sled is lifted; the position tells the ways",
+        description="'out': zero on return strokes (found from the position), e.g. the normal "
+        "force of a sled that is lifted on its way back",
     )
     beside: tuple[str, ...] = Field(
-        (), description="what the file has to hold besides, if the formula is to be used"
+        (), description="column that the file must also contain for the formula to be used"
     )
     zero: ZeroText | None = Field(
-        None, description="where the zero of what follows is read and taken off, as for a column"
+        None, description="interval of the zero to subtract from the result, as for a column"
     )
 
 
 class Dialect(Strict):
-    """One instrument's raw files."""
+    """Raw files of one instrument."""
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]+$")]
-    title: str = Field(description="what the instrument is, for people")
+    title: str = Field(description="name of the instrument, for people")
     format: Literal[
         "text", "mat", "tdms", "hdf5", "parquet", "feather", "excel", "npz", "binary"
     ] = Field(
         "text",
-        description="hdf5 is MATLAB 7.3, too; npz an archive of NumPy's arrays; files of all "
-        "formats may be compressed (gz, zip)",
+        description="'hdf5' includes MATLAB 7.3; 'npz' is a NumPy archive; files of any format may "
+        "be compressed (gz, zip)",
     )
     from_file: bool = Field(
         True,
-        description="false: written after a maker's description or a standard, without a file of "
-        "the instrument; runs say so",
+        description="false: written from documentation or a standard, without a file of the "
+        "instrument; runs say so",
     )
     recognise: Recognise = Recognise()
     text: Text = Text()
@@ -82,18 +82,17 @@ class Dialect(Strict):
     rows: Rows = Rows()
     moving_mass: str | None = Field(
         None,
-        description="mass between the contact and the force sensor, e.g. '1.2 kg': its inertia is "
-        "taken out of the friction force",
+        description="mass between contact and force sensor, e.g. '1.2 kg': its inertia is "
+        "subtracted from the friction force",
     )
     speed: Speed = Speed()
     pitch: str | None = Field(
-        None, description="distance of neighbouring heights of a profile without x, e.g. '0.25 um'"
+        None, description="point spacing of a profile without x, e.g. '0.25 um'"
     )
-    pitch_value: str | None = Field(None, description="the [[value]] (in m) that holds the pitch")
+    pitch_value: str | None = Field(None, description="the [[value]] (in m) with the pitch")
     length_value: str | None = Field(
         None,
-        description="the [[value]] (in m) that holds the length of a profile without x, over which "
-        "its heights lie evenly",
+        description="the [[value]] (in m) with the length of an evenly spaced profile without x",
     )
     pair: Pair | None = None
     marks: Marks | None = None

@@ -12,25 +12,25 @@ from tribolab.units.conversion import positive
 
 
 class Speed(Strict):
-    """How the sliding speed comes about."""
+    """Source of the sliding speed."""
 
     source: Literal["column", "position", "rotation", "stroke", "set speed", "none"] = "column"
     radius: str | None = Field(None, description="track radius with unit, for source 'rotation'")
     radius_value: str | None = Field(
-        None, description="the [[value]], or symbol of a column, that holds the radius"
+        None, description="the [[value]], or symbol of a column, with the radius"
     )
     stroke: str | None = Field(
-        None, description="stroke from end to end with unit, for source 'stroke'"
+        None, description="stroke, end to end, with unit, for source 'stroke'"
     )
     stroke_value: str | None = Field(
-        None, description="the [[value]], or symbol of a column, that holds the stroke"
+        None, description="the [[value]], or symbol of a column, with the stroke"
     )
-    frequency: str | None = Field(None, description="cycles of two strokes per time, e.g. '5 Hz'")
+    frequency: str | None = Field(None, description="frequency of the cycles, e.g. '5 Hz'")
     frequency_value: str | None = Field(
-        None, description="the [[value]], or symbol of a column, that holds the frequency"
+        None, description="the [[value]], or symbol of a column, with the frequency"
     )
     drive: Literal["crank", "constant speed"] = Field(
-        "crank", description="for source 'stroke': the velocity is a sine, or constant both ways"
+        "crank", description="for source 'stroke': sinusoidal or constant velocity"
     )
 
     @model_validator(mode="after")

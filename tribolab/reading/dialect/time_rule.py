@@ -14,54 +14,51 @@ from tribolab.units.conversion import positive
 
 
 class Time(Strict):
-    """Where time comes from: a column (the default), intervals, a sample rate, or nowhere."""
+    """Source of time: a column (the default), intervals, a sampling rate, or none."""
 
     source: Literal["column", "period", "rate", "position", "none"] = Field(
         "column",
-        description="'period': the column of 'time' contains the time since the row before, "
-        "and is summed; 'position': the way over the speed at which a machine goes on, which rate "
-        "(or rate_pattern) states; 'none': rows are counted as seconds, and the run says so",
+        description="'period': the column 'time' is the time since the previous row; 'position': "
+        "position divided by the constant speed of a machine, stated by rate (or rate_pattern); "
+        "'none': rows are counted as seconds, and the run says so",
     )
     format: str | None = Field(
         None,
-        description="the column holds dates and times (or times of day): 'iso', 'iso with zone', "
-        "or as for strptime, e.g. '%d.%m.%Y %H:%M:%S,%f'",
+        description="format of dates and times (or times of day): 'iso', 'iso with zone', or a "
+        "strptime format, e.g. '%d.%m.%Y %H:%M:%S,%f'",
     )
     epoch: Epoch | None = Field(
         None,
-        description="the column counts from a date, which tells when it was recorded: 'excel' "
-        "(days since 1899-12-30: unit = \"d\"), 'labview' (1904, UTC), 'unix' (1970, UTC)",
+        description="date from which the column counts: 'excel' (days since 1899-12-30: "
+        "unit = \"d\"), 'labview' (1904, UTC), 'unix' (1970, UTC); gives the recording time",
     )
     rate: str | None = Field(
         None,
-        description="sample rate with unit, e.g. '2 kHz', or the interval of samples: '0.5 ms'; "
-        "for source 'position' a speed: '150 mm/min'",
+        description="sampling rate with unit, e.g. '2 kHz', or sampling interval: '0.5 ms'; for "
+        "source 'position' a speed: '150 mm/min'",
     )
     rate_pattern: Pattern | None = Field(
-        None, description="group 1 is the rate, or the interval of samples, in the preamble"
+        None, description="group 1 is the sampling rate or interval in the text above the table"
     )
     rate_unit: str = Field(
         "Hz",
-        description="its unit; one of time ('ms') where it is the interval of samples, of speed "
-        "where it is one",
+        description="unit of that rate: of frequency, time (interval) or speed",
     )
     restart: Literal["error", "continue"] = Field(
         "error",
-        description="'continue': where the clock restarts (in a table, at a step, in a file), "
-        "time goes on",
+        description="'continue': time continues if the clock restarts (in a table, at a step, in a "
+        "file)",
     )
-    wrap: str | None = Field(
-        None, description="the clock's counter restarts after this time, e.g. '65.536 s'"
-    )
+    wrap: str | None = Field(None, description="range of the clock's counter, e.g. '65.536 s'")
     on_repeat: Literal["error", "drop", "interpolate"] = Field(
         "error",
-        description="rows whose time is not later than all before: 'drop' leaves them out, "
-        "'interpolate' gives them times evenly between their neighbours'",
+        description="for rows that are not later than all before: 'drop' removes them, "
+        "'interpolate' spaces them evenly between their neighbours",
     )
     start_pattern: Pattern | None = Field(
-        None, description="group 1 is the date and time at which a step (or the file) starts"
+        None, description="group 1 is the date and time of the start of a step (or of the file)"
     )
-    start_format: str | None = Field(None, description="its format as for strptime")
+    start_format: str | None = Field(None, description="strptime format of that date and time")
 
     @model_validator(mode="after")
     def _is_consistent(self) -> Self:

@@ -1,4 +1,4 @@
-"""How well a calibration, a mount or a medium is known: the tables [uncertainty.NAME]."""
+"""Uncertainty of calibration, mount and medium: the tables [uncertainty.NAME]."""
 
 from __future__ import annotations
 
@@ -52,31 +52,31 @@ class StatedUncertainty(_Strict):
     """One uncertainty, as a certificate, a data sheet or a measurement states it."""
 
     value: str = Field(
-        min_length=1, examples=["0.2 %"], description="How large it is, with its unit."
+        min_length=1, examples=["0.2 %"], description="Size of the uncertainty, with its unit."
     )
     kind: Distribution = Field(
         alias="as",
-        description="What the value is: a standard uncertainty, one expanded by `k`, half the "
-        "width of a rectangular or a triangular distribution, or a whole step of a reading.",
+        description="Kind: standard uncertainty, expanded uncertainty (`k`), half-width "
+        "of a rectangular or triangular distribution, or step of a digital reading.",
     )
     k: Annotated[float, Field(gt=0)] | None = Field(
         None, description='Coverage factor, with `as = "expanded"`.'
     )
     dof: Annotated[float, Field(ge=1)] | None = Field(
         None,
-        description="Degrees of freedom behind the value; left out, it counts as known exactly.",
+        description="Degrees of freedom of the value; default: infinite.",
     )
     varies: Varies | None = Field(
         None,
-        description="With what it takes another value. What varies with run or mount is not "
-        "added again where repeats show it. Left out, it is what is usual for the name.",
+        description="What changes its value. Contributions that vary with run or mount are not "
+        "added again if repeats include them. Default: usual for the name.",
     )
     source: str | None = Field(
-        None, description="Where the value comes from: certificate, data sheet, date."
+        None, description="Source of the value: certificate, data sheet, date."
     )
     full_scale: Annotated[str, Field(min_length=1, examples=["100 N"])] | None = Field(
         None,
-        description="Of what a value in per cent is a share, for the linearity of a channel.",
+        description="Full scale to which a value in per cent refers (linearity of a channel).",
     )
 
     @model_validator(mode="after")
@@ -168,7 +168,7 @@ MODEL_INPUTS = ("speed", "load", "radius", "youngs_modulus", "temperature", "wat
 
 
 class Uncertainty(_Strict):
-    """What is known of the instrument, the mount and the medium, each with how well."""
+    """Uncertainties of the instrument, the mount and the medium."""
 
     friction_gain: _Relative = Field(
         None, description='Gain of the friction channel, relative: "0.2 %".'
@@ -193,19 +193,19 @@ class Uncertainty(_Strict):
         "contact.",
     )
     cross_talk_friction_from_normal: _Relative = Field(
-        None, description="Share of the normal force that the friction channel reads."
+        None, description="Fraction of the normal force in the friction channel."
     )
     cross_talk_normal_from_friction: _Relative = Field(
-        None, description="Share of the friction force that the normal force channel reads."
+        None, description="Fraction of the friction force in the normal force channel."
     )
     friction_zero: _Force = Field(
-        None, description="Zero of the friction channel, where the run itself does not tell it."
+        None, description="Zero of the friction channel, if the run does not determine it."
     )
     normal_zero: _Force = Field(
-        None, description="Zero of the normal force channel, where the run itself does not tell it."
+        None, description="Zero of the normal force channel, if the run does not determine it."
     )
     zero_drift: _Force = Field(
-        None, description="By how much the zero of the friction channel drifts between two strokes."
+        None, description="Drift of the zero of the friction channel between two strokes."
     )
     resolution: _Force = Field(
         None, description='Resolution of the friction channel; `as = "step"` for one count.'

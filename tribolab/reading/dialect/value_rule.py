@@ -17,29 +17,29 @@ from tribolab.units.reciprocals import Counted, reciprocal
 
 
 class Value(Strict):
-    """A single value that stands outside the table; it becomes an attribute of the run.
+    """A single value outside the table; it becomes an attribute of the run.
 
     From a step, a number becomes a variable along time, and text one attribute for all steps.
     """
 
-    name: str = Field(description="a quantity, or a name of your own")
+    name: str = Field(description="a quantity, or your own name")
     source: Literal["preamble", "file name", "step", "programme"] = Field(
         "preamble",
-        description="'step' is the text before each of several tables; 'programme' a table of all "
-        "steps above that of the signals, whose column 'step' counts them",
+        description="'step': the text before each of several tables; 'programme': a table of all "
+        "steps above the signals, whose column 'step' counts them",
     )
     pattern: Pattern | None = Field(
         None,
-        description="group 1 is the value; of a programme group 1 is the number of the step and "
-        "group 2 the value",
+        description="group 1 is the value; for a programme, group 1 is the step number and group 2 "
+        "the value",
     )
     default: str | None = Field(
         None,
-        description="what it is where the file does not say it, e.g. '1 mm': of a method or a part "
-        "of the instrument that is always so; the run says that it was taken",
+        description="value if the file does not state it, e.g. '1 mm', because the method or the "
+        "instrument fixes it; the run says that it was used",
     )
-    unit: str | None = Field(None, description="without a unit the value is kept as text")
-    to: str | None = Field(None, description="SI unit to keep it in, if the name is no quantity")
+    unit: str | None = Field(None, description="unit; without it the value is kept as text")
+    to: str | None = Field(None, description="SI unit of the result, if the name is not a quantity")
     scale: float = 1.0
     sign: Sign = 1
 

@@ -16,33 +16,35 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class JointParameter:
-    """Posterior of one parameter, in its stated unit."""
+    """Estimate of one parameter, in the stated unit."""
 
     parameter: str
     value: Annotated[float, means("median")]
     low: Annotated[float, means("lower end of the 95 % interval")]
     high: float
     unit: str
-    prior_low: Annotated[float, means("lower end of the interval that was assumed beforehand")]
+    prior_low: Annotated[float, means("lower end of the prior interval")]
     prior_high: float
     told: Annotated[
         float | None,
-        means("share of the prior's standard deviation that the data took away; null if held"),
+        means("reduction of the prior's standard deviation by the data; null if fixed"),
     ]
     identified: Annotated[str, one_of("yes", "weakly", "not identified", "held fixed")]
-    words: Annotated[str, means("name, median and interval as a reader would say them")]
-    surface: Annotated[str, means("of which surface, where the fit is of several")] = ""
+    words: Annotated[str, means("name, median and interval in words")]
+    surface: Annotated[str, means("surface, if several are fitted")] = ""
 
 
 @dataclass(frozen=True)
 class JointModelRow:
-    """Model of the same curves, compared with the first."""
+    """Comparison of one model of the same curves with the first."""
 
     model: str
-    evidence: Annotated[float, means("ln of the odds for it against the first, from all points")]
+    evidence: Annotated[
+        float, means("ln(Bayes factor) relative to the first model, from all points")
+    ]
     prediction: Annotated[
         float | None,
-        means("ln of the odds by predicting each load from the others; null if there is one"),
+        means("ln of the odds from cross-validation over loads; null for one load"),
     ]
     prediction_error: float | None
     shear_stress_Pa: float
@@ -93,7 +95,7 @@ class JointRecord(HasStatus):
     medium: str
     curves: tuple[str, ...]
     status: Annotated[str, one_of("done", "failed")]
-    reason: Annotated[str, means("why it failed, else empty")] = ""
+    reason: Annotated[str, means("reason of the failure, or empty")] = ""
     file: str = ""
     reference_speed_m_s: float | None = None
     reference_load_N_m: float | None = None

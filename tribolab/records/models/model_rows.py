@@ -24,32 +24,32 @@ MODEL_LABELS = ("surface", "medium", "normal_force_N")
 
 FITTED = {  # columns of a fit, with their meaning if the name does not explain it
     "shear_stress_Pa": "effective, for the contact area by `area` and `adhesion`",
-    "shear_stress_error_Pa": "standard error from those of the points",
-    "shear_stress_common_error_Pa": "standard error that all points share: repeatability of a "
-    "run's level",
-    "shear_stress_total_error_Pa": "standard error: of the points, with their misfit and "
-    "correlation; of the common level; of the spectrum where spectrum_error_from says whence",
-    "shear_stress_statistical_half_interval_Pa": "half the 95 % interval for the spectrum as it "
-    "is: statistical only",
-    "area_enhancement": "real contact area with adhesion over that of the model",
-    "area_enhancement_error": "standard error that reaches the farther of the two bounds with 95 %",
-    "area_enhancement_low": "least value within the bounds of spectrum and work of adhesion",
-    "area_enhancement_high": "greatest value within the bounds of spectrum and work of adhesion",
-    "corrected_shear_stress_Pa": "shear stress in the area that adhesion makes",
+    "shear_stress_error_Pa": "standard error due to the errors of the points",
+    "shear_stress_common_error_Pa": "standard error shared by all points: "
+    "repeatability of a run's level",
+    "shear_stress_total_error_Pa": "standard error from the points (with misfit and "
+    "correlation), the common level, and the spectrum if spectrum_error_from is not empty",
+    "shear_stress_statistical_half_interval_Pa": "half the 95 % interval without the "
+    "uncertainty of the spectrum: statistical only",
+    "area_enhancement": "real contact area with adhesion divided by that of the model",
+    "area_enhancement_error": "standard error whose 95 % interval reaches the farther bound",
+    "area_enhancement_low": "minimum within the bounds of spectrum and work of adhesion",
+    "area_enhancement_high": "maximum within the bounds of spectrum and work of adhesion",
+    "corrected_shear_stress_Pa": "shear stress for the contact area with adhesion",
     "corrected_shear_stress_error_Pa": "",
-    "area": "theory of the contact area that shear_stress_Pa is for",
-    "adhesion": 'whether the area that shear_stress_Pa is for is "with" or "without" adhesion',
-    "other_area": "the theory beside it",
-    "shear_stress_other_area_Pa": "effective, for the contact area of that theory",
+    "area": "theory of the contact area used for shear_stress_Pa",
+    "adhesion": 'whether the contact area is "with" or "without" adhesion',
+    "other_area": "the other theory of the contact area",
+    "shear_stress_other_area_Pa": "effective, for the contact area of other_area",
     "chi_square": "",
     "degrees_of_freedom": "",
     "chi_square_p_value": "",
     "birge_ratio": "",
-    "runs_p_value": "probability of so few changes of the residuals' sign by chance",
-    "valid_speed_low_m_s": "ends of the widest range of speeds that one shear stress describes",
+    "runs_p_value": "probability of so few sign changes of the residuals by chance",
+    "valid_speed_low_m_s": "limit of the widest speed range that one shear stress describes",
     "valid_speed_high_m_s": "",
-    "residual_correlation": "of the errors of neighbouring speeds, as the residuals tell it",
-    "interval_says": "what the 95 % interval holds, and which quantiles it was made with",
+    "residual_correlation": "correlation of the errors at neighbouring speeds, from the residuals",
+    "interval_says": "contributions to the 95 % interval, and its quantiles",
 }
 
 

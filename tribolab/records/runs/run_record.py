@@ -14,10 +14,10 @@ from tribolab.records.parts import FlaggedSpan, Notice, Row, RunOutcome, RunZero
 from tribolab.records.runs.running_in_record import RunningIn
 from tribolab.records.wording import UNITS
 
-_QUANTITY = "what value_min, value_max and the highlights are"
+_QUANTITY = "quantity of value_min, value_max and the highlights"
 _SCATTER = "median over the segments of standard deviation / |mean|"
 _DRIFT = "largest significant change along a segment / mean friction; 0 if none is significant"
-_QUALITY = "gravest finding of the checks on the raw data, or what a person decided"
+_QUALITY = "worst result of the checks on the raw data, or the manual decision"
 _SEGMENT = Columns(
     {
         "segment": "number in the run, from 1",
@@ -30,27 +30,28 @@ _SEGMENT = Columns(
         "friction_coefficient": "",
         "friction_coefficient_std": "sample standard deviation of the pointwise ratio",
         "friction_coefficient_sem": "standard error of the mean within the run",
-        "friction_coefficient_u": "combined standard uncertainty, of the calibration where stated",
-        "friction_coefficient_dof": "its degrees of freedom; null where they are without limit",
+        "friction_coefficient_u": "combined standard uncertainty, with calibration if stated",
+        "friction_coefficient_dof": "degrees of freedom; null if infinite",
         "friction_coefficient_U95": "expanded uncertainty (95 %)",
     },
     counts=("segment", "direction"),
     values={"direction": (-1, 0, 1)},
-    row="one segment; every column of tables/friction.csv, with the unit in the name",
+    row="one segment: all columns of tables/friction.csv, with the unit in the name",
     open=True,
 )
 
 
 @dataclass(frozen=True)
 class Highlight:
-    """Mean friction of the strokes at one speed [m/s], with its scatter and error."""
+    """Mean friction over the strokes at one speed [m/s], with scatter and uncertainty."""
 
     where: Annotated[str, one_of("slowest", "middle", "fastest", "all")]
     sliding_speed_m_s: float | None
     value: float | None
     std: float | None
     sem: Annotated[
-        float | None, means("standard error of the mean within the run: nothing of the next run")
+        float | None,
+        means("standard error of the mean within the run; excludes scatter between runs"),
     ]
     U95: Annotated[float | None, means("expanded uncertainty (95 %) of the mean within the run")]
     segments: Natural
@@ -58,7 +59,7 @@ class Highlight:
 
 @dataclass(frozen=True)
 class LeftOut:
-    """Parts of a run omitted for one reason: number and duration [s]."""
+    """Parts of a run left out for one reason: number and total duration [s]."""
 
     reason: str
     intervals: Natural
@@ -67,7 +68,7 @@ class LeftOut:
 
 @dataclass(frozen=True)
 class CheckRow:
-    """Result of one check on a run, and the person's decision on it, if any."""
+    """Result of one check on a run, and the manual decision on it, if any."""
 
     check: str
     status: Annotated[str, one_of(*STATUSES)]
@@ -75,16 +76,17 @@ class CheckRow:
     message: str
     value: float | None
     unit: str
-    decision: Annotated[str, means("how a person settled an objection, else empty")] = ""
+    decision: Annotated[str, means("manual decision on the finding, or empty")] = ""
 
 
 @dataclass(frozen=True)
 class DecisionRow:
-    """Decision on a run: action, interval [s], reason, author, and consequence."""
+    """One decision on a run: action, interval [s], reason, author and effect."""
 
     action: Annotated[str, one_of(*ACTIONS)]
     start_s: Annotated[
-        float | None, means("start of the interval that tells the segment; null for the whole run")
+        float | None,
+        means("start of the interval that selects the segment; null for the whole run"),
     ]
     stop_s: float | None
     new_start_s: float | None
@@ -92,16 +94,14 @@ class DecisionRow:
     reason: str
     author: str
     date: str
-    segments: Annotated[
-        tuple[Natural, ...], means("numbers of the segments that it touches, from 1")
-    ] = ()
+    segments: Annotated[tuple[Natural, ...], means("numbers of the affected segments, from 1")] = ()
     effect: str = ""
     friction_coefficient: Annotated[
-        float | None, means("mean over these segments with all decisions, without the rejected")
+        float | None, means("mean over these segments with all decisions (rejected ones left out)")
     ] = None
-    friction_coefficient_as_found: Annotated[
-        float | None, means("the same without any decision")
-    ] = None
+    friction_coefficient_as_found: Annotated[float | None, means("mean without any decision")] = (
+        None
+    )
 
     @property
     def where(self) -> str:
@@ -120,7 +120,7 @@ class DecisionRow:
 
 @dataclass(frozen=True)
 class Waveform:
-    """Stick-slip class of a run, and where it occurs."""
+    """Stick-slip class of a run, and the speeds at which it occurs."""
 
     class_: Annotated[str, Field(serialization_alias="class")]
     detail: str
@@ -139,7 +139,7 @@ class RunFacts:
     relative_scatter: Annotated[float | None, means(_SCATTER)] = None
     relative_drift: Annotated[float | None, means(_DRIFT)] = None
     uncertainty_says: Annotated[
-        str, means("what the uncertainty of its friction does not hold; empty for nothing")
+        str, means("contributions missing in its uncertainty; empty if complete")
     ] = ""
     unsteady_segments: Natural = 0
     stick_slip: Waveform | None = None
@@ -148,7 +148,7 @@ class RunFacts:
     offset: str = ""
     trim: float | None = None
     dead_weight_gain: Annotated[
-        float | None, means("step of the normal force over the dead weight that made it")
+        float | None, means("step of the normal force divided by the dead weight")
     ] = None
     dead_weight_gain_sem: float | None = None
     position_range_m: tuple[float, float] | None = None

@@ -20,8 +20,8 @@ from tribolab.records.parts import Row
 from tribolab.records.wording import with_error
 
 _MATTERS = 0.02  # change of friction over its mean; smaller than the scatter of repeats
-_COUNTED = "what friction is averaged over: cycles, single strokes, or stretches of equal time"
-_WEAR = "displacement normal to the contact at the end, from that at the beginning"
+_COUNTED = "unit of averaging: cycles, single strokes, or intervals of equal duration"
+_WEAR = "displacement normal to the contact, end minus beginning"
 
 
 @dataclass(frozen=True)
@@ -34,12 +34,14 @@ class RunningIn:
     sliding_speed_m_s: float | None
     counted: Annotated[str, one_of(CYCLES, STROKES, STRETCHES, meaning=_COUNTED)]
     verdict: Annotated[str, one_of(NONE, RUN_IN, STEP, NOT_FINISHED)]
-    values: Annotated[Natural, means("cycles, strokes or stretches")]
-    start_m: Annotated[float | None, means("where the steady part starts; null without one")]
+    values: Annotated[Natural, means("cycles, strokes or intervals")]
+    start_m: Annotated[float | None, means("start of the steady part; null without a steady part")]
     start_U95_m: float | None
     start_s: float | None
     start_number: int | None
-    stop_m: Annotated[float | None, means("where it stops: before the end if friction changes")]
+    stop_m: Annotated[
+        float | None, means("end of the steady part; before the end of the run if friction changes")
+    ]
     stop_s: float | None
     stop_number: int | None
     end_m: float | None
@@ -53,8 +55,10 @@ class RunningIn:
     steady_friction_coefficient_U95: float | None
     mean_friction_coefficient: Annotated[float | None, means("mean over the whole run")]
     mean_friction_coefficient_U95: float | None
-    more_than_exponential: Annotated[bool, means("whether one exponential does not describe it")]
-    work_per_cycle_J: Annotated[float | None, means("mean over the steady part, else over all")]
+    more_than_exponential: Annotated[bool, means("whether a single exponential does not fit")]
+    work_per_cycle_J: Annotated[
+        float | None, means("mean over the steady part, or over the whole run")
+    ]
     wear_depth_m: Annotated[float | None, means(_WEAR)]
 
     @property

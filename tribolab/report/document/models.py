@@ -22,15 +22,14 @@ _95 = 1.959963984540054
 _STATISTICAL = "statistical only: the spectrum's error is not in it"
 _FITTED = tuple(FITTED)
 BESIDE_FIT = {  # what only several models or the surface tell, and what it means
-    "area_dry_over_wet": "real contact area dry over that in the medium",
-    "judgement": "where measurement and model part, in words",
-    "spectrum_error_low": "relative change of the shear stress by what is not known of the "
-    "spectrum, down",
-    "spectrum_error_high": "and up",
-    "spectrum_error_from": "the curve for which it was computed; empty if for none",
-    "shear_stress_low_Pa": "ends of the 95 % interval with the spectrum's error in it",
+    "area_dry_over_wet": "real contact area, dry divided by in the medium",
+    "judgement": "where measurement and model differ, in words",
+    "spectrum_error_low": "relative change of the shear stress due to the uncertain spectrum, down",
+    "spectrum_error_high": "the same, up",
+    "spectrum_error_from": "curve for which it was computed, or empty",
+    "shear_stress_low_Pa": "limit of the 95 % interval, with the uncertainty of the spectrum",
     "shear_stress_high_Pa": "",
-    "ratio_to": "surface to whose corrected shear stress the ratio is; empty if to none",
+    "ratio_to": "surface whose corrected shear stress is the denominator, or empty",
     "ratio": "",
     "ratio_error": "",
 }
@@ -55,11 +54,11 @@ SENSITIVE = {  # columns of a variation, and what they mean
     "variation": "",
     "low": "",
     "high": "",
-    "largest_change": "of the friction coefficient, over the height of the curve",
+    "largest_change": "change of the friction coefficient divided by the peak of the curve",
     "largest_change_speed_m_s": "",
     "largest_relative_change": "",
     "largest_relative_change_speed_m_s": "",
-    "shear_stress_change_low": "relative change of the fitted shear stress at the low end",
+    "shear_stress_change_low": "relative change of the fitted shear stress at the lower end",
     "shear_stress_change_high": "",
     "reason": "",
 }

@@ -29,37 +29,37 @@ from tribolab.report.tables import SEVERITIES
 
 REPORT_SCHEMA_FILE = "report.schema.json"
 _DESCRIPTION = (
-    "report.json: everything that report.html contains. Numbers are in SI units, which are part "
-    "of the names; what is not a number is null."
+    "report.json: the content of report.html. Numbers are in SI units, stated in the names; "
+    "missing numbers are null."
 )
 _FIT_TEXTS = (
     *("area", "adhesion", "other_area", "interval_says", "judgement", "spectrum_error_from"),
     "ratio_to",
 )
 _CHECK = ("scan", "check", "status", "variable", "message", "value", "unit", "where")
-_VALIDITY = "limits of the theory that the results leave, and what to do; empty if none"
-_QUALITY = "gravest finding of the checks on the scans that were used; empty without any"
+_VALIDITY = "exceeded limits of the theory, and what to do; empty if none"
+_QUALITY = "worst result of the checks on the scans that were used; empty without scans"
 _ROUGHNESS = (
     "a row of tables/roughness.csv: ISO parameters are means over the scans, *_sem their "
-    "standard errors from the scatter of the scans (of a single profile, of its sampling lengths), "
-    "*_gap_error what missing heights bring, Sq and Sa (ISO 25178) of maps alone and without a "
-    "cut-off, null for profiles, rms_* moments of the extrapolated spectrum "
-    "of an isotropic surface"
+    "standard errors from the scatter between scans (for a single profile: between sampling "
+    "lengths), *_gap_error the error due to missing heights; Sq and Sa (ISO 25178) of maps "
+    "without cut-off, null for profiles; rms_* are moments of the extrapolated spectrum of "
+    "an isotropic surface"
 )
 _CONTACT = (
-    "a row of tables/contact.csv: without adhesion, at one load; at one pressure where no load is "
-    "known"
+    "a row of tables/contact.csv: without adhesion, at one load, or at one pressure if no "
+    "load is known"
 )
 _ADHESION = "a row of tables/adhesion.csv: in one medium, at one load"
 
 Seconds = Annotated[float, Field(ge=0)]
 Status = Annotated[str, one_of("done", "failed", "skipped")]
-Load = Annotated[float | None, means("normal force: its set-point, else what was measured")]
+Load = Annotated[float | None, means("normal force: set-point, or measured if none is stated")]
 LoadFrom = Annotated[
     str,
     one_of(
         *("", LOAD_STATED, LOAD_MEASURED, LOAD_VARIES),
-        meaning="where the nominal normal force is from; varies where a run has several loads",
+        meaning="source of the nominal normal force; 'varies' if a run has several loads",
     ),
 ]
 RoughnessRow = Annotated[Row, Columns(ROUGHNESS, texts=("form_removed",), row=_ROUGHNESS)]
@@ -89,8 +89,8 @@ class ReportedPart:
 
     name: str
     status: Status
-    reason: Annotated[str, means("why it failed, else empty")]
-    error: Annotated[str, means("class of the error, else empty")]
+    reason: Annotated[str, means("reason of the failure, or empty")]
+    error: Annotated[str, means("class of the error, or empty")]
     data_file: str
     reused: bool
     kept: str
@@ -107,22 +107,22 @@ class _RunHead(ReportedPart):
     load_from: LoadFrom
     files: tuple[str, ...]
     segments_found: Natural
-    segments_rejected: Annotated[Natural, means("how many of them a person rejected")]
+    segments_rejected: Annotated[Natural, means("number of segments rejected manually")]
     quality_as_found: Annotated[
-        str, means("quality without a person's decisions; empty where nobody decided")
+        str, means("quality before manual decisions; empty without decisions")
     ]
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReportedRun(RunFacts, _RunHead):
-    """A run with its numbers; one that failed has none."""
+    """A run with its results (none if it failed)."""
 
     status: Annotated[str, one_of("done", "failed")]
 
 
 @dataclass(frozen=True)
 class ReportedCurve:
-    """A measured curve: runs of one surface, medium and load together."""
+    """A measured curve: all runs of one surface, medium and load."""
 
     name: str
     surface: str
@@ -132,35 +132,37 @@ class ReportedCurve:
     points: tuple[Point, ...]
     points_as_found: Annotated[
         tuple[Point, ...],
-        means("what points would be without a person's decisions; none where that is the same"),
+        means("points without manual decisions; empty if unchanged"),
     ]
-    budget: Annotated[tuple[BudgetRow, ...], means("the parts of the points' uncertainty")]
+    budget: Annotated[
+        tuple[BudgetRow, ...], means("contributions to the uncertainty of the points")
+    ]
     uncertainty_says: Annotated[
-        str, means("what the points' uncertainty does not hold; empty where it holds all")
+        str, means("contributions missing in the uncertainty of the points; empty if complete")
     ]
     load_from: LoadFrom
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReportedSurface(ReportedPart):
-    """A surface: the rows of the tables of roughness, contact and adhesion that are of it."""
+    """A surface: its rows of the tables of roughness, contact and adhesion."""
 
     quality: Annotated[str, one_of("", *STATUSES, meaning=_QUALITY)]
-    checks: Annotated[tuple[ScanCheckRow, ...], means("what each check said of each scan")]
+    checks: Annotated[tuple[ScanCheckRow, ...], means("result of each check on each scan")]
     files: tuple[str, ...]
     roughness: RoughnessRow | None
     contact: tuple[ContactRow, ...]
     adhesion: tuple[AdhesionRow, ...]
-    modulus: Annotated[str, means("where the modulus of the rubber comes from")]
+    modulus: Annotated[str, means("source of the modulus of the rubber")]
     validity: Annotated[str, means(_VALIDITY)]
-    area: Annotated[str, means("theory of the contact area; empty without one")]
+    area: Annotated[str, means("theory of the contact area, or empty")]
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReportedModel(ReportedPart):
-    """The mixed-lubrication model beside a measured curve in a fluid."""
+    """The mixed-lubrication model of a measured curve in a liquid."""
 
-    curve: Annotated[str, means("the measured curve for which it is computed")]
+    curve: Annotated[str, means("measured curve to which it belongs")]
     surface: str
     medium: str
     normal_force_N: float | None
@@ -172,7 +174,7 @@ class ReportedModel(ReportedPart):
 
 @dataclass(frozen=True)
 class ReportedMode:
-    """How a measured curve's contact slides: verdict, evidence, and what would decide."""
+    """Sliding mode of a measured curve: verdict, evidence, and the measurement to decide it."""
 
     curve: str
     condition: str
@@ -197,7 +199,7 @@ class ReportedMode:
 
 @dataclass(frozen=True)
 class CampaignFile:
-    """The campaign file as it was."""
+    """The campaign file as analysed."""
 
     name: str
     file: str
@@ -207,7 +209,7 @@ class CampaignFile:
 
 @dataclass(frozen=True)
 class Extent:
-    """Least and greatest value."""
+    """Minimum and maximum."""
 
     min: float
     max: float
@@ -215,7 +217,7 @@ class Extent:
 
 @dataclass(frozen=True)
 class CampaignVerdict:
-    """What came of the campaign in one sentence and its numbers."""
+    """Result of the campaign in one sentence, and its numbers."""
 
     status: Annotated[str, one_of("complete", "incomplete", "nothing")]
     text: str
@@ -223,24 +225,20 @@ class CampaignVerdict:
     done: Natural
     failed: Natural
     rejected: Natural
-    suspect: Annotated[
-        Natural, means("runs whose numbers are used, and of which a check doubts them")
-    ]
-    without_value: Annotated[Natural, means("sound runs in which no friction could be measured")]
-    rejected_by_hand: Annotated[Natural, means("runs that a person rejected")]
-    accepted_by_hand: Annotated[
-        Natural, means("runs that a person accepted in spite of their checks")
-    ]
+    suspect: Annotated[Natural, means("runs that are used although a check is suspect")]
+    without_value: Annotated[Natural, means("sound runs without a friction coefficient")]
+    rejected_by_hand: Annotated[Natural, means("runs rejected manually")]
+    accepted_by_hand: Annotated[Natural, means("runs accepted manually despite their checks")]
     kept: Natural
     reused: Natural
     segments: Natural
-    segments_rejected: Annotated[Natural, means("how many of them a person rejected")]
+    segments_rejected: Annotated[Natural, means("number of segments rejected manually")]
     ranges: dict[Annotated[str, one_of(*UNITS)], Extent]
 
 
 @dataclass(frozen=True)
 class ReportedFinding:
-    """Something that a reader should know: how grave, of which runs, where, and what."""
+    """A finding: severity, runs, place and text."""
 
     severity: Annotated[str, one_of(*SEVERITIES)]
     run: str
@@ -267,7 +265,7 @@ class ReportHead:
     verdict: CampaignVerdict
     thresholds: Annotated[
         dict[str, Limits],
-        means("from which share on the table of runs marks a number as suspect and as beyond it"),
+        means("limits above which the table of runs marks a number as suspect or beyond the limit"),
     ]
     findings: tuple[ReportedFinding, ...]
     sources: tuple[SourceFile, ...]
@@ -276,7 +274,7 @@ class ReportHead:
     surfaces: tuple[ReportedSurface, ...]
     sliding_mode: tuple[ReportedMode, ...]
     models: tuple[ReportedModel, ...]
-    joint_fits: Annotated[tuple[JointRecord, ...], means("all loads of a surface in one fit")]
+    joint_fits: Annotated[tuple[JointRecord, ...], means("joint fits of all loads of a surface")]
     figures: tuple[FigureRecord, ...]
     surface_figures: tuple[FigureRecord, ...]
     model_figures: tuple[FigureRecord, ...]
