@@ -332,7 +332,7 @@ def test_the_words_follow_the_residuals():
         )
     )
     assert bad.startswith("the model follows the curve to within ")
-    assert "though not to within the errors of its points: neighbouring points err alike" in bad
+    assert "the residuals exceed the error bars and vary systematically with speed" in bad
     assert "one shear stress describes 100 µm/s to 10 mm/s" in bad
     assert "more than 10 % of the friction at 1 µm/s to 10 µm/s" in bad
     assert "largest at 1 µm/s, where the measurement lies 0.2 above the model's 1" in bad
@@ -414,7 +414,7 @@ def test_the_demo_says_which_curves_the_model_does_not_describe(tmp_path):
     words = ["no shear stress describes this curve: …", "the model describes the curve: …"]
     fits = pd.DataFrame({"surface": ["Smooth", "Smooth", "Sb-S"], "judgement": [*words, words[1]]})
     fits.loc[1, "judgement"] = (
-        "the model does not describe this curve: off by up to 85 % of its height"
+        "the model does not describe this curve: off by up to 85 % of the peak friction"
     )
     fits.to_csv(tmp_path / "tables/shear_stress.csv")
     paper = pd.DataFrame({"status": ["reproduced"]})

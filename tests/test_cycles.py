@@ -126,7 +126,7 @@ def test_no_stroke_goes_across_a_pause_of_the_logger(known):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        (lambda run: run.isel(time=slice(0, 300)), "does not move to and fro"),
+        (lambda run: run.isel(time=slice(0, 300)), "does not reverse"),
         (lambda run: run.drop_vars(["position", "sliding_velocity"]), "has neither"),
         (lambda run: run.drop_vars("friction_force"), "neither a friction force"),
         (lambda run: run.isel(time=slice(None, None, 150)), "does not move|too fast|fewer"),

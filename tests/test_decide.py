@@ -171,7 +171,7 @@ def test_a_decision_that_finds_no_segment_or_contradicts_another_says_so(run, se
     [
         (0.0, 1e6, "outside the run"),
         (-1.0, 0.5, "reach into segment 2"),
-        (1.2, 1.4, "lie beside the segment"),
+        (1.2, 1.4, "lie outside the segment"),
         (0.5, 0.5001, "leave no samples"),
     ],
 )

@@ -121,10 +121,10 @@ def test_rounding_is_not_taken_for_roughness(kind, form):
     for spectrum in (psd_1d, psd_2d):
         with pytest.raises(AnalysisError, match="all heights are equal.*leave that scan out"):
             spectrum(scan, form=form)
-    with pytest.raises(AnalysisError, match="roughness_parameters: .*but for rounding"):
+    with pytest.raises(AnalysisError, match="roughness_parameters: .*without rounding"):
         roughness_parameters(remove_form(scan, "circle"))
     for cut in ("auto", None):
-        with pytest.raises(AnalysisError, match="roughness_parameters: .*but for rounding"):
+        with pytest.raises(AnalysisError, match="roughness_parameters: .*without rounding"):
             roughness_parameters(scan, lambda_c=cut)
 
 

@@ -128,7 +128,10 @@ def test_components_are_told_per_speed_and_pooled():
     "by, says",
     [
         ("operator", "nothing says which operator a run belongs to; write it in"),
-        ("own", "every run has a level of own of its own, which cannot be told from repeatability"),
+        (
+            "own",
+            "every run has a level of own of its own, which cannot be separated from repeatability",
+        ),
         ("mount,twin", "mount and twin change together"),
         ("rig", "the same rig: there is nothing to compare"),
     ],

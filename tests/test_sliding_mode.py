@@ -114,7 +114,7 @@ def test_a_model_that_fits_explains_the_curve_and_one_that_misses_does_not(quiet
     known = Mode(work_of_adhesion=0.0)
     good = sliding_mode(curve(mu), model, quiet, known)
     assert good.numbers["model_misfit"] < 1e-12
-    assert good.text.endswith("; mixed lubrication explains it to within 10 % of its height")
+    assert good.text.endswith("; mixed lubrication explains it to within 10 % of the peak friction")
     assert "alone does not explain it" in sliding_mode(curve(mu), modelled(1e-8), quiet, known).text
 
 

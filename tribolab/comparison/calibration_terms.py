@@ -181,7 +181,7 @@ def terms_text(made: Sequence[CalibrationTerms]) -> str:
         said.append(
             f"of {_listed(shared)}, which they share, only what acts on them differently counts"
         )
-    return "beside the scatter of the runs: " + "; ".join(said)
+    return "in addition to the scatter of the runs: " + "; ".join(said)
 
 
 def _listed(names: tuple[str, ...]) -> str:

@@ -295,9 +295,9 @@ def margin_of(margin: str, values: np.ndarray) -> np.ndarray | None:
 
 
 _HOW = {
-    PERMUTATION: "runs change their groups, whole, and the largest difference over its error of a "
-    "condition's points tells what chance can do",
-    ROTATION: "the scatter of the runs, turned at random, tells what chance can do at the points "
+    PERMUTATION: "whole runs are exchanged between the groups; the largest difference over its "
+    "error among a condition's points shows what chance can do",
+    ROTATION: "the scatter of the runs, turned at random, shows what chance can do at the points "
     "of a condition together, supposing that runs are normally distributed",
     BONFERRONI: "Bonferroni's rule, where runs are few and lack speeds",
 }

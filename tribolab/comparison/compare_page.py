@@ -105,8 +105,8 @@ def _parts(compared: Comparison, end: str) -> list[Part]:
     margin = (
         f"Equivalent means: the 90 % interval of the point alone lies within {compared.margin}."
         if compared.margin
-        else "No margin is stated, so nothing can be called equivalent: undecided says that no "
-        "difference was proved, not that there is none."
+        else "No margin is stated, so nothing can be called equivalent: undecided means that no "
+        "difference was proved, not that the two are equal."
     )
     return [
         *([_changes(compared, end, said)] if compared.two_folders else []),

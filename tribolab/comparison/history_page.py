@@ -100,8 +100,8 @@ def _summary(told: History) -> Part:
         "summary",
         "All charts",
         texts=(
-            "Each campaign is one point. The first ones say what is usual; a later one signals "
-            "where it lies further off than chance explains, or where several together do "
+            "Each campaign is one point. The first ones define the usual range; a later one "
+            "signals if it, or several together, lie further off than chance explains "
             f"(rules: {', '.join(told.rules)}).{_by_chance(told)}",
             *due,
             *unread,

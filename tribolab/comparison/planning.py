@@ -145,7 +145,7 @@ def measuring_plan(
         rows.append(row)
     if not rows:
         raise AnalysisError(
-            "no condition and speed has two runs: nothing tells what runs differ by"
+            "no condition and speed has two runs: the scatter between runs is unknown"
         )
     words = "standard error" if standard_error is not None else "half 95 % interval"
     return MeasuringPlan(

@@ -165,13 +165,13 @@ def _of_speed(runs: pd.DataFrame, names: Sequence[str]) -> tuple[dict[str, float
             )
         if levels == len(runs):
             raise AnalysisError(
-                f"every run has a level of {shown(name)} of its own, which cannot be told from "
-                "repeatability; measure twice without changing it, or leave it out"
+                f"every run has a level of {shown(name)} of its own, which cannot be separated "
+                "from repeatability; measure twice without changing it, or leave it out"
             )
     for first, other in itertools.combinations(names, 2):
         if _is_alias(runs, first, other):
             raise AnalysisError(
-                f"{shown(first)} and {shown(other)} change together and cannot be told apart; "
+                f"{shown(first)} and {shown(other)} change together and cannot be separated; "
                 "leave one out"
             )
     runs = runs.assign(**{VALUE: _alike(runs)})

@@ -81,11 +81,11 @@ def _verdict_text(
                 f"{steady}; the errors are too large to tell whether mixed lubrication explains it"
             )
         if enough:
-            within = f"to within {percent_text(SUFFICIENT)} of its height"
+            within = f"to within {percent_text(SUFFICIENT)} of the peak friction"
             return f"{steady}; mixed lubrication explains it {within}"
         return (
             f"{steady}; mixed lubrication alone does not explain it, "
-            "and the traces do not say what else would"
+            "and the traces suggest nothing else"
         )
     low, high = numbers["forced_wetting_low_m_s"], numbers["forced_wetting_high_m_s"]
     end = ""
@@ -167,7 +167,7 @@ def _measurements(verdict: str, known: Mode, slip: xr.Dataset | None) -> tuple[s
         )
     if verdict == "not known":
         if slip is not None and slip.sizes.get("sliding_speed", 0):
-            return ("slide further at each speed: few periods are not told from a wander",)
+            return ("slide further at each speed: few periods look like slow drift",)
         return ("record the friction force itself, not only its mean",)
     if known.work_of_adhesion is not None and known.work_of_adhesion > 0:
         return ("slide more slowly: adhesion would allow an instability at lower speeds",)
@@ -186,7 +186,7 @@ def paragraph(
     for side, opening in (
         ("for", "For an adhesion-controlled mode:"),
         ("against", "Against it:"),
-        ("neutral", "Beside it:"),
+        ("neutral", "Neutral:"),
     ):
         mine = [told.text for told in evidence if told.side == side]
         if mine:

@@ -140,7 +140,7 @@ _ALL = (
     ),
     Fault(
         "restart",
-        "The logger starts anew in the same file, its clock at zero.",
+        "The logger restarts in the same file, its clock at zero.",
         "unreadable",
         "restarts",
         strikes.restart,

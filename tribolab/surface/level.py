@@ -104,9 +104,9 @@ def refuse_level(who: str, scans: xr.Dataset, level: Sequence[bool] | np.ndarray
         name = str(scans.attrs.get("source", ""))
     others = f" and {at.size - 1} more" if at.size > 1 else ""
     raise AnalysisError(
-        "all heights are equal, or on a perfect line, plane or circle: but for rounding there is "
-        "no roughness. Look whether the file holds the heights and enough of their digits, or "
-        "leave that scan out",
+        "all heights are equal, or on a perfect line, plane or circle: without rounding there is "
+        "no roughness. Check that the file contains the heights with enough digits, or leave "
+        "that scan out",
         where=f"{name}{others}" if name else "",
         function=who,
     )

@@ -306,7 +306,7 @@ def _extrapolated(
         limits["q_high"] = last
     if low is not None and low >= last:
         raise AnalysisError(
-            f"the scans tell of waves of {number(2e6 * np.pi / last)} to "
+            f"the scans measure waves of {number(2e6 * np.pi / last)} to "
             f"{number(2e6 * np.pi / first)} um, and the contact asks for those below "
             f"{number(2e6 * np.pi / low)} um alone: none of them was measured; take finer scans",
             function="extrapolate",

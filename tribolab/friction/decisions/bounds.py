@@ -38,7 +38,7 @@ def with_bounds(
     """
     if run is None:
         cure = Cure(notebook="give it: decide(segments, decisions, run)")
-        raise AnalysisError(f"{decision} wants the run, to measure the segment anew", cure=cure)
+        raise AnalysisError(f"{decision} needs the run, to measure the segment again", cure=cure)
     old = float(segments["start"].values[place]), float(segments["stop"].values[place])
     new = (
         old[0] if decision.new_start is None else decision.new_start,
@@ -83,7 +83,7 @@ def _refuse_bounds(
     start, stop = segments["start"].values, segments["stop"].values
     meets = (np.minimum(stop, high) - np.maximum(start, low)) > 0
     if not meets[place]:
-        raise _refused(segments, decision, "lie beside the segment that they are for")
+        raise _refused(segments, decision, "lie outside the segment that they are for")
     meets[place] = False
     if meets.any():
         other = int(np.flatnonzero(meets)[0])

@@ -18,7 +18,7 @@ from tribolab.units.stamping import stamp
 DECISIONS = "decisions"  # attribute: decisions as plain data, with the segments they concern
 _MORE_THAN = 0.5  # share of the decision's interval in the segment it concerns
 _SHOWN = 3  # segments listed if none was found
-DECISION_WORDS = {REJECT: "rejected", ACCEPT: "accepted", NEW_BOUNDS: "bounded anew", NOTE: "noted"}
+DECISION_WORDS = {REJECT: "rejected", ACCEPT: "accepted", NEW_BOUNDS: "new bounds", NOTE: "noted"}
 
 
 def decide(
@@ -122,9 +122,9 @@ def _touched(segments: xr.Dataset, decision: Decision) -> list[int]:
         return places
     # results cannot be recomputed without the signals
     if decision.action == NEW_BOUNDS:
-        raise _refused(segments, decision, "new bounds want the friction computed anew")
+        raise _refused(segments, decision, "new bounds need the friction to be computed again")
     if len(places) < len(every) and segments.attrs.get("offset") in PAIRED:
-        raise _refused(segments, decision, "the friction of the other strokes rests on it")
+        raise _refused(segments, decision, "the friction of the other strokes depends on it")
     return places
 
 

@@ -95,7 +95,7 @@ class Decision:
             raise AnalysisError("an interval wants both its ends, or none for the whole run")
         for low, high, what in (
             (self.start, self.stop, "the interval"),
-            (self.new_start, self.new_stop, "what is bounded anew"),
+            (self.new_start, self.new_stop, "the new interval"),
         ):
             if low is not None and high is not None and not low < high:
                 raise AnalysisError(f"{what} ends at {high:g} s, not after it begins at {low:g} s")

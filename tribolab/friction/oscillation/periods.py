@@ -197,7 +197,7 @@ def _mixed(oscillation: Oscillation, lines: tuple[Component, ...], form: Wavefor
     return ""
 
 
-_FEW = "too few to tell an oscillation from a wander: slide further at this speed"
+_FEW = "too few to separate an oscillation from slow drift: slide further at this speed"
 
 
 def _withheld(why: str, periods: float = np.nan) -> PeriodVerdict:

@@ -83,12 +83,12 @@ def find_strokes(run: xr.Dataset) -> Strokes:
         first, way, place, length = _by_velocity(run)
     else:
         raise AnalysisError(
-            "strokes are told by the position or the signed velocity, and the run has neither",
+            "strokes are found from the position or the signed velocity, and the run has neither",
             where=name_of(run),
         )
     if way.size < _FEWEST:
         raise AnalysisError(
-            f"the slider does not move to and fro: {way.size} whole strokes, {_FEWEST} are needed",
+            f"the slider does not reverse: {way.size} whole strokes, {_FEWEST} are needed",
             where=name_of(run),
             cure=Cure(
                 notebook="for plateaus of constant speed use find_segments without stroke_middle",

@@ -59,7 +59,7 @@ def find_reference(
     if wanted == "half loop" and loops is None:
         raise AnalysisError(
             "offset 'half loop' needs two neighbouring strokes of one speed and opposite direction,"
-            " and there are none",
+            " which the run lacks",
             where=name,
             cure=Cure(
                 notebook="use offset='auto', or widen pair_tolerance",
@@ -68,8 +68,8 @@ def find_reference(
         )
     if wanted == "zero load" and known.rests is None:
         raise AnalysisError(
-            "offset 'zero load' needs a rest without load, and there is none (or no velocity or"
-            " normal force that would show it)",
+            "offset 'zero load' needs a rest without load, which the run lacks (or a velocity or"
+            " normal force to show it)",
             where=name,
             cure=Cure(notebook="use offset='auto'", campaign=_OFFSET_OF_ITSELF),
         )
@@ -231,7 +231,7 @@ def _checked(
         what, unit = "the friction coefficient", ""
     text = (
         f"friction differs between the directions: the middle of the loops lies {mean:+.3g}"
-        f"{strokes.unit} ({share:+.1%} of friction) beside {by}, by which {what} is "
+        f"{strokes.unit} ({share:+.1%} of friction) from {by}, by which {what} is "
         f"{forward:.3g}{unit} forward and {backward:.3g}{unit} backward; that zero was used"
     )
     cure = (
@@ -255,8 +255,8 @@ def _ambiguous(
     offset, usual = median_of_known(loops.value), median_of_known(np.abs(half))
     share = float(abs(offset) / usual) if usual > 0 and np.isfinite(offset) else 0.0
     text = (
-        "no rest without load: friction that depends on direction and an offset cannot be told "
-        f"apart. The offset that was removed, {offset:+.3g}{strokes.unit}, "
+        "no rest without load: friction that depends on direction and an offset look "
+        f"alike. The offset that was removed, {offset:+.3g}{strokes.unit}, "
     )
     cure, status = "Measure a rest without load.", "pass"
     if share < 1:

@@ -14,7 +14,7 @@ def _zero_reference(subject: RunSubject, limits: Mapping[str, float]) -> list[Re
     signal = subject.required_friction_signal
     told = _doubts(subject, "zero_reference", signal)
     method = str(friction.attrs.get("offset", ""))
-    return told or [Result("pass", signal, f"the zero rests on: {method}")]
+    return told or [Result("pass", signal, f"the zero is from: {method}")]
 
 
 def _rectified_signal(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]:

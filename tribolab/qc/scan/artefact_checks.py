@@ -90,7 +90,7 @@ def _stuck(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
         return [Result("pass", "height", "the heights vary all along", 0.0, flags=flags)]
     row, first, stop = max(found, key=lambda stretch: stretch[2] - stretch[1])
     share, where = (stop - first) / flags[row].size, subject.place(row, first, stop - 1)
-    text = f"the height does not change over {share:.0%} of the traverse but for noise, {where}"
+    text = f"except for noise, the height is constant over {share:.0%} of the traverse, {where}"
     text += f" and in {len(found) - 1} more" if len(found) > 1 else ""
     count = int((flags == SUSPECT).sum())
     return [Result("suspect", "height", text, share, "1", where, count, flags)]

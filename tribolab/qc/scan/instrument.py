@@ -68,7 +68,7 @@ def _length(subject: ScanSubject, limits: Mapping[str, float]) -> list[Result]:
     if not results and attrs.get("stated_length_m") is None:
         return [
             Result(
-                "skipped", "length", "the file states no length and no pitch beside its positions"
+                "skipped", "length", "the file states no length and no pitch besides its positions"
             )
         ]
     return results
@@ -81,7 +81,7 @@ def _point_count(subject: ScanSubject) -> Result | None:
     if subject.is_map or not stated or all(abs(number - points) <= 1 for number in stated):
         return None
     other = next(number for number in stated if abs(number - points) > 1)
-    text = f"the file states {other:.0f} points, {points} stand in it: is it whole?"
+    text = f"the file states {other:.0f} points but contains {points}: is it complete?"
     return Result("suspect", "height", text, float(points))
 
 

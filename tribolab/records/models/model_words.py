@@ -67,7 +67,7 @@ def is_described(words: str) -> bool:
 
     Examples
     --------
-    >>> is_described("the model does not describe this curve: off by up to 85 % of its height")
+    >>> is_described("the model does not describe this curve: off by up to 85 % of the peak friction")
     False
     """
     return not words.startswith((_NOT_DESCRIBED, _NO_STRESS))
@@ -143,18 +143,15 @@ def _verdict(attrs: Mapping[str, Any], largest: float, factor: float) -> str:
     if attrs["chi_square_p_value"] >= _UNLIKELY and not ordered:
         return "the model describes the curve within the errors"
     if attrs["chi_square_p_value"] >= _UNLIKELY:
-        return "within the errors, but the residuals follow one another: the shape differs slightly"
+        return (
+            "within the errors, but the residuals vary systematically: the shape differs slightly"
+        )
     if largest > _FAR:
-        return f"{_NOT_DESCRIBED}: off by up to {percent(largest)} of its height"
+        return f"{_NOT_DESCRIBED}: off by up to {percent(largest)} of the peak friction"
     if factor > _APART:
         return f"{_NOT_DESCRIBED}: off by up to a factor of {number(factor, 2)}"
-    alike = ": neighbouring points err alike" if ordered else ""
-    if largest < _CLOSE:
-        return (
-            f"the model follows the curve to within {percent(_CLOSE)} of its height, though not to "
-            f"within the still smaller errors of its points{alike}"
-        )
+    trend = " and vary systematically with speed" if ordered else ""
     return (
-        f"the model follows the curve to within {percent(largest)} of its height, though not to "
-        f"within the errors of its points{alike}"
+        f"the model fits to within {percent(max(largest, _CLOSE))} of the peak friction; the "
+        f"residuals exceed the error bars{trend}"
     )
