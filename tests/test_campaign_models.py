@@ -331,7 +331,7 @@ def test_the_words_follow_the_residuals():
             valid_speed_high_m_s=1e-2,
         )
     )
-    assert bad.startswith("the model follows the curve to within ")
+    assert bad.startswith("the model fits to within ")
     assert "the residuals exceed the error bars and vary systematically with speed" in bad
     assert "one shear stress describes 100 µm/s to 10 mm/s" in bad
     assert "more than 10 % of the friction at 1 µm/s to 10 µm/s" in bad

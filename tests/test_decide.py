@@ -160,7 +160,7 @@ def test_a_decision_that_finds_no_segment_or_contradicts_another_says_so(run, se
     # a run may be accepted without one of its segments
     assert decide(segments, [Decision("accept", **SAID), reject])["rejected"].values.sum() == 1
     friction = friction_coefficient(run, segments)
-    with pytest.raises(AnalysisError, match="rests on it; decide on the segments"):
+    with pytest.raises(AnalysisError, match="depends on it; decide on the segments"):
         decide(friction, reject)
     without = friction_coefficient(run, segments, "none")
     assert decide(without, reject)["rejected"].values.tolist() == [0, 0, 1, 0, 0, 0]
@@ -182,7 +182,7 @@ def test_new_bounds_that_cannot_be_are_refused(run, segments, low, high, said):
     )
     with pytest.raises(AnalysisError, match=said):
         decide(segments, decision, run)
-    with pytest.raises(AnalysisError, match="wants the run"):
+    with pytest.raises(AnalysisError, match="needs the run"):
         decide(segments, decision)
 
 

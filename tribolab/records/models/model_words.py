@@ -67,7 +67,7 @@ def is_described(words: str) -> bool:
 
     Examples
     --------
-    >>> is_described("the model does not describe this curve: off by up to 85 % of the peak friction")
+    >>> is_described("the model does not describe this curve: off by a factor of 3")
     False
     """
     return not words.startswith((_NOT_DESCRIBED, _NO_STRESS))
