@@ -146,7 +146,7 @@ class Ledger:
         wrong = []
         for name in self.damaged(self.intact(whole=True)):
             if os.path.lexists(self.folder / name):
-                beside = "" if name == MARKER else ", and keeps this version beside"
+                beside = "" if name == MARKER else ", and keeps this version as well"
                 wrong.append(f"{name}: not as it was written; {cure}{beside}")
             else:
                 wrong.append(f"{name}: missing; {cure}")

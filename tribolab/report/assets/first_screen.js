@@ -1,7 +1,7 @@
 "use strict";
 // The first screen: which view is shown, at which speed runs compare, and the run opened in its place.
 (() => {
-  const place = document.getElementById("beside");
+  const place = document.getElementById("alongside");
   if (!place) return;
   const views = Array.from(document.querySelectorAll(".view")), table = document.getElementById("runs-table");
   const list = document.getElementById("details");

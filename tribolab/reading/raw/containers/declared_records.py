@@ -45,7 +45,7 @@ _TURN = re.compile(
     r"(?:per|/|a|pro)\s*(?:turn|rev|revolution|umdrehung|tour)",
     re.IGNORECASE,
 )
-_WRAPS = re.compile(r"wrap|roll.?over|overflow|starts.anew|back to 0", re.IGNORECASE)
+_WRAPS = re.compile(r"wrap|roll.?over|overflow|restarts|back to 0", re.IGNORECASE)
 _WRAPS_AT = re.compile(
     r"(?:wraps?|roll.?over|overflows?)\s*(?:at|after|every)\s*(?P<at>\d{2,10})", re.I
 )
