@@ -75,7 +75,7 @@ def test_the_first_screen_is_the_answer(browser, results):
         assert numbers[1][:3] == [SYSTEMS[0], "31 N", "0.800 ± 0.016 at 1 µm/s"]
         assert rows(page) == ["broken", "sb-s_1", "sb-r_1", "sb-s_long"]
         page.click("#runs-table tr[data-run=sb-s_1] .spark")
-        page.wait("document.querySelector('#beside #run-2[open] .js-plotly-plot') !== null")
+        page.wait("document.querySelector('#alongside #run-2[open] .js-plotly-plot') !== null")
         box = page.run("document.querySelector('#run-2 .plot').getBoundingClientRect().toJSON()")
         assert 0 < box["top"] < 700 and box["right"] < 1000, "next to the list"
         page.click("[data-run-act=close]")
