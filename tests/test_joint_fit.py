@@ -278,9 +278,9 @@ def test_a_search_that_creeps_far_from_the_answer_does_not_end_the_fit(curves, m
         for part in load_curves(curves)
     ]
     whole = fit_loads(bent, 1.4).marginal("shear_stress").value
-    monkeypatch.setattr("tribolab.fit.joint.modes._STEPS", 8)
+    monkeypatch.setattr("tribolab.fit.joint.modes._MAX_STEPS", 8)
     assert fit_loads(bent, 1.4).marginal("shear_stress").value == pytest.approx(whole, rel=1e-3)
-    monkeypatch.setattr("tribolab.fit.joint.modes._STEPS", 3)
+    monkeypatch.setattr("tribolab.fit.joint.modes._MAX_STEPS", 3)
     with pytest.raises(AnalysisError, match="not found"):
         fit_loads(bent, 1.4)
 

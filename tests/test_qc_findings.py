@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 
 from tribolab.core.errors import ConfigError, UnitError
+from tribolab.core.limit_page import LIMITS_PAGE, limits_page
 from tribolab.qc import catalogue
 from tribolab.qc.findings import Findings, exit_code
 from tribolab.qc.register import STATUSES, Check, Result
@@ -186,3 +187,8 @@ def test_the_page_of_all_checks_and_limits_is_made_from_the_code():
     assert page == catalogue.catalogue()
     for known in (*RUN_CHECKS.values(), *SCAN_CHECKS.values()):
         assert f"### {known.name}\n" in page
+
+
+def test_the_page_of_all_limits_is_made_from_the_code():
+    page = (schema_folder() / LIMITS_PAGE).read_text(encoding="utf-8")
+    assert page == limits_page()

@@ -31,3 +31,10 @@ class Limit:
     unit: str
     reason: str
     source: str = "judgement"
+
+
+@dataclass(frozen=True)
+class Count(Limit):
+    """A limit that is a whole number: of samples, strokes, periods."""
+
+    value: int

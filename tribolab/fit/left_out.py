@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from tribolab.contact.hertz import hertz_half_width, hertz_max_pressure
+from tribolab.fit import limits
 from tribolab.fit.variation import Base, Skipped
 from tribolab.surface.moments import rms_roughness
 
-_THICKNESSES = (10e-3, 5e-3)  # m, of usual rubber sheets
-_UNEVEN = 0.1  # change of the load at the ends of a line that a tilt makes
+_SHEET_THICKNESSES = (10e-3, 5e-3)  # m, of usual rubber sheets
 
 
 def left_out(base: Base) -> list[Skipped]:
@@ -29,12 +29,13 @@ def left_out(base: Base) -> list[Skipped]:
         found.append(Skipped("thickness", _of_layers(base, a)))
     if not contact.is_round:
         depth = a**2 / contact.radius
-        tilt = _UNEVEN * depth / (contact.force(1.0) / 2)
+        tilt = limits.LOAD_CHANGE_BY_TILT.value * depth / (contact.force(1.0) / 2)
         found.append(
             Skipped(
                 "crown, edge load and misalignment",
                 "not in the model, which is a long cylinder parallel to the flat: a tilt of "
-                f"{1e3 * tilt:.2g} mrad changes the load at the ends by about {_UNEVEN:.0%}",
+                f"{1e3 * tilt:.2g} mrad changes the load at the ends by about "
+                f"{limits.LOAD_CHANGE_BY_TILT.value:.0%}",
             )
         )
     if base.psd is not None:
@@ -62,7 +63,7 @@ def left_out(base: Base) -> list[Skipped]:
 def _of_layers(base: Base, a: float) -> str:
     peak = float(hertz_max_pressure(base.load, base.contact))
     parts = []
-    for thickness in _THICKNESSES:
+    for thickness in _SHEET_THICKNESSES:
         layer = replace(base.contact, thickness=thickness)
         width = float(hertz_half_width(base.load, layer)) / a - 1
         pressure = float(hertz_max_pressure(base.load, layer)) / peak - 1

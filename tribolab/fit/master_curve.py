@@ -11,7 +11,7 @@ from scipy.stats import f as f_distribution
 
 from tribolab.core.errors import AnalysisError
 
-_COEFFICIENTS = 14  # of the spline; with seven the test is worthless
+_SPLINE_COEFFICIENTS = 14  # of the spline; with seven the test is worthless
 
 
 class Collapse(NamedTuple):
@@ -95,9 +95,9 @@ def collapse_test(
         parts.append(np.stack([x, np.log(mu), sem / mu, np.full(x.size, number)])[:, good])
     x, y, noise, liquid = np.concatenate(parts, axis=1)
     extra = 2 * (len(curves) - 1)
-    if x.size <= _COEFFICIENTS + extra:
+    if x.size <= _SPLINE_COEFFICIENTS + extra:
         raise AnalysisError(
-            f"curves: more than {_COEFFICIENTS + extra} points are wanted; got {x.size}"
+            f"curves: more than {_SPLINE_COEFFICIENTS + extra} points are wanted; got {x.size}"
         )
     spline = _spline(x)
     same = (liquid[:, None] == liquid).astype(float)
@@ -115,7 +115,7 @@ def collapse_test(
     freedom = x.size - np.linalg.matrix_rank(np.hstack(white[1:]))
     # the errors are known: chi-square per degree of freedom at least 1
     statistic = (rss - rss_more) / extra / max(rss_more / freedom, 1.0)
-    found = wide[_COEFFICIENTS:]
+    found = wide[_SPLINE_COEFFICIENTS:]
     order = np.argsort(x)
     return Collapse(
         float(statistic),
@@ -129,7 +129,7 @@ def collapse_test(
 
 def _spline(x: np.ndarray) -> np.ndarray:
     """Cubic B-splines with knots at quantiles (points, coefficients)."""
-    inner = np.quantile(x, np.linspace(0, 1, _COEFFICIENTS - 2)[1:-1])
+    inner = np.quantile(x, np.linspace(0, 1, _SPLINE_COEFFICIENTS - 2)[1:-1])
     low, high = x.min(), x.max()
     knots = np.concatenate([np.full(4, low), inner, np.full(4, high)])
     return np.asarray(BSpline.design_matrix(x, knots, 3).toarray())

@@ -12,14 +12,14 @@ from numpy.typing import ArrayLike
 
 from tribolab.contact.geometry import Contact
 from tribolab.core.errors import AnalysisError, nearest, shown
+from tribolab.fit import limits
 from tribolab.lubrication.parameters import Liquid, parameters_of
 from tribolab.lubrication.solved_curve import SolvedCurve, solve_curve
 from tribolab.units.conversion import positive
 from tribolab.units.stamping import labelled, stamp
 
 _INPUTS = ("load", "radius", "youngs_modulus")
-_STEP = 0.02  # of ln x, to both sides
-_CELLS = 100  # a change needs no finer mesh than this: its error is on both sides
+_LN_STEP = 0.02  # of ln x, to both sides
 _PARTS = ("friction_coefficient_couette", "friction_coefficient_pressure")
 _SOLID = "friction_per_shear_stress"
 _MOVED = ("fluid_part", "solid_part", "solid_part_other")
@@ -86,7 +86,7 @@ def model_inputs(
     force = positive(load, contact.load_unit, "load")
     speeds = np.atleast_1d(labelled(speed, "sliding_speed"))
     parameters = parameters_of(viscosity, 0.0, **model)
-    cells = min(parameters.solver.cells, _CELLS)
+    cells = min(parameters.solver.cells, limits.MAX_CELLS_OF_CHANGE.value)
     solver = replace(parameters.solver, cells=cells)
     if contact.is_round:  # a change needs no more than the reduced theory
         solver = replace(parameters.solver, method="auto")
@@ -95,7 +95,7 @@ def model_inputs(
     near: SolvedCurve | None = None  # the curve before: it differs by a few percent
     for name, error in errors.items():
         ends = []
-        for factor in (np.exp(_STEP), np.exp(-_STEP)):
+        for factor in (np.exp(_LN_STEP), np.exp(-_LN_STEP)):
             body, at = contact, force
             if name == "load":
                 at = factor * force
@@ -103,7 +103,7 @@ def model_inputs(
                 body = replace(contact, **{name: factor * getattr(contact, name)})
             near = solve_curve(body, psd, at, speeds, parameters, near)
             ends.append(near.curve)
-        rows.append([error * (above - below) / (2 * _STEP) for above, below in _columns(*ends)])
+        rows.append([error * (above - below) / (2 * _LN_STEP) for above, below in _columns(*ends)])
     moved = np.reshape(rows, (len(errors), 3, speeds.size))
     dims = ("model_input", "sliding_speed")
     return stamp(

@@ -15,18 +15,18 @@ from tribolab.contact.persson import rough_band
 from tribolab.core.errors import AnalysisError
 from tribolab.core.untyped import Arguments
 from tribolab.core.validity import reasons_of, together
+from tribolab.fit import limits
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
 from tribolab.fit.variations import held_fixed, variations
+from tribolab.friction.statistics import NORMAL
 from tribolab.lubrication.factors import RoughBody
 from tribolab.lubrication.parameters import Outlet, parameters_of
 from tribolab.lubrication.solved_curve import SolvedCurve, solve_curve
 from tribolab.units.conversion import positive, to_si
 from tribolab.units.stamping import labelled, stamp
 
-_SPEEDS = tuple(np.geomspace(1e-9, 1e-1, 17).tolist())  # m/s
-_CELLS = 100  # a change needs no finer mesh than this: its error is in both curves
+_DEFAULT_SPEEDS = tuple(np.geomspace(1e-9, 1e-1, 17).tolist())  # m/s
 _PLACED = ("contact", "psd", "load", "speed", "viscosity", "shear_stress")
-_NORMAL = 1.959963984540054
 _PARTS = ("friction_coefficient_couette", "friction_coefficient_pressure")
 
 
@@ -168,7 +168,7 @@ def model_uncertainty(
         outlet=outlet or "unknown",
     )
     stress = to_si(shear_stress, "Pa", name="shear_stress")
-    speeds = np.atleast_1d(labelled(_SPEEDS if speed is None else speed, "sliding_speed"))
+    speeds = np.atleast_1d(labelled(_DEFAULT_SPEEDS if speed is None else speed, "sliding_speed"))
     if np.any(speeds <= 0):
         raise AnalysisError("speed: a band is made at speeds above zero; leave the others out")
     given: Arguments = {
@@ -185,16 +185,16 @@ def model_uncertainty(
         "method": "auto",
         "outlet": outlet or "vented",
     }
-    coarse = {**given, "cells": min(cells, _CELLS)}
+    coarse = {**given, "cells": min(cells, limits.MAX_CELLS_OF_CHANGE.value)}
     with one_thread():
         whole = _solved({"contact": contact, "psd": psd, **given, "cells": cells})
         start = whole
-        if cells > _CELLS and not contact.is_round:
+        if cells > limits.MAX_CELLS_OF_CHANGE.value and not contact.is_round:
             start = _solved({"contact": contact, "psd": psd, **coarse})
         curve, reference = whole.curve, start.curve
         unknowns = variations(base)
         varied = [unknown for unknown in unknowns if isinstance(unknown, Variation)]
-        mu, fitted, limits = _all_ends(contact, psd, coarse, varied, start, refit)
+        mu, fitted, attributes = _all_ends(contact, psd, coarse, varied, start, refit)
     left = [unknown for unknown in unknowns if isinstance(unknown, Skipped)]
     height = reference["friction_coefficient"].values
     if error is None:
@@ -232,7 +232,7 @@ def model_uncertainty(
         not_varied="; ".join(f"{name}: {reason}" for name, reason in left + held_fixed(base)),
         shear_stress_refitted="yes" if refit else "no",
         combined="deviations of ln mu in quadrature, upwards and downwards apart",
-        **together([curve.attrs, *limits]),
+        **together([curve.attrs, *attributes]),
     )
 
 
@@ -250,7 +250,7 @@ def _all_ends(
     """
     reference = start.curve
     stress, aim = coarse["shear_stress"], reference["friction_coefficient"].values
-    mu, limits = np.full((len(varied), 2, aim.size), np.nan), []
+    mu, attributes = np.full((len(varied), 2, aim.size), np.nan), []
     beyond = {reason.split(" is ")[0] for reason in reasons_of(reference.attrs)}
     fitted = np.full((len(varied), 2), np.nan)
     for i, variation in enumerate(varied):
@@ -265,7 +265,7 @@ def _all_ends(
             except AnalysisError as error:
                 where = f"varied {variation.name} ({variation.texts[j]})"
                 raise AnalysisError(error, where=where) from error
-            limits += [
+            attributes += [
                 {"validity_reasons": f"varied {variation.name} ({variation.texts[j]}): {reason}"}
                 for reason in reasons_of(changed.attrs)
                 if reason.split(" is ")[0] not in beyond
@@ -276,7 +276,7 @@ def _all_ends(
             best = float(area @ (aim - fluid)) / solid if solid > 0 else np.nan
             fitted[i, j] = best / stress - 1 if stress > 0 else np.nan
             mu[i, j] = fluid + (best if refit and solid > 0 else stress) * area
-    return mu, fitted, limits
+    return mu, fitted, attributes
 
 
 def _solved(asked: Arguments, near: SolvedCurve | None = None) -> SolvedCurve:
@@ -331,7 +331,7 @@ def _error_of_stress(given: str | float) -> float:
 def _of_stress(error: float, reference: xr.Dataset) -> tuple[Variation, np.ndarray]:
     """Return the fitted stress's own error as a variation, and mu at its ends, without solving."""
     stress, mu = reference.attrs["shear_stress_Pa"], reference["friction_coefficient"].values
-    ends = np.array([max(stress - _NORMAL * error, 0.0), stress + _NORMAL * error])
+    ends = np.array([max(stress - NORMAL * error, 0.0), stress + NORMAL * error])
     texts = (f"{ends[0] / 1e6:.3g} MPa", f"{ends[1] / 1e6:.3g} MPa")
     reason = "1.96 standard errors of the fit"
     area = reference["friction_per_shear_stress"].values

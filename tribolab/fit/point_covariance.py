@@ -10,7 +10,7 @@ from scipy.linalg import cholesky, solve_triangular
 
 from tribolab.metrology.budget_curve import shared_parts
 
-_LEAST = 1e-15  # of a coefficient: points that fit exactly have no error of their own
+_MIN_ERROR = 1e-15  # of a coefficient: points that fit exactly have no error of their own
 
 
 class PointErrors(NamedTuple):
@@ -62,7 +62,7 @@ class PointErrors(NamedTuple):
         (0.889, 8.0)
         """
         if not self.shared.size:
-            own = np.maximum(self.own, _LEAST)
+            own = np.maximum(self.own, _MIN_ERROR)
             return values / (own if values.ndim == 1 else own[:, None])
         return np.asarray(
             solve_triangular(cholesky(self.covariance, lower=True), values, lower=True)

@@ -7,8 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
-_CORRELATION = np.array([0.0, 0.2, 0.4, 0.6, 0.7, 0.8, 0.9, 0.95])
-_GROWTH = 1.35 ** np.arange(18)
+from tribolab.fit import limits
+from tribolab.friction.statistics import NORMAL
+
+_CORRELATION_GRID = np.array([0.0, 0.2, 0.4, 0.6, 0.7, 0.8, 0.9, 0.95])
+_GROWTH_GRID = 1.35 ** np.arange(18)
 # What is thought of the points' errors before the residuals are seen: that they are right with
 # 90 %, and then that neighbours are independent with 50 %; errors that are too small mostly leave
 # out what the points of a run have in common, so that there neighbours are independent with 10 %.
@@ -16,9 +19,7 @@ _GROWTH = 1.35 ** np.arange(18)
 # makes the error 1.6 times as large: were independence thought more likely, it would be believed.
 # Chosen on simulated curves of 13 speeds so that 95 % intervals hold for independent as for
 # correlated errors of the stated size (tests/benchmarks/shear_stress_coverage.py).
-_RIGHT, _LESS = 0.9, 0.85
-_INDEPENDENT = (0.5, 2.0), (0.1, 8.0)
-_NORMAL = 1.959963984540054
+_INDEPENDENCE_PRIORS = (0.5, 2.0), (0.1, 8.0)
 
 
 class ResidualError(NamedTuple):
@@ -88,12 +89,12 @@ def residual_error(
     jac = jac / size  # well conditioned
     apart = np.abs(place[:, None] - place)
     freedom = residual.size - jac.shape[1]
-    growth = _GROWTH if known else np.concatenate([1 / _GROWTH[:0:-1], _GROWTH])
+    growth = _GROWTH_GRID if known else np.concatenate([1 / _GROWTH_GRID[:0:-1], _GROWTH_GRID])
     prior = _prior(growth, known)
     weights = np.linalg.pinv(jac)[0]
-    evidence, variance = np.empty(prior.shape), np.empty(_CORRELATION.size)
+    evidence, variance = np.empty(prior.shape), np.empty(_CORRELATION_GRID.size)
     spacing = float(np.median(np.diff(place))) or 1.0
-    for i, rho in enumerate(_CORRELATION):
+    for i, rho in enumerate(_CORRELATION_GRID):
         together = np.eye(residual.size) if rho == 0 else rho ** (apart / spacing)
         lower = np.linalg.cholesky(together)
         white = np.linalg.solve(lower, np.column_stack([scaled, jac]))
@@ -110,11 +111,11 @@ def residual_error(
     errors = share * np.sqrt(variance)[:, None] * growth / size[0]
     quantile = np.full(growth.size, special.stdtrit(freedom, 0.975))
     if known:
-        quantile[growth == 1] = _NORMAL
+        quantile[growth == 1] = NORMAL
     return ResidualError(
         error=float(errors.sum()),
         half_interval=float((errors * quantile).sum()),
-        correlation=float(share.sum(1) @ _CORRELATION),
+        correlation=float(share.sum(1) @ _CORRELATION_GRID),
         growth=float(share.sum(0) @ growth),
     )
 
@@ -122,16 +123,18 @@ def residual_error(
 def _prior(growth: np.ndarray, known: bool) -> np.ndarray:
     """Weight of each correlation and growth before anything is measured (correlation, growth)."""
     by_correlation = []
-    for independent, power in _INDEPENDENT:
-        some = np.where(_CORRELATION > 0, _CORRELATION**power, 0.0)
-        alone = np.where(_CORRELATION == 0, independent, 0.0)
+    for independent, power in _INDEPENDENCE_PRIORS:
+        some = np.where(_CORRELATION_GRID > 0, _CORRELATION_GRID**power, 0.0)
+        alone = np.where(_CORRELATION_GRID == 0, independent, 0.0)
         by_correlation.append(alone + (1 - independent) * some / some.sum())
     if not known:
         return np.repeat(by_correlation[0][:, None] / growth.size, growth.size, axis=1)
-    less = _LESS ** np.arange(growth.size - 1)
+    less = limits.PRIOR_RATIO_OF_GROWTH.value ** np.arange(growth.size - 1)
     return np.column_stack(
         [
-            _RIGHT * by_correlation[0],
-            np.outer(by_correlation[1], (1 - _RIGHT) * less / less.sum()),
+            limits.PRIOR_OF_STATED_ERRORS.value * by_correlation[0],
+            np.outer(
+                by_correlation[1], (1 - limits.PRIOR_OF_STATED_ERRORS.value) * less / less.sum()
+            ),
         ]
     )

@@ -13,6 +13,7 @@ from scipy.optimize import least_squares
 
 from tribolab.contact.geometry import Contact
 from tribolab.core.errors import AnalysisError, Cure, nearest, shown
+from tribolab.fit import limits
 from tribolab.fit.model_inputs import moved_friction
 from tribolab.fit.point_covariance import PointErrors, shared_errors
 from tribolab.fit.residual_error import residual_error
@@ -25,10 +26,8 @@ from tribolab.units.conversion import positive, to_si
 from tribolab.units.stamping import stamp
 
 _FREE = ("viscosity", "youngs_modulus")
-_LIKELY = 0.01  # probability of chi-square above which a range of speeds counts as described
-_FEWEST = 4  # speeds in such a range
-_ATOM = 1e-19  # m2, contact area under which the bodies do not touch
-_STEP = 1e-2  # of ln viscosity and ln modulus, for their derivatives
+_MIN_CONTACT_AREA = 1e-19  # m2, contact area under which the bodies do not touch
+_LN_STEP = 1e-2  # of ln viscosity and ln modulus, for their derivatives
 _Computed = Callable[[np.ndarray], xr.Dataset]  # the curve for logarithms of the free parameters
 
 
@@ -165,7 +164,7 @@ def fit_shear_stress(
 
     start = np.log([{"viscosity": eta, "youngs_modulus": contact.youngs_modulus}[n] for n in free])
     model_curve, best = computed(start), start
-    least = _ATOM / contact.force(force)
+    least = _MIN_CONTACT_AREA / contact.force(force)
     if not np.any(_parts(model_curve)[1][used] > least):
         raise AnalysisError(
             "at none of these speeds do the bodies touch; take lower speeds",
@@ -366,7 +365,7 @@ def _profiled(
         fluid, area = (part[used] for part in _parts(computed(extra)))
         return errors.whitened(mu - fluid - _regression(mu, fluid, area, errors) * area)
 
-    steps = np.full(start.size, _STEP)
+    steps = np.full(start.size, _LN_STEP)
     fit = least_squares(residual, start, diff_step=steps, x_scale=1.0, xtol=1e-6, ftol=1e-8)
     if not fit.success:
         raise AnalysisError(
@@ -380,12 +379,12 @@ def _jacobian(
 ) -> np.ndarray:
     """Return the derivatives of mu over sigma_f and over the logarithms of the free parameters."""
     columns = [area[used]]
-    for step in _STEP * np.eye(best.size):
+    for step in _LN_STEP * np.eye(best.size):
         above, below = (
             fluid + stress * per_stress
             for fluid, per_stress in (_parts(computed(best + s)) for s in (step, -step))
         )
-        columns.append((above - below)[used] / (2 * _STEP))
+        columns.append((above - below)[used] / (2 * _LN_STEP))
     return np.stack(columns, axis=1)
 
 
@@ -407,7 +406,7 @@ def _valid_range(
     """Find the widest range in ln v, of neighbouring speeds, that one sigma_f describes."""
     best, widest = (np.nan, np.nan), 0.0
     for first in range(speed.size):
-        for stop in range(first + _FEWEST, speed.size + 1):
+        for stop in range(first + limits.MIN_SPEEDS_OF_RANGE.value, speed.size + 1):
             part = slice(first, stop)
             width = np.log(speed[stop - 1] / speed[first])
             if width <= widest or not np.any(area[part] > 0):
@@ -415,6 +414,9 @@ def _valid_range(
             known = errors.at(part)
             stress = _regression(mu[part], fluid[part], area[part], known)
             miss = known.whitened(mu[part] - fluid[part] - stress * area[part])
-            if special.chdtrc(stop - first - 1, float(miss @ miss)) > _LIKELY:
+            if (
+                special.chdtrc(stop - first - 1, float(miss @ miss))
+                > limits.MIN_CHANCE_OF_MISFIT.value
+            ):
                 best, widest = (float(speed[first]), float(speed[stop - 1])), width
     return best

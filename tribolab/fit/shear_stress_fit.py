@@ -10,10 +10,9 @@ import xarray as xr
 from scipy import special
 
 from tribolab.core.errors import AnalysisError, Cure
+from tribolab.fit import limits
 
 _UNITS = {"viscosity": "Pa s", "youngs_modulus": "Pa"}  # of what may be fitted besides
-
-_FEW = 30  # degrees of freedom under which Student's t is worth a word
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,7 +225,7 @@ def interval_words(
     parts = [f"residuals of neighbouring speeds correlate by {correlation:.2g}"]
     if error_from == "scatter":
         parts.append(f"scatter with Student's t of {freedom} degrees of freedom")
-    if shared and common_freedom < _FEW:
+    if shared and common_freedom < limits.MAX_FREEDOM_TO_REPORT.value:
         parts.append(
             f"repeatability with Student's t of {max(common_freedom, 1):.3g} degrees of freedom"
         )

@@ -21,10 +21,10 @@ from tribolab.fit.varied_spectrum import hurst_exponent, long_waves, short_waves
 from tribolab.lubrication.domain import SHORTEST, half_width
 from tribolab.lubrication.factors import CUTOFF, PERCOLATION, RoughBody, flow_factors
 
-_OPEN, _SHUT = 0.40, 0.50
-_FAR_LIQUID = 3.0  # radii of a ball: some 30 mm
-_CUTOFFS = 0.3e-9, 3e-9
-_GAMMA = 0.5
+_LOW_PERCOLATION, _HIGH_PERCOLATION = 0.40, 0.50
+_LIQUID_RADII = 3.0  # radii of a ball: some 30 mm
+_FILM_CUTOFFS = 0.3e-9, 3e-9
+_OTHER_GAMMA = 0.5
 # What no variation reaches, between any surfaces and between rough ones.
 _FIXED = (
     ("liquid", "Newtonian and isothermal, its viscosity the same at every pressure and shear rate"),
@@ -48,36 +48,36 @@ _WITH_ADHESION = "with adhesion in its mean field, at rest; films and pressures 
 
 def percolation(base: Base) -> Variation:
     """Vary the contact area at which the last channel closes."""
-    ends = [_factors(base, percolation=value) for value in (_OPEN, _SHUT)]
+    ends = [_factors(base, percolation=value) for value in (_LOW_PERCOLATION, _HIGH_PERCOLATION)]
     return Variation(
         "percolation threshold",
         "0.415 to 0.42 by numerics on large isotropic surfaces, less with grooves; 0.5 in "
         "effective-medium theory of two equal phases",
-        (f"A/A0 = {_OPEN:.2f}", f"A/A0 = {_SHUT:.2f}"),
+        (f"A/A0 = {_LOW_PERCOLATION:.2f}", f"A/A0 = {_HIGH_PERCOLATION:.2f}"),
         (ends[0], ends[1]),
     )
 
 
 def shear_cutoff(base: Base) -> Variation:
     """Vary the gap under which fluid is not sheared as a continuum."""
-    low, high = (_factors(base, cutoff=value) for value in _CUTOFFS)
+    low, high = (_factors(base, cutoff=value) for value in _FILM_CUTOFFS)
     return Variation(
         "cut-off of <1/u>",
         f"a molecule to a few; {1e9 * CUTOFF:g} nm is the default",
-        (f"{1e9 * _CUTOFFS[0]:g} nm", f"{1e9 * _CUTOFFS[1]:g} nm"),
+        (f"{1e9 * _FILM_CUTOFFS[0]:g} nm", f"{1e9 * _FILM_CUTOFFS[1]:g} nm"),
         (low, high),
     )
 
 
 def energy_factor(base: Base) -> Variation | Skipped:
     """Vary the elastic-energy factor of the mean separation."""
-    if base.gamma == _GAMMA:
-        return Skipped("elastic-energy factor", f"it is {_GAMMA:g} already")
+    if base.gamma == _OTHER_GAMMA:
+        return Skipped("elastic-energy factor", f"it is {_OTHER_GAMMA:g} already")
     return Variation(
         "elastic-energy factor",
         "gamma: 0.45 by simulations at small pressure, 0.5 in the first theory",
-        ("", f"gamma = {_GAMMA:g}"),
-        (None, {"gamma": _GAMMA, **_factors(base, gamma=_GAMMA)}),
+        ("", f"gamma = {_OTHER_GAMMA:g}"),
+        (None, {"gamma": _OTHER_GAMMA, **_factors(base, gamma=_OTHER_GAMMA)}),
     )
 
 
@@ -123,7 +123,7 @@ def inlet_length(base: Base) -> Variation | Skipped:
     if np.isfinite(base.inlet_length):
         return Skipped(name, "it is stated")
     if base.contact.is_round:
-        far = _FAR_LIQUID * base.contact.radius
+        far = _LIQUID_RADII * base.contact.radius
         return Variation(
             "extent of the liquid",
             "the drag of a ball's liquid grows as the logarithm of where it ends: at the ball's "

@@ -6,15 +6,15 @@ import numpy as np
 import xarray as xr
 
 from tribolab.core.errors import AnalysisError
+from tribolab.fit import limits
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
+from tribolab.friction.statistics import NORMAL
 from tribolab.surface.extrapolation import AS_MEASURED, TO_LARGE, TO_SMALL
 from tribolab.surface.moments import band, spectrum_arrays
 
-_NORMAL = 1.959963984540054  # 95 % of a normal distribution, as the bands of spectra
-_HURST = 0.1
-_ATOM = 0.3e-9  # m
-_COARSER = 10.0
-_PLATEAU = 2.0
+_ATOM_LENGTH = 0.3e-9  # m
+_CUTOFF_RATIO = 10.0
+_PLATEAU_FACTOR = 2.0
 _NO_TAIL = (
     "no part of the spectrum is marked as extrapolated to large wavenumbers (variable 'origin'); "
     "give measured_to"
@@ -58,8 +58,8 @@ def long_waves(base: Base) -> Variation | Skipped:
     if not guessed.any() or guessed.all():
         return Skipped(name, "no part of the spectrum was extrapolated to small wavenumbers")
     first = q[~guessed][0]
-    reason, more = "a plateau is assumed there; without it, and twice as high", _PLATEAU
-    texts = ["no roughness below", f"{_PLATEAU:g} C"]
+    reason, more = "a plateau is assumed there; without it, and twice as high", _PLATEAU_FACTOR
+    texts = ["no roughness below", f"{_PLATEAU_FACTOR:g} C"]
     if str(psd.attrs.get("rolloff", "")).startswith("not reached"):
         # the spectrum still rises where it was last seen: the power law may go on
         hurst = float(psd.attrs["hurst_exponent"])
@@ -84,14 +84,15 @@ def hurst_exponent(base: Base) -> Variation | Skipped:
     if last is None:
         return Skipped("Hurst exponent", _NO_TAIL)
     fitted = float(psd.attrs.get("hurst_exponent_standard_error", 0.0))
-    error = max(_HURST, _NORMAL * fitted)
+    error = max(limits.MIN_ERROR_OF_HURST.value, NORMAL * fitted)
     hurst = psd.attrs.get("hurst_exponent", _local_exponent(q, c))
     tilt = np.maximum(q / last, 1.0)
     low, high = (_spectrum(q, c * tilt ** (-2 * d)) for d in (-error, error))
     return Variation(
         "Hurst exponent",
-        f"of the part above {last:.3g} 1/m; at least {_HURST:g}, as a spectrum need not be one "
-        "power law over the decades that were not measured, or 1.96 standard errors of the fit",
+        f"of the part above {last:.3g} 1/m; at least {limits.MIN_ERROR_OF_HURST.value:g}, as a "
+        "spectrum need not be one power law over the decades that were not measured, or 1.96 "
+        "standard errors of the fit",
         (f"H = {hurst - error:.3g}", f"H = {hurst + error:.3g}"),
         ({"psd": low}, {"psd": high}),
     )
@@ -104,8 +105,8 @@ def short_waves(base: Base) -> Variation | Skipped:
     last = _measured_to(base)
     if last is None:
         return Skipped(name, _NO_TAIL)
-    cut = max(last, q[-1] / _COARSER)
-    atom = np.pi / _ATOM
+    cut = max(last, q[-1] / _CUTOFF_RATIO)
+    atom = np.pi / _ATOM_LENGTH
     longer: Changed | None = None
     if q[-1] < atom and np.all(c[-2:] > 0):
         beyond = np.geomspace(q[-1], atom, 11)[1:]

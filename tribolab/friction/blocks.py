@@ -8,9 +8,9 @@ import numpy as np
 import xarray as xr
 
 from tribolab.core.errors import AnalysisError
+from tribolab.friction import limits
 
-_FEWEST = 12  # blocks of the longest, so that their scatter is known within a fifth
-_LENGTHS = 25
+_BLOCK_LENGTHS = 25
 
 
 def error_from_blocks(
@@ -57,8 +57,8 @@ def error_from_blocks(
     if values.ndim != 1:
         raise AnalysisError(f"blocks are cut from a signal over one dim; this has {values.ndim}")
     if lengths is None:
-        longest = max(values.size // _FEWEST, 1)
-        lengths = np.unique(np.geomspace(1, longest, _LENGTHS).astype(int))
+        longest = max(values.size // limits.MIN_BLOCKS.value, 1)
+        lengths = np.unique(np.geomspace(1, longest, _BLOCK_LENGTHS).astype(int))
     size = np.asarray(lengths, dtype=int)
     count = values.size // np.maximum(size, 1)
     if size.size == 0 or size.min() < 1 or count.min() < 2:

@@ -8,11 +8,11 @@ import numpy as np
 import xarray as xr
 
 from tribolab.core.errors import AnalysisError, shown
+from tribolab.friction.points.limits import SPEED_TOLERANCE
 from tribolab.units.quantities import QUANTITIES
 from tribolab.units.stamping import stamp
 
 Label = str | float
-_TOLERANCE = 0.1  # of speeds that belong together, as for `measured_stribeck_curve`
 
 
 def grouped(
@@ -127,7 +127,7 @@ def _common_speeds(given: Sequence[np.ndarray]) -> tuple[np.ndarray, list[np.nda
     group: list[int] = []
     groups: list[list[int]] = []
     for index in np.argsort(every, kind="stable"):
-        near = group and np.log(every[index] / every[group[-1]]) <= np.log1p(_TOLERANCE)
+        near = group and np.log(every[index] / every[group[-1]]) <= np.log1p(SPEED_TOLERANCE.value)
         if not near or owner[index] in owner[group]:  # a curve's own speeds stay apart
             group = []
             groups.append(group)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tribolab.core.limit import Limit
+from tribolab.core.limit import Count, Limit
 
 MAX_UNEVEN = Limit(
     0.01,
@@ -17,3 +17,27 @@ MIN_GAP = Limit(
     "intervals of the rows around it, from which an interval is a gap that nothing was recorded in",
     "late buffers cause gaps of 2 to 3 intervals",
 )
+MIN_BLOCKS = Count(12, "1", "blocks of the greatest length: their scatter is known within a fifth")
+MIN_SPEED_OF_MASS = Limit(
+    0.4, "1", "share of the highest speed below which friction still reverses"
+)
+MAX_EVEN_ACCELERATION = Limit(
+    0.3, "1", "median over highest acceleration, below which only ramps accelerate"
+)
+MIN_PAIRS_OF_STROKES = Count(4, "1", "pairs of strokes in a fit of the moving mass")
+MIN_SAMPLES_OF_PAIR = Count(24, "1", "samples of such a pair")
+MIN_ERRORS_OF_MASS = Limit(5.0, "1", "standard errors of a moving mass that is reported")
+MIN_FORCE_OF_MASS = Limit(
+    0.02, "1", "inertial force over the friction force; a smaller one is ignored"
+)
+MAX_NOISE_OF_ACCELERATION = Limit(
+    0.05, "1", "share of the variance of the acceleration that is noise"
+)
+MAX_ERROR_OF_SPEED = Limit(
+    0.01, "1", "relative error of a set speed that is used as the measured one",
+    "judgement; checked by tests/benchmarks/bench_run_out.py",
+)  # fmt: skip
+MIN_WAVE_OVER_SPECTRUM = Limit(
+    12.0, "1", "power of a wave over the spectrum next to it: chance e**-12",
+    "judgement; checked by tests/benchmarks/bench_run_out.py",
+)  # fmt: skip

@@ -9,20 +9,14 @@ import xarray as xr
 
 from tribolab.arrays.medians import median
 from tribolab.core.errors import AnalysisError
+from tribolab.friction import limits
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.segments.strokes import find_strokes
 from tribolab.reading.runs.inertia import acceleration, take_inertia
 from tribolab.units.conversion import positive
 
-_FAST = 0.4  # of the highest speed: below it friction still turns over
-_EVEN = 0.3  # of the highest acceleration: its median is less where ramps alone accelerate
-_SINGULAR = 1e6  # condition beyond which a pair does not tell the terms apart
-_LOOKED_AT = 1 << 20  # samples: a mass does not change within a run
-_FEWEST = 4  # pairs of strokes
-_SAMPLES = 24  # that a pair has at least
-_SURE = 5.0  # standard errors
-_COUNTS = 0.02  # of the friction force: what less does is not looked for
-_BLURRED = 0.05  # share of the variance of the acceleration that may be noise
+_MAX_CONDITION = 1e6  # condition beyond which a pair does not tell the terms apart
+_MAX_SAMPLES = 1 << 20  # samples: a mass does not change within a run
 
 
 class MovingMass(NamedTuple):
@@ -87,15 +81,21 @@ def moving_mass(run: xr.Dataset) -> MovingMass | None:
     velocity = np.gradient(signals["position"], time) if velocity is None else velocity
     top = float(np.quantile(np.abs(velocity), 0.98))
     number = strokes.number
-    inside = (number >= 0) & (np.abs(velocity) > _FAST * top) & np.isfinite(force)
+    inside = (
+        (number >= 0)
+        & (np.abs(velocity) > limits.MIN_SPEED_OF_MASS.value * top)
+        & np.isfinite(force)
+    )
     spread = float(np.var(known.value[inside])) if inside.any() else 0.0
-    if known.error**2 > _BLURRED * spread or _is_steady(known.value[inside]):
+    if known.error**2 > limits.MAX_NOISE_OF_ACCELERATION.value * spread or _is_steady(
+        known.value[inside]
+    ):
         return None
     way, share = np.sign(velocity[inside]), np.abs(velocity[inside]) / top
     ones = np.ones(way.size)
     terms = [ones, way, way * share, known.value[inside]]
     fitted = _fits(number[inside] // 2, terms, force[inside])
-    if len(fitted) < _FEWEST:
+    if len(fitted) < limits.MIN_PAIRS_OF_STROKES.value:
         return None
     friction = float(np.mean(fitted[:, 1] + 0.8 * fitted[:, 2]))
     period = 2 * float(median(np.diff(strokes.first)))
@@ -103,7 +103,10 @@ def moving_mass(run: xr.Dataset) -> MovingMass | None:
     masses = fitted[:, 3] * np.sign(friction) * kept
     mass, error = float(masses.mean()), float(masses.std(ddof=1) / np.sqrt(masses.size))
     most = mass * float(np.quantile(np.abs(known.value[inside]), 0.98))
-    if mass < _SURE * error or most < _COUNTS * abs(friction):
+    if (
+        mass < limits.MIN_ERRORS_OF_MASS.value * error
+        or most < limits.MIN_FORCE_OF_MASS.value * abs(friction)
+    ):
         return None
     return MovingMass(mass, error, int(masses.size))
 
@@ -149,7 +152,7 @@ def without_inertia(run: xr.Dataset, mass: str | float | None = None) -> xr.Data
     if mass is not None:
         kilograms = positive(mass, "kg", "mass")
         return take_inertia(run, kilograms, name_of(run), moving_mass_source="stated")
-    known = moving_mass(run.isel(time=slice(0, _LOOKED_AT)))
+    known = moving_mass(run.isel(time=slice(0, _MAX_SAMPLES)))
     if known is None:
         return run
     source = f"force in phase with the acceleration, {known.pairs} pairs of strokes"
@@ -165,7 +168,7 @@ def _is_steady(acceleration: np.ndarray) -> bool:
     acceleration the median size is half of the highest or more, of ramps' it is far less.
     """
     size = np.abs(acceleration)
-    return bool(median(size) < _EVEN * np.quantile(size, 0.98))
+    return bool(median(size) < limits.MAX_EVEN_ACCELERATION.value * np.quantile(size, 0.98))
 
 
 def _fits(pair: np.ndarray, terms: list[np.ndarray], force: np.ndarray) -> np.ndarray:
@@ -176,11 +179,11 @@ def _fits(pair: np.ndarray, terms: list[np.ndarray], force: np.ndarray) -> np.nd
         [[np.bincount(pair, a * b, minlength=count) for b in terms] for a in terms]
     ).transpose(2, 0, 1)
     right = np.array([np.bincount(pair, a * force, minlength=count) for a in terms]).T
-    good = size >= _SAMPLES
+    good = size >= limits.MIN_SAMPLES_OF_PAIR.value
     scale = np.sqrt(np.einsum("pii->pi", normal[good]))
     good[good] = (scale > 0).all(axis=1)
     scale = scale[(scale > 0).all(axis=1)]
     shaped = normal[good] / scale[:, :, None] / scale[:, None, :]
-    told = np.linalg.cond(shaped) < _SINGULAR
+    told = np.linalg.cond(shaped) < _MAX_CONDITION
     answer = np.linalg.solve(shaped[told], (right[good] / scale)[told][:, :, None])[:, :, 0]
     return np.asarray(answer / scale[told])

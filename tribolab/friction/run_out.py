@@ -11,10 +11,10 @@ A wave is believed where it stands far above the spectrum of what is left.
 
 Of more than a sixth as many turns as a record has stretches, the stretches do not show the wave's
 course, and what they keep of it looks like a line beside which slow noise is overlooked. There the
-waves are fitted to shorter stretches, `_PER_TURN` of each turn, and taken out whether they stand
-out or not: they are far from what moves the mean. Whose speed was recorded up to `_SPEED_OFF`
-wrong, the wave would run out of step over many turns; the angle is stretched to where the wave is
-largest.
+waves are fitted to shorter stretches, `_STRETCHES_PER_TURN` of each turn, and subtracted whether
+they are significant or not: they hardly change the mean. If the recorded speed is wrong by up to
+`MAX_ERROR_OF_SPEED`, the wave would run out of step over many turns; the angle is stretched to
+where the wave is largest.
 
 Less than a turn tells neither the size of the wave nor its middle: the error is widened to what
 the part that is seen may hide in the worst case, half a turn about a crest.
@@ -32,13 +32,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-MOST_TURNS = 64.0  # turns in a record: of more, finer stretches of time are looked at
-_TWICE = 2.0  # turns from which on a wave twice per turn is looked for, too
-_LEAST = 0.25  # of a turn: less is taken for as much
-_PER_TURN, _LEAST_PER_TURN = 8, 4  # stretches of each of many turns
-_FINEST = 6144  # stretches: of more turns, 16 and more are averaged in each of the coarse ones
-_SPEED_OFF = 0.01  # a set speed that is given as the measured one is as good as this
-_CLEAR = 12.0  # a wave so much above the spectrum beside it is no noise: chance e**-12
+from tribolab.friction import limits
+
+MAX_COARSE_TURNS = 64.0  # turns in a record: of more, finer stretches of time are looked at
+_TURNS_OF_SECOND_ORDER = 2.0  # turns from which on a wave twice per turn is looked for, too
+_MIN_TURNS = 0.25  # of a turn: less is taken for as much
+_STRETCHES_PER_TURN, _MIN_STRETCHES_PER_TURN = 8, 4  # stretches of each of many turns
+# stretches: of more turns, 16 and more are averaged in each of the coarse ones
+_MAX_STRETCHES = 6144
 
 
 class Wave(NamedTuple):
@@ -58,7 +59,9 @@ class Wave(NamedTuple):
         count = self.signal.size
         cycles = np.linspace(0, count / 2, power.size)
         beside = power[(cycles >= self.turns / 2) & (cycles <= 2 * self.turns)]
-        return bool(self.signal @ self.signal / 2 > _CLEAR * beside.max())
+        return bool(
+            self.signal @ self.signal / 2 > limits.MIN_WAVE_OVER_SPECTRUM.value * beside.max()
+        )
 
 
 def turned(time: np.ndarray, speed: np.ndarray) -> np.ndarray:
@@ -92,7 +95,7 @@ def hidden_by_part(turns: float) -> float:
     Worst about a crest: the mean is off by sinc(k), which 1.96 errors shall hold; the scatter is
     ``(1 + sinc(2 k))/2 - sinc(k)**2``, squared, with ``sinc(x) = sin(pi x)/(pi x)``.
     """
-    k = max(turns, _LEAST)
+    k = max(turns, _MIN_TURNS)
     scatter = np.sqrt((1 + np.sinc(2 * k)) / 2 - np.sinc(k) ** 2)
     return float(np.sinc(k) / scatter / 1.96)
 
@@ -106,7 +109,7 @@ def fitted_waves(blocks: np.ndarray, angle: np.ndarray) -> list[Wave]:
         Means of the signal and of the angle [rad] over equal stretches of time (stretch).
     """
     turns = turns_of(angle)
-    orders = (1, 2) if turns >= _TWICE else (1,)
+    orders = (1, 2) if turns >= _TURNS_OF_SECOND_ORDER else (1,)
     columns = [f(order * angle) for order in orders for f in (np.cos, np.sin)]
     design = np.stack([np.ones(blocks.size), *columns], axis=1)
     size, *_ = np.linalg.lstsq(design, blocks, rcond=None)
@@ -133,20 +136,25 @@ def stretches_for_many_turns(turns: float, coarse: int, samples: int) -> int:
     """
     if not turns > coarse / 6:
         return 0
-    finer = min(math.ceil(_PER_TURN * turns / coarse), min(samples, _FINEST) // coarse)
-    return finer * coarse if finer * coarse >= _LEAST_PER_TURN * turns else 0
+    finer = min(
+        math.ceil(_STRETCHES_PER_TURN * turns / coarse), min(samples, _MAX_STRETCHES) // coarse
+    )
+    return finer * coarse if finer * coarse >= _MIN_STRETCHES_PER_TURN * turns else 0
 
 
 def in_step(blocks: np.ndarray, angle: np.ndarray) -> np.ndarray:
-    """Return the angle [rad], stretched by up to `_SPEED_OFF` to where its wave is largest.
+    """Return the angle [rad], stretched by up to `MAX_ERROR_OF_SPEED` to where its wave is largest.
 
     Parameters
     ----------
     blocks, angle
         Means of the signal and of the angle over equal stretches of time (stretch).
     """
-    steps = math.ceil(4 * _SPEED_OFF * turns_of(angle))  # by a quarter of a turn each
-    stretched = 1 + np.linspace(-_SPEED_OFF, _SPEED_OFF, 2 * steps + 1)
+    # by a quarter of a turn each
+    steps = math.ceil(4 * limits.MAX_ERROR_OF_SPEED.value * turns_of(angle))
+    stretched = 1 + np.linspace(
+        -limits.MAX_ERROR_OF_SPEED.value, limits.MAX_ERROR_OF_SPEED.value, 2 * steps + 1
+    )
     size = np.abs(np.exp(1j * np.outer(stretched, angle)) @ (blocks - blocks.mean()))
     best: np.ndarray = stretched[size.argmax()] * angle
     return best

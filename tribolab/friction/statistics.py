@@ -28,7 +28,7 @@ from tribolab.friction.mean_error.autoregression import spectra_of
 from tribolab.friction.mean_error.course import line_through
 from tribolab.friction.mean_error.level import levels_of, without_lines
 from tribolab.friction.run_out import (
-    MOST_TURNS,
+    MAX_COARSE_TURNS,
     fitted_waves,
     hidden_by_part,
     in_step,
@@ -39,8 +39,9 @@ from tribolab.friction.time_weights import on_grid, sample_weights
 
 MOST_STRETCHES = int(limits.BLOCKS.value)
 NORMAL = float(special.ndtri(0.975))  # standard errors in a 95 % interval, many degrees of freedom
-_FEWEST_TO_TURN = 40  # stretches in which waves of a turning rig are looked for
-_GRID = 1024  # frequencies of a spectrum beside which a wave of a turning rig stands out
+_MIN_STRETCHES_OF_TURN = 40  # stretches in which waves of a turning rig are looked for
+# frequencies of a spectrum beside which a wave of a turning rig stands out
+_SPECTRUM_FREQUENCIES = 1024
 # degrees of freedom over the width of their 95 % interval
 _DOF = np.geomspace(1.0, 1e4, 8000)
 _WIDTHS = special.stdtrit(_DOF, 0.975)
@@ -293,12 +294,12 @@ def _without_turns(records: list[_Record]) -> tuple[np.ndarray, np.ndarray]:
     blocks = np.stack([record.blocks for record in records])
     left = np.array([record.left for record in records])
     turns = np.array([turns_of(record.angle) for record in records])
-    looked = np.flatnonzero((turns > 0) & (turns <= min(MOST_TURNS, blocks.shape[1] / 6)))
-    if not looked.size or blocks.shape[1] < _FEWEST_TO_TURN:
+    looked = np.flatnonzero((turns > 0) & (turns <= min(MAX_COARSE_TURNS, blocks.shape[1] / 6)))
+    if not looked.size or blocks.shape[1] < _MIN_STRETCHES_OF_TURN:
         return blocks, left
     waves = [fitted_waves(blocks[k], records[k].angle) for k in looked]
     repeated = np.stack([np.sum([wave.signal for wave in own], axis=0) for own in waves])
-    cycles = np.linspace(0, blocks.shape[1] / 2, _GRID)
+    cycles = np.linspace(0, blocks.shape[1] / 2, _SPECTRUM_FREQUENCIES)
     power = spectra_of(blocks[looked] - repeated, cycles)
     for k, own, beside in zip(looked, waves, power, strict=True):
         if turns[k] < 1:

@@ -14,8 +14,8 @@ from scipy import ndimage
 
 from tribolab.friction.limits import MAX_UNEVEN, MIN_GAP
 
-_MARKS = 1024  # rows at which time is compared with even rows, before all of them are
-_AROUND = 5  # intervals whose median is the usual one
+_COMPARED_ROWS = 1024  # rows at which time is compared with even rows, before all of them are
+_INTERVALS_AROUND = 5  # intervals whose median is the usual one
 
 
 def sample_weights(time: np.ndarray) -> np.ndarray | None:
@@ -35,7 +35,7 @@ def sample_weights(time: np.ndarray) -> np.ndarray | None:
     """
     if time.size < 3:
         return None
-    marks = np.linspace(0, time.size - 1, min(time.size, _MARKS)).astype(int)
+    marks = np.linspace(0, time.size - 1, min(time.size, _COMPARED_ROWS)).astype(int)
     if not _is_uneven(time[marks]):
         return None
     steps = without_gaps(np.diff(time))
@@ -59,7 +59,7 @@ def without_gaps(steps: np.ndarray) -> np.ndarray:
     >>> without_gaps(np.array([1.0, 1.0, 1.0, 50.0, 1.0, 1.0])).tolist()
     [1.0, 1.0, 1.0, 1.0, 1.0, 1.0]
     """
-    usual = ndimage.median_filter(steps, min(_AROUND, steps.size), mode="nearest")
+    usual = ndimage.median_filter(steps, min(_INTERVALS_AROUND, steps.size), mode="nearest")
     return np.where(steps > MIN_GAP.value * usual, usual, steps)
 
 

@@ -10,7 +10,7 @@ from tribolab.core.errors import AnalysisError, nearest, shown
 from tribolab.units.conversion import to_si
 
 LIQUIDS = ("glycerol", "water", "silicone oil 100 cSt")
-_ALIKE = {"glycerine": "glycerol", "glycerin": "glycerol", "silicon oil": "silicone oil"}
+_SYNONYMS = {"glycerine": "glycerol", "glycerin": "glycerol", "silicon oil": "silicone oil"}
 _OIL = re.compile(r"silicone oil[ _]*(\d+(?:\.\d+)?) *(?:cst|mm2/s|mm²/s)?$")
 _ZERO = 273.15  # K
 _HIGHEST = {"water": 100.0, "glycerol": 100.0, "silicone oil": 150.0}  # degrees Celsius
@@ -156,7 +156,7 @@ def knows_liquid(name: str) -> bool:
 
 def _known(liquid: str) -> str | None:
     name = " ".join(liquid.lower().replace("_", " ").split())
-    for other, usual in _ALIKE.items():
+    for other, usual in _SYNONYMS.items():
         name = name.replace(other, usual)
     if name in ("glycerol", "water"):
         return name

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
 
-_FEWEST = 4  # smallest number of points of a line with an error
+_MIN_POINTS = 4  # smallest number of points of a line with an error
 _FARTHEST = 3653  # days
 
 
@@ -67,7 +67,7 @@ def recalibration_due(
     """
     by_interval = None if interval_days is None else calibrated + dt.timedelta(days=interval_days)
     t, y = np.asarray(days, dtype=float), np.asarray(values, dtype=float)
-    if limit is None or t.size < _FEWEST or np.ptp(t) == 0:
+    if limit is None or t.size < _MIN_POINTS or np.ptp(t) == 0:
         return Due(by_interval, "interval" if by_interval else "no interval is stated")
     slope, intercept = np.polyfit(t, y, 1)
     residual = y - intercept - slope * t

@@ -12,7 +12,7 @@ from scipy import special
 
 from tribolab.core.aliases import Array
 
-_FEWEST = 4  # runs in each group above which they are permuted
+_MIN_RUNS = 4  # runs in each group above which they are permuted
 MOST_ROTATED = 40  # largest number of runs of both groups together
 _DRAWS, _FEW_DRAWS = 4999, 1999
 _FEW_WILL_DO = 0.005  # significance level
@@ -32,7 +32,7 @@ def permutations_will_do(first: int, second: int, level: float) -> bool:
     >>> permutations_will_do(5, 5, 0.05), permutations_will_do(4, 4, 0.05)
     (True, False)
     """
-    if min(first, second) < _FEWEST:
+    if min(first, second) < _MIN_RUNS:
         return False
     step = (2 if first == second else 1) / math.comb(first + second, first)
     return math.floor(level / step * (1 + _SAME)) * step >= _REACHED * level

@@ -18,7 +18,7 @@ from tribolab.metrology.control_charts import (
     signals_of,
 )
 
-_SERIES, _BLOCK, _LONGEST = 4000, 250, 2000
+_SERIES, _BLOCK, _MAX_RUN = 4000, 250, 2000
 _SHORT, _MORE = 400, 4  # up to this number of points, so many times as many series are affordable
 _SEED = 20260101
 
@@ -53,9 +53,9 @@ def average_run_length(
     >>> 350 < average_run_length(["3 sigma"]) < 390
     True
     """
-    lengths = _run_lengths(tuple(rules), shift, drift, baseline, _LONGEST)
-    signalled = int((lengths <= _LONGEST).sum())
-    return float(np.minimum(lengths, _LONGEST).sum() / max(1, signalled))
+    lengths = _run_lengths(tuple(rules), shift, drift, baseline, _MAX_RUN)
+    signalled = int((lengths <= _MAX_RUN).sum())
+    return float(np.minimum(lengths, _MAX_RUN).sum() / max(1, signalled))
 
 
 def median_run_length(
@@ -66,7 +66,7 @@ def median_run_length(
     baseline: int | None = None,
 ) -> float:
     """Median number of points until a signal; arguments as for `average_run_length`."""
-    return float(np.median(_run_lengths(tuple(rules), shift, drift, baseline, _LONGEST)))
+    return float(np.median(_run_lengths(tuple(rules), shift, drift, baseline, _MAX_RUN)))
 
 
 def signal_probability(

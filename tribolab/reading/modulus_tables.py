@@ -20,7 +20,7 @@ from tribolab.reading.text.first_bytes import peek
 
 HEAD = 200  # rows among which the names stand
 _LARGEST = 32 << 20  # bytes of a table in text
-_LONGEST, _WIDEST = 80, 300  # letters of a name, and columns
+_MAX_NAME, _MAX_COLUMNS = 80, 300  # letters of a name, and columns
 _WORKBOOKS = (".xls", ".xlsx", ".xlsm", ".ods")
 _PRIMES = str.maketrans({"\u2032": "'", "\u2019": "'", "\u00b4": "'", "\u2033": '"', "\u201d": '"'})
 _UNIT = re.compile(r"[\[(]([^\[\]()]*)[\])]\s*$")  # behind "G' in"
@@ -74,7 +74,7 @@ def find_table(path: Path, sheet: str | None, longest: int | None = None) -> Tab
     workbook = path.suffix.lower() in _WORKBOOKS
     for rows, decimal in _workbook(path, sheet) if workbook else _text(path, longest):
         for place, row in enumerate(rows[:HEAD]):
-            if len(row) > _WIDEST:
+            if len(row) > _MAX_COLUMNS:
                 continue
             columns = _columns(row)
             seen |= dict.fromkeys(cell.strip() for cell in row if _concept(_bare(cell)[0]))
@@ -108,7 +108,7 @@ def _bare(cell: str) -> tuple[str, str]:
     (("G'", 'Pa'), ('E"', 'MPa'), ('Tan(delta)', ''), ("E'", 'MPa'))
     """
     cell = cell.strip()
-    if len(cell) > _LONGEST:
+    if len(cell) > _MAX_NAME:
         return cell, ""
     match = _UNIT.search(cell)
     if match is not None and normalise_label(match[1]) not in ("d", "delta", "δ"):
@@ -126,7 +126,7 @@ def _concept(label: str) -> str:
     >>> [_concept(label) for label in ("f", 'E"', "G'", "Tan(delta)", "|G*|", "Step time")]
     ['modulus_frequency', 'loss_modulus', 'storage_modulus', 'loss_factor', 'complex_modulus', '']
     """
-    if len(label) > _LONGEST:
+    if len(label) > _MAX_NAME:
         return ""
     text = label.translate(_PRIMES).replace("''", "pp").replace('"', "pp").replace("'", "p")
     words = text.replace("*", "star").split()

@@ -10,7 +10,7 @@ from tribolab.reading.lexicon.lexicon import known_words, normalise_label, role_
 _HEAD_LINES = 40  # above such a table
 _MOST_ROWS = 2000  # more are no measurements of a person
 _LONGEST_LINE = 2000  # characters; tables of results have few columns
-_FEWEST = 2  # names that only results have, or one and the load beside it
+_MIN_RESULT_NAMES = 2  # names that only results have, or one and the load beside it
 _NUMERIC = 0.5  # of a row's cells
 # parameters of ISO 21920 and ISO 25178, with their unit perhaps
 _PARAMETER = re.compile(
@@ -113,7 +113,7 @@ _QUANTITIES = {*_OF_FRICTION, *(name for needed in _TESTS.values() for name in n
 def _results(labels: list[str]) -> list[str]:
     """Return the names of results among the names of columns; none of a row of numbers."""
     parameters = [label for label in labels if _PARAMETER.fullmatch(label)]
-    if len(set(parameters)) >= _FEWEST:  # "Pa" twice is a row of units
+    if len(set(parameters)) >= _MIN_RESULT_NAMES:  # "Pa" twice is a row of units
         return parameters
     peaks = [
         label for label in labels if role_of(label) == "extreme" and _is(label, "shear_stress")

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _STEADY, SAW, SINE, REVERSED = CLASSES
 _LONG = 0.5e-3  # m; shorter waves are neither turns of a track nor pitches of a screw
-_APART, _ALIKE = 1.5, 1.15  # ratio of the speeds at equal wavelength, and of these wavelengths
+_MIN_SPEED_RATIO, _MAX_LENGTH_RATIO = 1.5, 1.15  # speeds over which a wavelength is one
 
 
 def friction_text(value: float) -> str:
@@ -128,8 +128,8 @@ def _fixed_wavelength(slip: xr.Dataset | None) -> float:
     length, speed = length[good], speed[good]
     if (
         length.size < 2
-        or speed.max() < _APART * speed.min()
-        or length.max() > _ALIKE * length.min()
+        or speed.max() < _MIN_SPEED_RATIO * speed.min()
+        or length.max() > _MAX_LENGTH_RATIO * length.min()
     ):
         return np.nan
     return float(np.median(length))

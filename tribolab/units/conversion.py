@@ -22,7 +22,7 @@ from tribolab.units.spellings import plain_unit
 if TYPE_CHECKING:
     import pint
 
-_LONGEST = 200  # letters of a number with its unit
+_MAX_QUANTITY = 200  # letters of a number with its unit
 _NUMBER = re.compile(r"^\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*$")
 
 # Units that instruments write differently from pint, or that pint does not know.
@@ -182,15 +182,15 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
     """
     if (prefix := _prefix(unit, si_unit)) is not None:
         return prefix, 0.0
-    if len(unit) > _LONGEST:
-        raise UnitError(f"'{shown(unit)}' is not a unit: it has more than {_LONGEST} letters")
+    if len(unit) > _MAX_QUANTITY:
+        raise UnitError(f"'{shown(unit)}' is not a unit: it has more than {_MAX_QUANTITY} letters")
     if (unit, si_unit) in _USUAL:
         return _USUAL[unit, si_unit]
     if (unit, si_unit) == ("mS", "s"):  # nobody measures time in siemens
         return 1e-3, 0.0
     if _measures_another(unit, si_unit):
         raise UnitError(f"unit '{shown(unit)}' cannot be turned into '{si_unit}'")
-    if (spelt := plain_unit(unit)) != unit.strip() and len(unit) < _LONGEST:
+    if (spelt := plain_unit(unit)) != unit.strip() and len(unit) < _MAX_QUANTITY:
         return conversion(spelt, si_unit, bare)
     if si_unit == "1" and bare == "cycles" and counts_turns(unit):
         return 1.0, 0.0
@@ -237,7 +237,7 @@ def base_unit(unit: str) -> str:
     >>> base_unit("N mm"), base_unit("Н·м")
     ('kg*m**2/s**2', 'kg*m**2/s**2')
     """
-    if (spelt := plain_unit(unit)) != unit.strip() and len(unit) < _LONGEST:
+    if (spelt := plain_unit(unit)) != unit.strip() and len(unit) < _MAX_QUANTITY:
         return base_unit(spelt)
     # imported late: pint loads slowly
     import pint
@@ -287,7 +287,7 @@ def to_si(
                 f"{shown(repr(value), 60)}"
             ) from error
     said = shown(value)
-    match = _NUMBER.match(value) if len(value) <= _LONGEST else None
+    match = _NUMBER.match(value) if len(value) <= _MAX_QUANTITY else None
     if not match:
         raise UnitError(f"{name}: '{said}' has no number; write e.g. '1 {si_unit}'")
     number, unit = float(match[1]), match[2]

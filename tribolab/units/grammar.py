@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from tribolab.core.errors import UnitError, shown
 
-_LONGEST = 80  # letters of a unit; those of rheology need some 30
+_MAX_UNIT = 80  # letters of a unit; those of rheology need some 30
 _DEEPEST = 4
 _LARGEST_POWER = 12.0
 _TOKEN = re.compile(
@@ -53,8 +53,8 @@ def parse_unit(text: str) -> Parsed:
     Traceback (most recent call last):
     tribolab.core.errors.UnitError: '9**9**9' is not a unit: of numbers only 10 has powers
     """
-    if len(text) > _LONGEST:
-        raise UnitError(f"'{text[:20]} ...' is not a unit: it is longer than {_LONGEST} letters")
+    if len(text) > _MAX_UNIT:
+        raise UnitError(f"'{text[:20]} ...' is not a unit: it is longer than {_MAX_UNIT} letters")
     if not text.strip():  # a pure number
         return Parsed(1.0, {})
     reader = _Reader(text)

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 _PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
 _PROVENANCE |= {"drafted_layout"}
-_LONGEST = 300  # letters of what a file says of itself
+_MAX_TEXT = 300  # letters of what a file says of itself
 _TOLD_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
 _TOLD_OF_SCAN = {"tip_radius_m", "stated_length_m", "stated_pitch_m", "stated_points", "doubtful"}
 _ROUNDING = 1e-6  # of a step: positions that deviate by less are even
@@ -233,7 +233,7 @@ def _attribute_lines(attrs: Mapping[str, Any], path: str | Path) -> list[str]:
         from tribolab.reading.unknown.proposal.questions import how_to_keep
 
         told["to_keep_it"] = how_to_keep(str(path))
-    return [f"  {key}: {shown(_said(value), _LONGEST)}" for key, value in told.items()]
+    return [f"  {key}: {shown(_said(value), _MAX_TEXT)}" for key, value in told.items()]
 
 
 def _said(value: object) -> str:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from tribolab.records.parts import RunOutcome
 
 _Own = tuple[str, float]  # name of a run, and a load measured in it [N]
-_ALIKE = 1.05  # ratio of the largest to the smallest load of repeats
+_MAX_LOAD_RATIO = 1.05  # ratio of the largest to the smallest load of repeats
 
 
 def with_loads_alike(store: Store, came: Sequence[RunCame]) -> list[RunCame]:
@@ -50,11 +50,11 @@ def _alike(runs: Iterable[RunOutcome]) -> Iterable[tuple[_Own, float]]:
     measured = [(load, run.name) for run in runs for load in _measured(run)]
     group: list[tuple[float, str]] = []
     for load, name in sorted(measured):
-        near = [other for other in known if 1 / _ALIKE < load / other < _ALIKE]
+        near = [other for other in known if 1 / _MAX_LOAD_RATIO < load / other < _MAX_LOAD_RATIO]
         if near:
             yield (name, load), min(near, key=lambda other: abs(other - load))
             continue
-        if group and load > _ALIKE * group[-1][0]:
+        if group and load > _MAX_LOAD_RATIO * group[-1][0]:
             yield from _as_one(group)
             group = []
         group.append((load, name))

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _OWN = "own_zero_N"  # attribute of a friction result: its zero, if certain
 # attribute: zeros lent by others; present but empty if it has no zero
 _LENT = "zeros_of_other_runs_N"
-_FEWEST = 2  # smallest number of zeros for a known scatter
+_MIN_ZEROS = 2  # smallest number of zeros for a known scatter
 _DIGITS = 6
 
 
@@ -86,7 +86,7 @@ def to_lend(zeros: Mapping[str, RunZero | None]) -> dict[str, tuple[float, ...]]
             # a file without a dialect may be of any instrument
             if other and other.own is not None and zero.instrument == other.instrument != ""
         )
-        others = others if len(others) >= _FEWEST else ()
+        others = others if len(others) >= _MIN_ZEROS else ()
         if zeros_text(others) != zero.lent:
             again[name] = others
     return again

@@ -29,7 +29,7 @@ _LINES: dict[str, LineStyleType] = {
 }  # fmt: skip
 _RAMP = "cividis"
 _MAX_WITH_SMALL_TICKS = 6  # panels: in smaller ones, ticks between those with a number are a bar
-_LONGEST = 64  # letters of an entry of the legend
+_MAX_LEGEND_ENTRY = 64  # letters of an entry of the legend
 _LEVELS = 0.3, 3.0  # log10 of the ratios in a map, as on the page
 
 
@@ -112,7 +112,7 @@ def _fill(spec: FigureSpec, sheet: Sheet) -> None:
         axes.set_autoscale_on(False)
         for series in sorted(mine, key=lambda series: series.style != "band"):
             label = series.label if any(series is one for one in named) else ""
-            _series(axes, series, y, mine, plain(label, _LONGEST) or "_nolegend_")
+            _series(axes, series, y, mine, plain(label, _MAX_LEGEND_ENTRY) or "_nolegend_")
             _keep(sheet.figure, spec, series)
         for mark in spec.marks:
             if mark.panel == number:

@@ -8,16 +8,16 @@ import numpy as np
 import xarray as xr
 
 from tribolab.core.errors import AnalysisError
+from tribolab.fit import limits
 from tribolab.fit.joint.load_curve import LoadCurve
 from tribolab.fit.joint.model import JointModel, Points, shared_by_points
 from tribolab.fit.joint.posterior import Posterior
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.spectrum_error import SPECTRUM
+from tribolab.friction.statistics import NORMAL
 from tribolab.metrology.budget_curve import shared_parts
 
 _INPUTS = ("load", "radius", "Young's modulus")  # variations that all surfaces share
-_NORMAL = 1.959963984540054
-_FEWEST = 4
 
 
 def model_covariance(
@@ -69,9 +69,9 @@ def model_covariance(
             if name in _INPUTS:
                 together[name] = together.get(name, 0.0) + moved
             else:
-                added += moved.T @ moved / len(ends) / _NORMAL**2
+                added += moved.T @ moved / len(ends) / NORMAL**2
     for moved in together.values():
-        added += moved.T @ moved / len(moved) / _NORMAL**2
+        added += moved.T @ moved / len(moved) / NORMAL**2
     return added
 
 
@@ -171,7 +171,8 @@ def _told(
     varied = ends_of.transpose("variation", "range_end", "sliding_speed").values
     change = np.log(varied / band["friction_coefficient"].values)
     inside = (log_speed > measured.min() - 0.01) & (log_speed < measured.max() + 0.01)
-    if inside.sum() < _FEWEST:  # few speeds, close together: between those of the band
+    # few speeds, close together: between those of the band
+    if inside.sum() < limits.MIN_SPEEDS_OF_BAND.value:
         within = (measured > log_speed[0] - 0.01) & (measured < log_speed[-1] + 0.01)
         at = np.clip(measured[within], log_speed[0], log_speed[-1])
         below = np.clip(np.searchsorted(log_speed, at) - 1, 0, log_speed.size - 2)

@@ -14,11 +14,11 @@ from tribolab.contact.geometry import Contact
 from tribolab.core.errors import AnalysisError, shown
 from tribolab.core.untyped import Arguments
 from tribolab.core.wording import number
+from tribolab.fit import limits
 from tribolab.fit.joint.fit import fit_shear_stress_jointly
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.result import JointFit
 
-_BARE, _STRONG = 1.0, 3.0  # of ln of odds: not worth a mention below, strong from here
 POWER_LAW = "power law of speed and load"
 CONSTANT = "constant shear stress"
 WITHOUT_FACTORS = "no friction factors"
@@ -238,12 +238,12 @@ def _said(
     tellers = np.array([evidence, prediction])
     tellers = tellers[np.isfinite(tellers)]
     strength = float(np.abs(tellers).min())
-    if strength < _BARE or np.ptp(np.sign(tellers)) > 0:
+    if strength < limits.MIN_LN_ODDS.value or np.ptp(np.sign(tellers)) > 0:
         return f"the data do not tell {model[0]} from {reference[0]}"
     wanted, other = (model, reference) if evidence > 0 else (reference, model)
     if wanted[1] < other[1]:
         return f"{wanted[0]} is enough"
-    if strength < _STRONG:
+    if strength < limits.STRONG_LN_ODDS.value:
         return f"the data lean to {wanted[0]}"
     return f"the data need {model[0]}" if wanted == model else f"the data contradict {model[0]}"
 

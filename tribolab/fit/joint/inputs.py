@@ -15,13 +15,14 @@ from tribolab.core.wording import number
 from tribolab.fit.joint.load_curve import LoadCurve
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.response import Response, constant_response, response_of
+from tribolab.friction.statistics import NORMAL
 from tribolab.lubrication.parameters import parameters_of
 from tribolab.lubrication.solved_curve import solve_curve
 from tribolab.units.stamping import labelled
 
-_REACH = 4.0  # standard deviations of ln eta that the computed curves go beyond the speeds
-_PER_DECADE = 8
-_NORMAL = 1.959963984540054
+# standard deviations of ln eta that the computed curves go beyond the speeds
+_SPREADS_BEYOND_SPEEDS = 4.0
+_SPEEDS_PER_DECADE = 8
 _OWN = ("sliding_speed", "run")
 
 
@@ -74,7 +75,7 @@ class DryFriction:
                 f"area_ratio_range: two finite numbers above zero, the lesser first, are wanted; "
                 f"got {low:g} and {high:g}"
             )
-        return float(np.log(high / low) / (2 * _NORMAL))
+        return float(np.log(high / low) / (2 * NORMAL))
 
 
 def loads_of(measured: xr.Dataset, load: str | float | xr.DataArray) -> xr.DataArray:
@@ -141,9 +142,9 @@ def computed_curves(
     speed = speed[np.isfinite(speed) & (speed > 0)]
     if not speed.size:
         raise AnalysisError("measured: no sliding speed is above zero")
-    beyond = _REACH * priors.viscosity_spread + 0.3
+    beyond = _SPREADS_BEYOND_SPEEDS * priors.viscosity_spread + 0.3
     low, high = np.log(speed.min()) - beyond, np.log(speed.max()) + beyond
-    count = int(np.ceil(_PER_DECADE * (high - low) / np.log(10))) + 1
+    count = int(np.ceil(_SPEEDS_PER_DECADE * (high - low) / np.log(10))) + 1
     grid = np.concatenate([[0.0], np.exp(np.linspace(low, high, count))])
     force = loads.values if loads.ndim else float(loads)
     options = {name: value for name, value in model.items() if name != "friction_factors"}

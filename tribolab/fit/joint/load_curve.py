@@ -10,12 +10,11 @@ import xarray as xr
 from scipy.optimize import nnls
 
 from tribolab.core.errors import AnalysisError, Cure, shown
+from tribolab.fit import limits
 from tribolab.fit.joint.model import Points
 from tribolab.fit.joint.response import Response
 
-_PRIOR_FREEDOM = 4.0
-_FEWEST = 4
-_ROUNDS = 20
+_SCATTER_ROUNDS = 20
 _NO_ERROR = Cure(
     notebook="give it friction_coefficient_sem, as tl.measured_stribeck_curve does",
     campaign="repeat the runs, or record for longer",
@@ -105,10 +104,10 @@ def points_of(
     run = np.repeat([part.run for part in parts], counts)
     taken = (speed >= speed_range[0]) & (speed <= speed_range[1])
     kept = taken & (friction > 0)
-    if kept.sum() < _FEWEST:
+    if kept.sum() < limits.MIN_POINTS_OF_LOAD.value:
         raise AnalysisError(
-            f"{kept.sum()} points with a friction above zero in all; at least {_FEWEST} are wanted "
-            "for a joint fit"
+            f"{kept.sum()} points with a friction above zero in all; at least "
+            f"{limits.MIN_POINTS_OF_LOAD.value} are wanted for a joint fit"
         )
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.where(kept, _moderated(error, friction, repeats, kept) / friction, np.nan)
@@ -170,17 +169,19 @@ def _moderated(
 ) -> np.ndarray:
     """Draw the variances that few runs tell to what all points say together."""
     several = kept & np.isfinite(error) & (repeats > 1)
-    if several.sum() < _FEWEST:
+    if several.sum() < limits.MIN_POINTS_OF_LOAD.value:
         return error
     variance = error[several] ** 2
     columns = np.stack([friction[several] ** 2, np.ones(several.sum())], axis=1)
     usual = np.full(variance.size, variance.mean())
-    for _ in range(_ROUNDS):  # of a variance known by k - 1 squares the error goes with itself
+    # of a variance known by k - 1 squares the error goes with itself
+    for _ in range(_SCATTER_ROUNDS):
         parts, _ = nnls(columns / usual[:, None], variance / usual)
         usual = np.maximum(columns @ parts, 1e-3 * variance.mean())
     freedom = repeats[several] - 1
     drawn = error.copy()
     drawn[several] = np.sqrt(
-        (freedom * variance + _PRIOR_FREEDOM * usual) / (freedom + _PRIOR_FREEDOM)
+        (freedom * variance + limits.PRIOR_FREEDOM_OF_SCATTER.value * usual)
+        / (freedom + limits.PRIOR_FREEDOM_OF_SCATTER.value)
     )
     return drawn

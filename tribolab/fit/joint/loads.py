@@ -22,13 +22,13 @@ from tribolab.fit.joint.model import (
 from tribolab.fit.joint.posterior import Posterior, mixture_quantile, posterior_of
 from tribolab.fit.joint.priors import JointPriors
 from tribolab.fit.joint.result import JointFit, Marginal
+from tribolab.friction.statistics import NORMAL
 from tribolab.units.stamping import stamp
 
-_ENDS = 0.025, 0.975
-_NORMAL = 1.959963984540054
-_RAYLEIGH = 0.22502413, 2.71620258  # quantiles at these ends, over the scale
-_NOTHING = 1e-9  # of an interval
-_DRAWN = 61  # speeds of a drawn curve
+_INTERVAL_ENDS = 0.025, 0.975
+_RAYLEIGH_QUANTILES = 0.22502413, 2.71620258  # quantiles at these ends, over the scale
+_ROUNDING_OF_INTERVAL = 1e-9  # of an interval
+_DRAWN_SPEEDS = 61  # speeds of a drawn curve
 
 
 def fit_loads(
@@ -148,9 +148,9 @@ def _marginals(
     parameters: Parameters, posterior: Posterior, priors: JointPriors, surfaces: Sequence[str]
 ) -> list[Marginal]:
     """Return median, interval and prior of every parameter, logarithms undone."""
-    middle, low, high = (posterior.quantile(p) for p in (0.5, *_ENDS))
+    middle, low, high = (posterior.quantile(p) for p in (0.5, *_INTERVAL_ENDS))
     spread = np.sqrt(np.diag(posterior.spread))
-    reach = _NORMAL * parameters.spread
+    reach = NORMAL * parameters.spread
     marginals = []
     for place, (name, surface, logarithmic) in enumerate(_places(parameters, surfaces)):
         values = np.array([middle, low, high, parameters.mean - reach, parameters.mean + reach])[
@@ -161,12 +161,12 @@ def _marginals(
         before = parameters.spread[place]
         told = max(0.0, 1 - float(spread[place] / before)) if before else np.nan
         value, *ends = map(float, values)
-        if abs(value) < _NOTHING * (ends[1] - ends[0]):
+        if abs(value) < _ROUNDING_OF_INTERVAL * (ends[1] - ends[0]):
             value = 0.0  # but for rounding
         marginals.append(Marginal(name, surface, value, ends[0], ends[1], ends[2], ends[3], told))
     for name, scale in (("level", priors.level), ("correlated", priors.correlated)):
-        value, first, last = (posterior.shared_quantile(name, p) for p in (0.5, *_ENDS))
-        least, most = (scale * quantile for quantile in _RAYLEIGH)
+        value, first, last = (posterior.shared_quantile(name, p) for p in (0.5, *_INTERVAL_ENDS))
+        least, most = (scale * quantile for quantile in _RAYLEIGH_QUANTILES)
         told = max(0.0, 1 - (last - first) / (most - least))
         marginals.append(Marginal(name, "", value, first, last, least, most, told))
     return marginals
@@ -234,7 +234,7 @@ def _points(
 def _bands(model: JointModel, posterior: Posterior, curves: Sequence[LoadCurve]) -> xr.Dataset:
     """Return the model over speed at each load with 95 % bands: by its parameters, and by all."""
     ends = model.points.log_speed.min(), model.points.log_speed.max()
-    grid = np.linspace(*ends, _DRAWN)
+    grid = np.linspace(*ends, _DRAWN_SPEEDS)
     number = np.repeat(np.arange(len(curves)), grid.size)
     at = Points(np.tile(grid, len(curves)), number, number, number, number)
     used = posterior.weight >= 1e-4 * posterior.weight.max()
@@ -257,10 +257,10 @@ def _bands(model: JointModel, posterior: Posterior, curves: Sequence[LoadCurve])
         )
         for ending, deviation, probability in (
             ("", alone, 0.5),
-            ("_low", alone, _ENDS[0]),
-            ("_high", alone, _ENDS[1]),
-            ("_load_low", whole, _ENDS[0]),
-            ("_load_high", whole, _ENDS[1]),
+            ("_low", alone, _INTERVAL_ENDS[0]),
+            ("_high", alone, _INTERVAL_ENDS[1]),
+            ("_load_low", whole, _INTERVAL_ENDS[0]),
+            ("_load_high", whole, _INTERVAL_ENDS[1]),
         )
     }
     named = {

@@ -10,12 +10,16 @@ from scipy.linalg import lapack
 from tribolab.core.errors import AnalysisError
 from tribolab.fit.joint.model import JointModel, Shared
 
-_STEPS = 200
-_HOPELESS = 25.0  # of ln of odds
-_CLOSE = 1e-6  # of the decrement: a thousandth of a standard deviation
-_LEAPS = 10.0  # times of what a step should gain, that the search may gain at most
-_GAINED = 0.5  # of what a step should gain, below which shorter ones are tried
-_PARTS = (0.5, 0.25, 0.12, 0.03), (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)  # the latter if none is better
+_MAX_STEPS = 200
+_NEGLIGIBLE_LN_ODDS = 25.0  # of ln of odds
+_CONVERGED_DECREMENT = 1e-6  # of the decrement: a thousandth of a standard deviation
+_MAX_GAIN = 10.0  # times of what a step should gain, that the search may gain at most
+_MIN_GAIN = 0.5  # of what a step should gain, below which shorter ones are tried
+# the latter if none is better
+_STEP_SHARES = (
+    (0.5, 0.25, 0.12, 0.03),
+    (1e-2, 1e-3, 1e-4, 1e-6, 1e-8),
+)
 
 
 class PosteriorModes(NamedTuple):
@@ -100,7 +104,7 @@ def _searched(
     evidence, left = np.empty(len(white)), np.zeros(len(white))
     normal = np.empty((len(white), scale.size, scale.size))
     todo = np.arange(len(white))
-    for number in range(_STEPS):
+    for number in range(_MAX_STEPS):
         now = state.at(todo)
         normal[todo] = now.jacobian.transpose(0, 2, 1) @ now.jacobian + np.diag(scale**-2.0)
         uphill = (now.residual[:, None] @ now.jacobian)[:, 0] - now.off / scale
@@ -109,11 +113,11 @@ def _searched(
         left[todo] = (uphill * step[:, free]).sum(axis=1)
         volume = np.linalg.slogdet(normal[todo])[1]
         evidence[todo] = constant[todo] - 0.5 * (now.size + volume)
-        close = left[todo] < _CLOSE
+        close = left[todo] < _CONVERGED_DECREMENT
         state.theta[todo[close]] += step[close]
         left[todo[close]] = 0.0
         chance = evidence + before
-        hopeless = chance[todo] + _LEAPS * left[todo] < chance.max() - _HOPELESS
+        hopeless = chance[todo] + _MAX_GAIN * left[todo] < chance.max() - _NEGLIGIBLE_LN_ODDS
         going = ~(close | (hopeless & (number > 0)))
         todo, step = todo[going], step[going]
         if not todo.size:
@@ -146,8 +150,8 @@ def _moved(
     before, white = state.at(which), white[which]
     best = _looked_at(model, white, before.theta + step)
     # a step that gains much less than it should goes too far, or not far enough
-    short = np.flatnonzero(before.size - best.size < _GAINED * expected)
-    for parts in _PARTS:
+    short = np.flatnonzero(before.size - best.size < _MIN_GAIN * expected)
+    for parts in _STEP_SHARES:
         if not short.size:
             break
         tried = [

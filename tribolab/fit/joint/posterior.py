@@ -14,12 +14,12 @@ from tribolab.fit.joint.priors import JointPriors
 
 # Sizes of shared errors over the scale of their priors. Wider ones are tried where much of the
 # weight lies at the end, as where the model does not describe the curves.
-_LEVELS = np.array([0.06, 0.25, 0.5, 0.8, 1.2, 1.8, 2.6])
-_CORRELATED = np.array([0.06, 0.3, 0.6, 1.0, 1.5, 2.3])
-_AT_END = 0.2
-_WIDENINGS = 5
-_CLOSE_ENOUGH = 1e-2  # of one that creeps
-_COUNTS = 1e-4  # share of a mode that is looked at twice
+_LEVEL_GRID = np.array([0.06, 0.25, 0.5, 0.8, 1.2, 1.8, 2.6])
+_CORRELATED_GRID = np.array([0.06, 0.3, 0.6, 1.0, 1.5, 2.3])
+_MAX_WEIGHT_AT_END = 0.2
+_MAX_WIDENINGS = 5
+_MAX_DECREMENT = 1e-2  # of one that creeps
+_MIN_MODE_WEIGHT = 1e-4  # share of a mode that is looked at twice
 
 
 class Posterior(NamedTuple):
@@ -121,9 +121,9 @@ def posterior_of(model: JointModel, priors: JointPriors, start: np.ndarray) -> P
     """
     shared = shared_by_points(model.points, model.points, priors.correlation_length)
     widths = np.ones(2)
-    for _ in range(_WIDENINGS + 1):
-        level = widths[0] * priors.level * _LEVELS
-        correlated = widths[1] * priors.correlated * _CORRELATED
+    for _ in range(_MAX_WIDENINGS + 1):
+        level = widths[0] * priors.level * _LEVEL_GRID
+        correlated = widths[1] * priors.correlated * _CORRELATED_GRID
         sizes = np.stack(np.meshgrid(level, correlated, indexing="ij")).reshape(2, -1)
         shares = _log_share(level, priors.level), _log_share(correlated, priors.correlated)
         before = np.add.outer(*shares).ravel()
@@ -131,12 +131,12 @@ def posterior_of(model: JointModel, priors: JointPriors, start: np.ndarray) -> P
         chance = modes.log_evidence + before
         log_evidence = float(special.logsumexp(chance))
         weight = np.exp(chance - log_evidence)
-        at_end = np.array([weight[sizes[k] == grid[-1]].sum()
-                           for k, grid in enumerate((level, correlated))]) > _AT_END  # fmt: skip
+        ends = [weight[sizes[k] == grid[-1]].sum() for k, grid in enumerate((level, correlated))]
+        at_end = np.array(ends) > _MAX_WEIGHT_AT_END
         if not at_end.any():
             break
         widths = np.where(at_end, 2 * widths, widths)
-    if (modes.left[weight > _COUNTS] > _CLOSE_ENOUGH).any():
+    if (modes.left[weight > _MIN_MODE_WEIGHT] > _MAX_DECREMENT).any():
         raise AnalysisError("the most probable parameters are not found; take fewer curves")
     return Posterior(weight, sizes[0], sizes[1], modes.theta, modes.covariance, log_evidence)
 

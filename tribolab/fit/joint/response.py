@@ -10,11 +10,10 @@ import xarray as xr
 from scipy.interpolate import CubicSpline
 
 from tribolab.core.errors import AnalysisError
+from tribolab.fit import limits
 
-_NEAR = 0.1  # of ln(eta v): of two computed points that lie closer one is enough
-_FEWEST = 5
-_FAR = 1.0  # of ln(eta v): over wider gaps a spline may be off by several percent
-_APART = 1e4  # between the knots of one response and those of the next, wider than any
+_MIN_SPACING = 0.1  # of ln(eta v): of two computed points that lie closer one is enough
+_KNOT_OFFSET = 1e4  # between the knots of one response and those of the next, wider than any
 
 
 class Response(NamedTuple):
@@ -64,7 +63,7 @@ class Responses(NamedTuple):
     ends
         Lowest and highest ln(eta v) of each (response, 2).
     knots
-        Where their pieces begin, each response's moved `_APART` from the one before (piece).
+        Where their pieces begin, each response's moved `_KNOT_OFFSET` from the one before (piece).
     begin
         Where their pieces begin (piece).
     pieces
@@ -80,7 +79,7 @@ class Responses(NamedTuple):
     def of(cls, responses: Sequence[Response]) -> Responses:
         """Put responses together."""
         begin = [response.solid.x[:-1] for response in responses]
-        moved = [_APART * number + part for number, part in enumerate(begin)]
+        moved = [_KNOT_OFFSET * number + part for number, part in enumerate(begin)]
         pieces = [np.stack([r.log_fluid.c, r.solid.c], axis=1) for r in responses]
         return cls(
             np.array([(response.low, response.high) for response in responses]),
@@ -96,7 +95,7 @@ class Responses(NamedTuple):
         """
         low, high = self.ends[which].T
         inside = np.minimum(np.maximum(place, low), high)
-        piece = np.searchsorted(self.knots, inside + _APART * which, side="right") - 1
+        piece = np.searchsorted(self.knots, inside + _KNOT_OFFSET * which, side="right") - 1
         x = (inside - self.begin[piece])[..., None, :]
         a, b, c, d = np.moveaxis(self.pieces[:, :, piece], 1, -2)
         log_fluid, solid = np.moveaxis(((a * x + b) * x + c) * x + d, -2, 0)
@@ -145,13 +144,14 @@ def response_of(curve: xr.Dataset, *, friction_factors: bool = True) -> Response
     known = (speed > 0) & np.isfinite(fluid) & (fluid > 0) & np.isfinite(solid)
     speed, fluid, solid = speed[known], np.asarray(fluid)[known], solid[known]
     place = np.log(float(curve.attrs["viscosity_Pa_s"]) * speed)
-    kept = np.diff(place, prepend=-np.inf) > _NEAR
-    if kept.sum() < _FEWEST:
+    kept = np.diff(place, prepend=-np.inf) > _MIN_SPACING
+    if kept.sum() < limits.MIN_SPEEDS_OF_RESPONSE.value:
         raise AnalysisError(
-            f"a computed curve has {kept.sum()} speeds above zero; at least {_FEWEST} are wanted"
+            f"a computed curve has {kept.sum()} speeds above zero; at least "
+            f"{limits.MIN_SPEEDS_OF_RESPONSE.value} are wanted"
         )
     place = place[kept]
-    if np.diff(place).max() > _FAR:
+    if np.diff(place).max() > limits.MAX_SPACING_OF_RESPONSE.value:
         raise AnalysisError("a computed curve wants three speeds in every decade, or more")
     return Response(
         CubicSpline(place, np.log(fluid[kept])),

@@ -9,10 +9,8 @@ import pandas as pd
 import xarray as xr
 
 from tribolab.core.wording import many, number, percent
+from tribolab.fit import limits
 
-_UNTOLD, _LITTLE = 0.2, 0.5  # of the prior's standard deviation that the data take away
-_TOGETHER = 0.8  # correlation from which two parameters are hardly told apart
-_FAR = 0.09  # correlated error from which the model does not describe the curves
 _NAMES = {  # of a parameter: its unit, and in words
     "shear_stress": ("Pa", "shear stress"),
     "speed_exponent": ("1", "exponent of speed"),
@@ -63,9 +61,9 @@ class Marginal:
         """Return "yes", "weakly", "not identified" or "held fixed"."""
         if np.isnan(self.told):
             return "held fixed"
-        if self.told < _UNTOLD:
+        if self.told < limits.MIN_REDUCTION_OF_PRIOR.value:
             return "not identified"
-        return "weakly" if self.told < _LITTLE else "yes"
+        return "weakly" if self.told < limits.WEAK_REDUCTION_OF_PRIOR.value else "yes"
 
     @property
     def words(self) -> str:
@@ -134,7 +132,7 @@ class JointFit:
     @property
     def described(self) -> bool:
         """Whether the model describes the curves: neighbouring speeds err by less than a tenth."""
-        return self.marginal("correlated").value <= _FAR
+        return self.marginal("correlated").value <= limits.MAX_CORRELATED_ERROR.value
 
     def table(self) -> pd.DataFrame:
         """Return a row for each parameter: median, 95 % interval, that of the prior, and words."""
@@ -164,7 +162,11 @@ class JointFit:
     def words(self) -> list[str]:
         """What the data do not tell, and what goes together, a sentence each."""
         return [
-            *(_untold(marginal) for marginal in self._physical if marginal.told < _LITTLE),
+            *(
+                _untold(marginal)
+                for marginal in self._physical
+                if marginal.told < limits.WEAK_REDUCTION_OF_PRIOR.value
+            ),
             *(_beyond(marginal) for marginal in self._physical if _is_beyond(marginal)),
             *self._together(),
             *self._misfit(),
@@ -178,7 +180,9 @@ class JointFit:
     def _together(self) -> list[str]:
         """Pairs of parameters that are hardly told apart."""
         said = []
-        for i, j in np.argwhere(np.triu(np.abs(self.correlation), 1) > _TOGETHER):
+        for i, j in np.argwhere(
+            np.triu(np.abs(self.correlation), 1) > limits.MAX_CORRELATION.value
+        ):
             first, second = self.marginals[i], self.marginals[j]
             said.append(
                 f"{first.words} and {second.words} are hardly told apart: their errors correlate "
@@ -251,7 +255,7 @@ def _beyond(marginal: Marginal) -> str:
 
 def _untold(marginal: Marginal) -> str:
     """Say that the data tell nothing, or little, of a parameter."""
-    if marginal.told < _UNTOLD:
+    if marginal.told < limits.MIN_REDUCTION_OF_PRIOR.value:
         return (
             f"{marginal.words}: not identified; the interval is what was assumed beforehand, "
             f"{in_words(marginal)}"

@@ -18,6 +18,7 @@ from tribolab.friction.coefficient.reversal import reversal_of
 from tribolab.friction.coefficient.steadiness import judged
 from tribolab.friction.decisions.rejected import beside_rejected
 from tribolab.friction.run_out import turn_remark, turned
+from tribolab.friction.segments.limits import MAX_LOST_CONTACT
 from tribolab.friction.statistics import (
     NORMAL,
     Estimate,
@@ -27,7 +28,7 @@ from tribolab.friction.statistics import (
     with_freedom,
 )
 from tribolab.friction.zero import limits
-from tribolab.friction.zero.load_reading import UNIFORM, load_reading
+from tribolab.friction.zero.load_reading import WIDTH_OVER_SIGMA, load_reading
 from tribolab.friction.zero.of_run import Settings, zero_of_run
 from tribolab.friction.zero.parts import ZeroReference
 from tribolab.friction.zero.rests import light_rest, unloaded_rests
@@ -36,7 +37,6 @@ from tribolab.friction.zero.words import of_light_rest, of_partial_contact
 from tribolab.units.stamping import stamp
 
 _OFFSETS = ("auto", "half loop", "zero load", "none")
-_LOST = 0.05  # share of samples without contact above which a segment is not evaluated
 
 
 @of_runs
@@ -263,7 +263,7 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
         shared = reading.error
         zero = replace(zero, doubts=(*zero.doubts, *reading.doubts))
     if partial is not None and settings.offset != "none":
-        shared = np.hypot(shared, partial.level / UNIFORM)  # either zero
+        shared = np.hypot(shared, partial.level / WIDTH_OVER_SIGMA)  # either zero
         if partial.level > limits.DOUBTFUL_REST.value * load:
             doubted = of_partial_contact(partial, load, means.size)
             zero = replace(zero, doubts=(*zero.doubts, doubted))
@@ -417,7 +417,7 @@ def _ratio(
     pressed = known & (normal > 0)
     left = normal.size - int(np.count_nonzero(pressed))
     lost = 1 - (normal.size - left) / normal.size
-    if lost > _LOST:
+    if lost > MAX_LOST_CONTACT.value:
         why = f"no contact or no normal force in {lost:.0%} of the samples"
         return nothing, nothing, _Pointwise(why)
     if left:

@@ -8,16 +8,13 @@ import xarray as xr
 from tribolab.arrays.broadcasting import of_runs
 from tribolab.arrays.medians import median_of_known
 from tribolab.core.errors import AnalysisError, Cure
+from tribolab.friction.coefficient import limits
+from tribolab.friction.segments.limits import MIN_LOAD_OF_CONTACT
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.segments.strokes import Strokes, find_strokes
 from tribolab.friction.statistics import estimate_of
 from tribolab.units.conversion import to_si
 from tribolab.units.stamping import stamp
-
-_ONE_SIGN = 0.8  # share of the cycles with strokes of equal sign above which the sign was lost
-_FEWEST = 3  # samples in the middle part of a stroke
-_TREND = 0.01  # p value below which a trend is significant
-_NO_CONTACT = 0.02  # share of the usual load
 
 
 @of_runs
@@ -86,11 +83,14 @@ def friction_per_cycle(run: xr.Dataset, middle: str | float = 0.5) -> xr.Dataset
         raise AnalysisError("no two whole strokes follow each other", where=name_of(run))
     name = _signal(run)
     means, counts = _means(run, strokes, share)
-    good = (counts[forward] >= _FEWEST) & (counts[backward] >= _FEWEST)
+    good = (counts[forward] >= limits.MIN_SAMPLES_OF_MIDDLE.value) & (
+        counts[backward] >= limits.MIN_SAMPLES_OF_MIDDLE.value
+    )
     forward, backward = forward[good], backward[good]
     if not forward.size:
         raise AnalysisError(
-            f"the middle parts of the strokes hold fewer than {_FEWEST} samples each: the motion "
+            "the middle parts of the strokes hold fewer than "
+            f"{limits.MIN_SAMPLES_OF_MIDDLE.value} samples each: the motion "
             "is too fast for the sample rate, or `middle` too small",
             where=name_of(run),
         )
@@ -186,7 +186,7 @@ def _coefficient(
     """Friction coefficient of each cycle, and the zero of the signal."""
     there, back = force[forward], force[backward]
     lost = bool(run.attrs.get(f"{name}_rectified", False))
-    if not lost and np.mean(there * back > 0) > _ONE_SIGN:
+    if not lost and np.mean(there * back > 0) > limits.MAX_CYCLES_OF_ONE_SIGN.value:
         raise AnalysisError(
             "friction has one sign in both directions: it was recorded without its sign, or its "
             "zero is larger than friction",
@@ -203,7 +203,9 @@ def _coefficient(
         return np.abs(there - turned * back) / 2, (there + turned * back) / 2
     n_there, n_back = load[forward], load[backward]
     usual = float(median_of_known(np.abs(load)))
-    pressed = (n_there > _NO_CONTACT * usual) & (n_back > _NO_CONTACT * usual)
+    pressed = (n_there > MIN_LOAD_OF_CONTACT.value * usual) & (
+        n_back > MIN_LOAD_OF_CONTACT.value * usual
+    )
     with np.errstate(invalid="ignore", divide="ignore"):
         mu = np.abs(there - turned * back) / (n_there + n_back)
         zero = (there * n_back + turned * back * n_there) / (n_there + n_back)

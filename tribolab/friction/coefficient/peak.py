@@ -7,13 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.arrays.medians import median
+from tribolab.friction.coefficient import limits
 
-_CLEAR = 3.0  # standard errors above sliding friction that make a peak significant
-FEWEST_OF_PEAK = 5  # readings that a parabola is fitted to
-_NOISE = 1.4826 / np.sqrt(2)  # median of the steps between samples -> standard deviation
+_NOISE_OF_STEPS = 1.4826 / np.sqrt(2)  # median of the steps between samples -> standard deviation
 # readings above this share of the rise belong to the peak; fewer for a pointed one
-_NEAR = (0.8, 0.9, 0.95, 0.98)
-_MISFIT = 2.0  # standard deviations that exceed noise
+_PEAK_SHARES = (0.8, 0.9, 0.95, 0.98)
 
 
 class Peak(NamedTuple):
@@ -34,7 +32,11 @@ def noise_between(values: np.ndarray) -> float:
         Readings (time); the result is infinite for too few.
     """
     steps = np.abs(np.diff(values[np.isfinite(values)]))
-    return _NOISE * float(median(steps)) if steps.size >= FEWEST_OF_PEAK else np.inf
+    return (
+        _NOISE_OF_STEPS * float(median(steps))
+        if steps.size >= limits.MIN_SAMPLES_OF_PEAK.value
+        else np.inf
+    )
 
 
 def peak_of_start(
@@ -58,7 +60,11 @@ def peak_of_start(
     """
     known = np.isfinite(ratio)
     time, ratio = time[known], ratio[known]
-    if ratio.size < FEWEST_OF_PEAK or not np.isfinite(sliding) or not np.isfinite(noise):
+    if (
+        ratio.size < limits.MIN_SAMPLES_OF_PEAK.value
+        or not np.isfinite(sliding)
+        or not np.isfinite(noise)
+    ):
         return Peak(np.nan, np.nan, np.nan, False)
     smooth, width, clear = _smoothed(ratio, sliding, noise)
     top = int(np.argmax(smooth))
@@ -70,7 +76,12 @@ def peak_of_start(
         # the boundary between start and sliding cannot be seen
         error = float(np.hypot(error, height - sliding))
     error = float(np.hypot(error, sem))
-    return Peak(moment, height, error, bool(clear and height - sliding > _CLEAR * error))
+    return Peak(
+        moment,
+        height,
+        error,
+        bool(clear and height - sliding > limits.MIN_ERRORS_OF_PEAK.value * error),
+    )
 
 
 def _of_top(
@@ -83,15 +94,15 @@ def _of_top(
 ) -> tuple[float, float, float]:
     """Return time, height and error of a significant peak."""
     top = int(np.argmax(smooth))
-    for share in _NEAR:
+    for share in _PEAK_SHARES:
         low = np.flatnonzero(smooth < sliding + share * (smooth[top] - sliding))
         first = low[low < top][-1] + 1 if (low < top).any() else 0
         last = low[low > top][0] if (low > top).any() else smooth.size
         near, when = ratio[first : last + width - 1], time[first : last + width - 1]
-        if near.size < FEWEST_OF_PEAK or not np.ptp(when) > 0:
+        if near.size < limits.MIN_SAMPLES_OF_PEAK.value or not np.ptp(when) > 0:
             break
         moment, height, error, scatter = _parabola(when, near, noise)
-        spread = _MISFIT * noise / np.sqrt(2 * max(near.size - 3, 1))
+        spread = limits.MAX_MISFIT_OF_PEAK.value * noise / np.sqrt(2 * max(near.size - 3, 1))
         if scatter <= noise + spread:
             return moment, height, float(np.hypot(error, np.sqrt(max(scatter**2 - noise**2, 0.0))))
     beside = smooth[[max(top - width, 0), min(top + width, smooth.size - 1)]]

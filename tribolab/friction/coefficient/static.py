@@ -14,22 +14,20 @@ import xarray as xr
 from tribolab.arrays.broadcasting import of_runs
 from tribolab.arrays.medians import median_of_known
 from tribolab.core.errors import AnalysisError
+from tribolab.friction.coefficient import limits
 from tribolab.friction.coefficient.coefficient import (
     belong,
     friction_coefficient,
     friction_signal,
 )
-from tribolab.friction.coefficient.peak import FEWEST_OF_PEAK, noise_between, peak_of_start
+from tribolab.friction.coefficient.peak import noise_between, peak_of_start
 from tribolab.friction.segments.specimens import begins_of_specimens
 from tribolab.friction.segments.stretches import name_of
 from tribolab.units.conversion import to_si
 from tribolab.units.stamping import stamp
 
-_BEFORE = 0.5  # of the stroke before: longest rise before the segment
-_LATEST = 0.5  # of the segment: longest rise within it
-_LONGER = 1.5  # the search is extended by this factor while the force still rises
-_SLACK = 0.3  # share of the sliding force; a segment that begins below it starts before sliding
-_AT_END = 0.1  # share of the readings; if their mean is the highest, the force still rises
+_EXTENSION = 1.5  # the search is extended by this factor while the force still rises
+_END_SHARE = 0.1  # share of the readings; if their mean is the highest, the force still rises
 
 
 class _Start(NamedTuple):
@@ -173,12 +171,12 @@ def _starts(
     slack = _slack(run, friction, start)
     for i in range(start.size):
         if slack[i]:
-            latest = start[i] + _LATEST * (stop[i] - start[i])
+            latest = start[i] + limits.MAX_TIME_OF_RISE.value * (stop[i] - start[i])
             if reach and speed[i] > 0:
                 latest = start[i] + reach / speed[i]
             first, last, end_of_it = np.searchsorted(time, [start[i], trimmed[i], latest])
             last = end_of_it if reach else last
-            if last - first >= FEWEST_OF_PEAK:
+            if last - first >= limits.MIN_SAMPLES_OF_PEAK.value:
                 starts.append(_Start(i, int(first), int(last), int(end_of_it), float("nan")))
             continue
         before = np.flatnonzero(end <= start[i] + 1e-9)
@@ -186,13 +184,15 @@ def _starts(
         if not before.size or end[before[-1]] < earliest:
             continue  # it was already moving
         rest = before[-1]
-        limit, latest = trimmed[i], start[i] + _LATEST * (stop[i] - start[i])
+        limit, latest = trimmed[i], start[i] + limits.MAX_TIME_OF_RISE.value * (stop[i] - start[i])
         if reach is not None and speed[i] > 0:
             limit = latest = start[i] + reach / speed[i]
         # the force may rise before motion is detected
-        back = max(begin[rest], start[i] - _BEFORE * (stop[i] - start[i]))
+        back = max(
+            begin[rest], start[i] - limits.MAX_TIME_BEFORE_SEGMENT.value * (stop[i] - start[i])
+        )
         first, last, end_of_it = np.searchsorted(time, [back, limit, max(limit, latest)])
-        if last - first >= FEWEST_OF_PEAK:
+        if last - first >= limits.MIN_SAMPLES_OF_PEAK.value:
             rested = _rested(run, begin, end, int(rest))
             starts.append(_Start(i, int(first), int(last), int(end_of_it), rested))
     return starts
@@ -208,8 +208,10 @@ def _slack(run: xr.Dataset, friction: xr.Dataset, start: np.ndarray) -> np.ndarr
     sliding = np.abs(friction.variables[signal].values)
     for i in np.flatnonzero(first):
         at = int(np.searchsorted(time, start[i]))
-        read = values[at : at + FEWEST_OF_PEAK]
-        first[i] = abs(float(np.nanmean(read)) - zero[i]) < _SLACK * sliding[i]
+        read = values[at : at + limits.MIN_SAMPLES_OF_PEAK.value]
+        first[i] = (
+            abs(float(np.nanmean(read)) - zero[i]) < limits.MAX_FORCE_BEFORE_RISE.value * sliding[i]
+        )
     return first
 
 
@@ -271,10 +273,10 @@ def _taken(ratio: np.ndarray, usual: int) -> int:
     """Return the number of readings of a start: the usual ones, or more while friction rises."""
     taken = usual
     while taken < ratio.size:
-        size = max(int(_AT_END * taken), FEWEST_OF_PEAK)
+        size = max(int(_END_SHARE * taken), limits.MIN_SAMPLES_OF_PEAK.value)
         blocks = [ratio[max(end - size, 0) : end] for end in range(taken, 0, -size)]
         means = [float(np.nanmean(b)) for b in blocks if np.isfinite(b).any()]
         if means and means[0] < max(means):
             break
-        taken = min(int(_LONGER * taken) + 1, ratio.size)
+        taken = min(int(_EXTENSION * taken) + 1, ratio.size)
     return taken

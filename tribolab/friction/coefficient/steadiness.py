@@ -7,20 +7,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribolab.friction.coefficient.limits import (
+    FAILING_DRIFT,
+    MIN_EFFECTIVE_SAMPLES,
+    MIN_SEGMENTS_OF_STRICTER_TREND,
+    SUSPECT_DRIFT,
+    TREND_BY_CHANCE,
+)
+
 if TYPE_CHECKING:
     import xarray as xr
 
-# p value of a trend below which a segment is not steady, small because runs have hundreds
-SIGNIFICANT = 0.01
-SUSPECT_DRIFT = 0.05  # of the run's typical friction: more than the usual scatter of repeats
-FAILING_DRIFT = 0.50  # of the run's typical friction: the mean over a larger change has no meaning
-SAMPLES = 10.0  # fewer effective samples cannot distinguish a trend from slow drift
-_MANY = 20  # segments
 LIMITS = {
-    "suspect": SUSPECT_DRIFT,
-    "fail": FAILING_DRIFT,
-    "chance": SIGNIFICANT,
-    "samples": SAMPLES,
+    "suspect": SUSPECT_DRIFT.value,
+    "fail": FAILING_DRIFT.value,
+    "chance": TREND_BY_CHANCE.value,
+    "samples": MIN_EFFECTIVE_SAMPLES.value,
 }
 
 IS_NOT_STEADY, IS_STEADY, NOT_DECIDED = 0, 1, 2
@@ -51,8 +53,12 @@ def chance_limit(samples: np.ndarray, limits: Mapping[str, float] = LIMITS) -> n
     0.0004
     """
     known = samples[np.isfinite(samples)]
-    short = known.size >= _MANY and np.median(known) < limits["samples"]
-    single = limits["chance"] * min(1.0, _MANY / max(known.size, 1)) ** 2
+    short = (
+        known.size >= MIN_SEGMENTS_OF_STRICTER_TREND.value and np.median(known) < limits["samples"]
+    )
+    single = (
+        limits["chance"] * min(1.0, MIN_SEGMENTS_OF_STRICTER_TREND.value / max(known.size, 1)) ** 2
+    )
     return np.full(samples.shape, 0.0 if short else single)
 
 

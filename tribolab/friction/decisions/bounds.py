@@ -11,7 +11,7 @@ from tribolab.friction.segments.find import measured
 from tribolab.friction.segments.stretches import Stretch
 
 LEFT = "outside the bounds that a person set"
-_FEWEST = 2  # samples needed for a mean and its scatter
+_MIN_SAMPLES = 2  # samples needed for a mean and its scatter
 
 
 def with_bounds(
@@ -55,7 +55,7 @@ def with_bounds(
         segments.attrs["trim"],
         None if low is None or high is None else (low, high),
     )
-    if row["samples"].item() < _FEWEST:
+    if row["samples"].item() < _MIN_SAMPLES:
         raise _refused(segments, decision, "leave no samples to the segment")
     result = segments.copy()
     for name in row.data_vars:

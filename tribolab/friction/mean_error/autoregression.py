@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-_TINY = 1e-300
-_MOST_MEMORY = 0.97  # of a sum of coefficients: beyond it the variance of the mean is unbounded
+from tribolab.friction.mean_error import limits
+
+_MIN_VARIANCE = 1e-300
 
 
 class Models(NamedTuple):
@@ -46,7 +47,7 @@ def burg(records: np.ndarray, highest: int) -> tuple[np.ndarray, np.ndarray]:
     variances[0] = np.mean(records**2, axis=1)
     for p in range(1, highest + 1):
         f, b = forward[:, 1:], backward[:, :-1]
-        power = np.maximum((f * f).sum(axis=1) + (b * b).sum(axis=1), _TINY)
+        power = np.maximum((f * f).sum(axis=1) + (b * b).sum(axis=1), _MIN_VARIANCE)
         k = -2 * (f * b).sum(axis=1) / power
         forward, backward = f + k[:, None] * b, b + k[:, None] * f
         models[p] = models[p - 1]
@@ -59,7 +60,7 @@ def _criterion(variances: np.ndarray, samples: int) -> np.ndarray:
     """Return Akaike's criterion, corrected for few samples (order, record)."""
     p = np.arange(variances.shape[0])[:, None]
     penalty = 2 * (p + 1) * samples / np.maximum(samples - p - 2, 1)
-    return samples * np.log(np.maximum(variances, _TINY)) + penalty
+    return samples * np.log(np.maximum(variances, _MIN_VARIANCE)) + penalty
 
 
 def spectra_of(records: np.ndarray, frequencies: np.ndarray, highest: int = 20) -> np.ndarray:
@@ -96,7 +97,7 @@ def _power(
         response = coefficients @ phases.T
     else:
         response = np.einsum("rfp,rp->rf", phases, coefficients)
-    return variance[:, None] / np.maximum(np.abs(response) ** 2, _TINY)
+    return variance[:, None] / np.maximum(np.abs(response) ** 2, _MIN_VARIANCE)
 
 
 class Sieve(NamedTuple):
@@ -139,9 +140,9 @@ def sieve_of(records: np.ndarray, fitted: int, highest: int = 8) -> Sieve:
     innovations = variances[best, rows] * samples / np.maximum(samples - fitted - best, 1)
     memory = -own[:, 1:].sum(axis=1)
     added = (fitted + (2 + fitted) * np.maximum(memory, 0.0)) / samples
-    longer = np.maximum(memory, np.minimum(memory + added, _MOST_MEMORY))
+    longer = np.maximum(memory, np.minimum(memory + added, limits.MAX_MEMORY.value))
     sum_at_zero = np.where(best > 0, np.maximum(1 - longer, 1e-6), 1 - memory)
     long_run = innovations / sum_at_zero**2
     variance = (records**2).sum(axis=1) / max(samples - fitted, 1)
-    effective = np.clip(variance * samples / np.maximum(long_run, _TINY), 1, samples)
+    effective = np.clip(variance * samples / np.maximum(long_run, _MIN_VARIANCE), 1, samples)
     return Sieve(Models(own, innovations, best), long_run, effective)

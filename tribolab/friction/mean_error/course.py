@@ -13,8 +13,7 @@ from tribolab.friction.mean_error import limits
 from tribolab.friction.mean_error.autoregression import sieve_of
 
 LINE = 0.0  # stands for a line among the times of exponentials
-_TIMES = np.concatenate([[LINE], np.geomspace(0.02, 1.0, 12)])  # of the record
-_FEWEST = 16  # samples of a record in which a course is looked for
+_COURSE_TIMES = np.concatenate([[LINE], np.geomspace(0.02, 1.0, 12)])  # of the record
 
 
 def shape_of(time: float, count: int) -> np.ndarray:
@@ -34,7 +33,7 @@ def shape_of(time: float, count: int) -> np.ndarray:
 
 @lru_cache(maxsize=16)
 def _shapes(count: int) -> np.ndarray:
-    return np.stack([shape_of(time, count) for time in _TIMES])
+    return np.stack([shape_of(time, count) for time in _COURSE_TIMES])
 
 
 class LineFit(NamedTuple):
@@ -92,14 +91,14 @@ def courses_of(records: np.ndarray) -> list[list[float]]:
     """
     number, count = records.shape
     found: list[list[float]] = [[] for _ in range(number)]
-    if count < _FEWEST:
+    if count < limits.MIN_SAMPLES_OF_COURSE.value:
         return found
     shapes = _shapes(count)
     rest = records - records.mean(axis=1, keepdims=True)
     looked = np.arange(number)
     # candidates of each record, without what was fitted to it before
     left = np.broadcast_to(shapes, (number, *shapes.shape))
-    dearer = np.where(_TIMES == LINE, 1.0, limits.EXPONENTIAL_OVER_LINE.value)
+    dearer = np.where(_COURSE_TIMES == LINE, 1.0, limits.EXPONENTIAL_OVER_LINE.value)
     for fitted in range(int(limits.MAX_COURSES.value)):
         own = left[looked]
         norm = (own**2).sum(axis=2)
@@ -114,7 +113,7 @@ def courses_of(records: np.ndarray) -> list[list[float]]:
         limit = special.stdtrit(freedom, 1 - limits.COURSE_BY_CHANCE.value / 2)
         sure = np.abs(amount) > limit * error
         for row in np.flatnonzero(sure).tolist():
-            found[looked[row]].append(float(_TIMES[best[row]]))
+            found[looked[row]].append(float(_COURSE_TIMES[best[row]]))
         kept, shape = looked[sure], shape[sure]
         if not kept.size or fitted + 1 == int(limits.MAX_COURSES.value):
             break

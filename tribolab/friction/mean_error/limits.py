@@ -1,6 +1,6 @@
 """Numbers that decide the error of a mean; calibrated by ``tests/benchmarks/mean_coverage.py``."""
 
-from tribolab.core.limit import Limit
+from tribolab.core.limit import Count, Limit
 
 _TABLE = "tests/benchmarks/mean_coverage.py, seeds 0 to 3; reported on seeds from 100 on"
 
@@ -47,4 +47,14 @@ MIN_DRIFT_U95 = Limit(
     "U95 over the mean, from which drift is worth a remark: repeats scatter by 2 to 5 %, and less "
     "than half of that changes no comparison; without it 277 of 780 segments of the demo had one",
     "tribolab demo, results/tables/friction.csv",
+)
+MAX_MEMORY = Limit(
+    0.97, "1", "sum of the coefficients of an autoregression: beyond it the variance of the mean "
+    "is unbounded", _TABLE,
+)  # fmt: skip
+MIN_SAMPLES_OF_COURSE = Count(
+    16, "1", "samples of a record in which a course is looked for", _TABLE
+)
+MIN_SAMPLES_OF_LINE = Count(
+    32, "1", "samples of a record in which an oscillation is looked for", _TABLE
 )

@@ -10,12 +10,11 @@ import numpy as np
 from tribolab.friction.mean_error import limits
 from tribolab.friction.mean_error.autoregression import spectra_of
 
-_STEP = 0.125  # cycles between frequencies that are tried
-_HIGHEST = 0.47  # cycles per sample
+_FREQUENCY_STEP = 0.125  # cycles between frequencies that are tried
+_MAX_FREQUENCY = 0.47  # cycles per sample
 _GOLDEN = 0.382
-_ROUNDS = 18  # of the golden section: a frequency to 1e-4 of a step
-_CLOSE = 1.02  # what the best frequency gains over the best of the grid, at most
-_FEWEST = 32  # samples of a record in which an oscillation is looked for
+_GOLDEN_ROUNDS = 18  # of the golden section: a frequency to 1e-4 of a step
+_GAIN_OFF_GRID = 1.02  # what the best frequency gains over the best of the grid, at most
 
 
 class _Grid(NamedTuple):
@@ -29,7 +28,7 @@ class _Grid(NamedTuple):
 @lru_cache(maxsize=8)
 def _grid(count: int) -> _Grid:
     t = (np.arange(count) + 0.5) / count
-    cycles = np.arange(limits.MIN_CYCLES.value, _HIGHEST * count, _STEP)
+    cycles = np.arange(limits.MIN_CYCLES.value, _MAX_FREQUENCY * count, _FREQUENCY_STEP)
     line = np.stack([np.ones(count), t - 0.5])
     line /= np.sqrt((line * line).sum(axis=1))[:, None]
     angle = 2 * np.pi * np.outer(cycles, t)
@@ -63,7 +62,7 @@ def lines_of(records: np.ndarray) -> list[list[float]]:
     """
     count = records.shape[1]
     found: list[list[float]] = [[] for _ in records]
-    if count < _FEWEST:
+    if count < limits.MIN_SAMPLES_OF_LINE.value:
         return found
     grid = _grid(count)
     rest = records - (records @ grid.line.T) @ grid.line
@@ -97,8 +96,8 @@ def _may_hold_a_line(rest: np.ndarray, grid: _Grid) -> np.ndarray:
     left = rest - np.einsum("rc,rcn->rn", size, grid.waves[place])
     at = grid.cycles[place]
     noise = spectra_of(left, at[:, None])[:, 0]
-    over = _CLOSE * (size**2).sum(axis=1) / 2 / np.maximum(noise, 1e-300)
-    few = at < limits.FEW_CYCLES.value + _STEP
+    over = _GAIN_OFF_GRID * (size**2).sum(axis=1) / 2 / np.maximum(noise, 1e-300)
+    few = at < limits.FEW_CYCLES.value + _FREQUENCY_STEP
     enough = np.where(few, limits.SLOW_LINE_OVER_NOISE.value, limits.LINE_OVER_NOISE.value)
     # the noise beside a line is estimated lower when the line is fitted better
     return over > 0.5 * enough
@@ -142,8 +141,8 @@ def _refined(rest: np.ndarray, base: np.ndarray, middle: float) -> float:
         u, v = own.T @ rest
         return float((c * u * u - 2 * b * u * v + a * v * v) / max(a * c - b * b, 1e-300))
 
-    low, high = max(middle - _STEP, limits.MIN_CYCLES.value), middle + _STEP
-    for _ in range(_ROUNDS):
+    low, high = max(middle - _FREQUENCY_STEP, limits.MIN_CYCLES.value), middle + _FREQUENCY_STEP
+    for _ in range(_GOLDEN_ROUNDS):
         a, b = low + _GOLDEN * (high - low), high - _GOLDEN * (high - low)
         if taken(a) > taken(b):
             high = b

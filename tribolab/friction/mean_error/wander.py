@@ -28,11 +28,12 @@ from scipy.fft import dct
 from tribolab.friction.mean_error import limits
 from tribolab.friction.mean_error.autoregression import spectra_of
 
-_TIMES = np.geomspace(0.05, 6.0, 8)  # of the record
-_WHITE = np.array([0.0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0])  # of the wander
-_FEWEST_COSINES = 4
-_ROUNDS = 40  # of halving the bracket of U95: to the last digit that matters
-_OUTSIDE = 0.05
+_MEMORY_GRID = np.geomspace(0.05, 6.0, 8)  # of the record
+# of the wander
+_WHITE_SHARES = np.array([0.0, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0])
+_MIN_COSINES = 4
+_BISECTIONS = 40  # of halving the bracket of U95: to the last digit that matters
+_OUTSIDE_COVERAGE = 0.05
 
 
 class _Shapes(NamedTuple):
@@ -47,12 +48,12 @@ class _Shapes(NamedTuple):
 def _shapes(cosines: int) -> _Shapes:
     f = np.arange(1, cosines + 1) / 2.0
     rows, means = [np.ones(cosines)], [1.0]
-    for time in _TIMES:
+    for time in _MEMORY_GRID:
         wander = 2 * time / (1 + (2 * np.pi * f * time) ** 2)
         level = wander[:4].mean()
         mean = 2 * time * (1 - time * (1 - np.exp(-1 / time)))
-        rows += [wander / level + white for white in _WHITE]
-        means += [mean / level + white for white in _WHITE]
+        rows += [wander / level + white for white in _WHITE_SHARES]
+        means += [mean / level + white for white in _WHITE_SHARES]
     calm = limits.CALM.value
     prior = np.full(len(rows), np.log((1 - calm) / (len(rows) - 1)))
     prior[0] = np.log(calm)
@@ -110,7 +111,7 @@ def _kept_cosines(
     """Return which of the lowest cosines tell of the wander (record, cosine), as 0 or 1."""
     count, samples = rest.shape
     highest = np.full(count, most)
-    if samples >= 2 * _FEWEST_COSINES:
+    if samples >= 2 * _MIN_COSINES:
         f = np.arange(1, samples) / 2.0
         power = spectra_of(rest, f)
         peak = np.where(f > 2.5, power, 0.0).argmax(axis=1)
@@ -126,7 +127,7 @@ def _kept_cosines(
         kept[row] &= number > min(fitted, 2)
         for wave in cycles:
             kept[row] &= (number != np.floor(2 * wave)) & (number != np.ceil(2 * wave))
-        if kept[row].sum() < _FEWEST_COSINES:
+        if kept[row].sum() < _MIN_COSINES:
             kept[row] = before & (number > min(fitted, 1))
     kept[~kept.any(axis=1), 0] = True
     return kept.astype(float)
@@ -134,15 +135,15 @@ def _kept_cosines(
 
 def _half_interval(weight: np.ndarray, errors: np.ndarray, free: np.ndarray) -> np.ndarray:
     """Return the half interval that holds 95 % of each mixture (record)."""
-    quantile = special.stdtrit(free, 1 - _OUTSIDE / 2)
+    quantile = special.stdtrit(free, 1 - _OUTSIDE_COVERAGE / 2)
     low, high = (quantile * end for end in (errors.min(axis=1), errors.max(axis=1)))
     known = high > 0
     low, high = np.maximum(low, 1e-12 * high), np.where(known, high, 1.0)
     scale = np.where(errors > 0, errors, 1e-300)
-    for _ in range(_ROUNDS):
+    for _ in range(_BISECTIONS):
         middle = np.sqrt(np.maximum(low, 1e-300) * high)
         beyond = (weight * special.stdtr(free[:, None], -middle[:, None] / scale)).sum(axis=1)
-        out = beyond > _OUTSIDE / 2
+        out = beyond > _OUTSIDE_COVERAGE / 2
         low, high = np.where(out, middle, low), np.where(out, high, middle)
         if np.all(high <= low * (1 + 1e-9)):
             break

@@ -7,18 +7,17 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
-from tribolab.friction.oscillation.oscillation import CYCLES, gather
+from tribolab.friction.oscillation import limits
+from tribolab.friction.oscillation.oscillation import gather
 from tribolab.friction.oscillation.spectrum.survey import Survey
 
-MOST_COMPONENTS = 6
-_LEAST = 0.03  # of the strongest one's variance
-_HARMONIC = 1.3  # times a saw's harmonic: a line at a multiple that is no stronger is one
-_HIGHEST = 16  # harmonic that is looked at by itself
-_WIDTH = 0.04  # relative, of a line
-_AROUND = (1.15, 1.5)  # factors of frequency within which a line stands out of its surroundings
-_MOSTLY = 0.7  # of the power around them, that lines hold
-_WINDOW = 0.8  # bins, that the window makes of a line
-_RARE = 1e-3  # that noise as strong as the surroundings shows such a line
+_MAX_HARMONIC = 16  # harmonic that is looked at by itself
+# factors of frequency within which a line stands out of its surroundings
+_SURROUNDINGS = (
+    1.15,
+    1.5,
+)
+_WINDOW_BINS = 0.8  # bins, that the window makes of a line
 
 
 class Component(NamedTuple):
@@ -53,9 +52,11 @@ def components(seen: Survey) -> tuple[Component, ...]:
     strongest = 0.0
     whole, taken = seen, np.zeros(seen.fine.frequency.size, bool)
     core = taken.copy()
-    for _ in range(4 * MOST_COMPONENTS):
-        strong = np.where(seen.significant & (seen.cycles >= CYCLES), seen.excess, 0.0)
-        if not strong.any() or len(lines) == MOST_COMPONENTS:
+    for _ in range(4 * limits.MAX_LINES.value):
+        strong = np.where(
+            seen.significant & (seen.cycles >= limits.MIN_CYCLES_IN_RECORD.value), seen.excess, 0.0
+        )
+        if not strong.any() or len(lines) == limits.MAX_LINES.value:
             break
         top = int(np.argmax(strong))
         stop = seen.first[top + 1] if top + 1 < seen.first.size else seen.fine.frequency.size
@@ -67,7 +68,7 @@ def components(seen: Survey) -> tuple[Component, ...]:
         spread = _spread(seen, level, frequency)
         near = np.abs(seen.fine.frequency / frequency - 1) < 0.15
         near[seen.first[top] : stop] = True
-        if narrow and own > _LEAST * strongest:
+        if narrow and own > limits.MIN_VARIANCE_OF_LINE.value * strongest:
             swing = float(np.sqrt(8 * own))
             alarm = float(max(seen.chance[top], seen.rise[top]))
             lines.append(Component(frequency, error, swing, alarm))
@@ -83,7 +84,7 @@ def components(seen: Survey) -> tuple[Component, ...]:
 def _line(seen: Survey, at: int) -> np.ndarray:
     """Which bins a narrow line covers (bin)."""
     f = seen.fine.frequency
-    return np.abs(f - f[at]) <= max(_WIDTH * f[at], 2.01 * seen.fine.width[at])
+    return np.abs(f - f[at]) <= max(limits.WIDTH_OF_LINE.value * f[at], 2.01 * seen.fine.width[at])
 
 
 def _hold(seen: Survey, core: np.ndarray, lines: list[Component]) -> bool:
@@ -94,8 +95,8 @@ def _hold(seen: Survey, core: np.ndarray, lines: list[Component]) -> bool:
     level = np.interp(f, seen.middle, seen.background)
     excess = np.maximum(seen.fine.power - level, 0) * seen.fine.width
     own = [line.frequency for line in lines]
-    around = (f > min(own) / _AROUND[1]) & (f < max(own) * _AROUND[1])
-    return bool(excess[core].sum() > _MOSTLY * excess[around].sum())
+    around = (f > min(own) / _SURROUNDINGS[1]) & (f < max(own) * _SURROUNDINGS[1])
+    return bool(excess[core].sum() > limits.MIN_POWER_IN_LINES.value * excess[around].sum())
 
 
 def _spread(seen: Survey, level: np.ndarray, frequency: float) -> float:
@@ -107,7 +108,7 @@ def _spread(seen: Survey, level: np.ndarray, frequency: float) -> float:
         return 0.0
     variance = (f[near] - frequency) ** 2 @ weight / weight.sum()
     # what the window alone makes of a line is no width of its own
-    return float(np.sqrt(max(variance - (_WINDOW * seen.fine.width[0]) ** 2, 0.0)))
+    return float(np.sqrt(max(variance - (_WINDOW_BINS * seen.fine.width[0]) ** 2, 0.0)))
 
 
 def _harmonics(
@@ -118,14 +119,14 @@ def _harmonics(
     width = float(seen.fine.width[0])
     excess = np.maximum(seen.fine.power - level, 0) * seen.fine.width
     covered = np.zeros(f.size, bool)
-    for k in range(2, min(int(f[-1] / frequency), _HIGHEST) + 2):
+    for k in range(2, min(int(f[-1] / frequency), _MAX_HARMONIC) + 2):
         reach = min(max(3 * k * k * spread, 3 * width, 0.03 * k * frequency), 0.5 * frequency)
         part = np.abs(f - k * frequency) <= reach
-        if excess[part].sum() <= _HARMONIC * own / k**2:
+        if excess[part].sum() <= limits.MAX_POWER_OF_HARMONIC.value * own / k**2:
             covered |= part
-        if reach >= 0.5 * frequency or k > _HIGHEST:  # the harmonics run into one another
+        if reach >= 0.5 * frequency or k > _MAX_HARMONIC:  # the harmonics run into one another
             beyond = f > (k - 0.5) * frequency
-            if excess[beyond].sum() <= _HARMONIC * own * (1 / (k - 0.5)):
+            if excess[beyond].sum() <= limits.MAX_POWER_OF_HARMONIC.value * own * (1 / (k - 0.5)):
                 return covered | beyond
     return covered
 
@@ -135,10 +136,10 @@ def _stands_out(seen: Survey, core: np.ndarray, at: int) -> bool:
     f, power = seen.fine.frequency, seen.fine.power
     beside = ~core & ~_line(seen, at)
     levels = [np.interp(f[at], seen.middle, seen.background)]
-    for factor in _AROUND:
+    for factor in _SURROUNDINGS:
         part = beside & (f > f[at] / factor) & (f < f[at] * factor)
         if part.sum() > 2:
             levels.append(power[part].mean())
     half = seen.fine.freedom[at] / 2
     single = special.gammaincc(half, half * power[at] / max(levels))
-    return bool(single * f.size < _RARE)
+    return bool(single * f.size < limits.LINE_BY_CHANCE.value)

@@ -4,24 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribolab.core.limit import Limit
+from tribolab.friction.oscillation import limits
 
 STIFFNESS = "stiffness_N_m"  # attribute of a run: of the rig in the direction of sliding
-FEWEST_CYCLES = Limit(8.0, "1", "cycles, of which mean drop and distance are known to 5 %")
-ERROR_OF_CREEP = Limit(
-    0.05, "1", "error of the creep share: a mean drop is known to some 5 % at a third of noise"
-)
-MASS_COUNTS = Limit(0.05, "1", "rise of k_c by the mass, about the error of creep, that matters")
-STEEPER = Limit(
-    1.1, "1", "rise of the force over the rig's stiffness: the rise is known to some 3 %"
-)
 # creep share and k/k_c of settled cycles of the ageing law (slider of test_critical_stiffness)
 # and measured as `stick_slip` does: the rise is less steep than the rig near k_c
-_LEAST = (  # b = 1.5 a
+_SMALL_EVOLUTION = (  # b = 1.5 a
     [0.0, 0.0469, 0.1005, 0.1442, 0.1845, 0.2298, 0.2675, 0.376],
     [0.0, 0.0998, 0.2953, 0.4871, 0.6725, 0.7955, 0.8282, 0.7717],
 )
-_LARGEST = (  # b = 3 a
+_LARGE_EVOLUTION = (  # b = 3 a
     [0.0, 0.0215, 0.0438, 0.0645, 0.0899, 0.1197, 0.1392, 0.1845, 0.25],
     [0.0, 0.1004, 0.3017, 0.5016, 0.7024, 0.852, 0.9008, 0.949, 1.0],
 )
@@ -78,9 +70,13 @@ def critical_stiffness(
     drop, distance, k = (np.asarray(x, float) for x in (drop, recurrence_distance, stiffness))
     with np.errstate(divide="ignore", invalid="ignore"):
         creep = 1.0 - drop * load / (k * distance)
-        error = ERROR_OF_CREEP.value
-        largest = np.interp(creep + error, *_LARGEST)
-        least = np.interp(creep - error, *_LEAST)
+        error = limits.ERROR_OF_CREEP.value
+        largest = np.interp(creep + error, *_LARGE_EVOLUTION)
+        least = np.interp(creep - error, *_SMALL_EVOLUTION)
         low, high = k / largest, k / least
-    known = np.isfinite(creep) & (creep > -2 * error) & (np.asarray(cycles) >= FEWEST_CYCLES.value)
+    known = (
+        np.isfinite(creep)
+        & (creep > -2 * error)
+        & (np.asarray(cycles) >= limits.MIN_CYCLES_OF_STIFFNESS.value)
+    )
     return np.where(known, low, np.nan), np.where(known, high, np.nan)

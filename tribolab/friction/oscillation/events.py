@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.arrays.medians import medians_of_rows
+from tribolab.friction.oscillation import limits
 
-_INSIDE = (0.08, 0.92)  # of a stick, in which the loading is looked at
-_CELLS, _WINDOW = 48, 16  # cells of it, and cells in a window: shorter ones add noise
-_SPIKE = 6.0  # a single sample so many noise levels off its neighbours is no slip
+_LOADING_PART = (0.08, 0.92)  # of a stick, in which the loading is looked at
+_LOADING_CELLS, _SLOPE_CELLS = 48, 16  # cells of it, and cells in a window: shorter ones add noise
 
 
 class Events(NamedTuple):
@@ -56,7 +56,9 @@ def without_spikes(values: np.ndarray, noise: float) -> tuple[np.ndarray, int]:
     middle = np.clip(here, np.minimum(left, right), np.maximum(left, right))
     # beside it the signal has to go on as if nothing had been: a drop is no spike
     apart = np.abs(here - middle)
-    single = (apart > _SPIKE * noise) & (apart > 2 * np.abs(right - left))
+    single = (apart > limits.MIN_SPIKE_OVER_NOISE.value * noise) & (
+        apart > 2 * np.abs(right - left)
+    )
     if not single.any():
         return values, 0
     result = values.copy()
@@ -191,13 +193,15 @@ def loading_rate(time: np.ndarray, values: np.ndarray, events: Events) -> float:
     if not events.drop.size:
         return np.nan
     # means over cells use all samples; the ends were picked where noise adds to them
-    edges = np.linspace(*_INSIDE, _CELLS + 1)
+    edges = np.linspace(*_LOADING_PART, _LOADING_CELLS + 1)
     stick = (events.peak - events.start)[:, None]
     steps = 0.5 * np.diff(time) * (values[1:] + values[:-1] - 2.0 * values[0])
     integral = np.concatenate([[0.0], np.cumsum(steps)])
     cells = np.diff(np.interp(events.start[:, None] + stick * edges, time, integral), axis=1)
     cells /= np.maximum(stick * (edges[1] - edges[0]), 1e-300)
-    x = edges[:_WINDOW] - edges[:_WINDOW].mean()
-    rows = np.lib.stride_tricks.sliding_window_view(cells, _WINDOW, axis=1)[:, :: _WINDOW // 2]
+    x = edges[:_SLOPE_CELLS] - edges[:_SLOPE_CELLS].mean()
+    rows = np.lib.stride_tricks.sliding_window_view(cells, _SLOPE_CELLS, axis=1)[
+        :, :: _SLOPE_CELLS // 2
+    ]
     slopes = rows @ x / float(x @ x) / np.maximum(stick, 1e-300)
     return float(medians_of_rows(slopes.T).max())

@@ -7,13 +7,13 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.arrays.medians import median
+from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.components import Component, components
 from tribolab.friction.oscillation.events import Events, find_events, loading_rate, without_spikes
 from tribolab.friction.oscillation.few_periods import slow_wave, without_slow_wave
 from tribolab.friction.oscillation.mean_cycle import abrupt_drop, abrupt_rise, smooth_drop
 from tribolab.friction.oscillation.oscillation import Oscillation, oscillation
 from tribolab.friction.oscillation.periods import (
-    ALIKE,
     PeriodVerdict,
     at_odds,
     period_verdict,
@@ -26,7 +26,7 @@ from tribolab.friction.oscillation.regularity import (
 )
 from tribolab.friction.oscillation.spectrum.noise import noise_level, quantisation_step
 from tribolab.friction.oscillation.spectrum.spectra import EvenRecord, coarsened, make_record
-from tribolab.friction.oscillation.spectrum.survey import CHANCE, Survey, survey
+from tribolab.friction.oscillation.spectrum.survey import Survey, survey
 from tribolab.friction.oscillation.waveform import (
     WaveformFeatures,
     class_probabilities,
@@ -34,19 +34,13 @@ from tribolab.friction.oscillation.waveform import (
     features,
 )
 
-_PER_PERIOD = 36  # samples in a period that events are sought in, at least; more is averaged ...
-_COARSE = 12  # the same, where noise splits drops
-_QUIET = 50.0  # ... until the noise is so many times smaller than the swing
-_MOST = 1 << 17  # samples that events are sought in: thousands of periods
-_DESPIKED = 1 << 20  # samples; in longer records single ones hardly matter
-_WANDER = 0.15  # standard deviation over the swing, of a slow wander that may hide drops
-_WANDERS = 6  # periods in a record, at least, that a wander can be told beside
-_PER_DEGREE, _DEGREE = 3.0, 5  # periods for each degree of the drift's polynomial, and the highest
-_CALMER = 0.8  # of the scatter of the periods, that is left without the wander
-_STEPS = 1.5  # quantisation steps
-_SLOW_FALL = 0.65  # part of a cycle that falls, above which the rise is the sharper
-_AGAIN = 200  # cycles that tell how much noise adds to them
-_ROUNDS = 2
+# samples in a period that events are sought in, at least; more is averaged ...
+_SAMPLES_PER_PERIOD = 36
+_COARSE_SAMPLES_PER_PERIOD = 12  # the same, where noise splits drops
+_EVENT_SAMPLES = 1 << 17  # samples that events are sought in: thousands of periods
+_DESPIKED_SAMPLES = 1 << 20  # samples; in longer records single ones hardly matter
+_SIMULATED_CYCLES = 200  # cycles that tell how much noise adds to them
+_SIMULATION_ROUNDS = 2
 
 
 class EventLimits(NamedTuple):
@@ -88,7 +82,7 @@ class View(NamedTuple):
 
 
 def examine_record(
-    time: np.ndarray, values: np.ndarray, limits: EventLimits = _DEFAULT, *, force: bool = False
+    time: np.ndarray, values: np.ndarray, thresholds: EventLimits = _DEFAULT, *, force: bool = False
 ) -> Examined | str:
     """Look at one record; text where there is nothing to see, saying why.
 
@@ -96,28 +90,28 @@ def examine_record(
     ----------
     time, values
         [s], friction positive in the sense of resistance (time).
-    limits
+    thresholds
         What counts.
     force
         Whether the values are a force [N]; for the record.
     """
     record = make_record(time, values)
     n = record.values.size
-    if n < max(limits.fewest_samples, 4):
+    if n < max(thresholds.fewest_samples, 4):
         return f"{n} samples are too few"
     least = 1e-12 * abs(record.values[0])
     if np.ptp(record.values[:4096]) <= least and np.ptp(record.values) <= least:
         return "the signal is constant"
     noise, spikes = noise_level(record.values[: 1 << 17]), 0
-    if n <= _DESPIKED:
+    if n <= _DESPIKED_SAMPLES:
         kept, spikes = without_spikes(record.values, noise)
         record = record._replace(values=kept)
     surveyed = survey(record)
     if surveyed is None:
         return "too short for a spectrum"
-    view, slow = _settled(record, surveyed, noise, limits), slow_wave(record)
-    if slow is None and not view.oscillation.false_alarm < CHANCE:
-        record, surveyed, view = _beside_slow_wave(record, surveyed, view, noise, limits)
+    view, slow = _settled(record, surveyed, noise, thresholds), slow_wave(record)
+    if slow is None and not view.oscillation.false_alarm < limits.BAND_BY_CHANCE.value:
+        record, surveyed, view = _beside_slow_wave(record, surveyed, view, noise, thresholds)
     oscillation, part, events = view.oscillation, view.record, view.events
     lag = max(1, int(round(1 / (oscillation.frequency * 16 * part.spacing))))
     form = describe_waveform(part.values, lag, events, view.regularity.periods)
@@ -138,34 +132,36 @@ def examine_record(
     )  # fmt: skip
 
 
-def _settled(record: EvenRecord, surveyed: Survey, noise: float, limits: EventLimits) -> View:
+def _settled(record: EvenRecord, surveyed: Survey, noise: float, thresholds: EventLimits) -> View:
     """Look at the scale of the strongest line; another view counts where it is regular.
 
     Of few periods of a saw, the second harmonic may be the strongest line that counts: then the
     drops repeat at another period, and the spectrum is looked at there. Slow wander may hide or
     split drops, and so may noise: then they are looked for in means, and beside the wander.
     """
-    view = _view(record, oscillation(surveyed), noise, limits)
+    view = _view(record, oscillation(surveyed), noise, thresholds)
     if at_odds(view.oscillation, view.regularity):
         own = 1 / float(view.regularity.periods.mean())
-        again = _view(record, oscillation(surveyed, near=own), noise, limits)
+        again = _view(record, oscillation(surveyed, near=own), noise, thresholds)
         if not at_odds(again.oscillation, again.regularity):
             view = again
     # of a wander, too, what is left beside its mean over a while goes to and fro in that while
-    sure = view.oscillation.false_alarm < CHANCE
+    sure = view.oscillation.false_alarm < limits.BAND_BY_CHANCE.value
     if sure and view.regularity.kind not in SLIP_KINDS[::2]:
         for part in (record, _beside_wander(record, view.oscillation)):
             if part is None:
                 continue
-            again = _view(part, view.oscillation, noise, limits, _COARSE)
-            less = scatter(again.regularity.periods) < _CALMER * scatter(view.regularity.periods)
+            again = _view(part, view.oscillation, noise, thresholds, _COARSE_SAMPLES_PER_PERIOD)
+            less = scatter(
+                again.regularity.periods
+            ) < limits.MAX_SCATTER_WITHOUT_WANDER.value * scatter(view.regularity.periods)
             if less and not at_odds(again.oscillation, again.regularity):
                 view = again
     return view
 
 
 def _beside_slow_wave(
-    record: EvenRecord, surveyed: Survey, view: View, noise: float, limits: EventLimits
+    record: EvenRecord, surveyed: Survey, view: View, noise: float, thresholds: EventLimits
 ) -> tuple[EvenRecord, Survey, View]:
     """Take a slow wave off if a larger regular oscillation is left; else change nothing.
 
@@ -175,8 +171,11 @@ def _beside_slow_wave(
     found = survey(rest[0]) if rest else None
     if rest is None or found is None:
         return record, surveyed, view
-    again = _settled(rest[0], found, noise, limits)
-    sure = again.oscillation.false_alarm < CHANCE and again.oscillation.swing > rest[1]
+    again = _settled(rest[0], found, noise, thresholds)
+    sure = (
+        again.oscillation.false_alarm < limits.BAND_BY_CHANCE.value
+        and again.oscillation.swing > rest[1]
+    )
     regular = again.regularity.kind == SLIP_KINDS[0]
     if sure and regular and not at_odds(again.oscillation, again.regularity):
         return rest[0], found, again
@@ -186,7 +185,11 @@ def _beside_slow_wave(
 def _without_drift(record: EvenRecord, frequency: float) -> EvenRecord:
     """Take a drift off, far slower than the oscillation: it would make falls unlike rises."""
     periods = frequency * record.values.size * record.spacing
-    degree = int(np.clip(periods / _PER_DEGREE, 1, _DEGREE))
+    degree = int(
+        np.clip(
+            periods / limits.PERIODS_PER_DEGREE_OF_DRIFT.value, 1, limits.MAX_DEGREE_OF_DRIFT.value
+        )
+    )
     series = np.polynomial.legendre
     if record.even:  # the polynomials are nearly orthogonal: their normal equations are harmless
         terms = series.legvander(np.linspace(-1, 1, record.values.size), degree)
@@ -205,11 +208,11 @@ def _beside_wander(record: EvenRecord, oscillation: Oscillation) -> EvenRecord |
     """
     size = int(round(1 / (oscillation.frequency * record.spacing)))
     n = record.values.size
-    if not 2 <= size <= n / _WANDERS or not record.even:
+    if not 2 <= size <= n / limits.MIN_PERIODS_TO_REMOVE_WANDER.value or not record.even:
         return None
     sums = np.concatenate([[0.0], np.cumsum(record.values - record.values[0])])
     mean = (sums[size:] - sums[:-size]) / size
-    if np.std(mean) < _WANDER * oscillation.swing:
+    if np.std(mean) < limits.MIN_WANDER_OVER_SWING.value * oscillation.swing:
         return None
     first = size // 2
     part = slice(first, first + mean.size)
@@ -220,31 +223,32 @@ def _view(
     record: EvenRecord,
     oscillation: Oscillation,
     noise: float,
-    limits: EventLimits,
-    fewest: int = _PER_PERIOD,
+    thresholds: EventLimits,
+    fewest: int = _SAMPLES_PER_PERIOD,
 ) -> View:
     """Seek the cycles of an oscillation at the scale of its period."""
     most = int(1 / (oscillation.frequency * fewest * record.spacing))
     # no more is averaged than the noise calls for: means round off what is abrupt
-    wanted = min(_QUIET * noise / max(oscillation.swing, 1e-300), 1e6) ** 2
+    wanted = min(limits.SWING_OVER_NOISE.value * noise / max(oscillation.swing, 1e-300), 1e6) ** 2
     size = int(max(1, min(most, wanted)))
-    first = slice(_MOST * size)
+    first = slice(_EVENT_SAMPLES * size)
     part = coarsened(EvenRecord(record.time[first], record.values[first], *record[2:]), size)
     part = _without_drift(part, oscillation.frequency)
     step = quantisation_step(record.values[: 1 << 16])
     hysteresis = max(
-        limits.hysteresis * oscillation.swing,
-        limits.noise_levels * noise / np.sqrt(size),
-        _STEPS * step,
+        thresholds.hysteresis * oscillation.swing,
+        thresholds.noise_levels * noise / np.sqrt(size),
+        limits.MIN_DROP_IN_STEPS.value * step,
     )
     events = find_events(part.time, part.values, hysteresis)
     if events.drop.size:  # cycles that differ have less of a line than of a drop: look at the drops
-        typical = limits.hysteresis * float(np.mean(events.drop))
+        typical = thresholds.hysteresis * float(np.mean(events.drop))
         if typical > hysteresis:
             hysteresis = typical
             events = find_events(part.time, part.values, hysteresis)
     fall, whole = events.stop - events.peak, events.stop - events.start
-    if events.drop.size and median(fall / whole) > _SLOW_FALL:  # what is sharp tells the periods
+    # what is sharp tells the periods
+    if events.drop.size and median(fall / whole) > limits.MIN_FALL_OF_REVERSED_WAVE.value:
         turned = part._replace(values=-part.values)
         seen = regularity(turned, find_events(turned.time, turned.values, hysteresis))
     else:
@@ -261,7 +265,10 @@ def _excess(
     oscillation, events = view.oscillation, view.events
     mean = float(np.mean(events.drop))
     # the cycles lie on one another, and none is a pause
-    if form.period_scatter < ALIKE and view.regularity.periods.size == events.drop.size - 1:
+    if (
+        form.period_scatter < limits.MAX_SCATTER_OF_SURE_PERIODS.value
+        and view.regularity.periods.size == events.drop.size - 1
+    ):
         means = {1: abrupt_drop, 2: smooth_drop, 3: abrupt_rise}.get(int(np.argmax(probability)))
         # means round off what is abrupt
         finer = max(1, round(view.record.spacing / record.spacing) // 2)
@@ -312,7 +319,8 @@ def noise_excess(
     turn says how much there is. Noise slower than half the oscillation's frequency moves peaks and
     valleys alike and is left out.
     """
-    events = Events(*(part[:_AGAIN] for part in events))  # so many tell, however long the record
+    # so many tell, however long the record
+    events = Events(*(part[:_SIMULATED_CYCLES] for part in events))
     n = int(np.searchsorted(record.time, events.stop[-1])) + 1
     frequency = np.fft.rfftfreq(n, record.spacing)
     density = np.interp(frequency, oscillation.bands, oscillation.background)
@@ -321,9 +329,9 @@ def noise_excess(
     time, cycles, rest = _cycles(record.time, record.values, events)
     inside = np.searchsorted(record.time, time[0])
     rng = np.random.default_rng(0)
-    for _ in range(_ROUNDS):
+    for _ in range(_SIMULATION_ROUNDS):
         drops, rests = [np.zeros(0)], []
-        for _ in range(int(np.clip(_AGAIN / events.drop.size, 1, 32))):
+        for _ in range(int(np.clip(_SIMULATED_CYCLES / events.drop.size, 1, 32))):
             draw = rng.standard_normal((2, height.size))
             noise = np.fft.irfft(height * (draw[0] + 1j * draw[1]), n)
             noisy = cycles + noise[inside : inside + time.size]

@@ -7,18 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.spectrum.spectra import EvenRecord, block_means
 
-_POINTS = 192  # that the record is averaged to
-_CYCLES = np.arange(2.0, 5.21, 0.1)  # waves in the record that are tried
-_HARMONICS = 2
-_DEGREE = 4  # of the polynomial that is to explain less: drifts of any kind
-_EXPLAINED = 0.75  # part of the variance beside a straight line that the wave has to hold
-_ALIKE = 1.2  # misfits that differ by less: of a wave and its half, the faster counts
-_FEWEST_SAMPLES = 32
-_SINE = 4  # first columns of a wave's basis: straight line, cosine, sine
-_COUNTS = 0.1  # part of the variance: a smaller slow sine hides no larger oscillation
-_BETTER = 0.4  # of the polynomial's misfit that the wave's may be at most
+_GRID_POINTS = 192  # that the record is averaged to
+_TRIED_CYCLES = np.arange(2.0, 5.21, 0.1)  # waves in the record that are tried
+_WAVE_HARMONICS = 2
+_DRIFT_DEGREE = 4  # of the polynomial that is to explain less: drifts of any kind
+_MIN_SAMPLES = 32
+_SINE_COLUMNS = 4  # first columns of a wave's basis: straight line, cosine, sine
 
 
 class SlowWave(NamedTuple):
@@ -32,11 +29,11 @@ class SlowWave(NamedTuple):
 @cache
 def _bases() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Orthonormal bases: straight line, polynomial (point, term), waves (cycles, point, term)."""
-    x = (np.arange(_POINTS) + 0.5) / _POINTS
-    powers = np.polynomial.legendre.legvander(2 * x - 1, _DEGREE)
-    turn = 2 * np.pi * _CYCLES[:, None] * x
-    terms = [f(k * turn) for k in range(1, _HARMONICS + 1) for f in (np.cos, np.sin)]
-    line = np.broadcast_to(powers[:, :2], (_CYCLES.size, _POINTS, 2))
+    x = (np.arange(_GRID_POINTS) + 0.5) / _GRID_POINTS
+    powers = np.polynomial.legendre.legvander(2 * x - 1, _DRIFT_DEGREE)
+    turn = 2 * np.pi * _TRIED_CYCLES[:, None] * x
+    terms = [f(k * turn) for k in range(1, _WAVE_HARMONICS + 1) for f in (np.cos, np.sin)]
+    line = np.broadcast_to(powers[:, :2], (_TRIED_CYCLES.size, _GRID_POINTS, 2))
     waves = np.concatenate([line, np.stack(terms, axis=2)], axis=2)
     return np.linalg.qr(powers[:, :2])[0], np.linalg.qr(powers)[0], np.linalg.qr(waves)[0]
 
@@ -63,7 +60,7 @@ def slow_wave(record: EvenRecord) -> SlowWave | None:
     >>> round(wave.periods, 1), slow_wave(EvenRecord(t, np.exp(-t / 100), 1.0, True))
     (3.0, None)
     """
-    if record.values.size < _FEWEST_SAMPLES:
+    if record.values.size < _MIN_SAMPLES:
         return None
     values, _ = _averaged(record)
     line, polynomial, waves = _bases()
@@ -78,14 +75,15 @@ def slow_wave(record: EvenRecord) -> SlowWave | None:
     own = (parts[:, 2:4] ** 2).sum(axis=1)
     explained = np.where(own > 0.5 * (parts**2).sum(axis=1), explained, 0.0)
     left = 1 - float(explained.max())
-    best = int(np.flatnonzero(1 - explained <= _ALIKE * left)[-1])
+    best = int(np.flatnonzero(1 - explained <= limits.MISFIT_OF_SLOW_WAVE.value * left)[-1])
     left = 1 - float(explained[best])
-    if best in (0, _CYCLES.size - 1) or left > min(
-        1 - _EXPLAINED, _BETTER * float(drift @ drift) / total
+    if best in (0, _TRIED_CYCLES.size - 1) or left > min(
+        1 - limits.MIN_VARIANCE_OF_SLOW_WAVE.value,
+        limits.MAX_MISFIT_OVER_DRIFT.value * float(drift @ drift) / total,
     ):
         return None
     fitted = waves[best] @ parts[best]
-    return SlowWave(float(_CYCLES[best]), 1 - left, float(np.ptp(fitted)))
+    return SlowWave(float(_TRIED_CYCLES[best]), 1 - left, float(np.ptp(fitted)))
 
 
 def without_slow_wave(record: EvenRecord) -> tuple[EvenRecord, float] | None:
@@ -107,34 +105,34 @@ def without_slow_wave(record: EvenRecord) -> tuple[EvenRecord, float] | None:
     >>> round(swing), bool(np.std(rest.values - fast) < 0.25)  # 0.71 before
     (2, True)
     """
-    if record.values.size < _FEWEST_SAMPLES:
+    if record.values.size < _MIN_SAMPLES:
         return None
     values, at = _averaged(record)
     line, _, waves = _bases()
     rest = values - line @ (line.T @ values)
-    parts = np.einsum("kpt,p->kt", waves[:, :, :_SINE], rest)
+    parts = np.einsum("kpt,p->kt", waves[:, :, :_SINE_COLUMNS], rest)
     explained = (parts**2).sum(axis=1)
     best = int(np.argmax(explained))
-    if not explained[best] > _COUNTS * float(rest @ rest):
+    if not explained[best] > limits.MIN_VARIANCE_OF_SLOW_SINE.value * float(rest @ rest):
         return None
     x = (record.time - record.time[0]) / np.ptp(record.time)
-    wave = np.interp(x, at, waves[best, :, :_SINE] @ parts[best])
-    swing = float(np.ptp(waves[best, :, 2:_SINE] @ parts[best, 2:]))
+    wave = np.interp(x, at, waves[best, :, :_SINE_COLUMNS] @ parts[best])
+    swing = float(np.ptp(waves[best, :, 2:_SINE_COLUMNS] @ parts[best, 2:]))
     return record._replace(values=record.values - wave), swing
 
 
 def _averaged(record: EvenRecord) -> tuple[np.ndarray, np.ndarray]:
     """Return means over parts of the record, and where they are in it (0 to 1)."""
     if record.even:
-        means = block_means(record.values, max(record.values.size // (4 * _POINTS), 1))
+        means = block_means(record.values, max(record.values.size // (4 * _GRID_POINTS), 1))
         x = (np.arange(means.size) + 0.5) / means.size
     else:
         means, x = record.values, (record.time - record.time[0]) / np.ptp(record.time)
-    at = (np.arange(_POINTS) + 0.5) / _POINTS
-    if means.size > 2 * _POINTS:
-        place = np.minimum((x * _POINTS).astype(int), _POINTS - 1)
-        count = np.bincount(place, minlength=_POINTS)
+    at = (np.arange(_GRID_POINTS) + 0.5) / _GRID_POINTS
+    if means.size > 2 * _GRID_POINTS:
+        place = np.minimum((x * _GRID_POINTS).astype(int), _GRID_POINTS - 1)
+        count = np.bincount(place, minlength=_GRID_POINTS)
         known = count > 0
-        sums = np.bincount(place, means, _POINTS)
+        sums = np.bincount(place, means, _GRID_POINTS)
         return np.interp(at, at[known], sums[known] / count[known]), at
     return np.interp(at, x, means), at

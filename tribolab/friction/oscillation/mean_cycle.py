@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.events import Events, find_events
 from tribolab.friction.oscillation.spectrum.spectra import EvenRecord
 
-_REACH = 0.38  # of a period to either side of the fall
-_BESIDE = 0.005  # of a period between the fall and the stretches beside it ...
-_STRETCH = 0.06  # ... whose means are compared: slow noise is alike in both
-_LONGEST = 0.3  # of a period; a longer fall is not abrupt
-_ROUNDS = 3
-_PHASES = 256  # at which the extremes of a smooth cycle are sought
+_WINDOW_OF_FALL = 0.38  # of a period to either side of the fall
+_GAP_TO_FALL = 0.005  # of a period between the fall and the stretches beside it ...
+_AVERAGED_PART = 0.06  # ... whose means are compared: slow noise is alike in both
+_FALL_ROUNDS = 3
+_CYCLE_PHASES = 256  # at which the extremes of a smooth cycle are sought
 
 
 def abrupt_drop(record: EvenRecord, events: Events) -> float:
@@ -51,7 +51,7 @@ def abrupt_drop(record: EvenRecord, events: Events) -> float:
         return np.nan
     period = float(np.diff(events.middle).mean())
     spacing = record.spacing / period
-    count = int(_REACH / spacing)
+    count = int(_WINDOW_OF_FALL / spacing)
     place = spacing * (np.arange(-count, count) + 0.5)  # middles lie between two samples
     reach = count * record.spacing
     whole = (events.middle - reach >= record.time[0]) & (events.middle + reach <= record.time[-1])
@@ -60,17 +60,19 @@ def abrupt_drop(record: EvenRecord, events: Events) -> float:
     moments = events.middle[whole, None] + period * place
     cycle = np.interp(moments, record.time, record.values).mean(axis=0)
     fall = 0.1
-    for _ in range(_ROUNDS):
-        edge = 0.5 * fall + _BESIDE
+    for _ in range(_FALL_ROUNDS):
+        edge = 0.5 * fall + _GAP_TO_FALL
         before, after = place < -edge, place > edge
-        near = np.abs(place) <= edge + max(_STRETCH, 1.5 * spacing)
+        near = np.abs(place) <= edge + max(_AVERAGED_PART, 1.5 * spacing)
         if min((before & near).sum(), (after & near).sum(), before.sum() - 1, after.sum() - 1) < 1:
             return np.nan
         slope = 0.5 * (_slope(place[before], cycle[before]) + _slope(place[after], cycle[after]))
         level = cycle - slope * place
         high, low = level[before & near].mean(), level[after & near].mean()
-        part = (level - low)[np.abs(place) <= edge + _STRETCH] / (high - low)
-        fall = float(np.clip(6 * spacing * (part * (1 - part)).sum(), spacing, _LONGEST))
+        part = (level - low)[np.abs(place) <= edge + _AVERAGED_PART] / (high - low)
+        fall = float(
+            np.clip(6 * spacing * (part * (1 - part)).sum(), spacing, limits.MAX_ABRUPT_FALL.value)
+        )
     return float(high - low - slope * fall)
 
 
@@ -135,7 +137,7 @@ def smooth_drop(record: EvenRecord, events: Events) -> float:
     along = (time - time[0]) / (time[-1] - time[0])
     terms = np.stack([np.ones(time.size), along, *_two_harmonics(phase)], axis=1)
     size = np.linalg.lstsq(terms, values)[0][2:]
-    turn = np.linspace(0, 2 * np.pi, _PHASES, endpoint=False)
+    turn = np.linspace(0, 2 * np.pi, _CYCLE_PHASES, endpoint=False)
     return float(np.ptp(size @ _two_harmonics(turn)))
 
 

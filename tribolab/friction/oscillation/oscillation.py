@@ -7,18 +7,15 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
+from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.spectrum.background import significant_power
 from tribolab.friction.oscillation.spectrum.mains import Mains
 from tribolab.friction.oscillation.spectrum.spectra import Spectrum
-from tribolab.friction.oscillation.spectrum.survey import CHANCE, Survey
+from tribolab.friction.oscillation.spectrum.survey import Survey
 
-_HARMONICS = 6
-_REACH = 0.15  # a line's power is gathered over this part of its frequency to either side
-CYCLES = 4.0  # in a record: slower oscillations cannot be told from a wander
-_HUMP = 7  # bands that a hump in the spectrum covers
-_BREADTH = 0.4  # of an irregular wave's spectrum, in the natural log of frequency
-_ROUNDS = 15  # in which its mean settles
-_NEAR = 0.2  # of a frequency that is sought near another
+_SUMMED_HARMONICS = 6
+_BANDS_OF_HUMP = 7  # bands that a hump in the spectrum covers
+_MEAN_FREQUENCY_ROUNDS = 15  # in which its mean settles
 
 
 class Oscillation(NamedTuple):
@@ -88,10 +85,12 @@ def oscillation(seen: Survey, near: float | None = None) -> Oscillation:
     bands. Of the significant bands that with the most power above the background counts.
     """
     fine, middle, power, width = seen.fine, seen.middle, seen.power, seen.width
-    strong = np.where(seen.significant & (seen.cycles >= CYCLES), seen.excess, 0.0)
+    strong = np.where(
+        seen.significant & (seen.cycles >= limits.MIN_CYCLES_IN_RECORD.value), seen.excess, 0.0
+    )
     # without a significant band: where most of the power above the slow wander lies
-    energy = ndimage.uniform_filter1d(np.log(np.maximum(middle * power, 1e-300)), _HUMP)
-    energy = np.where(seen.cycles >= 2 * CYCLES, energy, -np.inf)
+    energy = ndimage.uniform_filter1d(np.log(np.maximum(middle * power, 1e-300)), _BANDS_OF_HUMP)
+    energy = np.where(seen.cycles >= 2 * limits.MIN_CYCLES_IN_RECORD.value, energy, -np.inf)
     hump = int(np.argmax(energy))
     top = int(np.argmax(strong)) if strong.any() else hump
     chance = float(max(seen.chance[top], seen.rise[top]))
@@ -119,7 +118,7 @@ def oscillation(seen: Survey, near: float | None = None) -> Oscillation:
         bands=middle,
         power=power,
         background=seen.background,
-        level=significant_power(seen.background, seen.freedom, CHANCE),
+        level=significant_power(seen.background, seen.freedom, limits.BAND_BY_CHANCE.value),
         mains=seen.mains,
         method=fine.method,
     )
@@ -127,7 +126,9 @@ def oscillation(seen: Survey, near: float | None = None) -> Oscillation:
 
 def _nearest_summit(fine: Spectrum, near: float) -> int:
     """Strongest bin near a frequency, never that of the mean; of one beyond all, the next."""
-    part = np.abs(fine.frequency - near) <= max(_NEAR * near, 1.01 * fine.width[0])
+    part = np.abs(fine.frequency - near) <= max(
+        limits.MAX_DISTANCE_FROM_DROPS.value * near, 1.01 * fine.width[0]
+    )
     part[:1] = False
     if not part.any():
         return 1 + int(np.argmin(np.abs(fine.frequency[1:] - near)))
@@ -146,7 +147,9 @@ def gather(fine: Spectrum, level: np.ndarray, at: int) -> tuple[float, float, np
     excess = np.maximum(fine.power - level, 0) * fine.width
     excess[fine.frequency <= 0] = 0.0  # what the mean leaves is no part of a line
     for _ in range(3):
-        near = np.abs(fine.frequency - f0) <= max(_REACH * f0, 2.01 * fine.width[at])
+        near = np.abs(fine.frequency - f0) <= max(
+            limits.HALF_WIDTH_OF_GATHERED_BAND.value * f0, 2.01 * fine.width[at]
+        )
         weight = excess[near]
         if not weight.sum() > 0:
             break
@@ -154,9 +157,11 @@ def gather(fine: Spectrum, level: np.ndarray, at: int) -> tuple[float, float, np
         spread = float(np.sqrt((fine.frequency[near] - f0) ** 2 @ weight / weight.sum()))
         # a jittering line of width s over a record of n bins wanders by s / sqrt(bins it covers)
         error = spread / np.sqrt(max(spread / fine.width[at], 1.0))
-    powers = np.zeros(_HARMONICS)
-    for k in range(1, _HARMONICS + 1):
-        reach = min(max(_REACH * k * f0, 2.01 * fine.width[at]), 0.5 * f0)
+    powers = np.zeros(_SUMMED_HARMONICS)
+    for k in range(1, _SUMMED_HARMONICS + 1):
+        reach = min(
+            max(limits.HALF_WIDTH_OF_GATHERED_BAND.value * k * f0, 2.01 * fine.width[at]), 0.5 * f0
+        )
         near = np.abs(fine.frequency - k * f0) <= reach
         powers[k - 1] = excess[near].sum()
     powers[0] = max(powers[0], excess[at])
@@ -193,8 +198,10 @@ def mean_frequency(fine: Spectrum, start: float, floor: float) -> tuple[float, f
     mean = start
     frequency, power = fine.frequency[2:], ((fine.power - floor) * fine.width)[2:]
     logs = np.log(frequency)
-    for _ in range(_ROUNDS):
-        weight = power * np.exp(-0.5 * ((logs - np.log(mean)) / _BREADTH) ** 2)
+    for _ in range(_MEAN_FREQUENCY_ROUNDS):
+        weight = power * np.exp(
+            -0.5 * ((logs - np.log(mean)) / limits.BREADTH_OF_IRREGULAR_WAVE.value) ** 2
+        )
         total, moment = float(weight.sum()), float(frequency @ weight)
         if not min(total, moment) > 0:  # nothing but white noise
             return mean, np.nan

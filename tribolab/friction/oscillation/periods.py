@@ -6,16 +6,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.components import Component
 from tribolab.friction.oscillation.few_periods import SlowWave
-from tribolab.friction.oscillation.oscillation import CYCLES, Oscillation
+from tribolab.friction.oscillation.oscillation import Oscillation
 from tribolab.friction.oscillation.regularity import (
-    IRREGULAR,
     SLIP_KINDS,
     Regularity,
     scatter,
 )
-from tribolab.friction.oscillation.spectrum.survey import CHANCE
 from tribolab.friction.oscillation.waveform import (
     CLASSES,
     NOT_CLEAR,
@@ -24,21 +23,6 @@ from tribolab.friction.oscillation.waveform import (
 )
 
 AT_ODDS = "the spectrum tells a period"  # begins the remark that drops tell another one
-ALIKE = 0.12  # a scatter of periods above which cycles may have been missed or split
-_AGREE = 0.15  # drops and spectrum agree on the period to this
-_LOOSE = 0.6  # natural log; the mean over a broad spectrum is not the mean distance between drops
-_ERRORS = 3.0
-_STRONG = 0.25  # of the strongest line's swing, that makes another one beat with it
-_SHARP = 0.7  # part of the faster variance, above which a line is sharp however periods scatter
-_MAINS = 0.03  # relative; an oscillation so near to a line of the mains is not told from it
-_UNLIKELY = 0.03  # probability of smooth sliding, below which something is there
-_SURE_LINE = 1e-6  # chance of a line in noise: many bands may show one
-_FASTER = 5.0  # than a slow wave: no harmonic of it
-_FEWEST = 4  # periods that tell how they scatter
-_SKEW = 0.15  # of a cycle, by which its fall is shorter or longer than half, of no sine ...
-_SURE_SKEW = 0.01  # ... where the sign test over the cycles is as sure
-_SHARPER, _HARMONICS = -0.5, 0.6  # skewness of the derivative with such harmonics: it drops
-_SLOWER, _ALIKE_SWING = 0.7, 0.6  # of frequency and swing: a slower line that counts as much
 
 
 class PeriodVerdict(NamedTuple):
@@ -69,17 +53,24 @@ def at_odds(oscillation: Oscillation, seen: Regularity) -> bool:
     if not periods.size:
         return False
     spread = scatter(periods)
-    if spread > IRREGULAR or not np.isfinite(spread):
-        reach = _LOOSE if periods.size > 2 else _AGREE
+    if spread > limits.MAX_SCATTER_OF_REGULAR_PERIODS.value or not np.isfinite(spread):
+        reach = (
+            limits.MAX_DIFFERENCE_OF_IRREGULAR_PERIODS.value
+            if periods.size > 2
+            else limits.MAX_DIFFERENCE_OF_PERIODS.value
+        )
         frequency = oscillation.mean_frequency if periods.size > 2 else oscillation.frequency
         error = 0.0
     else:
-        reach, frequency = _AGREE, oscillation.frequency
+        reach, frequency = limits.MAX_DIFFERENCE_OF_PERIODS.value, oscillation.frequency
         error = np.hypot(
             spread / np.sqrt(periods.size),
             oscillation.frequency_error / max(oscillation.frequency, 1e-300),
         )
-    return bool(abs(np.log(frequency * periods.mean())) > max(reach, _ERRORS * error))
+    return bool(
+        abs(np.log(frequency * periods.mean()))
+        > max(reach, limits.MAX_ERRORS_BETWEEN_PERIODS.value * error)
+    )
 
 
 def period_verdict(
@@ -112,27 +103,41 @@ def period_verdict(
     periods = seen.periods
     frequency, error = oscillation.frequency, oscillation.frequency_error
     # drops tell the period better than the spectrum, where periods are alike and the two agree
-    odd, significant = at_odds(oscillation, seen), oscillation.false_alarm < CHANCE
+    odd, significant = (
+        at_odds(oscillation, seen),
+        oscillation.false_alarm < limits.BAND_BY_CHANCE.value,
+    )
     # where two frequencies beat, periods scatter, and yet there are lines
-    several = len(lines) > 1 and lines[1].swing > _STRONG * lines[0].swing
+    several = (
+        len(lines) > 1 and lines[1].swing > limits.MIN_SWING_OF_SECOND_LINE.value * lines[0].swing
+    )
     irregular = seen.kind == SLIP_KINDS[1] and not several
-    sharp = significant and oscillation.share > _SHARP
+    sharp = significant and oscillation.share > limits.MIN_SHARE_OF_SHARP_LINE.value
     if irregular and not sharp:  # no line in the spectrum to speak of
         frequency, error = oscillation.mean_frequency, oscillation.mean_frequency_error
-    elif periods.size > 1 and scatter(periods) < ALIKE and not odd:
+    elif (
+        periods.size > 1 and scatter(periods) < limits.MAX_SCATTER_OF_SURE_PERIODS.value and not odd
+    ):
         frequency = 1 / float(periods.mean())
         error = frequency * scatter(periods) / np.sqrt(periods.size)
     own = 1 / float(periods.mean()) if irregular else frequency
     count = own * duration
     unclaimed = kind in (CLASSES[0], NOT_CLEAR)
     # beside many periods of a wave, a slow one is the wander that they ride on
-    few = slow is not None and count < _FASTER * slow.periods
-    if slow is not None and (unclaimed or (few and abs(np.log(slow.periods / count)) > _AGREE)):
+    few = slow is not None and count < limits.MIN_CYCLES_PER_SLOW_WAVE.value * slow.periods
+    if slow is not None and (
+        unclaimed
+        or (few and abs(np.log(slow.periods / count)) > limits.MAX_DIFFERENCE_OF_PERIODS.value)
+    ):
         return _withheld(f"a slow wave of some {slow.periods:.1f} periods, {_FEW}", slow.periods)
     repeats = seen.periods.size > 0 and not odd and seen.kind != SLIP_KINDS[2]
-    if kind != CLASSES[0] and not (significant or repeats) and probability[0] > _UNLIKELY:
+    if (
+        kind != CLASSES[0]
+        and not (significant or repeats)
+        and probability[0] > limits.MAX_CHANCE_OF_SMOOTH_SLIDING.value
+    ):
         kind = CLASSES[0]  # neither a line nor drops that go on repeating
-    if kind == CLASSES[0] and lines and lines[0].false_alarm < _SURE_LINE:
+    if kind == CLASSES[0] and lines and lines[0].false_alarm < limits.SURE_LINE_BY_CHANCE.value:
         return _withheld(
             f"no drops repeat, but the spectrum has a line at {lines[0].frequency:.4g} Hz"
         )
@@ -142,7 +147,9 @@ def period_verdict(
         likely = CLASSES[int(np.argmax(probability))]
         return _withheld(f"{likely} is more probable, but smooth sliding not improbable")
     hum = [
-        m.name for m in oscillation.mains if abs(oscillation.frequency / m.frequency - 1) < _MAINS
+        m.name
+        for m in oscillation.mains
+        if abs(oscillation.frequency / m.frequency - 1) < limits.MAX_DISTANCE_FROM_MAINS.value
     ]
     if hum:
         return _withheld(f"the strongest line stands where the mains hums ({hum[0]})")
@@ -152,17 +159,22 @@ def period_verdict(
         )
     if kind == CLASSES[2] and (mixed := _mixed(oscillation, lines, form)):
         return _withheld(mixed)
-    if count < CYCLES:
+    if count < limits.MIN_CYCLES_IN_RECORD.value:
         # a wander has a "period" as well; it counts where one wave is nearly all there is
         known = count if slow is not None else np.nan
         return _withheld(f"only {count:.1f} periods, {_FEW}", known)
-    if not seen.kind and significant and count >= 2 * CYCLES and not periods.size:
+    if (
+        not seen.kind
+        and significant
+        and count >= 2 * limits.MIN_CYCLES_IN_RECORD.value
+        and not periods.size
+    ):
         return PeriodVerdict(kind, frequency, error, count)  # noise hides the drops of a line
-    if not seen.kind or (irregular and periods.size < _FEWEST):
+    if not seen.kind or (irregular and periods.size < limits.MIN_PERIODS_FOR_SCATTER.value):
         return _withheld("too few drops repeat to tell the period")
     trains = seen.kind == SLIP_KINDS[2]  # they have lines of their own
     strongest = lines[0].frequency if several and not trains else frequency
-    if abs(np.log(frequency / strongest)) > _AGREE:
+    if abs(np.log(frequency / strongest)) > limits.MAX_DIFFERENCE_OF_PERIODS.value:
         return _withheld(
             f"the drops repeat at {frequency:.4g} Hz, but the oscillation at {strongest:.4g} Hz is "
             "larger: which of them is stick-slip is open"
@@ -176,8 +188,14 @@ def _mixed(oscillation: Oscillation, lines: tuple[Component, ...], form: Wavefor
     A sine on a larger sawtooth rounds it off, and its line may be the stronger: half of the swing
     of a sawtooth is in its first harmonic.
     """
-    uneven = form.asymmetry_p_value < _SURE_SKEW and abs(0.5 - form.fall_share) > _SKEW
-    sharp = form.derivative_skewness < _SHARPER and oscillation.harmonic_content > _HARMONICS
+    uneven = (
+        form.asymmetry_p_value < limits.ASYMMETRY_BY_CHANCE.value
+        and abs(0.5 - form.fall_share) > limits.MIN_ASYMMETRY.value
+    )
+    sharp = (
+        form.derivative_skewness < limits.MAX_SKEWNESS_OF_SLOPE.value
+        and oscillation.harmonic_content > limits.MIN_HARMONICS_OF_DROP.value
+    )
     if uneven or sharp:
         return (
             f"like a sine, but friction falls in {form.fall_share:.0%} of each cycle: stick-slip "
@@ -186,8 +204,8 @@ def _mixed(oscillation: Oscillation, lines: tuple[Component, ...], form: Wavefor
     slower = [
         line
         for line in lines
-        if line.frequency < _SLOWER * oscillation.frequency
-        and line.swing > _ALIKE_SWING * oscillation.swing
+        if line.frequency < limits.MAX_FREQUENCY_OF_RIVAL.value * oscillation.frequency
+        and line.swing > limits.MIN_SWING_OF_RIVAL.value * oscillation.swing
     ]
     if slower:
         return (

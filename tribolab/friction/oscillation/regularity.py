@@ -7,14 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.arrays.medians import median
+from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.events import Events
 from tribolab.friction.oscillation.spectrum.spectra import EvenRecord
 
 SLIP_KINDS = ("regular", "irregular", "intermittent")
-IRREGULAR = 0.18  # scatter of the periods above which they are irregular
-_PAUSE = 2.2  # usual periods between two drops, that may be a pause
-_STILL = 0.5  # of the climb or of the swing that a stick or a wave would show in a pause
-_QUIET = 0.15  # of the time that is quiet, above which an oscillation is intermittent
 
 
 class Regularity(NamedTuple):
@@ -74,7 +71,7 @@ def regularity(record: EvenRecord, events: Events) -> Regularity:
     first, last = events.middle[0], events.middle[-1]
     quiet = 0.0
     paused = np.zeros(between.size, bool)
-    for k in np.flatnonzero(between > _PAUSE * usual):
+    for k in np.flatnonzero(between > limits.MIN_PAUSE.value * usual):
         a, b = events.middle[k], events.middle[k + 1]
         climb = drop * (b - a - 1.3 * usual) / (b - a)
         # a train ends with a drop and begins with a climb; a reversed one the other way round
@@ -88,9 +85,13 @@ def regularity(record: EvenRecord, events: Events) -> Regularity:
                 quiet += 0.5 * float(b - a)  # one half for each of the two ways
     share = float(np.clip(1 - quiet / (ends[1] - ends[0]), 0.0, 1.0))
     periods = between[~paused]
-    if share < 1 - _QUIET:
+    if share < 1 - limits.MIN_QUIET_TIME.value:
         return Regularity(SLIP_KINDS[2], share, periods)
-    kind = SLIP_KINDS[1] if scatter(periods) > IRREGULAR else SLIP_KINDS[0]
+    kind = (
+        SLIP_KINDS[1]
+        if scatter(periods) > limits.MAX_SCATTER_OF_REGULAR_PERIODS.value
+        else SLIP_KINDS[0]
+    )
     return Regularity(kind, 1.0, periods)
 
 
@@ -111,4 +112,4 @@ def _still(record: EvenRecord, start: float, stop: float, climb: float) -> bool:
     means = np.add.reduceat(values, first) / np.diff(first, append=values.size)
     # the means of the first and the last piece are a piece's length less than the stretch apart
     expected = climb * (1 - 1 / pieces)
-    return float(np.ptp(means)) < _STILL * expected
+    return float(np.ptp(means)) < limits.MAX_CHANGE_IN_PAUSE.value * expected

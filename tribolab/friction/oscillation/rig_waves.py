@@ -20,23 +20,20 @@ import xarray as xr
 from scipy import special
 
 from tribolab.arrays.chunks import pieces
+from tribolab.friction.oscillation import limits
 from tribolab.friction.run_out import turned
 
-_TURNS = 8.0  # that one fit spans
-_FEWEST = 3.0  # turns: of fewer, a wander is not told from what repeats
-_FIRST = 3  # orders that may stand alone; a scratch or a dent shows higher ones beside them
-_ORDERS = 8
-_SAMPLED = 32  # blocks in a turn that tell the waves
-_BESIDE = (1.0, 1.5, 2.0)  # spectral widths from a line, at which its surroundings are looked at
-_CHANCE = 1e-3  # that noise shows as much at one of the orders
-_TALLER = 2.0  # times its surroundings
-_IN_STEP = 0.5  # coherence from piece to piece
-_LATE = 0.02  # of a turn for each turn, by which the stated speed may be off
-_SLOW = 0.4  # periods in a sample: of more, what repeats is seen at another frequency
-_OF_FAST = 64  # samples in a piece that tells waves as fast as that
-_ORDERS_OF_FAST = 2
-_LATE_OF_FAST = 0.1  # of a period for each such piece
-_APART = 0.03  # cycles in a sample, from a constant and from every other sample
+_TURNS_PER_FIT = 8.0  # that one fit spans
+_MAX_ORDER = 8
+_BLOCKS_PER_TURN = 32  # blocks in a turn that tell the waves
+# spectral widths from a line, at which its surroundings are looked at
+_WIDTHS_TO_SURROUNDINGS = (
+    1.0,
+    1.5,
+    2.0,
+)
+_FAST_PIECE_SAMPLES = 64  # samples in a piece that tells waves as fast as that
+_MAX_FAST_ORDER = 2
 REPEATS = "repeats"  # the word by which what repeats is known among what is the instrument's
 _TIMES = {1: "once", 2: "twice"}
 
@@ -118,23 +115,33 @@ def rig_wave(values: np.ndarray, angle: np.ndarray) -> RigWave | None:
     if n < 16 or not np.isfinite(angle[-1]) or not np.isfinite(values.sum()):
         return None
     turns = abs(float(angle[-1] - angle[0])) / (2 * np.pi)
-    if turns < _FEWEST:
+    if turns < limits.MIN_TURNS.value:
         return None
-    slow = int(_SLOW * n / turns)
-    orders = np.arange(1, min(_ORDERS, slow) + 1)
-    size = max(1, int(n / turns / _SAMPLED))
+    slow = int(limits.MAX_PERIODS_PER_SAMPLE.value * n / turns)
+    orders = np.arange(1, min(_MAX_ORDER, slow) + 1)
+    size = max(1, int(n / turns / _BLOCKS_PER_TURN))
     found = None
     if orders.size:
-        found = _repeated(values, angle, orders, max(1, round(turns / _TURNS)), size, _LATE)
+        found = _repeated(
+            values,
+            angle,
+            orders,
+            max(1, round(turns / _TURNS_PER_FIT)),
+            size,
+            limits.MAX_PHASE_SHIFT_PER_TURN.value,
+        )
     if found is not None:
         return found
-    fast = np.arange(slow + 1, _ORDERS_OF_FAST + 1)
+    fast = np.arange(slow + 1, _MAX_FAST_ORDER + 1)
     seen = np.abs((fast * turns / n + 0.5) % 1 - 0.5)  # cycles in a sample
-    fast = fast[(seen > _APART) & (seen < 0.5 - _APART)]
-    count = n // _OF_FAST
+    fast = fast[
+        (seen > limits.MIN_DISTANCE_OF_ALIAS.value)
+        & (seen < 0.5 - limits.MIN_DISTANCE_OF_ALIAS.value)
+    ]
+    count = n // _FAST_PIECE_SAMPLES
     if not fast.size or not count:
         return None
-    late = _LATE_OF_FAST * count / turns
+    late = limits.MAX_PHASE_SHIFT_OF_ALIAS.value * count / turns
     wave = _repeated(values, angle, fast, count, 1, late)
     return None if wave is None else wave._replace(undersampled=True)
 
@@ -188,7 +195,9 @@ def _fit(
     amplitude = told[2::2] - 1j * told[3::2]
     beside, freedom = np.zeros(orders.size), np.zeros(orders.size)
     for k, order in enumerate(orders):
-        near = order + np.array([sign * off / turns for off in _BESIDE for sign in (-1, 1)])
+        near = order + np.array(
+            [sign * off / turns for off in _WIDTHS_TO_SURROUNDINGS for sign in (-1, 1)]
+        )
         near = near[near > 1 / turns]
         power = abs(2 / count * np.exp(-1j * np.outer(near, at)) @ rest) ** 2
         beside[k], freedom[k] = power.mean(), 2 * near.size
@@ -203,13 +212,17 @@ def _believed(
     power, beside = (abs(size) ** 2).mean(axis=0), np.mean([fit.beside for fit in fits], axis=0)
     ratio = power / np.maximum(beside, 1e-300)
     chance = special.fdtrc(2 * len(fits), len(fits) * fits[0].freedom, ratio)
-    clear = (chance < _CHANCE) & (ratio > _TALLER)
+    clear = (chance < limits.ORDER_BY_CHANCE.value) & (
+        ratio > limits.MIN_ORDER_OVER_SURROUNDINGS.value
+    )
     if len(fits) > 2:
         step = (size[1:] * size[:-1].conj()).sum(axis=0)
         whole = np.sqrt((abs(size[1:]) ** 2).sum(axis=0) * (abs(size[:-1]) ** 2).sum(axis=0))
         late = 2 * np.pi * off * turns * orders
-        clear &= (abs(step) > _IN_STEP * whole) & (abs(np.angle(step)) < late)
-    if not clear[orders <= _FIRST].any():
+        clear &= (abs(step) > limits.MIN_COHERENCE_OF_TURNS.value * whole) & (
+            abs(np.angle(step)) < late
+        )
+    if not clear[orders <= limits.MAX_SOLE_ORDER.value].any():
         return np.zeros(0, int), 0.0
     noise = beside[clear].sum() / power[clear].sum()
     return np.flatnonzero(clear), float(np.sqrt(max(0.0, 1 - noise)))

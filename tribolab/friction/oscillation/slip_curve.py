@@ -13,6 +13,7 @@ from tribolab.arrays.medians import median_of_known
 from tribolab.core.errors import AnalysisError
 from tribolab.friction.decisions.rejected import REJECTED, kept
 from tribolab.friction.joined import Label, grouped, joined_curves
+from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.rig_waves import REPEATS
 from tribolab.friction.oscillation.slip_table import ringing
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR, NOT_LOOKED_AT, oscillating
@@ -37,8 +38,6 @@ NEEDED = frozenset(
     {"sliding_speed", "waveform", "instrument", "regularity", REJECTED, *_NUMBERS}
     | {f"force_{name}" for name in _NUMBERS}
 )
-_FEWEST = 3  # speeds that a fit of the exponent needs
-_LEAST_ERROR = 0.01  # relative; a frequency is not known better than the speed
 
 
 class Scaling(NamedTuple):
@@ -275,7 +274,7 @@ def frequency_scaling(curve: xr.Dataset) -> Scaling:
     f, v = curve["dominant_frequency"].values, curve["sliding_speed"].values
     good = np.isfinite(f) & (oscillating(curve["waveform"].values))
     count = int(good.sum())
-    if count < _FEWEST:
+    if count < limits.MIN_SPEEDS_OF_EXPONENT.value:
         return nothing._replace(speeds=count)
     x, y = np.log(v[good]), np.log(f[good])
     weight = curve["segments_oscillating"].values[good].astype(float)
@@ -284,7 +283,9 @@ def frequency_scaling(curve: xr.Dataset) -> Scaling:
     spread = float(weight @ (x - x0) ** 2)
     slope = float(weight @ ((x - x0) * y)) / spread
     rest = y - weight @ y - slope * (x - x0)
-    variance = max(float(weight @ rest**2) * count / (count - 2), _LEAST_ERROR**2)
+    variance = max(
+        float(weight @ rest**2) * count / (count - 2), limits.MIN_ERROR_OF_FREQUENCY.value**2
+    )
     student = special.stdtrit(count - 2, 0.8413)
     error = float(np.sqrt(variance / count / spread)) * float(student)
     fixed_wavelength, fixed_frequency = abs(slope - 1) < 2 * error, abs(slope) < 2 * error

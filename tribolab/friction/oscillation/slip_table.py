@@ -7,10 +7,9 @@ from typing import NamedTuple, TypeGuard
 import numpy as np
 import xarray as xr
 
-from tribolab.friction.oscillation.components import MOST_COMPONENTS
+from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.examine import Examined
 from tribolab.friction.oscillation.regularity import scatter
-from tribolab.friction.oscillation.spectrum.survey import PER_DECADE
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR, NOT_LOOKED_AT
 
 # what is said of a segment in which nothing oscillates
@@ -27,8 +26,6 @@ _OF_NOISE = (
     "mains_amplitude",
     "periods",
 )
-_SAME = 0.03  # a resonance keeps its frequency this well
-_SPEEDS = 2.0  # over speeds that differ by this factor at least
 
 
 def ringing(kind: np.ndarray, frequency: np.ndarray, speed: np.ndarray) -> np.ndarray:
@@ -57,11 +54,11 @@ def ringing(kind: np.ndarray, frequency: np.ndarray, speed: np.ndarray) -> np.nd
     result = np.zeros(kind.size, bool)
     order = np.flatnonzero(sine)[np.argsort(frequency[sine], kind="stable")]
     logs = np.log(frequency[order])
-    first = np.searchsorted(logs, logs - _SAME, side="left")
-    last = np.searchsorted(logs, logs + _SAME, side="right")
+    first = np.searchsorted(logs, logs - limits.MAX_CHANGE_OF_RESONANCE.value, side="left")
+    last = np.searchsorted(logs, logs + limits.MAX_CHANGE_OF_RESONANCE.value, side="right")
     for k, (a, b) in enumerate(zip(first, last, strict=True)):
         near = speed[order[a:b]]
-        result[order[k]] = near.max() >= _SPEEDS * near.min()
+        result[order[k]] = near.max() >= limits.MIN_SPEED_RATIO_OF_RESONANCE.value * near.min()
     return result
 
 
@@ -220,7 +217,7 @@ def line_table(examined: list[Examined | str], speed: np.ndarray) -> xr.Dataset:
         What was seen, and the sliding speed [m/s] (segment).
     """
     lines = [e.lines if oscillates(e) else () for e in examined]
-    columns = {name: np.full((len(examined), MOST_COMPONENTS), np.nan) for name in _LINE}
+    columns = {name: np.full((len(examined), limits.MAX_LINES.value), np.nan) for name in _LINE}
     for k, mine in enumerate(lines):
         for n, line in enumerate(mine):
             columns["line_frequency"][k, n] = line.frequency
@@ -255,9 +252,9 @@ def spectra_table(examined: list[Examined | str], speed: np.ndarray) -> xr.Datas
 def _grid(axes: list[np.ndarray]) -> np.ndarray:
     if not axes:
         return np.zeros(0)
-    first = np.floor(PER_DECADE * np.log10(min(a[0] for a in axes)))
-    last = np.ceil(PER_DECADE * np.log10(max(a[-1] for a in axes)))
-    return 10 ** (np.arange(first, last + 1) / PER_DECADE)
+    first = np.floor(limits.BANDS_PER_DECADE.value * np.log10(min(a[0] for a in axes)))
+    last = np.ceil(limits.BANDS_PER_DECADE.value * np.log10(max(a[-1] for a in axes)))
+    return 10 ** (np.arange(first, last + 1) / limits.BANDS_PER_DECADE.value)
 
 
 def _on(grid: np.ndarray, axis: np.ndarray, power: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ from tribolab.arrays.medians import median_of_known
 from tribolab.core.errors import AnalysisError
 from tribolab.friction.coefficient.coefficient import belong, friction_signal, trimmed_slices
 from tribolab.friction.decisions.rejected import REJECTED
+from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.critical_stiffness import STIFFNESS, critical_stiffness
 from tribolab.friction.oscillation.examine import EventLimits, Examined, examine_record
 from tribolab.friction.oscillation.regularity import SLIP_KINDS
@@ -29,13 +30,12 @@ from tribolab.friction.oscillation.slip_table import (
     slip_columns,
     spectra_table,
 )
-from tribolab.friction.oscillation.waveform import CLASSES, DOUBT, NOT_CLEAR
+from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR
 from tribolab.friction.segments.stretches import name_of
 from tribolab.friction.zero.rests import unloaded_rests
 from tribolab.units.stamping import stamp
 
-_SOME = 100_000  # samples of a segment that tell its sign
-_CUT = 3  # stretches of three samples at an extreme that say that the signal is cut off
+_SIGN_SAMPLES = 100_000  # samples of a segment that tell its sign
 
 # of a run that has only forces, these are in N and have "force_" before their name
 _IN_SIGNAL_UNIT = (
@@ -174,14 +174,14 @@ def stick_slip(
     ('sawtooth stick-slip', 10.0)
     """
     belong(run, segments)
-    limits = EventLimits(hysteresis, noise_levels, fewest_samples)
+    thresholds = EventLimits(hysteresis, noise_levels, fewest_samples)
     speed = segments["sliding_speed"].values.astype(float)
     force = friction_signal(run) == "friction_force" and "normal_force" not in run
     motion = motion_of(run)
     examined, loads, remarks, waves = [], [], [], []
     for signal, v in zip(_signals(run, segments), speed, strict=True):
         values, wave = _beside_rig(signal, motion)
-        seen = examine_record(signal.time, values, limits, force=force)
+        seen = examine_record(signal.time, values, thresholds, force=force)
         examined.append(seen)
         loads.append(signal.load)
         waves.append(wave)
@@ -223,9 +223,9 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
         force = run["friction_force"].values
         # a sensor whose sign is turned would turn sticks into slips
         means = [
-            d * np.nanmean(force[s][:_SOME])
+            d * np.nanmean(force[s][:_SIGN_SAMPLES])
             for s, d in zip(parts, direction, strict=True)
-            if np.isfinite(force[s][:_SOME]).any()
+            if np.isfinite(force[s][:_SIGN_SAMPLES]).any()
         ]
         if means and max(means) < 0:
             direction = -direction
@@ -256,7 +256,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
     elif signal == "friction_coefficient":
         ratio = run["friction_coefficient"].values
         # a coefficient that never changes sign carries no direction
-        begins = [ratio[s][:_SOME] for s in parts]
+        begins = [ratio[s][:_SIGN_SAMPLES] for s in parts]
         signed = any(np.nanmean(x) < 0 for x in begins if np.isfinite(x).any())
         for part, sign in one_by_one(zip(parts, direction, strict=True)):
             raw = ratio[part]
@@ -281,7 +281,7 @@ def _cut_off(values: np.ndarray) -> bool:
     for end in (np.nanmax(values), np.nanmin(values)) if np.isfinite(values).any() else ():
         at = values == end
         three = at[2:] & at[1:-1] & at[:-2]
-        if at.all() or int((three[1:] & ~three[:-1]).sum()) >= _CUT:
+        if at.all() or int((three[1:] & ~three[:-1]).sum()) >= limits.MIN_CLIPPED_STRETCHES.value:
             return not at.all()
     return False
 
@@ -300,7 +300,7 @@ def _remark(seen: Examined | str, cut: bool, speed: float) -> str:
         return "; ".join([*words, f"not decided: {seen.verdict.doubt}"])
     words += _form_words(seen, speed)
     second = ranked(seen)[1]
-    if class_of(seen) == CLASSES[0] and second[1] > DOUBT:
+    if class_of(seen) == CLASSES[0] and second[1] > limits.MAX_DOUBT.value:
         words.append(f"{second[0]} is not excluded (probability {second[1]:.2f})")
         if seen.oscillation.share < 0.5:
             words.append("noise and spikes hold more of the fluctuation")

@@ -13,6 +13,7 @@ import numpy as np
 from scipy import special
 
 from tribolab.arrays.medians import median
+from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.events import Events
 from tribolab.friction.oscillation.oscillation import Oscillation
 from tribolab.friction.oscillation.regularity import scatter
@@ -91,7 +92,6 @@ CLASSES = (
 )
 NOT_LOOKED_AT = "not evaluated"
 NOT_CLEAR = "not decided"
-DOUBT = 0.2  # probability of smooth sliding above which nothing else is claimed
 
 # feature: (value where unknown, lowest, highest); what lies beyond counts as the limit
 WAVEFORM_LIMITS = {
@@ -181,6 +181,6 @@ def most_probable(probability: np.ndarray) -> str:
     'not decided'
     """
     likely = int(np.argmax(probability))
-    if probability[0] > DOUBT:
+    if probability[0] > limits.MAX_DOUBT.value:
         return CLASSES[0] if likely == 0 else NOT_CLEAR
     return CLASSES[1 + int(np.argmax(probability[1:]))]

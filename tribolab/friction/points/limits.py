@@ -1,6 +1,6 @@
 """Numbers that decide which speeds make one point, how repeats combine, and which contradict."""
 
-from tribolab.core.limit import Limit
+from tribolab.core.limit import Count, Limit
 
 _GROUPS = "tests/benchmarks/points_coverage.py groups, seed 1; reported on seed 101"
 _MEANS = "tests/benchmarks/points_coverage.py means, seed 4; reported on seed 104"
@@ -36,3 +36,7 @@ UNEVEN_SCATTER = Limit(
     0.3, "1", "standard deviation of ln(scatter) between conditions that are alike", "judgement"
 )
 TRIMMED = Limit(0.2, "1", "share of the largest contrasts that do not count as repeatability", _ODD)
+MIN_CONTRASTS_TO_TRIM = Count(5, "1", "contrasts from which the largest are omitted", _ODD)
+MIN_STROKES_OF_MEMORY = Count(
+    24, "1", "strokes of one speed whose order shows how long friction is correlated"
+)

@@ -23,10 +23,10 @@ import numpy as np
 from scipy import special
 
 from tribolab.friction.points import limits
+from tribolab.friction.statistics import NORMAL
 
-_NORMAL = float(special.ndtri(0.975))
-_GRID = np.concatenate([[0.0], np.geomspace(0.01, 1000.0, 110)])
-_ROUNDS = 60
+_SCATTER_GRID = np.concatenate([[0.0], np.geomspace(0.01, 1000.0, 110)])
+_BISECTIONS = 60
 
 
 class Mean(NamedTuple):
@@ -80,8 +80,8 @@ def mean_of_repeats(values: np.ndarray, errors: np.ndarray, pooled: Pooled | Non
         u95 = float(special.stdtrit(k - 1, 0.975)) * sem
         # repeats that agree better than their own errors let them do so by chance
         own_sem = float(np.sqrt((errors[fine] ** 2).sum()) / fine.sum()) if fine.any() else 0.0
-        if _NORMAL * own_sem > u95:
-            return Mean(float(values.mean()), own_sem, _NORMAL * own_sem)
+        if NORMAL * own_sem > u95:
+            return Mean(float(values.mean()), own_sem, NORMAL * own_sem)
         return Mean(float(values.mean()), sem, u95)
     own = np.where(fine, errors, np.median(errors[fine]))
     return _integrated(values, own, None)
@@ -90,7 +90,7 @@ def mean_of_repeats(values: np.ndarray, errors: np.ndarray, pooled: Pooled | Non
 def _integrated(y: np.ndarray, s: np.ndarray, scale: float | None) -> Mean:
     """Integrate the scatter between repeats out; `scale` is that of its prior."""
     size = float(np.sqrt(np.median(s**2) + y.var()))
-    tau = _GRID * size
+    tau = _SCATTER_GRID * size
     w = 1 / (s**2 + tau[:, None] ** 2)
     s1 = w.sum(axis=1)
     m = (w @ y) / s1
@@ -118,7 +118,7 @@ _ONE_SIGMA = float(2 * special.ndtr(-1.0))
 def _half_width(weight: np.ndarray, off: np.ndarray, width: np.ndarray, out: float) -> float:
     """Return the half interval about zero outside of which a mixture of normals has `out`."""
     low, high = 0.0, float(np.abs(off).max() + 12 * width.max())
-    for _ in range(_ROUNDS):
+    for _ in range(_BISECTIONS):
         middle = (low + high) / 2
         outside = special.ndtr((-middle - off) / width) + special.ndtr((off - middle) / width)
         if weight @ outside > out:

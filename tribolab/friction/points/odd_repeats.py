@@ -18,9 +18,8 @@ import numpy as np
 
 from tribolab.friction.points import limits
 
-_SIMULATED = 4000
+_SIMULATED_CAMPAIGNS = 4000
 _SEED = 7
-_MANY = 5  # contrasts from which on the largest are left out
 
 
 class OddRepeat(NamedTuple):
@@ -57,7 +56,11 @@ def _scores(groups: Sequence[np.ndarray]) -> tuple[list[np.ndarray], np.ndarray]
     for own, values in enumerate(groups):
         others = np.concatenate([s for k, s in enumerate(squares) if k != own], axis=1)
         count = others.shape[1]
-        kept = count - int(limits.TRIMMED.value * count) if count >= _MANY else count
+        kept = (
+            count - int(limits.TRIMMED.value * count)
+            if count >= limits.MIN_CONTRASTS_TO_TRIM.value
+            else count
+        )
         scatter = np.sqrt(np.sort(others, axis=1)[:, :kept].mean(axis=1))
         repeats = values.shape[1]
         off = (values - values.mean(axis=1, keepdims=True)) / np.sqrt(1 - 1 / repeats)
@@ -73,8 +76,10 @@ def _by_chance(repeats: tuple[int, ...]) -> np.ndarray:
     rng = np.random.default_rng(_SEED)
     groups = []
     for k in repeats:
-        scatter = np.exp(limits.UNEVEN_SCATTER.value * rng.standard_normal((_SIMULATED, 1)))
-        groups.append(scatter * rng.standard_normal((_SIMULATED, k)))
+        scatter = np.exp(
+            limits.UNEVEN_SCATTER.value * rng.standard_normal((_SIMULATED_CAMPAIGNS, 1))
+        )
+        groups.append(scatter * rng.standard_normal((_SIMULATED_CAMPAIGNS, k)))
     return np.sort(np.concatenate(_scores(groups)[0], axis=1).max(axis=1))
 
 

@@ -12,11 +12,8 @@ from scipy import special
 from tribolab.friction.points import limits
 from tribolab.friction.points.mean_of_repeats import Mean, mean_of_repeats, pooled_scatter
 from tribolab.friction.points.speed_groups import speed_groups, sweeps_of
-from tribolab.friction.statistics import error_of_series
+from tribolab.friction.statistics import NORMAL, error_of_series
 from tribolab.friction.zero.of_run import PAIRED
-
-_NORMAL = float(special.ndtri(0.975))
-_MANY = 24  # strokes of one speed whose order tells how long friction remembers
 
 
 class Observations(NamedTuple):
@@ -69,7 +66,7 @@ def _of_run(friction: xr.Dataset, run: int) -> Observations:
     name = "friction_coefficient"
     sem = column(f"{name}_beyond_sem", f"{name}_sem")
     wide = column(f"{name}_beyond_U95", f"{name}_U95")
-    wide = np.where(np.isfinite(wide), wide, _NORMAL * sem)
+    wide = np.where(np.isfinite(wide), wide, NORMAL * sem)
     wanted = np.abs(column("set_speed"))
     pairs = np.full(value.size, -1.0)
     if "pair" in friction and friction.attrs.get("offset") in PAIRED:
@@ -187,12 +184,12 @@ def means_of_run(seen: Observations, members: Sequence[np.ndarray]) -> list[Mean
             continue
         shared = float(np.sqrt(np.mean(seen.shared[part] ** 2)))
         errors = np.sqrt(np.maximum(seen.sem[part] ** 2 - seen.shared[part] ** 2, 0.0))
-        if own.size < _MANY:
+        if own.size < limits.MIN_STROKES_OF_MEMORY.value:
             others = pooled_scatter(values[:number] + values[number + 1 :])
             mean = mean_of_repeats(own, errors, others)
         else:
             mean = _of_series(own, errors)
-        sem, u95 = np.hypot((mean.sem, mean.u95), (shared, _NORMAL * shared))
+        sem, u95 = np.hypot((mean.sem, mean.u95), (shared, NORMAL * shared))
         means.append(Mean(mean.mean, float(sem), float(u95)))
     return means
 
@@ -200,11 +197,11 @@ def means_of_run(seen: Observations, members: Sequence[np.ndarray]) -> list[Mean
 def _of_series(values: np.ndarray, errors: np.ndarray) -> Mean:
     series = error_of_series(values[None])
     sem, dof = float(series.sem[0]), float(series.dof[0])
-    wide = sem * (_NORMAL if np.isinf(dof) else float(special.stdtrit(dof, 0.975)))
+    wide = sem * (NORMAL if np.isinf(dof) else float(special.stdtrit(dof, 0.975)))
     known = errors[np.isfinite(errors)]
     own = float(np.sqrt((known**2).sum()) / max(known.size, 1))
-    if _NORMAL * own > wide:  # strokes that agree better than each of them is known
-        return Mean(float(values.mean()), own, _NORMAL * own)
+    if NORMAL * own > wide:  # strokes that agree better than each of them is known
+        return Mean(float(values.mean()), own, NORMAL * own)
     return Mean(float(values.mean()), sem, wide)
 
 

@@ -35,8 +35,6 @@ _READ = (
     "normal_force_offset",
     "friction_coefficient_offset",
 )
-_MIN_TIME_SHARE = 0.8  # share of the sliding; other parts at this speed are start and stop
-_MIN_LOAD = 0.2  # share of the usual load below which a ratio is noise
 
 
 class Mean(NamedTuple):
@@ -201,7 +199,7 @@ def _of_stretches(run: xr.Dataset, friction: xr.Dataset) -> History | None:
         of_points.SPEED_TOLERANCE.value
     )
     share = lasted[alike].sum() / lasted.sum()
-    if not share >= _MIN_TIME_SHARE or np.unique(direction[alike]).size > 1:
+    if not share >= limits.MIN_TIME_AT_ONE_SPEED.value or np.unique(direction[alike]).size > 1:
         return None
     parts = [_coefficients(run, friction, int(k)) for k in np.flatnonzero(alike)]
     moment = np.concatenate([time for time, _ in parts])
@@ -245,7 +243,7 @@ def _coefficients(
         load = run["normal_force"].values[first:last] - np.nan_to_num(
             own.get("normal_force_offset", 0.0)
         )
-        pressed = load > _MIN_LOAD * np.nanmedian(load)
+        pressed = load > limits.MIN_LOAD.value * np.nanmedian(load)
         values = np.where(pressed, values / np.where(pressed, load, 1.0), np.nan)
     time = time[first:last]
     inside = (time >= own["trimmed_start"]) & (time <= own["trimmed_stop"])

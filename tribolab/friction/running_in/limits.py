@@ -25,3 +25,7 @@ LONGEST_CHANGE_AT_END = Limit(
 )
 MIN_VALUES = Limit(20, "1", "strokes, or stretches, of a run in which running-in is looked for")
 """As for the trend along a run's strokes; below, Burg's models have too few values."""
+MIN_TIME_AT_ONE_SPEED = Limit(
+    0.8, "1", "share of the sliding time at one speed: the rest of such a run is start and stop"
+)
+MIN_LOAD = Limit(0.2, "1", "share of the usual load, below which a ratio of forces is noise")

@@ -31,9 +31,9 @@ from tribolab.friction.mean_error.lines import lines_of, waves_of
 from tribolab.friction.running_in import limits
 from tribolab.friction.running_in.kinds import NONE, NOT_FINISHED, RUN_IN, STEP
 
-_TIMES = np.geomspace(0.004, 1.0, 24)  # share of the sequence
-_BESIDE = (0.03, 0.15)  # numbers of exponentials that are not oscillations
-_ROUNDS, _GOLDEN = 20, 0.382
+_TIME_GRID = np.geomspace(0.004, 1.0, 24)  # share of the sequence
+_NO_OSCILLATION_TIMES = (0.03, 0.15)  # numbers of exponentials that are not oscillations
+_GOLDEN_ROUNDS, _GOLDEN = 20, 0.382
 
 
 class Settling(NamedTuple):
@@ -119,7 +119,7 @@ def _settling(values: np.ndarray) -> Settling:
         return Settling(NONE, 0, size, 0.0, middle)
     time = (np.arange(count) + 0.5) / count
     fit = _Fit((blocks - middle) / scale, np.empty((count, 0)), time)
-    calm, *_ = fit.rest(time, *(np.exp(-time / each) for each in _BESIDE))
+    calm, *_ = fit.rest(time, *(np.exp(-time / each) for each in _NO_OSCILLATION_TIMES))
     (cycles,) = lines_of(calm[None])
     if cycles:
         fit = fit._replace(waves=np.column_stack([waves_of(each, count) for each in cycles]))
@@ -166,7 +166,7 @@ def _shape(time: np.ndarray, constant: float | None) -> np.ndarray:
 def _best_course(fit: _Fit) -> tuple[float | None, float]:
     """Best time constant, None for a line, and the sum of squares."""
     squares = []
-    times = [None, *_TIMES[_TIMES > 1.2 / fit.time.size].tolist()]
+    times = [None, *_TIME_GRID[_TIME_GRID > 1.2 / fit.time.size].tolist()]
     for constant in times:
         rest, *_ = fit.rest(_shape(fit.time, constant))
         dear = 1.0 if constant is not None else limits.LINE_OVER_EXPONENTIAL.value
@@ -183,7 +183,7 @@ def _refined(fit: _Fit, constant: float) -> float:
         return float(rest @ rest)
 
     low, high = constant / 1.3, constant * 1.3
-    for _ in range(_ROUNDS):
+    for _ in range(_GOLDEN_ROUNDS):
         a, b = low + _GOLDEN * (high - low), high - _GOLDEN * (high - low)
         if squares(a) < squares(b):
             high = b

@@ -7,8 +7,8 @@ none of them looks at what the rest of the record does:
 
 1. The cubic through the piece may change by no more than `drift` of the speed: a triangle has no
    trend, but it has a curvature.
-2. A plateau ends. Where the speed leaves it slowly, over more than `_GRADUAL` of its length, the
-   quartic through the piece and what lies beside it shows whether both are one motion: it then
+2. A plateau ends. If its speed changes gradually, over more than `MIN_GRADUAL_END` of its length,
+   the quartic through the piece and what lies beside it shows whether both are one motion: it then
    describes the piece better than a constant does.
 3. Ends that stand off the level by more than half of `drift` belong to the ramp beside it.
 """
@@ -19,18 +19,14 @@ import numpy as np
 
 from tribolab.arrays.chunks import running_total
 from tribolab.arrays.medians import median, median_of_known
+from tribolab.friction.segments import limits
 from tribolab.friction.segments.plateaus import running_median
 from tribolab.friction.segments.proof import Readings, surely_changes
 
-_INSIDE = 16  # bins within a piece
-_BESIDE = 1.5  # of its length are looked at on each side
-_GRADUAL = 0.3  # of its length: a plateau is left faster
-_NEAR = 2.5  # times the drift: what is farther off in speed is not beside it
-_ALIKE = 0.35  # correlation of neighbouring bins from which on they are no noise
-_BETTER = 0.35  # share of the variance about a constant that is left by one smooth motion
-_SURE = 40.0  # squares (in variances) by which a cubic is better than a constant, if not by chance
-_FEWEST = 6  # bins that tell a curvature
-_FEW = 16 * _INSIDE  # readings of a piece whose bins hold too few to tell their own noise
+_BINS_OF_PIECE = 16  # bins within a piece
+_NEIGHBOURHOOD = 1.5  # of its length are looked at on each side
+# readings of a piece whose bins hold too few to tell their own noise
+_FEW_READINGS = 16 * _BINS_OF_PIECE
 
 
 class MeanVelocities:
@@ -130,9 +126,14 @@ def held_part(data: MeanVelocities, first: int, last: int, drift: float) -> tupl
         Relative change that a constant speed may show.
     """
     noise = 0.0
-    for count in (4 * _INSIDE, 2 * _INSIDE, _INSIDE):  # coarser where noise hides the ends
+    # coarser where noise hides the ends
+    for count in (
+        4 * _BINS_OF_PIECE,
+        2 * _BINS_OF_PIECE,
+        _BINS_OF_PIECE,
+    ):
         count = min(count, (last - first) // 2)
-        if count < 2 * _FEWEST:
+        if count < 2 * limits.MIN_BINS_OF_CURVATURE.value:
             break
         at = first + (last - first) * np.arange(count + 1) // count
         values = data.means(data.time[np.minimum(at, data.time.size - 1)])
@@ -173,8 +174,8 @@ def is_constant(data: MeanVelocities, first: int, last: int, drift: float) -> bo
     bool
         False only where the data are sure of it: see the notes of this module.
     """
-    count = min(_INSIDE, last - first)
-    if count < _FEWEST:
+    count = min(_BINS_OF_PIECE, last - first)
+    if count < limits.MIN_BINS_OF_CURVATURE.value:
         return True
     begin, end = float(data.time[first]), float(data.time[last - 1])
     width = (end - begin) / count
@@ -183,7 +184,7 @@ def is_constant(data: MeanVelocities, first: int, last: int, drift: float) -> bo
     edges = begin + width * np.arange(count + 1)
     inside = data.means(edges)
     known = np.isfinite(inside)
-    if np.count_nonzero(known) < _FEWEST:
+    if np.count_nonzero(known) < limits.MIN_BINS_OF_CURVATURE.value:
         return True
     place = np.linspace(-1, 1, count)[known]
     inside = inside[known]
@@ -191,9 +192,13 @@ def is_constant(data: MeanVelocities, first: int, last: int, drift: float) -> bo
     core = slice(1, -1)  # what starting and stopping add to the ends is trimmed off
     if _changes(place[core], inside[core], drift * abs(level)):
         return False
-    if last - first <= _FEW and surely_changes(data.readings, begin, end, drift * abs(level)):
+    if last - first <= _FEW_READINGS and surely_changes(
+        data.readings, begin, end, drift * abs(level)
+    ):
         return False
-    if _fluctuates(data, begin, end, last - first, _NEAR * drift * abs(level)):
+    if _fluctuates(
+        data, begin, end, last - first, limits.MAX_DRIFTS_FROM_PLATEAU.value * drift * abs(level)
+    ):
         return False
     return not _goes_on(data, inside, begin, end, level, drift)
 
@@ -204,7 +209,7 @@ def _changes(place: np.ndarray, values: np.ndarray, most: float) -> bool:
     left = float(((values - cubic) ** 2).sum())
     about = float(((values - values.mean()) ** 2).sum())
     variance = max(left, 1e-12 * float((values**2).sum())) / max(values.size - 4, 1)
-    if np.ptp(cubic) > most and about - left > _SURE * variance:
+    if np.ptp(cubic) > most and about - left > limits.MIN_GAIN_OF_CUBIC.value * variance:
         return True
     # a kink is no cubic: means of quarters, whose range is three quarters of a ramp's
     parts = np.array_split(values, 4)
@@ -217,14 +222,20 @@ def _changes(place: np.ndarray, values: np.ndarray, most: float) -> bool:
 def _fluctuates(data: MeanVelocities, begin: float, end: float, samples: int, most: float) -> bool:
     """Whether a motion to and fro, and not noise, moves the speed by more than `most` (rms)."""
     count = min(samples, 1024)
-    while count >= 4 * _FEWEST:  # wider bins show what noise hides from narrow ones
+    # wider bins show what noise hides from narrow ones
+    while count >= 4 * limits.MIN_BINS_OF_CURVATURE.value:
         values = data.means(np.linspace(begin, end, count + 1))
         values = values[np.isfinite(values)]
-        variance = float(values.var()) if values.size >= 4 * _FEWEST else 0.0
+        variance = (
+            float(values.var()) if values.size >= 4 * limits.MIN_BINS_OF_CURVATURE.value else 0.0
+        )
         if variance > most**2:
             # von Neumann: white noise differs between neighbours as much as anywhere
             alike = 1 - float(np.mean(np.diff(values) ** 2)) / (2 * variance)
-            if alike > _ALIKE + 1 / np.sqrt(values.size) and alike * variance > most**2:
+            if (
+                alike > limits.MIN_CORRELATION_OF_FLUCTUATION.value + 1 / np.sqrt(values.size)
+                and alike * variance > most**2
+            ):
                 return True
         count //= 2
     return False
@@ -241,7 +252,7 @@ def _goes_on(
     """Whether one smooth motion passes through the piece and what lies beside it."""
     count = inside.size
     width = (end - begin) / count
-    steps = np.arange(int(_BESIDE * count) + 1)
+    steps = np.arange(int(_NEIGHBOURHOOD * count) + 1)
     sides = []
     for edges in (begin - width * steps[::-1], end + width * steps):
         inner = (edges >= data.time[0] - width / 2) & (edges <= data.time[-1] + width / 2)
@@ -250,10 +261,12 @@ def _goes_on(
     sides[0] = sides[0][::-1]  # from the piece outwards
     near = []
     for values in sides:
-        close = np.abs(_smoothed(values) - level) <= _NEAR * drift * abs(level)
+        close = np.abs(
+            _smoothed(values) - level
+        ) <= limits.MAX_DRIFTS_FROM_PLATEAU.value * drift * abs(level)
         near.append(values[: int(np.argmin(np.append(close, False)))])
     longest = max(len(values) for values in near)
-    if longest < _GRADUAL * count:
+    if longest < limits.MIN_GRADUAL_END.value * count:
         return False
     beside = np.concatenate([near[0][::-1], near[1]])
     if np.abs(beside - level).max() <= drift / 4 * abs(level):
@@ -266,4 +279,12 @@ def _goes_on(
     about = float(((inside - level) ** 2).sum()) / (count - 1)
     left = float(((inside - smooth[own]) ** 2).sum()) / count * values.size / (values.size - 5)
     # the longer the way on which a plateau is left, the more it has to prove that it is one
-    return bool(left < np.interp(longest / count, (_GRADUAL, 1), (_BETTER, 1.1)) * about)
+    return bool(
+        left
+        < np.interp(
+            longest / count,
+            (limits.MIN_GRADUAL_END.value, 1),
+            (limits.MAX_VARIANCE_OF_SMOOTH_MOTION.value, 1.1),
+        )
+        * about
+    )

@@ -9,6 +9,7 @@ from tribolab.arrays.broadcasting import as_stated, of_runs, over_dims
 from tribolab.arrays.chunks import one_by_one
 from tribolab.arrays.medians import median
 from tribolab.core.errors import AnalysisError, UnitError, shown
+from tribolab.friction.segments import limits
 from tribolab.friction.segments.loaded import loaded
 from tribolab.friction.segments.locate import ConstancyLimits
 from tribolab.friction.segments.slopes import line
@@ -30,10 +31,7 @@ from tribolab.friction.segments.strokes import middle_parts, shuttles
 from tribolab.units.conversion import to_si
 from tribolab.units.stamping import stamp
 
-_OF_STROKE = 5  # samples of a middle, at least: many short strokes tell as much as a long one
-_OF_STROKES = 5  # degree of the polynomial through the positions of a stroke
-_MIDDLE = 0.5  # of each stroke that a crank drives: its speed changes there by an eighth
-_BY_CHANCE = 0.05  # of the time: of strokes a few may seem to hold their speed for a moment
+_STROKE_DEGREE = 5  # degree of the polynomial through the positions of a stroke
 _LABELS = ("set_speed", "set_normal_force", "step", "cycle", "rolling_speed", "slide_roll_ratio")
 
 
@@ -143,7 +141,7 @@ def find_segments(
     shortest = to_si(min_duration, "s", name="min_duration")
     gap = None if max_gap is None else to_si(max_gap, "s", name="max_gap")
     slow = None if rest_speed is None else to_si(rest_speed, "m/s", name="rest_speed")
-    limits = ConstancyLimits(resolution, drift, min_samples, slow)
+    constancy = ConstancyLimits(resolution, drift, min_samples, slow)
 
     source, stands = velocity_source(run), 0.0
     if run.attrs.get("rows_are") == "points":
@@ -151,14 +149,14 @@ def find_segments(
     if stroke_middle is not None:
         return _of_strokes(run, source, to_si(stroke_middle, "1", "stroke_middle"), min_samples)
     if source == "recorded":
-        stretches = from_velocity(run, limits, gap)
+        stretches = from_velocity(run, constancy, gap)
         if "stroke_m" not in run.attrs:
             stretches, stands = without_standstills(run, stretches)
             source = "position" if stands else source
         if "stroke_m" in run.attrs:  # computed without noise: only what does not move rests
             stretches = [_driven(run, stretch) for stretch in stretches]
     elif source == "position":
-        stretches = apart(run, from_position(run, limits, gap))
+        stretches = apart(run, from_position(run, constancy, gap))
     elif source == "step":
         stretches = from_steps(run, min_samples)
     else:
@@ -167,11 +165,14 @@ def find_segments(
         s._replace(kind="too short") if s.kind == "constant" and s.stop - s.start < shortest else s
         for s in stretches
     ]
-    stretches = loaded(run, stretches, limits)
+    stretches = loaded(run, stretches, constancy)
     plateaus = measured(run, stretches, source, share, position_range)
     if stands:
         plateaus.attrs["standstill_s"] = stands
-    by_chance = plateaus.sizes["segment"] and _covered(run, plateaus) < _BY_CHANCE
+    by_chance = (
+        plateaus.sizes["segment"]
+        and _covered(run, plateaus) < limits.MAX_TIME_OF_CHANCE_PLATEAUS.value
+    )
     if position_range is not None or (plateaus.sizes["segment"] and not by_chance):
         return plateaus
     if by_chance and not shuttles(run):
@@ -181,7 +182,12 @@ def find_segments(
     if "stroke_m" not in run.attrs and not shuttles(run):
         return plateaus
     try:  # what a crank drives is never at constant speed: each stroke has a middle
-        return _of_strokes(run, source, _MIDDLE, min(min_samples, _OF_STROKE))
+        return _of_strokes(
+            run,
+            source,
+            limits.MIDDLE_OF_CRANK_STROKE.value,
+            min(min_samples, limits.MIN_SAMPLES_OF_MIDDLE.value),
+        )
     except AnalysisError:  # it does not move to and fro: why no plateau was found says more
         return plateaus
 
@@ -318,7 +324,7 @@ def measured(
     if source == "recorded":
         velocity = _mean_velocity(run, first, last, velocity)
     elif source == "position":
-        degree = 1 if trimmed is None else _OF_STROKES
+        degree = 1 if trimmed is None else _STROKE_DEGREE
         velocity = _mean_slope(run, trimmed_start, trimmed_stop, velocity, degree)
     direction = np.where(np.isnan(velocity) & (source == "recorded"), 0, np.sign(velocity))
     if source in ("step", "set speed"):

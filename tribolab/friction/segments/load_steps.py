@@ -5,15 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from tribolab.arrays.medians import median
+from tribolab.friction.segments import limits
 from tribolab.friction.segments.stretches import Stretch
 
-_BINS = 600  # in a stretch
-_FEWEST = 10  # samples of a bin
-_STEP = 0.15  # share of the larger level: smaller steps are a load that wanders
-_LEVEL = 0.05  # share of a level within which it stays there
-_SHORTEST = 5  # bins of a level
-_MOST = 12  # different levels: a load with more is not a programme, which may repeat them
-_HELD = 0.8  # share of the stretch that lies at one of its levels
+_LOAD_BINS = 600  # in a stretch
+_SAMPLES_PER_BIN = 10  # samples of a bin
 _CHANGES = "load changes"
 
 
@@ -37,8 +33,8 @@ def at_levels(
         The stretch as it was where the load holds no levels: it wanders, or rises all the time.
     """
     first, last = np.searchsorted(time, [stretch.start, stretch.stop])
-    bins = min(_BINS, (last - first) // _FEWEST)
-    if bins < 2 * _SHORTEST:
+    bins = min(_LOAD_BINS, (last - first) // _SAMPLES_PER_BIN)
+    if bins < 2 * limits.MIN_BINS_OF_LEVEL.value:
         return [stretch]
     at = first + (last - first) * np.arange(bins + 1) // bins
     part = force[first:last]
@@ -47,12 +43,15 @@ def at_levels(
     mean = np.add.reduceat(part, at[:-1] - first) / np.diff(at)
     levels = _levels(mean, 0, bins)
     kept = [_held(mean, a, b) for a, b in levels]
-    if len(levels) < 2 or any(b - a < _SHORTEST for a, b in kept):
+    if len(levels) < 2 or any(b - a < limits.MIN_BINS_OF_LEVEL.value for a, b in kept):
         return [stretch]
     loads = np.sort([abs(float(median(mean[a:b]))) for a, b in kept])
-    if 1 + np.count_nonzero(loads[1:] > (1 + _LEVEL) * loads[:-1]) > _MOST:
+    if (
+        1 + np.count_nonzero(loads[1:] > (1 + limits.MAX_SCATTER_OF_LEVEL.value) * loads[:-1])
+        > limits.MAX_LOAD_LEVELS.value
+    ):
         return [stretch]
-    if sum(b - a for a, b in kept) < _HELD * bins:
+    if sum(b - a for a, b in kept) < limits.MIN_TIME_AT_LEVELS.value * bins:
         return [stretch]
     result: list[Stretch] = []
     place = 0
@@ -71,17 +70,19 @@ def at_levels(
 def _levels(mean: np.ndarray, first: int, last: int) -> list[tuple[int, int]]:
     """Part bins at the place that leaves least scatter, as long as both sides differ by a step."""
     part = mean[first:last]
-    if part.size < 2 * _SHORTEST:
+    if part.size < 2 * limits.MIN_BINS_OF_LEVEL.value:
         return [(first, last)]
     total, squares = np.cumsum(part), np.cumsum(part**2)
     n = np.arange(1, part.size)
     before = squares[:-1] - total[:-1] ** 2 / n
     after = (squares[-1] - squares[:-1]) - (total[-1] - total[:-1]) ** 2 / (part.size - n)
-    cost = (before + after)[_SHORTEST - 1 : part.size - _SHORTEST]
-    cut = int(np.argmin(cost)) + _SHORTEST
+    cost = (before + after)[
+        limits.MIN_BINS_OF_LEVEL.value - 1 : part.size - limits.MIN_BINS_OF_LEVEL.value
+    ]
+    cut = int(np.argmin(cost)) + limits.MIN_BINS_OF_LEVEL.value
     ends = [abs(float(median(side))) for side in (part[:cut], part[cut:])]
     near = [float(median(side)) for side in (part[max(0, cut - 20) : cut], part[cut : cut + 20])]
-    if max(abs(near[1] - near[0]), abs(ends[1] - ends[0])) < _STEP * max(ends):
+    if max(abs(near[1] - near[0]), abs(ends[1] - ends[0])) < limits.MIN_LOAD_STEP.value * max(ends):
         return [(first, last)]
     return [*_levels(mean, first, first + cut), *_levels(mean, first + cut, last)]
 
@@ -89,7 +90,9 @@ def _levels(mean: np.ndarray, first: int, last: int) -> list[tuple[int, int]]:
 def _held(mean: np.ndarray, first: int, last: int) -> tuple[int, int]:
     """Return the bins of a level without what goes on to the next, or comes from the one before."""
     level = float(median(mean[first:last]))
-    near = np.flatnonzero(np.abs(mean[first:last] - level) <= _LEVEL * abs(level))
+    near = np.flatnonzero(
+        np.abs(mean[first:last] - level) <= limits.MAX_SCATTER_OF_LEVEL.value * abs(level)
+    )
     if near.size < 0.7 * (last - first):  # no level
         return first, first
     return first + int(near[0]), first + int(near[-1]) + 1

@@ -7,22 +7,22 @@ import xarray as xr
 
 from tribolab.arrays.chunks import one_by_one
 from tribolab.arrays.medians import median
+from tribolab.friction.segments import limits
 from tribolab.friction.segments.load_steps import at_levels
 from tribolab.friction.segments.locate import ConstancyLimits
 from tribolab.friction.segments.stretches import Stretch
-from tribolab.friction.zero.limits import UNLOADED_NOISE, UNLOADED_SHARE
+from tribolab.friction.zero.limits import (
+    MAX_DRIFT_OF_LOAD_ZERO,
+    MIN_SAMPLES_OF_REST,
+    UNLOADED_NOISE,
+    UNLOADED_SHARE,
+)
 
 _NO_LOAD = "no load"
-_NO_CONTACT = 0.02  # share of the run's load below which there is none, if no rest tells more
-_UNLOADED = 0.1  # share of the load below which a rest can tell the zero of the normal force
-_LOADED = 0.9  # share of a stretch's load from which on its load is there
-_LOST = 0.05  # a smaller share of a segment without contact is left to its mean
-_FEWEST = 10  # samples of a rest that tell its noise
-_BINS = 200  # in a stretch
-_MOST_CUTS = 5  # a load that is lost more often is a bouncing one, and no program
+_CONTACT_BINS = 200  # in a stretch
 
 
-def loaded(run: xr.Dataset, stretches: list[Stretch], limits: ConstancyLimits) -> list[Stretch]:
+def loaded(run: xr.Dataset, stretches: list[Stretch], constancy: ConstancyLimits) -> list[Stretch]:
     """Take out of the constant stretches what slides without load.
 
     Parameters
@@ -31,7 +31,7 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], limits: ConstancyLimits) -
         The run; without ``normal_force`` nothing is taken out.
     stretches
         All stretches of the run in order.
-    limits
+    constancy
         `min_samples` of a segment.
 
     Returns
@@ -46,26 +46,28 @@ def loaded(run: xr.Dataset, stretches: list[Stretch], limits: ConstancyLimits) -
     middles = {k: _median(time, force, stretches, k) for k in ("constant", "at rest")}
     sliding = middles["constant"]
     # of the loads that press: more strokes without load than with it are no usual load
-    pressing = sliding[(sliding > 0) & (sliding > _UNLOADED * sliding.max(initial=0.0))]
+    pressing = sliding[
+        (sliding > 0) & (sliding > MAX_DRIFT_OF_LOAD_ZERO.value * sliding.max(initial=0.0))
+    ]
     usual = float(median(pressing)) if pressing.size else 0.0
     if not usual > 0:
         return stretches
     rests = middles["at rest"]
-    rests = rests[np.abs(rests) < _UNLOADED * usual]
+    rests = rests[np.abs(rests) < MAX_DRIFT_OF_LOAD_ZERO.value * usual]
     zero = float(median(rests)) if rests.size else 0.0
-    least = _NO_CONTACT * (usual - zero)
+    least = limits.MIN_LOAD_OF_CONTACT.value * (usual - zero)
     if (noise := _noise_at_rest(time, force, stretches, zero, usual)) > 0:
         least = min(least, max(UNLOADED_NOISE.value * noise, UNLOADED_SHARE.value * usual))
     result: list[Stretch] = []
     for stretch in one_by_one(stretches):
         if stretch.kind == "constant":
-            result += _cut(time, force, zero, stretch, least, limits.min_samples)
+            result += _cut(time, force, zero, stretch, least, constancy.min_samples)
         else:
             result.append(stretch)
     cut: list[Stretch] = []
     for stretch in one_by_one(result):
         steps = stretch.kind == "constant"
-        parts = at_levels(time, force, stretch, limits.min_samples) if steps else [stretch]
+        parts = at_levels(time, force, stretch, constancy.min_samples) if steps else [stretch]
         cut += parts
     return cut
 
@@ -77,8 +79,8 @@ def _noise_at_rest(
     for stretch in one_by_one(stretches):
         if stretch.kind == "at rest":
             part = force[slice(*np.searchsorted(time, [stretch.start, stretch.stop]))]
-            part = part[np.abs(part - zero) < _UNLOADED * usual]
-            if part.size >= _FEWEST:
+            part = part[np.abs(part - zero) < MAX_DRIFT_OF_LOAD_ZERO.value * usual]
+            if part.size >= MIN_SAMPLES_OF_REST.value:
                 return float(median(np.abs(part - median(part))) / 0.6745)
     return 0.0
 
@@ -105,20 +107,20 @@ def _cut(
 ) -> list[Stretch]:
     """One stretch, cut where its load comes or goes."""
     first, last = np.searchsorted(time, [stretch.start, stretch.stop])
-    count = min(_BINS, last - first)
+    count = min(_CONTACT_BINS, last - first)
     if count < 1:
         return [stretch]
     at = first + (last - first) * np.arange(count + 1) // count
     part = np.nan_to_num(force[first:last] - zero, copy=False)
     mean = np.add.reduceat(part, at[:-1] - first) / np.diff(at)
     bare = mean < least
-    if not bare.mean() > _LOST:
+    if not bare.mean() > limits.MAX_LOST_CONTACT.value:
         return [stretch]
     if bare.all():
         return [stretch._replace(kind=_NO_LOAD)]
-    away = _grown(bare, mean < _LOADED * float(median(mean[~bare])))
+    away = _grown(bare, mean < limits.MIN_LOAD_OF_LOADED.value * float(median(mean[~bare])))
     edges = np.flatnonzero(np.diff(away)) + 1
-    if edges.size > 2 * _MOST_CUTS:
+    if edges.size > 2 * limits.MAX_CONTACT_LOSSES.value:
         return [stretch]
     if away.all():
         return [stretch._replace(kind=_NO_LOAD)]

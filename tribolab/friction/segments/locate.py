@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.arrays.chunks import one_by_one
+from tribolab.friction.segments import limits
 from tribolab.friction.segments.constancy import MeanVelocities, held_part, is_constant
 from tribolab.friction.segments.plateaus import (
     Noise,
@@ -19,19 +20,11 @@ from tribolab.friction.segments.plateaus import (
 )
 from tribolab.friction.segments.proof import is_proven
 
-_MOST_BLOCKS = 16384  # more blocks cost time and find nothing more: leftovers are looked at again
-_FEW_BLOCKS = 512  # in a second look
-_PARTS = 8  # the value of a block is the median of the means of its parts, so a spike is outvoted
+_MAX_BLOCKS = 16384  # more blocks cost time and find nothing more: leftovers are looked at again
+_LEFTOVER_BLOCKS = 512  # in a second look
+# the value of a block is the median of the means of its parts, so a spike is outvoted
+_PARTS_OF_BLOCK = 8
 _KEPT = ("constant", "at rest")
-_STILL = 1e-7  # of the highest speed: nothing slower is told from rest
-_SLOW = 1e-5  # of the highest speed: what is slower has to get somewhere to be sliding
-_SOMEWHERE = 0.01  # of the longest way of a piece
-_FAINT = 0.02  # of the highest speed: what is slower may be noise
-_TELLING = 20  # samples that tell noise without its sign
-_BRIEF = 1.5  # a plateau beside a ramp longer than this many times itself has to prove itself
-_LONG_PAUSE = 20.0  # usual spacings of samples: nothing was recorded for so long
-_PAUSE = 3.0  # a ramp that is longer than this many times a pause in it goes on
-_MOVING = 8.0  # standard errors from rest: breaks pick their pieces, so that chance alone makes six
 
 
 class VelocityPiece(NamedTuple):
@@ -55,7 +48,7 @@ class ConstancyLimits(NamedTuple):
 
 
 def locate(
-    time: np.ndarray, velocity: np.ndarray, limits: ConstancyLimits, floor: float = 0.0
+    time: np.ndarray, velocity: np.ndarray, constancy: ConstancyLimits, floor: float = 0.0
 ) -> list[VelocityPiece]:
     """Return the pieces of a record without gaps in it, in order and touching.
 
@@ -63,20 +56,20 @@ def locate(
     ----------
     time, velocity
         Finite samples [s], [m/s]; the spacing may change.
-    limits
+    constancy
         What counts as constant.
     floor
         Least noise of a sample [m/s], where it is known.
     """
-    pieces = _locate(time, velocity, limits, None, None, floor)
-    pieces = _settled(_bridged(_fused(pieces, limits), limits), limits)
-    return _proven(pieces, limits)
+    pieces = _locate(time, velocity, constancy, None, None, floor)
+    pieces = _settled(_bridged(_fused(pieces, constancy), constancy), constancy)
+    return _proven(pieces, constancy)
 
 
 def moving(
     time: np.ndarray,
     pieces: list[VelocityPiece],
-    limits: ConstancyLimits,
+    constancy: ConstancyLimits,
     velocity: np.ndarray | None = None,
 ) -> list[VelocityPiece]:
     """Call creep at rest: beside the highest speed it is slow, and it gets nowhere.
@@ -87,39 +80,44 @@ def moving(
     ----------
     time, pieces
         Samples [s], and pieces of the whole record.
-    limits
+    constancy
         A `rest_speed` of these decides alone.
     velocity
         The record [m/s], if the speed was recorded.
     """
     kept = [p for p in pieces if p.kind == "constant"]
-    if limits.rest_speed is not None or not kept:
+    if constancy.rest_speed is not None or not kept:
         return pieces
     top = max(abs(p.velocity) for p in kept)
     way = [abs(p.velocity) * (time[p.last - 1] - time[p.first]) for p in pieces]
-    least = _SOMEWHERE * max(d for d, p in zip(way, pieces, strict=True) if p.kind == "constant")
+    least = limits.MIN_DISTANCE_OF_CREEP.value * max(
+        d for d, p in zip(way, pieces, strict=True) if p.kind == "constant"
+    )
     return _fused(
         [
             p._replace(kind="at rest")
             if p.kind == "constant"
             and (
-                (abs(p.velocity) <= _SLOW * top and d < least)
+                (abs(p.velocity) <= limits.MAX_CREEP_SPEED.value * top and d < least)
                 or (
                     velocity is not None
-                    and abs(p.velocity) <= _FAINT * top
+                    and abs(p.velocity) <= limits.MAX_SPEED_OF_NOISE.value * top
                     and _is_folded_noise(velocity[p.first : p.last])
                 )
             )
             else p
             for d, p in zip(way, pieces, strict=True)
         ],
-        limits,
+        constancy,
     )
 
 
 def _is_folded_noise(velocity: np.ndarray) -> bool:
     """Whether a speed is noise about zero without its sign: its spread is 0.76 of its mean."""
-    if velocity.size < _TELLING or velocity.min() < 0 < velocity.max():
+    if (
+        velocity.size < limits.MIN_SAMPLES_OF_UNSIGNED_NOISE.value
+        or velocity.min() < 0 < velocity.max()
+    ):
         return False
     size = np.abs(velocity)
     mean = float(size.mean())
@@ -127,7 +125,7 @@ def _is_folded_noise(velocity: np.ndarray) -> bool:
 
 
 def held(
-    data: MeanVelocities, pieces: list[VelocityPiece], limits: ConstancyLimits
+    data: MeanVelocities, pieces: list[VelocityPiece], constancy: ConstancyLimits
 ) -> list[VelocityPiece]:
     """Keep of each plateau what holds its speed by its own data; the rest is a ramp.
 
@@ -137,7 +135,7 @@ def held(
         The record that the pieces are of.
     pieces
         From `locate`, in samples of the record.
-    limits
+    constancy
         What counts as constant.
     """
     result: list[VelocityPiece] = []
@@ -145,15 +143,15 @@ def held(
         if piece.kind != "constant":
             result.append(piece)
             continue
-        first, last = held_part(data, piece.first, piece.last, limits.drift)
-        kind = "constant" if is_constant(data, first, last, limits.drift) else "ramp"
+        first, last = held_part(data, piece.first, piece.last, constancy.drift)
+        kind = "constant" if is_constant(data, first, last, constancy.drift) else "ramp"
         parts = (piece.first, first, "ramp"), (first, last, kind), (last, piece.last, "ramp")
         result += [piece._replace(first=a, last=b, kind=k) for a, b, k in parts if b > a]
-    return _beside(data, _paused(_fused(result, limits), limits), limits)
+    return _beside(data, _paused(_fused(result, constancy), constancy), constancy)
 
 
 def _beside(
-    data: MeanVelocities, pieces: list[VelocityPiece], limits: ConstancyLimits
+    data: MeanVelocities, pieces: list[VelocityPiece], constancy: ConstancyLimits
 ) -> list[VelocityPiece]:
     """Call a plateau that is short beside a ramp a ramp, if the data do not prove that it is none.
 
@@ -165,12 +163,12 @@ def _beside(
             continue
         begin, end = data.time[piece.first], data.time[piece.last - 1]
         before, after = (_until_kept(data.time, pieces, i, way) for way in (-1, 1))
-        if max(before, after) <= _BRIEF * (end - begin):
+        if max(before, after) <= limits.MAX_RAMP_OVER_PLATEAU.value * (end - begin):
             continue
         sides = before > end - begin, after > end - begin
-        if not is_proven(data.readings, begin, end, limits.drift * abs(piece.velocity), sides):
+        if not is_proven(data.readings, begin, end, constancy.drift * abs(piece.velocity), sides):
             result[i] = piece._replace(kind="ramp")
-    return _fused(result, limits)
+    return _fused(result, constancy)
 
 
 def _until_kept(time: np.ndarray, pieces: list[VelocityPiece], index: int, way: int) -> float:
@@ -188,10 +186,10 @@ def _until_kept(time: np.ndarray, pieces: list[VelocityPiece], index: int, way: 
         between = time[piece.last - 1 : (pieces[at].first if at < len(pieces) else time.size) + 1]
     usual = float(time[piece.last - 1] - time[piece.first]) / max(piece.last - piece.first - 1, 1)
     spans = np.diff(between)
-    return float(spans[spans <= _LONG_PAUSE * usual].sum())
+    return float(spans[spans <= limits.MIN_INTERVALS_OF_PAUSE.value * usual].sum())
 
 
-def _paused(pieces: list[VelocityPiece], limits: ConstancyLimits) -> list[VelocityPiece]:
+def _paused(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
     """Call a ramp's short pause on its way a ramp: both sides of it are long and go one way."""
     result = list(pieces)
     for i in range(1, len(pieces) - 1):
@@ -200,16 +198,16 @@ def _paused(pieces: list[VelocityPiece], limits: ConstancyLimits) -> list[Veloci
             continue
         shortest = min(before.last - before.first, after.last - after.first)
         one_way = (piece.velocity - before.velocity) * (after.velocity - piece.velocity) > 0
-        if one_way and shortest > _PAUSE * (piece.last - piece.first):
+        if one_way and shortest > limits.MIN_RAMP_OVER_PAUSE.value * (piece.last - piece.first):
             result[i] = piece._replace(kind="ramp")
-    return _fused(result, limits)
+    return _fused(result, constancy)
 
 
-def block_size(samples: int, most: int = _MOST_BLOCKS) -> int:
-    """Return the samples per block: 1 for small records, else a power of two, `_PARTS` or more."""
+def block_size(samples: int, most: int = _MAX_BLOCKS) -> int:
+    """Return the samples per block: 1 for small records, else 8, 16, 32, ..."""
     if samples <= most:
         return 1
-    return max(_PARTS, 2 ** int(np.ceil(np.log2(samples / most))))
+    return max(_PARTS_OF_BLOCK, 2 ** int(np.ceil(np.log2(samples / most))))
 
 
 def _blocks(time: np.ndarray, velocity: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
@@ -217,8 +215,12 @@ def _blocks(time: np.ndarray, velocity: np.ndarray, size: int) -> tuple[np.ndarr
     if size == 1:
         return time, velocity
     count = time.size // size
-    parts = velocity[: count * size].reshape(count * _PARTS, size // _PARTS).mean(axis=1)
-    parts = np.sort(parts.reshape(count, _PARTS), axis=1)
+    parts = (
+        velocity[: count * size]
+        .reshape(count * _PARTS_OF_BLOCK, size // _PARTS_OF_BLOCK)
+        .mean(axis=1)
+    )
+    parts = np.sort(parts.reshape(count, _PARTS_OF_BLOCK), axis=1)
     robust = parts[:, 2:-2].mean(axis=1)  # the middle half: nearly the mean's efficiency
     begin, end = time[: count * size : size], time[size - 1 : count * size : size]
     return (begin + end) / 2, robust
@@ -235,12 +237,12 @@ def _despiked(velocity: np.ndarray, noise: Noise) -> np.ndarray:
 def _locate(
     time: np.ndarray,
     velocity: np.ndarray,
-    limits: ConstancyLimits,
+    constancy: ConstancyLimits,
     noise: Noise | None,
     rest_speed: float | None,
     floor: float = 0.0,
 ) -> list[VelocityPiece]:
-    size = block_size(time.size, _MOST_BLOCKS if noise is None else _FEW_BLOCKS)
+    size = block_size(time.size, _MAX_BLOCKS if noise is None else _LEFTOVER_BLOCKS)
     t, v = _blocks(time, velocity, size)
     if noise is None:
         noise = estimate_noise(v, floor / np.sqrt(size))
@@ -252,42 +254,47 @@ def _locate(
         noise = noise.scaled(size**-0.5)
     single = noise.scaled(size**0.5)
     if rest_speed is None:
-        rest_speed = limits.rest_speed
+        rest_speed = constancy.rest_speed
     if rest_speed is None:
         top = float(np.quantile(np.abs(v), 0.98))
-        rest_speed = max(_STILL * top, 0.05 * single.floor)
+        rest_speed = max(limits.MIN_SPEED_OVER_TOP.value * top, 0.05 * single.floor)
     if size == 1:
         v = _despiked(v, noise)
-    breaks = find_breaks(v, noise, limits.resolution, rest_speed)
-    straight = straight_pieces(t, v, noise, breaks, limits.resolution)
+    breaks = find_breaks(v, noise, constancy.resolution, rest_speed)
+    straight = straight_pieces(t, v, noise, breaks, constancy.resolution)
 
     pieces: list[VelocityPiece] = []
     pending = 0  # first sample that no kept piece has taken yet
     edges = np.append(straight.first * size, time.size)
-    fewest = limits.min_samples if size == 1 else 4 * size
+    fewest = constancy.min_samples if size == 1 else 4 * size
     for i in range(straight.first.size):
         first, last = int(edges[i]), int(edges[i + 1])
         mean, change = float(straight.mean[i]), float(straight.change[i])
         kind = _kind(
-            mean, change, straight.mean_error[i], straight.change_error[i], rest_speed, limits.drift
+            mean,
+            change,
+            straight.mean_error[i],
+            straight.change_error[i],
+            rest_speed,
+            constancy.drift,
         )
         if last - first < fewest and kind != "ramp":
             kind = "too short"
         if size > 1:
             if kind not in _KEPT and not (kind == "ramp" and last - first >= 4 * size):
                 continue
-            pieces += _leftover(time, velocity, limits, single, rest_speed, pending, first)
+            pieces += _leftover(time, velocity, constancy, single, rest_speed, pending, first)
             pending = last
         pieces.append(VelocityPiece(first, last, kind, mean, change, float(straight.mean_error[i])))
     if size > 1:
-        pieces += _leftover(time, velocity, limits, single, rest_speed, pending, time.size)
+        pieces += _leftover(time, velocity, constancy, single, rest_speed, pending, time.size)
     return pieces
 
 
 def _leftover(
     time: np.ndarray,
     velocity: np.ndarray,
-    limits: ConstancyLimits,
+    constancy: ConstancyLimits,
     noise: Noise,
     rest_speed: float,
     first: int,
@@ -301,9 +308,9 @@ def _leftover(
         return [
             piece
             for begin, end in ((first, middle), (middle, last))
-            for piece in _leftover(time, velocity, limits, noise, rest_speed, begin, end)
+            for piece in _leftover(time, velocity, constancy, noise, rest_speed, begin, end)
         ]
-    inner = _locate(time[first:last], velocity[first:last], limits, noise, rest_speed)
+    inner = _locate(time[first:last], velocity[first:last], constancy, noise, rest_speed)
     return [p._replace(first=p.first + first, last=p.last + first) for p in inner]
 
 
@@ -311,16 +318,16 @@ def _kind(
     mean: float, change: float, error: float, change_error: float, rest_speed: float, drift: float
 ) -> str:
     sure = abs(change) - 3 * change_error
-    if abs(mean) <= max(rest_speed, _MOVING * error):
+    if abs(mean) <= max(rest_speed, limits.MIN_ERRORS_FROM_REST.value * error):
         return "ramp" if sure > 2 * rest_speed else "at rest"
     return "ramp" if sure > drift * abs(mean) else "constant"
 
 
-def _fused(pieces: list[VelocityPiece], limits: ConstancyLimits) -> list[VelocityPiece]:
+def _fused(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
     """Join touching pieces of one kind and one velocity, such as a plateau and its last samples."""
     result: list[VelocityPiece] = []
     for piece in pieces:
-        if result and _same(result[-1], piece, limits):
+        if result and _same(result[-1], piece, constancy):
             last = result.pop()
             n, k = last.last - last.first, piece.last - piece.first
             kind = max(last, piece, key=lambda p: p.last - p.first).kind
@@ -336,7 +343,7 @@ def _fused(pieces: list[VelocityPiece], limits: ConstancyLimits) -> list[Velocit
     return result
 
 
-def _same(a: VelocityPiece, b: VelocityPiece, limits: ConstancyLimits) -> bool:
+def _same(a: VelocityPiece, b: VelocityPiece, constancy: ConstancyLimits) -> bool:
     if a.kind == b.kind and a.kind != "constant":
         return True
     short, long = sorted((a, b), key=lambda p: p.last - p.first)
@@ -344,17 +351,17 @@ def _same(a: VelocityPiece, b: VelocityPiece, limits: ConstancyLimits) -> bool:
         return False
     apart = abs(a.velocity - b.velocity)
     size = max(abs(a.velocity), abs(b.velocity))
-    return apart <= max(limits.resolution / 2 * size, 3 * np.hypot(a.error, b.error))
+    return apart <= max(constancy.resolution / 2 * size, 3 * np.hypot(a.error, b.error))
 
 
-def _bridged(pieces: list[VelocityPiece], limits: ConstancyLimits) -> list[VelocityPiece]:
+def _bridged(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
     """Join two plateaus of one velocity across a disturbance that is short beside both."""
     result: list[VelocityPiece] = []
     for piece in pieces:
         if len(result) > 1 and piece.kind == "constant" == result[-2].kind:
             left, odd = result[-2], result[-1]
             brief = 20 * (odd.last - odd.first) < piece.last - left.first
-            wide = limits._replace(resolution=2 * limits.resolution)
+            wide = constancy._replace(resolution=2 * constancy.resolution)
             if odd.kind == "too short" and brief and _same(left, piece, wide):
                 del result[-2:]
                 result += _fused([left, piece._replace(first=odd.first)], wide)
@@ -363,21 +370,21 @@ def _bridged(pieces: list[VelocityPiece], limits: ConstancyLimits) -> list[Veloc
     return result
 
 
-def _proven(pieces: list[VelocityPiece], limits: ConstancyLimits) -> list[VelocityPiece]:
+def _proven(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
     """Call a short piece a ramp if noise hides that it is one, or if it is a speck of one."""
     result = list(pieces)
     for i, piece in enumerate(pieces):
         around = pieces[max(i - 2, 0) : i] + pieces[i + 1 : i + 3]
         size = piece.last - piece.first
         longest = max((p.last - p.first for p in around), default=0)
-        uncertain = np.sqrt(12) * piece.error * 3 > limits.drift * abs(piece.velocity)
+        uncertain = np.sqrt(12) * piece.error * 3 > constancy.drift * abs(piece.velocity)
         speck = 10 * size < max((p.last - p.first for p in around if p.kind == "ramp"), default=0)
         if piece.kind == "constant" and ((uncertain and 4 * size < longest) or speck):
             result[i] = piece._replace(kind="ramp")
-    return _fused(result, limits)
+    return _fused(result, constancy)
 
 
-def _settled(pieces: list[VelocityPiece], limits: ConstancyLimits) -> list[VelocityPiece]:
+def _settled(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
     """Call the tail of a ramp a ramp: a short drifting piece that leads into a long plateau."""
     result = list(pieces)
     for i, piece in enumerate(pieces):
@@ -388,8 +395,8 @@ def _settled(pieces: list[VelocityPiece], limits: ConstancyLimits) -> list[Veloc
             if (
                 other.kind == "constant"
                 and 4 * (piece.last - piece.first) < other.last - other.first
-                and apart < 2 * limits.drift * abs(other.velocity)
+                and apart < 2 * constancy.drift * abs(other.velocity)
                 and abs(piece.change) > apart / 2
             ):
                 result[i] = piece._replace(kind="ramp")
-    return _fused(result, limits)
+    return _fused(result, constancy)

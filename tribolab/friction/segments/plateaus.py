@@ -26,14 +26,12 @@ import numpy as np
 from tribolab.arrays.chunks import pieces
 from tribolab.arrays.medians import median
 from tribolab.arrays.scratch import room
+from tribolab.friction.segments import limits
 
-_SIGNIFICANT = 6.0  # standard errors between neighbouring windows that make a break
-_TRUSTED = 0.02  # share of the blocks from which on a speed tells its own noise
-_FAR = 4  # blocks, or windows, apart: noise with a short memory has forgotten itself
-_WORSE = 16.0  # squares (in variances) by which one line may be worse than two
-_TIE = 9  # digits of a height: breaks that differ by less are as high as one another
-_EQUAL = 6  # digits of a cost: mergers that differ by less cost the same
-_EXACT = 1e-11  # of the squares: a line that leaves less leaves what arithmetic adds
+_LAG_BLOCKS = 4  # blocks, or windows, apart: noise with a short memory has forgotten itself
+_HEIGHT_DIGITS = 9  # digits of a height: breaks that differ by less are as high as one another
+_COST_DIGITS = 6  # digits of a cost: mergers that differ by less cost the same
+_ROUNDING_OF_SQUARES = 1e-11  # of the squares: a line that leaves less leaves what arithmetic adds
 
 
 class Noise(NamedTuple):
@@ -59,10 +57,6 @@ class Noise(NamedTuple):
     def scaled(self, factor: float) -> Noise:
         """Noise of blocks that are larger or smaller."""
         return Noise(self.floor * factor, self.speed, self.relative * factor)
-
-
-_HELD = 20  # samples that a commanded speed is held, on the mean
-_LEAP = 2.0  # digits of a rounded reading that a command jumps by
 
 
 class Pieces(NamedTuple):
@@ -134,11 +128,14 @@ def is_commanded(velocity: np.ndarray, step: float) -> bool:
         own = np.abs(np.diff(velocity[max(first - 1, 0) : last]))
         jumps.append(own[own > 0.5 * step])
         count += jumps[-1].size
-        if count * _HELD > velocity.size:
+        if count * limits.MIN_SAMPLES_OF_COMMAND.value > velocity.size:
             return False
         sizes.append(np.unique(np.round(np.abs(velocity[first:last]) / step)))
     size = np.unique(np.concatenate(sizes))
-    return size[size > 0].size == 1 or float(median(np.concatenate(jumps))) >= _LEAP * step
+    return (
+        size[size > 0].size == 1
+        or float(median(np.concatenate(jumps))) >= limits.MIN_DIGITS_OF_COMMAND.value * step
+    )
 
 
 def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
@@ -179,16 +176,18 @@ def estimate_noise(velocity: np.ndarray, least: float = 0.0) -> Noise:
     # bins with few blocks are ramps and reversals, or a short plateau: no worse than the best
     moves = speed > 3 * floor
     best = relative[moves].min() if moves.any() else np.inf
-    relative = np.where(share < _TRUSTED, np.minimum(relative, best), relative)
+    relative = np.where(
+        share < limits.MIN_SHARE_OF_SPEED_CLASS.value, np.minimum(relative, best), relative
+    )
     return Noise(floor, speed, relative)
 
 
 def _differences(velocity: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Speed around each block, first difference, bend of neighbours, and of blocks `_FAR` apart.
+    """Speed around each block, first difference, bend of neighbours and of distant blocks.
 
     White noise gives all three its own size.
     """
-    far = max(1, min(_FAR, (velocity.size - 1) // 8))
+    far = max(1, min(_LAG_BLOCKS, (velocity.size - 1) // 8))
     left, here, right = velocity[: -2 * far], velocity[far:-far], velocity[2 * far :]
     before = velocity[far - 1 : -far - 1]
     after = velocity[far + 1 : velocity.size - far + 1]
@@ -235,13 +234,13 @@ def find_breaks(
                 usual = score[clear][:: 1 + m // 2048]
                 usual = usual[np.isfinite(usual)]
                 at = k[clear][:: 1 + m // 2048]
-                bends = [_bends(total, noise, width, far * width, at) for far in (1, _FAR)]
+                bends = [_bends(total, noise, width, far * width, at) for far in (1, _LAG_BLOCKS)]
                 if min(usual.size, *(bend.size for bend in bends)) > 16:
                     # a ramp spreads the means as well, but it does not bend
                     bent = max(float(median(bend)) for bend in bends)
                     spread = min(float(median(usual)), bent)
                     memory = max(memory, spread / 0.6745)
-            hit = clear & (score > _SIGNIFICANT * memory) & (jump > wanted)
+            hit = clear & (score > limits.MIN_ERRORS_OF_BREAK.value * memory) & (jump > wanted)
             found_now = _peaks(k[hit], (jump[hit] / np.maximum(larger[hit], rest_speed)), width)
             free[found_now] = 1
             breaks = np.concatenate([breaks, found_now])
@@ -271,7 +270,7 @@ def _peaks(position: np.ndarray, height: np.ndarray, width: int) -> np.ndarray:
         return position
     # candidates of one cluster lie close together: the highest of each bin, then thin out
     # from rest all are as high: the earliest is taken, and not what arithmetic adds most to
-    order = np.argsort(-np.round(height, _TIE), kind="stable")
+    order = np.argsort(-np.round(height, _HEIGHT_DIGITS), kind="stable")
     taken = np.zeros(position[-1] + width + 2, dtype=bool)
     chosen = []
     for index in order:
@@ -320,7 +319,7 @@ def _misfit(m: np.ndarray) -> np.ndarray:
     with np.errstate(divide="ignore", invalid="ignore"):
         explained = np.where(m[4] > 0, m[5] ** 2 / m[4], 0.0)
     left = m[6] - explained
-    return np.where(left > _EXACT * m[6], left, 0.0)
+    return np.where(left > _ROUNDING_OF_SQUARES * m[6], left, 0.0)
 
 
 def straight_pieces(
@@ -348,10 +347,12 @@ def straight_pieces(
         small = (resolution * speed / 4) ** 2 / (
             noise.variance(speed) + (1e-4 * speed) ** 2 + 1e-60
         )
-        cost = (both - left - right) / np.maximum(_WORSE * memory, shorter * small)
+        cost = (both - left - right) / np.maximum(
+            limits.MAX_COST_OF_MERGER.value * memory, shorter * small
+        )
         # a line through two samples costs nothing: which pair is joined first tells the order in
         # time, and not the last bit
-        cost = np.round(cost, _EQUAL)
+        cost = np.round(cost, _COST_DIGITS)
         if not (cost < 1).any():
             break
         ahead = np.concatenate([[np.inf], cost[:-1]])

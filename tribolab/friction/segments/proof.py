@@ -26,18 +26,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 
+from tribolab.friction.segments import limits
 from tribolab.friction.segments.plateaus import running_median
 
-_MOST = 512  # readings of a fit; more are averaged
-_WILD = 8.0  # times the usual distance from the neighbours' median
-_WILD_SHARE = {False: 0.2, True: 0.02}  # of the range of velocities, of positions
-_BESIDE = (0.5, 1.0)  # lengths of the piece that are looked at beside it
-_CORNERS = (-0.2, -0.1, 0.0, 0.1, 0.2)  # of its length a piece's end may be off
-_TURNS = np.linspace(-0.8, 0.8, 17)  # places of a turn, of half the window
-_FINER = 4  # times the places of the turn are narrowed down, tenfold each
-_BETTER = 10.0  # in Schwarz's criterion: very strong evidence
-_KNOWN = 2.0  # standard errors of the change that have to lie within the drift
-_SURE = 4.0  # standard errors by which a change is sure
+_FITTED_READINGS = 512  # readings of a fit; more are averaged
+_OUTLIER_SHARES = {False: 0.2, True: 0.02}  # of the range of velocities, of positions
+_SIDE_LENGTHS = (0.5, 1.0)  # lengths of the piece that are looked at beside it
+_END_SHIFTS = (-0.2, -0.1, 0.0, 0.1, 0.2)  # of its length a piece's end may be off
+_TURN_PLACES = np.linspace(-0.8, 0.8, 17)  # places of a turn, of half the window
+_TURN_REFINEMENTS = 4  # times the places of the turn are narrowed down, tenfold each
 
 
 class Readings(NamedTuple):
@@ -55,9 +52,11 @@ class Readings(NamedTuple):
         if values.size:
             off = np.abs(values - median)
             # a turn is no spike, however little noise there is
-            least = _WILD_SHARE[self.is_position] * float(np.ptp(median))
-            values = np.where(off > max(_WILD * float(np.mean(off)), least), median, values)
-        size = -(-time.size // _MOST)
+            least = _OUTLIER_SHARES[self.is_position] * float(np.ptp(median))
+            values = np.where(
+                off > max(limits.MIN_OUTLIER.value * float(np.mean(off)), least), median, values
+            )
+        size = -(-time.size // _FITTED_READINGS)
         if size > 1:
             count = time.size // size
             time, values = (
@@ -145,7 +144,7 @@ def change_along(readings: Readings, begin: float, end: float) -> tuple[float, f
 def surely_changes(readings: Readings, begin: float, end: float, most: float) -> bool:
     """Whether the parabola through a piece changes by more than `most` [m/s], beyond chance."""
     change, error = change_along(readings, begin, end)
-    return bool(change > most + _SURE * error)
+    return bool(change > most + limits.MIN_ERRORS_OF_CHANGE.value * error)
 
 
 def is_proven(
@@ -169,9 +168,9 @@ def is_proven(
         Whether a ramp lies before and after the piece.
     """
     change, error = change_along(readings, begin, end)
-    if not change + _KNOWN * error <= most:
+    if not change + limits.MIN_ERRORS_WITHIN_DRIFT.value * error <= most:
         return False
-    return any(_is_level(readings, begin, end, sides, beside) for beside in _BESIDE)
+    return any(_is_level(readings, begin, end, sides, beside) for beside in _SIDE_LENGTHS)
 
 
 def _is_level(
@@ -192,8 +191,8 @@ def _is_level(
 
     levels = [fitted(*case) for case in _levels(place, corners, sides)]
     others = [fitted(*case) for case in _motions(place)]
-    turns, width = _TURNS, _TURNS[1] - _TURNS[0]
-    for _ in range(_FINER):
+    turns, width = _TURN_PLACES, _TURN_PLACES[1] - _TURN_PLACES[0]
+    for _ in range(_TURN_REFINEMENTS):
         misfits = [fitted(_turn(place, at), 1) for at in turns]
         others += misfits
         best = int(np.argmin([fit.variance for fit, _ in misfits]))
@@ -208,7 +207,7 @@ def _is_level(
             for fit, free in fits
         )
 
-    return schwarz(levels) + _BETTER < schwarz(others)
+    return schwarz(levels) + limits.MIN_GAIN_OF_LEVEL.value < schwarz(others)
 
 
 def _levels(
@@ -217,8 +216,8 @@ def _levels(
     """Levels with a line on each side that has a ramp; their corners move a little."""
     size = corners[1] - corners[0]
     levels = []
-    for before in _CORNERS if sides[0] else (None,):
-        for after in _CORNERS if sides[1] else (None,):
+    for before in _END_SHIFTS if sides[0] else (None,):
+        for after in _END_SHIFTS if sides[1] else (None,):
             motion = [np.ones(place.size), place]
             for shift, corner, way in ((before, corners[0], -1), (after, corners[1], 1)):
                 if shift is not None:

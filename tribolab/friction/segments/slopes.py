@@ -7,19 +7,12 @@ import numpy as np
 from tribolab.arrays.chunks import pieces
 from tribolab.arrays.medians import median
 from tribolab.arrays.scratch import room
+from tribolab.friction.segments import limits
 from tribolab.friction.segments.plateaus import quantum
 
-_WANTED_ERROR = 0.03  # relative error of a block's slope that the block size aims at
-FEWEST_OF_BLOCK = 8  # samples in a block
-_JUMP = 0.002  # of the range of positions: a smaller jump moves no segment
-_DIGITS_OF_JUMP = 2.5  # a coarse encoder goes on by a digit or two at once
-_FASTER = 3.0  # times the rate around it, for a single sample
-_ISOLATED = 20.0  # times the scatter of the rates around it: no slider does that
-_SAMPLE = 8192  # readings that suffice to find their last digit
-_DUST = 0.01  # of a digit: what arithmetic adds
-_TOLD = 0.02  # of the steps of a motion that is told, those at its ends may differ
-_ROUNDED = 0.5  # digits of noise that rounding may leave
-_AROUND = 8  # samples on each side that tell the rate
+_DIGIT_SAMPLE = 8192  # readings that suffice to find their last digit
+_DIGIT_ROUNDING = 0.01  # of a digit: what arithmetic adds
+_RATE_SAMPLES = 8  # samples on each side that tell the rate
 
 
 def position_noise(time: np.ndarray, position: np.ndarray) -> float:
@@ -71,15 +64,15 @@ def digit(position: np.ndarray) -> float:
     >>> digit(np.array([0.0, 2.1e-6, 7.3e-6, 1e-5, 1.17e-5, 1.5e-5, 2.44e-5, 3.3e-5]))
     0.0
     """
-    levels = np.unique(position[:: 1 + position.size // _SAMPLE])
+    levels = np.unique(position[:: 1 + position.size // _DIGIT_SAMPLE])
     gaps = np.diff(levels)
     # what differs in the last bits only is one reading
     gaps = gaps[gaps > 1e-9 * np.abs(levels).max(initial=0.0)]
-    if gaps.size < FEWEST_OF_BLOCK - 1:
+    if gaps.size < limits.MIN_SAMPLES_OF_BLOCK.value - 1:
         return 0.0
     least = float(gaps.min())
     times = gaps / least
-    if np.abs(times - np.round(times)).max() >= _DUST:
+    if np.abs(times - np.round(times)).max() >= _DIGIT_ROUNDING:
         return 0.0
     return 0.0 if _is_commanded(position, least) else least
 
@@ -93,12 +86,12 @@ def _is_commanded(position: np.ndarray, step: float) -> bool:
     moves = others = alone = 0
     for first, last in pieces(0, position.size - 1):
         steps = np.abs(np.diff(position[first : last + 1]))
-        still = steps <= _DUST * step
-        one = np.abs(steps - step) < _DUST * step
+        still = steps <= _DIGIT_ROUNDING * step
+        one = np.abs(steps - step) < _DIGIT_ROUNDING * step
         moves += int(np.count_nonzero(one))
         others += int(np.count_nonzero(~one & ~still))
         alone += int(np.count_nonzero(still[1:-1] & ~still[:-2] & ~still[2:]))
-    return moves > 0 and others + alone <= _TOLD * moves
+    return moves > 0 and others + alone <= limits.MAX_UNEQUAL_STEPS.value * moves
 
 
 def is_rounding(position: np.ndarray, noise: float) -> bool:
@@ -114,13 +107,13 @@ def is_rounding(position: np.ndarray, noise: float) -> bool:
     noise
         From `position_noise` [m].
     """
-    return is_staircase(position) or noise <= _ROUNDED * digit(position)
+    return is_staircase(position) or noise <= limits.MAX_NOISE_OF_ROUNDING.value * digit(position)
 
 
 def _far(time: np.ndarray, position: np.ndarray) -> np.ndarray:
     """Return the samples behind which the position goes on far away."""
-    least = _JUMP * float(np.ptp(position)) if position.size else 0.0
-    least = max(least, _DIGITS_OF_JUMP * quantum(position))
+    least = limits.MIN_JUMP.value * float(np.ptp(position)) if position.size else 0.0
+    least = max(least, limits.MIN_DIGITS_OF_JUMP.value * quantum(position))
     parts = [
         first
         + np.flatnonzero(
@@ -147,13 +140,15 @@ def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, 
 
     Notes
     -----
-    A jump is a single difference of `_JUMP` of the range or more that stands off from the rates
+    A jump is a single difference of `MIN_JUMP` of the range or more that stands off from the rates
     around it; it is replaced by what their median would give.
     """
     far = _far(time, position)
-    if far.size == 0 or position.size <= 2 * _AROUND:
+    if far.size == 0 or position.size <= 2 * _RATE_SAMPLES:
         return position, np.zeros(0, dtype=int)
-    near = far[:, None] + np.concatenate([np.arange(-_AROUND, 0), np.arange(1, _AROUND + 1)])
+    near = far[:, None] + np.concatenate(
+        [np.arange(-_RATE_SAMPLES, 0), np.arange(1, _RATE_SAMPLES + 1)]
+    )
     beside = np.where((near >= 0) & (near < position.size - 1), near, far[:, None])
     around = _rates(time, position, beside)
     around[beside == far[:, None]] = np.nan
@@ -162,7 +157,10 @@ def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, 
     still = np.isnan(size).all(axis=1)
     size[still] = 0.0
     scatter = np.nanmedian(np.abs(around - usual[:, None]), axis=1)
-    limit = np.maximum(_FASTER * np.nanmedian(size, axis=1), _ISOLATED * scatter)
+    limit = np.maximum(
+        limits.MIN_RATE_OF_JUMP.value * np.nanmedian(size, axis=1),
+        limits.MIN_SCATTER_OF_JUMP.value * scatter,
+    )
     jump = np.abs(_rates(time, position, far) - usual) > limit
     at = far[jump]
     moved = position[at + 1] - position[at] - usual[jump] * (time[at + 1] - time[at])
@@ -215,7 +213,7 @@ def _slopes(t: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def velocity_blocks(
-    time: np.ndarray, position: np.ndarray, least: int = FEWEST_OF_BLOCK
+    time: np.ndarray, position: np.ndarray, least: int = limits.MIN_SAMPLES_OF_BLOCK.value
 ) -> tuple[np.ndarray, np.ndarray, int, float]:
     """Velocity on blocks just long enough for a slope good to a few percent.
 
@@ -253,7 +251,7 @@ def _fine(speed: np.ndarray, error: float) -> bool:
     order = np.argsort(speed)
     share = np.cumsum(sure[order])
     usual = speed[order][np.searchsorted(share, 0.5 * share[-1])]
-    return bool(error <= _WANTED_ERROR * median(speed[speed > 0.2 * usual]))
+    return bool(error <= limits.MAX_ERROR_OF_SLOPE.value * median(speed[speed > 0.2 * usual]))
 
 
 def line(time: np.ndarray, position: np.ndarray) -> tuple[float, float]:

@@ -11,13 +11,14 @@ from tribolab.friction.segments.limits import (
     MAX_ERROR_OF_BLOCK,
     MAX_SPEED_MISFIT,
     MIN_DIGITS_OF_BLOCK,
+    MIN_SAMPLES_OF_BLOCK,
     MIN_SHARE_OF_SPEED,
     MIN_STANDSTILL,
 )
 from tribolab.friction.segments.plateaus import quantum
 from tribolab.friction.segments.stretches import Stretch, track
 
-_PARTS = (32, 16, 8)  # of a segment: as many as the noise of the position allows
+_BLOCK_COUNTS = (32, 16, 8)  # of a segment: as many as the noise of the position allows
 
 
 def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list[Stretch], float]:
@@ -40,7 +41,7 @@ def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list
     if "position" not in run or not anywhere(np.isfinite, run["position"].values):
         return stretches, 0.0
     time, position = track(run)
-    if time.size < 3 * slopes.FEWEST_OF_BLOCK:
+    if time.size < 3 * MIN_SAMPLES_OF_BLOCK.value:
         return stretches, 0.0
     noise, digit = slopes.position_noise(time, position), quantum(position)
     result: list[Stretch] = []
@@ -68,12 +69,12 @@ def _block(time: np.ndarray, stretch: Stretch, noise: float, digit: float) -> in
     """Return the samples of a block in which the position is resolved; 0 if there are none."""
     if stretch.kind != "constant" or not stretch.velocity:
         return 0
-    for parts in _PARTS:
+    for parts in _BLOCK_COUNTS:
         size = time.size // parts
         way = abs(stretch.velocity) * (stretch.stop - stretch.start) / parts
         error = noise * np.sqrt(12 / max(size, 1))
         clear = error <= MAX_ERROR_OF_BLOCK.value * way and MIN_DIGITS_OF_BLOCK.value * digit <= way
-        if size >= slopes.FEWEST_OF_BLOCK and clear:
+        if size >= MIN_SAMPLES_OF_BLOCK.value and clear:
             return size
     return 0
 
@@ -101,7 +102,7 @@ def _cut(stretch: Stretch, time: np.ndarray, begin: np.ndarray, end: np.ndarray)
     ends[0] = stretch.start
     return [
         each._replace(start=ends[a], stop=ends[b])
-        if b - a >= slopes.FEWEST_OF_BLOCK or len(result) == 1
+        if b - a >= MIN_SAMPLES_OF_BLOCK.value or len(result) == 1
         else Stretch(ends[a], ends[b], "too short", np.nan)
         for a, b, each in result
         if b > a

@@ -11,15 +11,13 @@ import xarray as xr
 from tribolab.arrays.chunks import anywhere
 from tribolab.arrays.medians import median
 from tribolab.core.errors import AnalysisError
-from tribolab.friction.segments import slopes
+from tribolab.friction.segments import limits, slopes
 from tribolab.friction.segments.constancy import MeanVelocities
 from tribolab.friction.segments.locate import ConstancyLimits, VelocityPiece, held, locate, moving
 from tribolab.friction.segments.turns import strokes_within
 from tribolab.friction.time_weights import without_gaps
 
-_NOWHERE = 3.0  # standard deviations of a reading of the position: so far is nowhere
-_NEAR = 4  # intervals on each side of one that tell whether it is a gap
-_RESOLVED = 10.0  # errors of a block's velocity from which on its blocks are long enough
+_INTERVALS_OF_GAP = 4  # intervals on each side of one that tell whether it is a gap
 
 
 class Stretch(NamedTuple):
@@ -95,38 +93,42 @@ def of_points(run: xr.Dataset) -> list[Stretch]:
     ]
 
 
-def from_velocity(run: xr.Dataset, limits: ConstancyLimits, max_gap: float | None) -> list[Stretch]:
+def from_velocity(
+    run: xr.Dataset, constancy: ConstancyLimits, max_gap: float | None
+) -> list[Stretch]:
     """Stretches from the recorded velocity."""
     time, velocity = finite(run, "sliding_velocity")
     if time.size < 2:
         return _nothing(run, time.size)
-    pieces, share = locate(time, velocity, limits), 0.05
-    pieces = moving(time, pieces, limits, velocity)
-    pieces = held(MeanVelocities(time, velocity=velocity), pieces, limits)
-    return _in_time(run, time, pieces, limits, max_gap, share)
+    pieces, share = locate(time, velocity, constancy), 0.05
+    pieces = moving(time, pieces, constancy, velocity)
+    pieces = held(MeanVelocities(time, velocity=velocity), pieces, constancy)
+    return _in_time(run, time, pieces, constancy, max_gap, share)
 
 
-def from_position(run: xr.Dataset, limits: ConstancyLimits, max_gap: float | None) -> list[Stretch]:
+def from_position(
+    run: xr.Dataset, constancy: ConstancyLimits, max_gap: float | None
+) -> list[Stretch]:
     """Stretches from the position, by slopes over blocks."""
     time, position = track(run)
-    if time.size < 3 * slopes.FEWEST_OF_BLOCK:
+    if time.size < 3 * limits.MIN_SAMPLES_OF_BLOCK.value:
         return _nothing(run, time.size)
-    pieces = _by_slopes(time, position, limits, slopes.FEWEST_OF_BLOCK)
-    pieces = held(MeanVelocities(time, position=position), pieces, limits)
-    pieces = strokes_within(time, position, pieces, limits)
-    pieces = moving(time, [_with_slope(time, position, p) for p in pieces], limits)
-    if limits.rest_speed is None:
+    pieces = _by_slopes(time, position, constancy, limits.MIN_SAMPLES_OF_BLOCK.value)
+    pieces = held(MeanVelocities(time, position=position), pieces, constancy)
+    pieces = strokes_within(time, position, pieces, constancy)
+    pieces = moving(time, [_with_slope(time, position, p) for p in pieces], constancy)
+    if constancy.rest_speed is None:
         pieces = _getting_somewhere(time, pieces, slopes.position_noise(time, position))
     share = 0.25  # one straight line on both sides of a pause shows that the speed held
-    return _in_time(run, time, pieces, limits, max_gap, share)
+    return _in_time(run, time, pieces, constancy, max_gap, share)
 
 
 def _by_slopes(
-    time: np.ndarray, position: np.ndarray, limits: ConstancyLimits, least: int
+    time: np.ndarray, position: np.ndarray, constancy: ConstancyLimits, least: int
 ) -> list[VelocityPiece]:
     """Pieces by slopes over blocks; what is too slow for these blocks by longer ones."""
     t, v, size, error = slopes.velocity_blocks(time, position, least)
-    fewest = limits._replace(min_samples=max(3, limits.min_samples // size))
+    fewest = constancy._replace(min_samples=max(3, constancy.min_samples // size))
     # digits leave blocks without noise beside such that hold a whole step
     noise = slopes.position_noise(time, position)
     floor = error if slopes.is_rounding(position, noise) else 0.0
@@ -137,12 +139,12 @@ def _by_slopes(
     if error == 0:
         return pieces
     result: list[VelocityPiece] = []
-    slow = [abs(p.velocity) < _RESOLVED * error for p in pieces]
+    slow = [abs(p.velocity) < limits.MIN_SPEED_OVER_ERROR.value * error for p in pieces]
     for is_slow, some in groupby(zip(slow, pieces, strict=True), key=lambda pair: pair[0]):
         group = [piece for _, piece in some]
         first, last = group[0].first, group[-1].last
         if is_slow and last - first >= 128 * size:
-            inner = _by_slopes(time[first:last], position[first:last], limits, 2 * size)
+            inner = _by_slopes(time[first:last], position[first:last], constancy, 2 * size)
             group = [p._replace(first=p.first + first, last=p.last + first) for p in inner]
         result += group
     return result
@@ -162,7 +164,8 @@ def _getting_somewhere(
     return [
         piece._replace(kind="at rest")
         if piece.kind == "constant"
-        and abs(piece.velocity) * (time[piece.last - 1] - time[piece.first]) < _NOWHERE * noise
+        and abs(piece.velocity) * (time[piece.last - 1] - time[piece.first])
+        < limits.MIN_DISTANCE_OVER_NOISE.value * noise
         else piece
         for piece in pieces
     ]
@@ -206,7 +209,7 @@ def _in_time(
     run: xr.Dataset,
     time: np.ndarray,
     pieces: list[VelocityPiece],
-    limits: ConstancyLimits,
+    constancy: ConstancyLimits,
     max_gap: float | None,
     share: float,
 ) -> list[Stretch]:
@@ -220,7 +223,7 @@ def _in_time(
         edges = [piece.first, *(at + 1), piece.last]
         for first, last in zip(edges[:-1], edges[1:], strict=True):
             kind = piece.kind
-            if kind == "constant" and last - first < limits.min_samples:
+            if kind == "constant" and last - first < constancy.min_samples:
                 kind = "too short"
             stop = time[last - 1]
             if last == piece.last and last < time.size and not _wide(time, last - 1, piece):
@@ -256,8 +259,8 @@ def _gaps(
     wide = np.flatnonzero(spans > longest)  # only there can such a pause hide
     parts = []
     for block in wide:
-        near = max(int(block) * step - _NEAR, 0)
-        steps = np.diff(inside[near : (block + 1) * step + _NEAR + 1])
+        near = max(int(block) * step - _INTERVALS_OF_GAP, 0)
+        steps = np.diff(inside[near : (block + 1) * step + _INTERVALS_OF_GAP + 1])
         # a slower rate is no gap: it has as long intervals next to it
         alone = (steps > without_gaps(steps)) | (max_gap is not None)
         gap = near + np.flatnonzero((steps > longest) & alone)

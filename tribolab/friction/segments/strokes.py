@@ -9,19 +9,9 @@ import xarray as xr
 
 from tribolab.arrays.medians import median
 from tribolab.core.errors import AnalysisError, Cure
+from tribolab.friction.segments import limits
 from tribolab.friction.segments.stretches import finite, name_of
-from tribolab.friction.segments.turns import SAME, last_side, turns_of
-
-_LEAST_SPEED = 0.2  # of the usual speed: what is slower does not say which way it goes
-_SHORTEST = 0.5  # of the usual length: what is shorter is no stroke
-_FEWEST = 3  # strokes, the cut ones at both ends left out
-_PAUSE = 20  # usual sample spacings: what is shorter is no pause
-_NOT_SEEN = 0.25  # of a stroke's duration
-_SHUTTLES = 6  # strokes, of which all but a fifth are alike
-_FEW_UNLIKE = 0.2
-_EVEN = 0.1  # of a stroke's duration, by which the next one may differ
-_SEEN = 10  # samples of a stroke, at least
-_CLEAR = 5.0  # standard errors
+from tribolab.friction.segments.turns import EQUAL, last_side, turns_of
 
 
 class Strokes(NamedTuple):
@@ -86,9 +76,10 @@ def find_strokes(run: xr.Dataset) -> Strokes:
             "strokes are found from the position or the signed velocity, and the run has neither",
             where=name_of(run),
         )
-    if way.size < _FEWEST:
+    if way.size < limits.MIN_WHOLE_STROKES.value:
         raise AnalysisError(
-            f"the slider does not reverse: {way.size} whole strokes, {_FEWEST} are needed",
+            f"the slider does not reverse: {way.size} whole strokes, "
+            f"{limits.MIN_WHOLE_STROKES.value} are needed",
             where=name_of(run),
             cure=Cure(
                 notebook="for plateaus of constant speed use find_segments without stroke_middle",
@@ -119,10 +110,15 @@ def shuttles(run: xr.Dataset) -> bool:
         return False
     usual = strokes.usual
     lasted = np.diff(run["time"].values[strokes.first])[usual]
-    if lasted.size < max(_SHUTTLES, (1 - _FEW_UNLIKE) * usual.size):
+    if lasted.size < max(
+        limits.MIN_EQUAL_STROKES.value, (1 - limits.MAX_UNEQUAL_STROKES.value) * usual.size
+    ):
         return False
-    unlike = np.abs(np.diff(np.log(lasted))) > _EVEN
-    if unlike.mean() > _FEW_UNLIKE or median(np.diff(strokes.first)) < _SEEN:
+    unlike = np.abs(np.diff(np.log(lasted))) > limits.MAX_CHANGE_OF_DURATION.value
+    if (
+        unlike.mean() > limits.MAX_UNEQUAL_STROKES.value
+        or median(np.diff(strokes.first)) < limits.MIN_SAMPLES_OF_STROKE.value
+    ):
         return False
     return _turns_with(strokes, run[names[0]].values)
 
@@ -139,14 +135,17 @@ def _turns_with(strokes: Strokes, friction: np.ndarray) -> bool:
     if min(own.size for own in ways) < 2:
         return False
     error = np.sqrt(sum(own.var(ddof=1) / own.size for own in ways))
-    return bool(abs(ways[0].mean() - ways[1].mean()) > _CLEAR * error)
+    return bool(abs(ways[0].mean() - ways[1].mean()) > limits.MIN_ERRORS_BETWEEN_WAYS.value * error)
 
 
 def _paused(time: np.ndarray, first: np.ndarray) -> np.ndarray:
     """Whether no sample was taken in a quarter of a stroke (stroke)."""
     pause = np.diff(time[first[0] : first[-1] + 1])
     longest = np.maximum.reduceat(pause, first[:-1] - first[0])
-    return longest > np.maximum(_PAUSE * median(pause), _NOT_SEEN * np.diff(time[first]))
+    return longest > np.maximum(
+        limits.MIN_INTERVALS_OF_PAUSE.value * median(pause),
+        limits.MIN_PAUSE_OF_STROKE.value * np.diff(time[first]),
+    )
 
 
 def _settings(run: xr.Dataset) -> np.ndarray | None:
@@ -160,11 +159,13 @@ def _usual(run: xr.Dataset, first: np.ndarray, length: np.ndarray) -> np.ndarray
     """Whether a stroke is as long as those of its step are, and lies in one step (stroke)."""
     step = _settings(run)
     if step is None:
-        return length > _SHORTEST * median(length)
+        return length > limits.MIN_LENGTH_OF_STROKE.value * median(length)
     own = step[first[:-1]]
     usual = np.zeros(length.size, dtype=bool)
     for each in np.unique(own):
-        usual[own == each] = length[own == each] > _SHORTEST * median(length[own == each])
+        usual[own == each] = length[own == each] > limits.MIN_LENGTH_OF_STROKE.value * median(
+            length[own == each]
+        )
     return usual & (own == step[first[1:] - 1])
 
 
@@ -202,7 +203,7 @@ def _by_velocity(run: xr.Dataset) -> _Parts:
     if change.size < 2:
         return _nothing(velocity.size)
     # the turn lies where the velocity last had the sign of before
-    sign = np.where(np.abs(velocity) > SAME * limit, np.sign(velocity), 0.0)
+    sign = np.where(np.abs(velocity) > EQUAL * limit, np.sign(velocity), 0.0)
     same = np.flatnonzero(sign[:-1] * sign[1:] <= 0) + 1
     turn = np.unique(same[np.clip(np.searchsorted(same, change, side="right") - 1, 0, None)])
     way = np.sign(state[np.minimum(turn[1:] - 1, state.size - 1)]).astype(int)
@@ -221,10 +222,12 @@ def _limit(run: xr.Dataset, velocity: np.ndarray) -> float | np.ndarray:
     """Return the speed below which a sample does not say which way it goes [m/s]."""
     step = _settings(run)
     if step is None:
-        return _LEAST_SPEED * float(np.percentile(np.abs(velocity), 90))
+        return limits.MIN_SPEED_OF_STROKE.value * float(np.percentile(np.abs(velocity), 90))
     limit = np.zeros(velocity.size)
     for each in np.unique(step):
-        limit[step == each] = _LEAST_SPEED * np.percentile(np.abs(velocity[step == each]), 90)
+        limit[step == each] = limits.MIN_SPEED_OF_STROKE.value * np.percentile(
+            np.abs(velocity[step == each]), 90
+        )
     return limit
 
 

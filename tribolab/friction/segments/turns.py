@@ -4,20 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from tribolab.friction.segments import slopes
+from tribolab.friction.segments import limits, slopes
 from tribolab.friction.segments.locate import ConstancyLimits, VelocityPiece
 
-_HYSTERESIS = 0.25  # of the range: how far a position has to come back to be a turn
-SAME = 1e-9  # of the range, or of the usual speed: what differs by less is the same, or zero
-_STROKES = 3  # in a stretch, at least
-_INNER = 0.8  # of a stroke: what turns and starts lies outside
-_PARTS = 4  # of the inner part, whose speeds are compared
-_STRAIGHT = 0.6  # of the strokes of a stretch that have to hold their speed
-_SURE = 3.0  # standard errors
-_LEAVES = 0.005  # of a stroke, by which a position leaves its straight line
-_ALIKE = 0.1  # of a stroke's speed, by which a plateau of it may differ
-_COVERED = 0.6  # of a stroke, which plateaus cover if they have found it
-_ABOVE = 20.0  # times the noise of a reading: so far a slider goes to and fro
+EQUAL = 1e-9  # of the range, or of the usual speed: what differs by less is the same, or zero
+_INNER_PARTS = 4  # of the inner part, whose speeds are compared
 
 
 def last_side(values: np.ndarray, low: float | np.ndarray, high: float | np.ndarray) -> np.ndarray:
@@ -50,7 +41,7 @@ def turns_of(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         on one side, between comings back by a quarter of the range.
     """
     low, high = np.percentile(position, [1, 99])
-    middle, half = (low + high) / 2, (0.5 - _HYSTERESIS) * (high - low)
+    middle, half = (low + high) / 2, (0.5 - limits.MIN_RETURN_OF_TURN.value) * (high - low)
     state = last_side(position, middle - half, middle + half)
     # the first may be a coming in to the first side; where it began on one, that is no turn
     change = np.flatnonzero(np.diff(state)) + 1
@@ -64,12 +55,12 @@ def turns_of(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     part = np.repeat(np.arange(side.size), np.diff(change))
     height = position[inside] * side[part]
     top = np.maximum.reduceat(height, change[:-1] - change[0])
-    at = inside[height >= top[part] - SAME * (high - low)]
+    at = inside[height >= top[part] - EQUAL * (high - low)]
     return at[np.searchsorted(at, change[:-1])], -side[:-1]
 
 
 def strokes_within(
-    time: np.ndarray, position: np.ndarray, pieces: list[VelocityPiece], limits: ConstancyLimits
+    time: np.ndarray, position: np.ndarray, pieces: list[VelocityPiece], constancy: ConstancyLimits
 ) -> list[VelocityPiece]:
     """Return the pieces with a plateau for each straight stroke that the blocks have missed.
 
@@ -79,7 +70,7 @@ def strokes_within(
         Finite samples [s], [m].
     pieces
         Of the whole record, in samples of it.
-    limits
+    constancy
         What counts as constant.
 
     Notes
@@ -90,13 +81,13 @@ def strokes_within(
     """
     noise = slopes.position_noise(time, position)
     whole = VelocityPiece(0, time.size, "ramp", 0.0, 0.0, 0.0)
-    if any(p.kind != "constant" and p.last - p.first >= limits.min_samples for p in pieces):
-        pieces = _completed(pieces, _strokes_of(time, position, whole, limits, noise))
-    least = _STROKES * limits.min_samples
+    if any(p.kind != "constant" and p.last - p.first >= constancy.min_samples for p in pieces):
+        pieces = _completed(pieces, _strokes_of(time, position, whole, constancy, noise))
+    least = limits.MIN_STROKES_OF_STRETCH.value * constancy.min_samples
     result: list[VelocityPiece] = []
     for piece in pieces:
         few = piece.kind == "constant" or piece.last - piece.first < least
-        strokes = [] if few else _strokes_of(time, position, piece, limits, noise)
+        strokes = [] if few else _strokes_of(time, position, piece, constancy, noise)
         result += _completed([piece], strokes)
     return result
 
@@ -112,8 +103,12 @@ def _completed(pieces: list[VelocityPiece], strokes: list[VelocityPiece]) -> lis
         i = int(np.searchsorted(last, stroke.first, side="right"))
         j = int(np.searchsorted(first, stroke.last, side="left"))
         common = np.minimum(last[i:j], stroke.last) - np.maximum(first[i:j], stroke.first)
-        alike = np.abs(velocity[i:j] - stroke.velocity) < _ALIKE * abs(stroke.velocity)
-        return bool(common[alike].sum() >= _COVERED * (stroke.last - stroke.first))
+        alike = np.abs(
+            velocity[i:j] - stroke.velocity
+        ) < limits.MAX_SPEED_DIFFERENCE_OF_PLATEAU.value * abs(stroke.velocity)
+        return bool(
+            common[alike].sum() >= limits.MIN_COVERED_STROKE.value * (stroke.last - stroke.first)
+        )
 
     if all(found(stroke) for stroke in strokes):
         return pieces
@@ -133,19 +128,19 @@ def _strokes_of(
     time: np.ndarray,
     position: np.ndarray,
     piece: VelocityPiece,
-    limits: ConstancyLimits,
+    constancy: ConstancyLimits,
     noise: float,
 ) -> list[VelocityPiece]:
     """Return the straight strokes of a piece; none where most strokes are not straight."""
     part = position[piece.first : piece.last]
-    if np.ptp(part) < _ABOVE * noise:
+    if np.ptp(part) < limits.MIN_STROKE_OVER_NOISE.value * noise:
         return []  # to and fro is but noise
     turn = turns_of(part)[0] + piece.first
-    if turn.size < _STROKES:
+    if turn.size < limits.MIN_STROKES_OF_STRETCH.value:
         return []
     edges = np.unique(np.concatenate([[piece.first], turn, [piece.last]])).tolist()
     own = [
-        _straight_part(time[a:b], position[a:b], limits, noise)
+        _straight_part(time[a:b], position[a:b], constancy, noise)
         for a, b in zip(edges[:-1], edges[1:], strict=True)
     ]
     found = [
@@ -153,37 +148,43 @@ def _strokes_of(
         for a, part in zip(edges[:-1], own, strict=True)
         if part is not None
     ]
-    return found if len(found) >= _STRAIGHT * len(own) else []
+    return found if len(found) >= limits.MIN_STRAIGHT_STROKES.value * len(own) else []
 
 
 def _straight_part(
-    time: np.ndarray, position: np.ndarray, limits: ConstancyLimits, noise: float
+    time: np.ndarray, position: np.ndarray, constancy: ConstancyLimits, noise: float
 ) -> tuple[int, int, float] | None:
     """Return the samples [first, last) and the velocity [m/s] of a stroke without its dwells.
 
     None where the stroke does not hold its speed.
     """
     low, high = float(position.min()), float(position.max())
-    margin = (1 - _INNER) / 2 * (high - low)
+    margin = (1 - limits.INNER_PART_OF_STROKE.value) / 2 * (high - low)
     inside = np.flatnonzero((position > low + margin) & (position < high - margin))
-    if inside.size < limits.min_samples * _INNER:
+    if inside.size < constancy.min_samples * limits.INNER_PART_OF_STROKE.value:
         return None
     inner = slice(inside[0], inside[-1] + 1)
     t, x = time[inner], position[inner]
-    edges = (t.size - 1) * np.arange(_PARTS + 1) // _PARTS
+    edges = (t.size - 1) * np.arange(_INNER_PARTS + 1) // _INNER_PARTS
     lasted = np.diff(t[edges])
     if not (lasted > 0).all():
         return None
     speeds = np.diff(x[edges]) / lasted
     offset, slope = slopes.line(t, x)
     error = np.sqrt(2) * noise / lasted
-    off = np.abs(speeds - slope) - _SURE * error
-    surely = abs(slope) > _SURE * float(np.median(error)) / np.sqrt(_PARTS)
-    if not surely or not (off <= limits.drift / 2 * abs(slope)).all():
+    off = np.abs(speeds - slope) - limits.MIN_ERRORS_OF_SLOPE.value * error
+    surely = abs(slope) > limits.MIN_ERRORS_OF_SLOPE.value * float(np.median(error)) / np.sqrt(
+        _INNER_PARTS
+    )
+    if not surely or not (off <= constancy.drift / 2 * abs(slope)).all():
         return None
-    away = np.abs(position - offset - slope * time) > _SURE * noise + _LEAVES * (high - low)
+    away = np.abs(
+        position - offset - slope * time
+    ) > limits.MIN_ERRORS_OF_SLOPE.value * noise + limits.MAX_DEPARTURE_FROM_LINE.value * (
+        high - low
+    )
     before = np.flatnonzero(away[: inside[0]])
     after = np.flatnonzero(away[inside[-1] :])
     first = int(before[-1]) + 1 if before.size else 0
     last = int(inside[-1] + after[0]) if after.size else time.size
-    return (first, last, slope) if last - first >= limits.min_samples else None
+    return (first, last, slope) if last - first >= constancy.min_samples else None

@@ -1,7 +1,8 @@
 """Numbers that decide what the zero of the forces is."""
 
-from tribolab.core.limit import Limit
+from tribolab.core.limit import Count, Limit
 
+_TRICKY = "tests/benchmarks/tricky_runs.py, seeds 0 to 9; reported on seeds from 1000"
 MAX_SAMPLE_TILT = Limit(
     0.09, "rad", "largest tilt between force cell and contact that is believed: five degrees; a "
     "sample that is askew by more is seen with the bare eye",
@@ -47,3 +48,89 @@ FRICTION_RELEASED = Limit(
     0.25, "1", "share of the friction that a loaded rest must have lost to show whether friction "
     "leaks into the load reading: with less the noise of the reading is amplified too much",
 )  # fmt: skip
+MIN_SAMPLES_OF_LOADED_REST = Count(20, "1", "samples of a loaded rest")
+MIN_ERRORS_OF_READINGS = Limit(
+    4.0, "1", "standard errors between two readings that differ, at rest or with load", _TRICKY
+)
+MAX_SLOPE_OF_DRIFT = Limit(
+    2.0, "1", "slope of a drift of the zero over that between the next loops; a steeper change is "
+    "a jump", _TRICKY,
+)  # fmt: skip
+MAX_SPEED_DIFFERENCE_OF_PAIR = Limit(
+    0.25, "1", "relative difference of speed up to which two strokes make a pair"
+)
+MIN_ERRORS_OF_LEVEL = Limit(
+    5.0, "1", "standard errors of a level from zero, or from another level, that differ", _TRICKY
+)
+MAX_MIDDLE_OF_SIGNED_LOOP = Limit(
+    0.3, "1", "middle of a loop over half of it, below which the force has its sign", _TRICKY
+)
+MIN_LEVEL_RATIO_OF_LOST_SIGN = Limit(
+    0.5, "1", "smaller over larger level of two strokes whose sign was lost", _TRICKY
+)
+MAX_FRICTION_RATIO_OF_PARTS = Limit(
+    4.0, "1", "ratio of friction between parts of a run that measure the same friction", _TRICKY
+)
+MAX_LEVEL_OF_DIP = Limit(
+    0.5, "1", "share of the strokes' level, below which the force at a reversal passes through "
+    "zero", _TRICKY,
+)  # fmt: skip
+MAX_ERRORS_OF_TOUCH = Limit(
+    5.0, "1", "standard deviations from zero within which the force touches it", _TRICKY
+)
+MIN_DEPTH_OF_DIP = Limit(
+    1.0, "1", "depth below the lower stroke, in its scatter, of a reading on its way through zero",
+    _TRICKY,
+)  # fmt: skip
+MAX_READINGS_OF_DIP = Count(
+    3, "1", "readings so deep; with more of them, one would have been close to zero", _TRICKY
+)
+MIN_READINGS_BETWEEN_LEVELS = Count(
+    3, "1", "readings between two levels that noise does not make at most reversals", _TRICKY
+)
+MAX_REVERSALS_WITH_SPIKE = Limit(
+    0.1, "1", "share of reversals at which a spike or a slip is below both levels", _TRICKY
+)
+MIN_REVERSALS_WITH_DIP = Limit(0.5, "1", "share of reversals that show the same", _TRICKY)
+MAX_DIFFERENCE_OF_LEVELS = Limit(
+    0.25, "1", "difference of the levels of both directions over their mean, if they are one "
+    "level", _TRICKY,
+)  # fmt: skip
+MAX_SPEED_DIFFERENCE_OF_REVERSAL = Limit(
+    0.2, "1", "relative difference of the speeds before and after a reversal", _TRICKY
+)
+MAX_ASYMMETRY = Limit(
+    0.05, "1", "share of friction by which a stated zero may differ from the middle of the loop",
+    _TRICKY,
+)  # fmt: skip
+MIN_ERRORS_OF_ASYMMETRY = Limit(3.0, "1", "standard errors of the same", _TRICKY)
+EXAMPLE_OF_ZERO_ERROR = Limit(
+    0.02, "1", "share of friction that a message suggests as the uncertainty of the zero"
+)
+MAX_DRIFT_OF_LOAD_ZERO = Limit(
+    0.1, "1", "share of the load by which the zero of the normal force may change between rests"
+)
+MAX_LOAD_OF_BARE_REST = Limit(
+    0.4, "1", "share of the load below which a rest may be one without contact"
+)
+MAX_RATIO_TO_REST = Limit(
+    1.5, "1", "load of a segment over the reading at a rest, below which the segment slides at "
+    "the load of the rest", _TRICKY,
+)  # fmt: skip
+MIN_SAMPLES_OF_REST = Count(10, "1", "samples of an unloaded rest")
+MAX_SCATTER_OF_BARE_REST = Limit(
+    0.02, "1", "share of the load within which the reading stays without contact"
+)
+MAX_SPEED_DIFFERENCE_OF_LOOP = Limit(
+    0.05, "1", "relative difference of speed up to which both strokes measure friction at one speed"
+)
+SPEED_DEPENDENCE = Limit(
+    0.15, "1", "share of friction by which it changes when the speed changes by a factor of e, if "
+    "not measured",
+)  # fmt: skip
+MIN_SPEED_DEPENDENCE = Limit(0.05, "1", "the same if a smaller one was measured")
+MAX_SPEED_RATIO_OF_LOOP = Limit(
+    1.0, "1", "difference of the speeds of a loop's strokes over their mean, unless both are "
+    "stated to be a loop",
+)  # fmt: skip
+MIN_LOAD_OF_REST = Limit(0.8, "1", "share of the load from which a rest is loaded")

@@ -14,11 +14,10 @@ from tribolab.friction.zero.parts import Doubt, ZeroReference
 from tribolab.friction.zero.without_sliding import stretches_of
 from tribolab.friction.zero.words import of_leak, of_retained_load
 
-UNIFORM = np.sqrt(3)  # a difference that is an error or none: the half width of a uniform one
-_FEWEST = 20  # samples of a rest
-_NEAREST = 4  # rests that are compared with a segment
-_ERRORS = 4.0  # standard errors beyond which two readings differ
-_BLOCKS = 5  # of a reading: their scatter includes slow waves and ramps of the load
+# a difference that is an error or none: the half width of a uniform one
+WIDTH_OVER_SIGMA = np.sqrt(3)
+_NEAREST_RESTS = 4  # rests that are compared with a segment
+_READING_BLOCKS = 5  # of a reading: their scatter includes slow waves and ramps of the load
 
 
 class LoadReading(NamedTuple):
@@ -78,7 +77,7 @@ def _retained(offset: np.ndarray, load: float) -> LoadReading:
     doubts: tuple[Doubt, ...] = ()
     if usual > limits.DOUBTFUL_REST.value * load:
         doubts = (of_retained_load(usual, load, offset.size),)
-    return LoadReading(level / UNIFORM, doubts)
+    return LoadReading(level / WIDTH_OVER_SIGMA, doubts)
 
 
 def _leak(
@@ -99,12 +98,14 @@ def _leak(
     middles = np.array([time[part].mean() for part in rests])
     for i in range(pressed.size):
         force = friction[i] - zero.value[i]
-        if not (pressed[i] > 0 and abs(force) > 0 and parts[i].stop - parts[i].start > _BLOCKS):
+        if not (
+            pressed[i] > 0 and abs(force) > 0 and parts[i].stop - parts[i].start > _READING_BLOCKS
+        ):
             continue
         # a load that wanders while sliding does so between rest and sliding as well
-        wanders = _mean_of_blocks(normal[parts[i]])[1] * np.sqrt(_BLOCKS)
+        wanders = _mean_of_blocks(normal[parts[i]])[1] * np.sqrt(_READING_BLOCKS)
         useful = []
-        for k in np.argsort(np.abs(middles - starts[i]), kind="stable")[:_NEAREST]:
+        for k in np.argsort(np.abs(middles - starts[i]), kind="stable")[:_NEAREST_RESTS]:
             rest = _loaded_rest(run, rests[k], bool(middles[k] < starts[i]), float(reads[i]))
             let_go = 0.0 if rest is None else 1 - (rest.force - zero.value[i]) / force
             if rest is not None and let_go > limits.FRICTION_RELEASED.value:
@@ -113,14 +114,14 @@ def _leak(
                 useful.append((abs(rest.time - starts[i]), found, error))
         if useful:
             _, found, error = min(useful)
-            leak[i] = found if abs(found) > _ERRORS * error else 0.0
+            leak[i] = found if abs(found) > limits.MIN_ERRORS_OF_READINGS.value * error else 0.0
     share = np.abs(leak) / np.where(pressed > 0, pressed, np.inf)
     which = np.flatnonzero(share > limits.LOAD_AT_REST.value)
     doubts: tuple[Doubt, ...] = ()
     if which.size:
         worst = int(share.argmax())
         doubts = (of_leak(float(leak[worst]), float(pressed[worst]), which),)
-    return LoadReading(np.abs(leak) / UNIFORM, doubts)
+    return LoadReading(np.abs(leak) / WIDTH_OVER_SIGMA, doubts)
 
 
 class _Rest(NamedTuple):
@@ -139,7 +140,7 @@ def _loaded_rest(run: xr.Dataset, part: slice, before: bool, load: float) -> _Re
     time, normal, force = (run[k].values[near] for k in ("time", "normal_force", "friction_force"))
     alike = limits.SAME_LOAD.value
     good = np.isfinite(force) & (normal > load / alike) & (normal < load * alike)
-    if good.sum() < _FEWEST:
+    if good.sum() < limits.MIN_SAMPLES_OF_LOADED_REST.value:
         return None
     mean, error = _mean_of_blocks(normal[good])
     return _Rest(float(time[good].mean()), mean, float(median(force[good])), error)
@@ -149,7 +150,7 @@ def _creep(
     run: xr.Dataset, segments: xr.Dataset, parts: list[slice], pressed: np.ndarray
 ) -> np.ndarray:
     """Return what a creep of the load reading adds to the error of each segment [N] (segment)."""
-    full = np.array([part.stop - part.start >= 10 * _BLOCKS for part in parts], bool)
+    full = np.array([part.stop - part.start >= 10 * _READING_BLOCKS for part in parts], bool)
     full &= np.isfinite(pressed) & (pressed > 0)
     if not full.any():
         return np.zeros(pressed.size)
@@ -162,13 +163,13 @@ def _creep(
     begins = _tenth(normal[parts[first]], slice(None, None))
     ends = _tenth(normal[parts[last]], slice(None, None, -1))
     change = ends[0] - begins[0]
-    if not abs(change) > _ERRORS * np.hypot(begins[1], ends[1]):
+    if not abs(change) > limits.MIN_ERRORS_OF_READINGS.value * np.hypot(begins[1], ends[1]):
         return np.zeros(pressed.size)
     lasted = _middle_of_tenth(time[parts[last]], -1) - _middle_of_tenth(time[parts[first]], 1)
     begin, end = _under_load(normal, 0.5 * float(np.nanmean(normal[parts[first]])))
     middle = (segments["trimmed_start"].values + segments["trimmed_stop"].values) / 2
     away = np.maximum(middle - time[begin], time[end] - middle)
-    return abs(change / lasted) * away / UNIFORM
+    return abs(change / lasted) * away / WIDTH_OVER_SIGMA
 
 
 def _under_load(normal: np.ndarray, least: float) -> tuple[int, int]:
@@ -191,5 +192,5 @@ def _tenth(values: np.ndarray, order: slice) -> tuple[float, float]:
 
 def _mean_of_blocks(values: np.ndarray) -> tuple[float, float]:
     """Return a mean and its standard error, with slow waves and ramps in it."""
-    means = [float(np.nanmean(block)) for block in np.array_split(values, _BLOCKS)]
-    return float(np.mean(means)), float(np.std(means, ddof=1)) / np.sqrt(_BLOCKS)
+    means = [float(np.nanmean(block)) for block in np.array_split(values, _READING_BLOCKS)]
+    return float(np.mean(means)), float(np.std(means, ddof=1)) / np.sqrt(_READING_BLOCKS)

@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tribolab.friction.zero import limits
 from tribolab.friction.zero.offsets import Wander, wander
-
-_STEEPEST = 2.0  # how much steeper than between the next two loops a drift may be: a jump is none
 
 
 class Middles(NamedTuple):
@@ -89,7 +88,9 @@ def middles(
         if known.size > 2:  # the first and last: what the next step says
             before[0], after[-1] = step[1], step[-2]
         limit = np.where(before * after > 0, np.minimum(np.abs(before), np.abs(after)), 0.0)
-        limited = np.sign(chord) * np.minimum(np.abs(chord), _STEEPEST * limit)
+        limited = np.sign(chord) * np.minimum(
+            np.abs(chord), limits.MAX_SLOPE_OF_DRIFT.value * limit
+        )
         slope[known] = limited
         part[known] = np.where(chord != 0, limited / np.where(chord != 0, chord, 1), 0.0)
         ends[known, 0], ends[known, 1] = known[low], known[high]

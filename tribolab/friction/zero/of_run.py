@@ -11,14 +11,14 @@ import xarray as xr
 
 from tribolab.arrays.medians import median, median_of_known
 from tribolab.core.errors import AnalysisError, UnitError, shown
+from tribolab.friction.zero import limits
 from tribolab.friction.zero.limits import LOADS_DIFFER
 from tribolab.friction.zero.offsets import pair_strokes
 from tribolab.friction.zero.part_folded import of_parts
 from tribolab.friction.zero.parts import KnownOfZero, StrokeMeans, ZeroReference
 from tribolab.friction.zero.rectified import SIGNED, Fold, ForceTrace, Pressed, folded
 from tribolab.friction.zero.reference import find_reference
-from tribolab.friction.zero.rests import UNLOADED, Zeros
-from tribolab.friction.zero.unequal import TOO_FAR
+from tribolab.friction.zero.rests import Zeros
 from tribolab.friction.zero.words import of_fold
 from tribolab.units.conversion import to_si
 from tribolab.units.quantities import quantity
@@ -212,7 +212,9 @@ def _pairs(
     )
     if (pair >= 0).any() or not wanted:
         return pair
-    return pair_strokes(segments, max(TOO_FAR, settings.pair_tolerance))
+    return pair_strokes(
+        segments, max(limits.MAX_SPEED_RATIO_OF_LOOP.value, settings.pair_tolerance)
+    )
 
 
 def _fold(
@@ -236,7 +238,7 @@ def _fold(
         return SIGNED  # the direction was taken from the force, or there is none
     rest = float(median(rests.value)) if rests is not None else float("nan")
     normal = run["normal_force"].values if "normal_force" in run and parts else None
-    pressed = Pressed(normal, parts, max(0.5, UNLOADED))
+    pressed = Pressed(normal, parts, max(0.5, limits.MAX_DRIFT_OF_LOAD_ZERO.value))
     force, speed = run[name].values, segments["sliding_speed"].values
     ways = (direction > 0).any() and (direction < 0).any()
     if not ways and load.max(initial=0.0) > LOADS_DIFFER.value * load.min(initial=np.inf):

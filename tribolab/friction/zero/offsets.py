@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-_TOLERANCE = 0.25  # relative difference of speed up to which strokes are of one speed
+from tribolab.friction.zero import limits
 
 
 def pair_strokes(segments: xr.Dataset, tolerance: float) -> np.ndarray:
@@ -26,7 +26,7 @@ def pair_strokes(segments: xr.Dataset, tolerance: float) -> np.ndarray:
             continue
         mean = (speed[i] + speed[i + 1]) / 2
         alike = not abs(speed[i] - speed[i + 1]) > tolerance * mean  # unknown speeds may pair
-        if "set_speed" in segments and tolerance <= _TOLERANCE:
+        if "set_speed" in segments and tolerance <= limits.MAX_SPEED_DIFFERENCE_OF_PAIR.value:
             wanted = np.abs(segments["set_speed"].values[i : i + 2])
             alike &= not abs(wanted[0] - wanted[1]) > 1e-6 * abs(wanted).max()
         if alike:

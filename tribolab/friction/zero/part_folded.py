@@ -5,14 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from tribolab.arrays.medians import median
+from tribolab.friction.zero import limits
 from tribolab.friction.zero.parts import Doubt, StrokeMeans, doubt
-
-_CLEAR = 5.0  # standard errors beyond which a level has a sign
-_CENTRED = (
-    0.3  # of the half loop: a middle that is nearer to zero belongs to a signal with its sign
-)
-_ALIKE = 0.5  # of the larger of both levels, the smaller one where the sign was lost
-_LIKE = 4.0  # times the half loops of the others, or less by as much: the same friction
 
 
 def of_parts(strokes: StrokeMeans) -> tuple[Doubt, ...]:
@@ -32,14 +26,18 @@ def of_parts(strokes: StrokeMeans) -> tuple[Doubt, ...]:
     mean, error = strokes.mean[members], np.nan_to_num(strokes.error[members])
     middle, half = mean.mean(axis=1), np.abs(np.diff(mean, axis=1)[:, 0]) / 2
     size = np.abs(mean)
-    signed = (np.prod(mean, axis=1) < 0) & (np.abs(middle) < _CENTRED * half)
-    clear = (size > _CLEAR * error).all(axis=1)
-    alike = size.min(axis=1) > _ALIKE * size.max(axis=1)
+    signed = (np.prod(mean, axis=1) < 0) & (
+        np.abs(middle) < limits.MAX_MIDDLE_OF_SIGNED_LOOP.value * half
+    )
+    clear = (size > limits.MIN_ERRORS_OF_LEVEL.value * error).all(axis=1)
+    alike = size.min(axis=1) > limits.MIN_LEVEL_RATIO_OF_LOST_SIGN.value * size.max(axis=1)
     one_sign = (np.prod(mean, axis=1) > 0) & clear & alike
     if not signed.any() or not one_sign.any():
         return ()
     usual = float(median(half[signed]))
-    one_sign &= (np.abs(middle) > usual / _LIKE) & (np.abs(middle) < usual * _LIKE)
+    one_sign &= (np.abs(middle) > usual / limits.MAX_FRICTION_RATIO_OF_PARTS.value) & (
+        np.abs(middle) < usual * limits.MAX_FRICTION_RATIO_OF_PARTS.value
+    )
     if not one_sign.any():
         return ()
     named = ", ".join("-".join(str(strokes.number[i]) for i in pair) for pair in members[one_sign])

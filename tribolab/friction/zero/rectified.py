@@ -12,17 +12,8 @@ from tribolab.arrays.chunks import anywhere, one_by_one
 from tribolab.arrays.medians import median, median_of_known
 from tribolab.friction.zero import limits
 
-_INNER = float(2 * special.ndtri(0.95))  # standard deviations from the 5th to 95th percentile
-_DIP = 0.5  # of the strokes' level, below which the force at a reversal is on its way through zero
-_TOUCH = 5.0  # standard deviations from zero within which a force touches it
-_BELOW = 1.0  # of the lower stroke's scatter: what lies deeper beneath it is on its way, too
-_QUICK = 3  # readings so deep: where they are more, one of them would have come close to zero
-_SEVERAL = 3  # readings between two levels that noise does not put there at most turns
-_FEW = 0.1  # share of such turns that a spike or a slip may take below both levels
-_MOST = 0.5  # share of the reversals that have to show it
-_LIKE = 0.25  # of their mean: strokes that differ by less are of one level
-_CLEAR = 5.0  # standard errors beyond which levels differ
-_ONE_SPEED = 0.2  # of the faster one: strokes whose speeds differ by less may be to and fro
+# standard deviations from the 5th to 95th percentile
+_PERCENTILE_WIDTH = float(2 * special.ndtri(0.95))
 
 
 class Pressed:
@@ -105,7 +96,7 @@ class ForceTrace(NamedTuple):
         if self.speed is None:
             return True
         slow, fast = sorted(np.abs(self.speed[number : number + 2]).tolist())
-        return bool(slow >= (1 - _ONE_SPEED) * fast)
+        return bool(slow >= (1 - limits.MAX_SPEED_DIFFERENCE_OF_REVERSAL.value) * fast)
 
     def between(self, number: int) -> np.ndarray:
         """Return the finite readings under load from a segment to the next."""
@@ -190,17 +181,22 @@ def _both_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
         if beside < 0.5 * between:
             return Fold("rectified", f"{one_sign}, and rests without load do not lie between them")
     dips, below, straight, clear, seen = _reversals(trace)
-    if dips >= _MOST:
+    if dips >= limits.MIN_REVERSALS_WITH_DIP.value:
         return Fold(
             "rectified", f"{one_sign}, and goes to zero and back at {dips:.0%} of the turns"
         )
     # of the mean over the strokes of a direction
     strokes = min(forward.size, backward.size)
     error = np.sqrt(np.nanmean(np.nan_to_num(trace.error) ** 2) / strokes)
-    differ = high - low > max(_CLEAR * error, 1e-6 * high)
-    if seen and below <= _FEW and differ and straight >= _MOST:
-        return SIGNED._replace(seen=clear >= _MOST)
-    like = high - low < _LIKE * (high + low) / 2
+    differ = high - low > max(limits.MIN_ERRORS_OF_LEVEL.value * error, 1e-6 * high)
+    if (
+        seen
+        and below <= limits.MAX_REVERSALS_WITH_SPIKE.value
+        and differ
+        and straight >= limits.MIN_REVERSALS_WITH_DIP.value
+    ):
+        return SIGNED._replace(seen=clear >= limits.MIN_REVERSALS_WITH_DIP.value)
+    like = high - low < limits.MAX_DIFFERENCE_OF_LEVELS.value * (high + low) / 2
     why = f"{one_sign}, and the turns do not show whether it passes through zero"
     return Fold("undecided: alike" if like else "undecided", why)
 
@@ -225,18 +221,23 @@ def _reversals(trace: ForceTrace) -> tuple[float, float, float, float, int]:
             (np.percentile(part, [5, 95]) for part in (first, second)), key=lambda e: e[0]
         )
         (low, top), (bottom, highest) = ends
-        dip = bool(turn.min() < _DIP * low)
+        dip = bool(turn.min() < limits.MAX_LEVEL_OF_DIP.value * low)
         dips += dip
-        if dip or 0 < np.count_nonzero(turn < low - _BELOW * (top - low)) <= _QUICK:
+        if (
+            dip
+            or 0
+            < np.count_nonzero(turn < low - limits.MIN_DEPTH_OF_DIP.value * (top - low))
+            <= limits.MAX_READINGS_OF_DIP.value
+        ):
             below += 1
         elif top < bottom:
             # farther from either level than the noise of so many readings reaches
-            far = _noise_reaches(turn.size) / _INNER
+            far = _noise_reaches(turn.size) / _PERCENTILE_WIDTH
             above = (low + top) / 2 + far * (top - low)
             beneath = (bottom + highest) / 2 - far * (highest - bottom)
             on_the_way = int(np.count_nonzero((turn > above) & (turn < beneath)))
             straight += on_the_way > 0
-            clear += on_the_way >= _SEVERAL
+            clear += on_the_way >= limits.MIN_READINGS_BETWEEN_LEVELS.value
         else:
             straight += turn.size >= 10
     if not seen:
@@ -258,7 +259,10 @@ def _one_way(trace: ForceTrace) -> Fold:
         odd, even = np.nanmean(trace.mean[::2]), np.nanmean(trace.mean[1::2])
         error = np.sqrt(np.nanmean(np.nan_to_num(trace.error) ** 2))
         apart = abs(odd - even)
-        if apart > _CLEAR * error and abs(apart - 2 * abs(trace.rest)) < 0.3 * apart:
+        if (
+            apart > limits.MIN_ERRORS_OF_LEVEL.value * error
+            and abs(apart - 2 * abs(trace.rest)) < 0.3 * apart
+        ):
             why = "strokes are by turns above and below their mean by what rests without load read"
             return Fold("rectified", why)
         return SIGNED
@@ -267,7 +271,7 @@ def _one_way(trace: ForceTrace) -> Fold:
     stops = (_touches(trace, i) for i in turns)
     touched = [touches for touches in stops if touches is not None]
     dips = sum(touched) / len(touched) if touched else 0.0
-    if dips >= _MOST:
+    if dips >= limits.MIN_REVERSALS_WITH_DIP.value:
         why = (
             f"neither speed nor force has a sign, and the force goes to zero at {dips:.0%} of the "
             "stops and never below it"
@@ -290,4 +294,4 @@ def _touches(trace: ForceTrace, number: int) -> bool | None:
     steps = np.sort(np.abs(np.diff(turn[max(lowest - 2, 0) : lowest + 3])))
     # differences between neighbours: a wave in the stroke is no noise
     noise = median(np.abs(np.diff(stroke))) / 0.954
-    return bool(turn[lowest] < max(_TOUCH * noise, steps[1]))
+    return bool(turn[lowest] < max(limits.MAX_ERRORS_OF_TOUCH.value * noise, steps[1]))

@@ -8,16 +8,13 @@ import numpy as np
 
 from tribolab.arrays.medians import median, median_of_known
 from tribolab.core.errors import AnalysisError, Cure
+from tribolab.friction.zero import limits
 from tribolab.friction.zero.middles import Middles, error_of_rows, interpolated, middles
 from tribolab.friction.zero.parts import Doubt, KnownOfZero, StrokeMeans, ZeroReference, doubt
 from tribolab.friction.zero.rectified import Fold
 from tribolab.friction.zero.rests import Zeros
 from tribolab.friction.zero.unequal import across_speeds
 from tribolab.friction.zero.words import of_speeds, words_of
-
-_ASYMMETRY = 0.05  # share of friction by which a zero may miss the middle of the loop
-_MISSED = 3.0  # standard errors of the same
-_EXAMPLE = 0.02  # of the friction: an error of its zero
 
 _OFFSET_OF_ITSELF = 'say offset = "auto" in [friction]'
 
@@ -194,7 +191,7 @@ def _checked(
 ) -> ZeroReference:
     """Compare the middles of the loops with a zero that does not rest on them.
 
-    Where the two differ by more than their errors and by more than `_ASYMMETRY` of friction,
+    Where the two differ by more than their errors and by more than `MAX_ASYMMETRY` of friction,
     friction depends on direction, or the load tilts the zero: the other zero is used, and that is
     a doubt. Where they differ by less, the difference is carried in the error.
     """
@@ -217,11 +214,13 @@ def _checked(
     mean, friction = float(np.mean(apart[fine])), float(np.mean(np.abs(half[fine])))
     spread = float(np.std(apart[fine], ddof=1)) if fine.sum() > 1 else 0.0
     of_loops = np.nan_to_num(own[fine]).mean() / np.sqrt(fine.sum())
-    limit = _MISSED * float(np.hypot(np.hypot(spread, error[fine].mean()), of_loops))
+    limit = limits.MIN_ERRORS_OF_ASYMMETRY.value * float(
+        np.hypot(np.hypot(spread, error[fine].mean()), of_loops)
+    )
     if not abs(mean) > limit:
         return loop
     share = mean / friction
-    if abs(share) < _ASYMMETRY:
+    if abs(share) < limits.MAX_ASYMMETRY.value:
         carried = abs(mean) / np.sqrt(3)
         return replace(loop, error=lambda errors: np.hypot(loop.error(errors), carried))
     force = (strokes.sign * (strokes.mean - other.value)) / strokes.load
@@ -273,7 +272,7 @@ def _ambiguous(
         cure = "State `rectified` in the [[run]], or measure a rest without load."
         status = "suspect"
     remark = doubt(text, cure, np.arange(strokes.size), status)
-    remark["noted"] = bool(_ASYMMETRY < share < 1)
+    remark["noted"] = bool(limits.MAX_ASYMMETRY.value < share < 1)
     return replace(loop, doubts=(*loop.doubts, remark))
 
 
@@ -328,7 +327,7 @@ def _from_outside(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroR
 def _example(strokes: StrokeMeans) -> str:
     """Return an error of the zero that is one of these strokes: a fiftieth of their friction."""
     size = np.abs(strokes.mean[np.isfinite(strokes.mean)])
-    share = _EXAMPLE * float(median(size)) if size.size else 0.0
+    share = limits.EXAMPLE_OF_ZERO_ERROR.value * float(median(size)) if size.size else 0.0
     if not strokes.unit or not share > 0:
         return "1 %"
     return f"{share:.1g}{strokes.unit}"

@@ -11,12 +11,7 @@ from tribolab.arrays.medians import median
 from tribolab.friction.statistics import NORMAL, estimates_of
 from tribolab.friction.zero import limits
 
-UNLOADED = 0.1  # share of the load by which the zero of the normal force may move between rests
-_LIGHT = 0.4  # share of the load below which a rest may turn out to be one without contact
-_LIKE = 1.5  # times what a rest reads: with a load of less than that a segment slides alike
-_FEWEST = 10  # samples that an unloaded rest needs
-_BARE = 0.02  # share of the load within which it stays where nothing presses
-_BINS = 100  # in a stretch of which a part may be without load
+_REST_BINS = 100  # in a stretch of which a part may be without load
 
 
 class Zeros(NamedTuple):
@@ -112,9 +107,9 @@ def unloaded_rests(run: xr.Dataset, segments: xr.Dataset, load: float) -> Rests:
     rests = _resting(run, segments, load)
     if rests is None:
         return Rests(None, None)
-    time, normal, limits = rests
+    time, normal, intervals = rests
     friction = run["friction_force"].values if "friction_force" in run else None
-    levels = _unloaded(time, normal, limits, load)
+    levels = _unloaded(time, normal, intervals, load)
     if not levels:  # what moves without touching shows the zero, too: a torque's with its idling
         levels = _unloaded(time, normal, _limits(segments, "no load"), load)
     if not levels:  # a speed that is noise alone, or recorded without sign, is no rest either
@@ -124,7 +119,11 @@ def unloaded_rests(run: xr.Dataset, segments: xr.Dataset, load: float) -> Rests:
     told = estimates_of((time[level], signal[level]) for signal in signals for level in levels)
     when = [float(time[level].mean()) for level in levels]
     of_normal, of_friction = told[: len(levels)], told[len(levels) :]
-    known = [k for k, estimate in enumerate(of_friction) if estimate.samples >= _FEWEST]
+    known = [
+        k
+        for k, estimate in enumerate(of_friction)
+        if estimate.samples >= limits.MIN_SAMPLES_OF_REST.value
+    ]
     return Rests(
         _zeros([(when[k], of_friction[k].mean, of_friction[k].u95 / NORMAL) for k in known]),
         _zeros([(at, own.mean, own.u95 / NORMAL) for at, own in zip(when, of_normal, strict=True)]),
@@ -202,14 +201,14 @@ def light_rest(
     rests = _resting(run, segments, load)
     if rests is None:
         return None
-    time, normal, limits = rests
-    for start, stop in limits:
+    time, normal, intervals = rests
+    for start, stop in intervals:
         first, last = np.searchsorted(time, [start, stop])
         level = level_without_load(normal, first, last, load)
-        if level.size < _FEWEST:
+        if level.size < limits.MIN_SAMPLES_OF_REST.value:
             continue
         reads = float(np.mean(normal[level]))
-        if not (np.abs(loads) < _LIKE * abs(reads)).any():
+        if not (np.abs(loads) < limits.MAX_RATIO_TO_REST.value * abs(reads)).any():
             return LightRest(float(time[level[0]]), float(time[level[-1]]), reads)
     return None
 
@@ -232,15 +231,18 @@ def _limits(segments: xr.Dataset, reason: str = "") -> list[tuple[float, float]]
 
 
 def _unloaded(
-    time: np.ndarray, normal: np.ndarray, limits: list[tuple[float, float]], load: float
+    time: np.ndarray, normal: np.ndarray, intervals: list[tuple[float, float]], load: float
 ) -> list[np.ndarray]:
     """Return the samples of each stretch at which nothing pressed."""
     before, levels = 0.0, []
-    for start, stop in limits:
+    for start, stop in intervals:
         first, last = np.searchsorted(time, [start, stop])
         level = level_without_load(normal, first, last, load)
         # more than the zero before may be a light load; less is none, surfaces hardly pull
-        if level.size < _FEWEST or np.mean(normal[level]) - before > UNLOADED * load:
+        if (
+            level.size < limits.MIN_SAMPLES_OF_REST.value
+            or np.mean(normal[level]) - before > limits.MAX_DRIFT_OF_LOAD_ZERO.value * load
+        ):
             continue
         before = float(np.mean(normal[level]))
         levels.append(level)
@@ -248,28 +250,31 @@ def _unloaded(
 
 
 def _bare(
-    time: np.ndarray, normal: np.ndarray, limits: list[tuple[float, float]], load: float
+    time: np.ndarray, normal: np.ndarray, intervals: list[tuple[float, float]], load: float
 ) -> list[np.ndarray]:
     """Return the samples of stretches, however they move, in a part of which nothing pressed.
 
     A load that rises in the same stretch passes through every level: only what stays at one counts.
     """
     levels = []
-    for level in _unloaded(time, normal, limits, load):
+    for level in _unloaded(time, normal, intervals, load):
         first, last = int(level[0]), int(level[-1]) + 1
-        bins = min(_BINS, (last - first) // _FEWEST)
+        bins = min(_REST_BINS, (last - first) // limits.MIN_SAMPLES_OF_REST.value)
         if bins < 1:
             continue
         at = first + (last - first) * np.arange(bins + 1) // bins
         part = np.nan_to_num(normal[first:last], nan=np.inf)
         mean = np.add.reduceat(part, at[:-1] - first) / np.diff(at)
-        near = np.abs(mean - median(normal[level])) < _BARE * load
+        near = np.abs(mean - median(normal[level])) < limits.MAX_SCATTER_OF_BARE_REST.value * load
         edges = np.flatnonzero(np.diff(np.concatenate([[False], near, [False]])))
         if not edges.size:
             continue
         longest = int(np.argmax(edges[1::2] - edges[::2]))
         begin, end = at[edges[2 * longest]], at[edges[2 * longest + 1]]
-        if np.abs(np.mean(normal[begin:end])) < UNLOADED * load and end - begin >= 2 * _FEWEST:
+        if (
+            np.abs(np.mean(normal[begin:end])) < limits.MAX_DRIFT_OF_LOAD_ZERO.value * load
+            and end - begin >= 2 * limits.MIN_SAMPLES_OF_REST.value
+        ):
             levels.append(np.arange(begin, end))
     return levels
 
@@ -279,8 +284,8 @@ def level_without_load(normal: np.ndarray, first: int, last: int, load: float) -
 
     However far below zero: at rest nothing pulls, and what reads so has an offset.
     """
-    light = first + np.flatnonzero(normal[first:last] < _LIGHT * load)
-    if light.size < _FEWEST:
+    light = first + np.flatnonzero(normal[first:last] < limits.MAX_LOAD_OF_BARE_REST.value * load)
+    if light.size < limits.MIN_SAMPLES_OF_REST.value:
         return light
     # the load's ramp begins in the same rest, and may be most of it: where readings lie densest is
     # the level, and what is far from it is left out

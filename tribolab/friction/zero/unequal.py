@@ -4,13 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-_ALIKE = 0.05  # relative difference of speed up to which strokes measure friction at one speed
-_USUAL = (
-    0.15  # share of friction that a change of speed by e is taken to change, where not measured
-)
-_LEAST = 0.05  # the same where it was measured to be less
-_NEAR = np.log(10)  # loops further apart than a decade say nothing of each other
-TOO_FAR = 1.0  # of their mean: speeds that differ by more make no loop unless somebody says so
+from tribolab.friction.zero import limits
+
+_LN_SPEED_OF_NEIGHBOURS = np.log(10)  # loops further apart than a decade say nothing of each other
 
 
 def across_speeds(half: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, bool]:
@@ -49,23 +45,29 @@ def across_speeds(half: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, bool
         place, ratio = np.log(speed).mean(axis=1), np.abs(np.log(speed[:, 0] / speed[:, 1]))
     known = np.isfinite(place + half)
     ratio = np.where(np.isfinite(ratio), ratio, 0.0)
-    steep = np.full(half.size, _USUAL) * np.abs(half)
+    steep = np.full(half.size, limits.SPEED_DEPENDENCE.value) * np.abs(half)
     if not known.any() or not (ratio > 0).any():
         return np.nan_to_num(steep * ratio / 2), False
     # strokes of one speed measure; others only where there are none
-    source = known & (ratio <= _ALIKE)
-    measured = bool(source.any() and np.ptp(place[source]) > _ALIKE)
+    source = known & (ratio <= limits.MAX_SPEED_DIFFERENCE_OF_LOOP.value)
+    measured = bool(
+        source.any() and np.ptp(place[source]) > limits.MAX_SPEED_DIFFERENCE_OF_LOOP.value
+    )
     if not measured:
         source = known
     order = np.flatnonzero(source)[np.argsort(place[source], kind="stable")]
-    groups = np.split(order, np.flatnonzero(np.diff(place[order]) > _ALIKE) + 1)
+    groups = np.split(
+        order, np.flatnonzero(np.diff(place[order]) > limits.MAX_SPEED_DIFFERENCE_OF_LOOP.value) + 1
+    )
     at = np.array([place[g].mean() for g in groups])
     level = np.array([np.abs(half[g]).mean() for g in groups])
     slope = np.abs(np.diff(level) / np.diff(at)) if at.size > 1 else np.zeros(0)
-    near = np.diff(at) <= _NEAR
+    near = np.diff(at) <= _LN_SPEED_OF_NEIGHBOURS
     for i in np.flatnonzero(known):
         # steps of the curve that touch the loop's range of speeds
         inside = near & (at[:-1] <= place[i] + ratio[i]) & (at[1:] >= place[i] - ratio[i])
         if inside.any():
-            steep[i] = max(float(slope[inside].max()), _LEAST * abs(half[i]))
+            steep[i] = max(
+                float(slope[inside].max()), limits.MIN_SPEED_DEPENDENCE.value * abs(half[i])
+            )
     return np.nan_to_num(steep * ratio / 2), measured

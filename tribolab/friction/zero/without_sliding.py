@@ -12,10 +12,6 @@ from tribolab.friction.zero import limits
 from tribolab.friction.zero.parts import Doubt, ZeroReference, doubt
 from tribolab.friction.zero.rests import Zeros, level_without_load
 
-_FEWEST = 20  # samples
-_LOADED = 0.8  # share of the load from which on a rest is under load
-_ERRORS = 4.0  # standard errors beyond which two readings differ
-
 
 class WithoutSliding(NamedTuple):
     """Readings of the friction signal [N], each with its standard error; NaN where unknown.
@@ -70,9 +66,11 @@ def _before_sliding(
     begins = min(begins, float(segments["omitted_start"].values[ramps].min(initial=np.inf)))
     for part in stretches_of(run, segments, "at rest"):
         inside = np.arange(part.start, part.stop)
-        inside = inside[(time[inside] < begins) & (normal[inside] > _LOADED * load)]
+        inside = inside[
+            (time[inside] < begins) & (normal[inside] > limits.MIN_LOAD_OF_REST.value * load)
+        ]
         inside = inside[np.isfinite(force[inside])]
-        if inside.size >= _FEWEST:
+        if inside.size >= limits.MIN_SAMPLES_OF_LOADED_REST.value:
             zero, error = rests.at(time[inside[:1]])
             own = float(np.std(force[inside])) / np.sqrt(inside.size)
             reads = float(np.mean(force[inside])) - float(zero[0])
@@ -93,7 +91,7 @@ def _without_load(
         bare = level_without_load(run["normal_force"].values, part.start, part.stop, load)
         own = force[bare][np.isfinite(force[bare])]
         speed = np.nanmean(velocity[part]) if own.size else 0.0
-        if own.size >= _FEWEST and speed:
+        if own.size >= limits.MIN_SAMPLES_OF_LOADED_REST.value and speed:
             error = float(np.std(own)) / np.sqrt(own.size)
             found.append((float(np.sign(speed)), float(np.mean(own)), error, time[part].mean()))
     if not found:
@@ -141,7 +139,9 @@ def of_loaded_and_idle(
     friction, every = float(median(known)), np.arange(mean.size)
     doubts, carried = [], []
     (tilt, tilt_error), (drag, drag_error) = readings
-    seen = zero.method != "half loop" and abs(tilt) > _ERRORS * tilt_error
+    seen = (
+        zero.method != "half loop" and abs(tilt) > limits.MIN_ERRORS_OF_READINGS.value * tilt_error
+    )
     if seen:
         carried.append(tilt)
     if seen and abs(tilt) > limits.LOADED_REST_SHARE.value * friction:
@@ -153,7 +153,7 @@ def of_loaded_and_idle(
         )
         cure = "Slide both ways, or level the force cell and state `tilt` in [uncertainty]."
         doubts.append(doubt(text, cure, every))
-    seen = abs(drag) > _ERRORS * drag_error
+    seen = abs(drag) > limits.MIN_ERRORS_OF_READINGS.value * drag_error
     if seen:
         carried.append(drag)
     if seen and abs(drag) > limits.DRAG_SHARE.value * friction:

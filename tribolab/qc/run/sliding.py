@@ -10,7 +10,7 @@ import xarray as xr
 
 from tribolab.core.limit import Limit
 from tribolab.core.wording import Count
-from tribolab.friction.coefficient import steadiness
+from tribolab.friction.coefficient import limits as of_trends
 from tribolab.friction.coefficient.steadiness import chance_limit, relative_change, undecided
 from tribolab.friction.oscillation.spectrum.lines import Line
 from tribolab.friction.points.strokes import run_means, shared_error
@@ -206,16 +206,10 @@ SLIDING_CHECKS = (
         "Is friction steady within each trimmed segment?",
         "Slide longer, or trim more: with a trend, the mean includes the running-in.",
         {
-            "suspect": Limit(
-                steadiness.SUSPECT_DRIFT, "1", "5 % is above the usual scatter of repeats"
-            ),
-            "fail": Limit(steadiness.FAILING_DRIFT, "1", "the mean has no meaning"),
-            "chance": Limit(steadiness.SIGNIFICANT, "1", "noise is rarely reported as a trend"),
-            "samples": Limit(
-                steadiness.SAMPLES,
-                "1",
-                "with fewer effective samples, a trend cannot be distinguished from slow drift",
-            ),
+            "suspect": of_trends.SUSPECT_DRIFT,
+            "fail": of_trends.FAILING_DRIFT,
+            "chance": of_trends.TREND_BY_CHANCE,
+            "samples": of_trends.MIN_EFFECTIVE_SAMPLES,
         },
         _steadiness,
     ),

@@ -10,8 +10,8 @@ from tribolab.core.errors import AnalysisError
 from tribolab.core.limit import Limit
 from tribolab.core.wording import Count, duration
 from tribolab.friction.coefficient import steadiness
+from tribolab.friction.oscillation.limits import BAND_BY_CHANCE
 from tribolab.friction.oscillation.periods import AT_ODDS
-from tribolab.friction.oscillation.spectrum.survey import CHANCE
 from tribolab.friction.segments.strokes import find_strokes
 from tribolab.qc.register import Check, Result
 from tribolab.qc.run.subject import RunSubject
@@ -132,7 +132,8 @@ def _periods_at_odds(subject: RunSubject, limits: Mapping[str, float]) -> list[R
     """Report oscillating segments in which drops and spectrum give different periods."""
     slip = subject.slip
     odd = np.array([AT_ODDS in str(remark) for remark in slip["remark"].values], bool)
-    odd &= slip["false_alarm_probability"].values < CHANCE / odd.size  # in any of the segments
+    # in any of the segments
+    odd &= slip["false_alarm_probability"].values < BAND_BY_CHANCE.value / odd.size
     if odd.any():
         odd &= subject.friction["steady"].values == steadiness.IS_STEADY
         odd &= subject.oscillates_strongly(limits["strength"])

@@ -14,7 +14,7 @@ from tribolab.surface.form import fill_dropouts, remove_form
 from tribolab.surface.level import level_rows
 from tribolab.surface.spectra.psd import psd_1d
 
-_FEWEST = 8  # heights of a profile; form and roughness need more
+_MIN_HEIGHTS = 8  # heights of a profile; form and roughness need more
 
 
 class ScanSubject:
@@ -81,7 +81,7 @@ class ScanSubject:
     def usable(self) -> list[int]:
         """Indices of the rows with enough heights for a profile."""
         present = np.isfinite(self.rows).sum(axis=1)
-        return np.flatnonzero(present >= _FEWEST).tolist()
+        return np.flatnonzero(present >= _MIN_HEIGHTS).tolist()
 
     @cached_property
     def profile_names(self) -> list[str]:
@@ -131,7 +131,7 @@ class ScanSubject:
     @cached_property
     def map_without_form(self) -> xr.Dataset | None:
         """Map minus a polynomial of second order; None if it has too few heights."""
-        if not np.isfinite(self.rows).any() or min(self.scans.height.shape[-2:]) < _FEWEST:
+        if not np.isfinite(self.rows).any() or min(self.scans.height.shape[-2:]) < _MIN_HEIGHTS:
             return None
         scans = self.scans[["height"]].assign_attrs(self.scans.attrs)
         return scans if "form_removed" in scans.attrs else remove_form(scans, "polynomial")

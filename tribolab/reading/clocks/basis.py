@@ -11,22 +11,20 @@ from numpy.typing import NDArray
 
 from tribolab.arrays.medians import median
 from tribolab.core.aliases import Array
+from tribolab.reading.clocks import limits
 from tribolab.reading.clocks.motion import Motion
 
 Ways = Array | NDArray[np.int64]  # -1 backward, 0 at rest, 1 forward
 
-_LENGTHS = 9  # stops
-_SHORTEST = 1e-4  # of the longest stroke: length of the shortest stop
-_LONGEST = 0.3
-_SPEEDS = 6  # hat functions of the speed, at most
-_TIMES = (0.1, 0.5, 3.0)  # of the usual rest, for which the force relaxes
-_BACK = (1e-4, 3e-3)  # of the longest stroke, within which it is back
-_SHORT = 0.1  # of the longest fast stroke's duration: what is shorter is noise
-_STILL = 1e-6  # of the fastest speed: what is left of a number that should be zero
-_LARGEST_SLACK = 3e-4  # m
-_FAST = 0.03  # of the fastest speed: slower motion is not looked at
-_MOST_ROWS = 300_000  # of a motion log, looked at
-SLACKS = (0.003, 0.01, 0.03)  # of the longest stroke
+_STOP_LENGTHS = 9  # stops
+_SHORTEST_STOP = 1e-4  # of the longest stroke: length of the shortest stop
+_LONGEST_STOP = 0.3
+_SPEED_FUNCTIONS = 6  # hat functions of the speed, at most
+_RELAXATION_TIMES = (0.1, 0.5, 3.0)  # of the usual rest, for which the force relaxes
+_RECOVERY_LENGTHS = (1e-4, 3e-3)  # of the longest stroke, within which it is back
+_ROUNDING_OF_SPEED = 1e-6  # of the fastest speed: what is left of a number that should be zero
+_MAX_ROWS = 300_000  # of a motion log, looked at
+SLACK_LENGTHS = (0.003, 0.01, 0.03)  # of the longest stroke
 
 
 class Basis:
@@ -43,10 +41,12 @@ class Basis:
         # a slow start tells the moment badly, and its friction is another
         speed = np.abs(motion.velocity)
         fastest = np.maximum.reduceat(speed, change[:-1])
-        fast = fastest > _FAST * np.percentile(speed, 99.5)
+        fast = fastest > limits.MIN_SPEED_OF_STROKE.value * np.percentile(speed, 99.5)
         moving = fast & (way[change[:-1]] != 0)
         lasted = np.diff(time[change])[moving]
-        self.stroke = float(lasted[lasted > _SHORT * lasted.max()].min())
+        self.stroke = float(
+            lasted[lasted > limits.MIN_DURATION_OF_STROKE.value * lasted.max()].min()
+        )
         seen = fast[1:] | fast[:-1]
         self.events = change[1:-1][seen]
         self.begins = self.events[way[self.events] != 0]
@@ -59,8 +59,8 @@ class Basis:
     def models(self) -> list[tuple[str, Array]]:
         """Name and table (column, row) of each model of how the force follows the motion."""
         table, models = Play(self._path), []
-        for slack in (0.0, *SLACKS):
-            driven = table.followed(0.5 * min(slack * self.longest, _LARGEST_SLACK))
+        for slack in (0.0, *SLACK_LENGTHS):
+            driven = table.followed(0.5 * min(slack * self.longest, limits.MAX_SLACK.value))
             velocity = np.gradient(driven, self.time) if slack else self._motion.velocity
             models.append((f"slack {slack:g}", self._after(velocity, driven)))
         models.append(("before", self._before(*self._motion[:2], self._path)))
@@ -68,17 +68,19 @@ class Basis:
 
     def _after(self, velocity: Array, path: Array) -> Array:
         """List what happens to the force once the table has moved."""
-        lengths = self.longest * np.geomspace(_SHORTEST, _LONGEST, _LENGTHS)
+        lengths = self.longest * np.geomspace(_SHORTEST_STOP, _LONGEST_STOP, _STOP_LENGTHS)
         moved = Play(path)
         stops = ((path - moved.followed(r)) / r for r in lengths)
-        way = np.where(np.abs(velocity) > _STILL * np.abs(velocity).max(), np.sign(velocity), 0.0)
+        way = np.where(
+            np.abs(velocity) > _ROUNDING_OF_SPEED * np.abs(velocity).max(), np.sign(velocity), 0.0
+        )
         last = way[np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))]
         return self._table(chain([last], stops, self._more(velocity, way, last)))
 
     def _before(self, velocity: Array, way: NDArray[np.int64], path: Array) -> Array:
         """List what happens to the force before the sample moves."""
         last = way[np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))]
-        lengths = self.longest * np.geomspace(_SHORTEST, _LONGEST, _LENGTHS)
+        lengths = self.longest * np.geomspace(_SHORTEST_STOP, _LONGEST_STOP, _STOP_LENGTHS)
         ramps = (self._ramps(velocity, way, last, r) for r in lengths)
         stop = (path - Play(path).followed(lengths[-3])) / lengths[-3]
         return self._table(chain(ramps, [stop], self._more(velocity, way, last)))
@@ -115,8 +117,8 @@ class Basis:
         usual = float(median(rested[np.minimum(ends, len(way)) - 1]))
         if usual <= 0.0:  # rests of one sample: nothing relaxes in them
             return
-        for tau in _TIMES:
-            for length in _BACK:
+        for tau in _RELAXATION_TIMES:
+            for length in _RECOVERY_LENGTHS:
                 back = np.exp(-slid / (self.longest * length))
                 yield held * -np.expm1(-rested / (usual * tau)) * back
 
@@ -145,11 +147,11 @@ def _kept(count: int, events: NDArray[np.int64]) -> NDArray[np.int64] | slice:
 
     A table of all would take a hundred times the memory of the log itself.
     """
-    if count <= _MOST_ROWS:
+    if count <= _MAX_ROWS:
         return slice(None)
-    near = _MOST_ROWS // (4 * max(len(events), 1))
+    near = _MAX_ROWS // (4 * max(len(events), 1))
     kept = np.zeros(count, dtype=bool)
-    kept[:: -(-2 * count // _MOST_ROWS)] = True
+    kept[:: -(-2 * count // _MAX_ROWS)] = True
     kept[-1] = True
     for event in events:
         kept[max(event - near, 0) : event + near] = True
@@ -165,7 +167,7 @@ def _speeds(velocity: Array, last: Ways) -> Iterator[Array]:
     low = max(float(np.percentile(level, 5)), high - 4.0)
     if high - low < 0.1:
         return
-    knots = np.linspace(low, high, min(_SPEEDS, 2 + int(2 * (high - low))))
+    knots = np.linspace(low, high, min(_SPEED_FUNCTIONS, 2 + int(2 * (high - low))))
     index = np.maximum.accumulate(np.where(moving, np.arange(len(speed)), 0))
     held = np.log10(np.maximum(speed, 10.0 ** (low - 1)))[index]
     for hat in np.eye(len(knots))[1:]:

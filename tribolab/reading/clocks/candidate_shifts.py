@@ -14,15 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.core.aliases import Array
+from tribolab.reading.clocks import limits
 from tribolab.reading.clocks.basis import Basis
 from tribolab.reading.clocks.joint import fit_jointly, sampling
 
-APART = 0.25  # of a fast stroke's duration: shifts nearer than this are one
-_SPAN = 0.3  # of it, in which each is fitted
-_ALL = 0.8  # of a rival's changes of the motion have to lie in the force log, or it is not beaten
-_DECISIVE = 6.0  # log likelihood ratio
-_MORE = 4.0  # times as much unexplained, as no model is quite right
-_SURE, _WORSE = 30.0, 2.0  # the same, for one that explains fewer changes, and those worse
+_FITTED_SPAN = 0.3  # of it, in which each is fitted
 
 
 class Candidate(NamedTuple):
@@ -48,8 +44,12 @@ class Candidate(NamedTuple):
         False
         """
         more, likelihood = self._against(other)
-        sees_all = self.changes >= _ALL * other.changes
-        return bool(sees_all and more > _MORE and likelihood > _DECISIVE)
+        sees_all = self.changes >= limits.MIN_CHANGES_IN_LOG.value * other.changes
+        return bool(
+            sees_all
+            and more > limits.MIN_MISFIT_OF_RIVAL.value
+            and likelihood > limits.MIN_LIKELIHOOD_RATIO.value
+        )
 
     def clears(self, other: Candidate) -> bool:
         """Whether another one, not chosen, leaves no doubt about this one.
@@ -72,7 +72,10 @@ class Candidate(NamedTuple):
         True
         """
         more, likelihood = self._against(other)
-        return bool(more > _WORSE and likelihood > _SURE)
+        return bool(
+            more > limits.MIN_MISFIT_WITH_FEWER_CHANGES.value
+            and likelihood > limits.MIN_LIKELIHOOD_WITH_FEWER_CHANGES.value
+        )
 
     def _against(self, other: Candidate) -> tuple[float, float]:
         """Tell how many times more another leaves unexplained, and the log likelihood ratio."""
@@ -101,14 +104,14 @@ def candidates(force_time: Array, force: Array, basis: Basis, shifts: Array) -> 
     basis
         What the motion log shows.
     shifts
-        Shifts [s], `APART` of a fast stroke's duration from one another.
+        Shifts [s], `MIN_DISTANCE_OF_SHIFTS` of a fast stroke's duration from one another.
     """
     return [_fitted(force_time, force, basis, shift) for shift in map(float, shifts)]
 
 
 def _fitted(force_time: Array, force: Array, basis: Basis, shift: float) -> Candidate:
     finest = sampling(force_time, basis, shift)
-    answers = fit_jointly(force_time, force, basis, shift, _SPAN * basis.stroke, finest)
+    answers = fit_jointly(force_time, force, basis, shift, _FITTED_SPAN * basis.stroke, finest)
     at = basis.time[basis.events] + shift
     changes = int(np.count_nonzero((at > force_time[0]) & (at < force_time[-1])))
     if not answers:

@@ -22,18 +22,14 @@ from numpy.typing import NDArray
 
 from tribolab.arrays.medians import median
 from tribolab.core.aliases import Array
+from tribolab.reading.clocks import limits
 
-_GRID = 1 << 14  # cells of the coarse grid over the longer log
-_OVERLAP = 0.6  # least part of the largest possible overlap
-_DECADES = 5  # slower than this many decades below the fastest is rest
-_BINS = 3  # classes per decade
-_LEAST_EXPLAINED = 0.2
-_LEAST_CONTRAST = 0.1
-_ALMOST_NOTHING = 1e-3
-_TIE = 0.98  # peaks this near the highest are as good; the one nearest what is expected is taken
-_RIVALS = 8  # other peaks, at most
-_EDGE = 1e-6  # of a cell: a sample so near to the next one is in it, whatever its last bit says
-_LASTING = 12  # times as many changes as classes: then these are summed as they last
+_GRID_CELLS = 1 << 14  # cells of the coarse grid over the longer log
+_CLASSES_PER_DECADE = 3  # classes per decade
+_MAX_RIVALS = 8  # other peaks, at most
+# of a cell: a sample so near to the next one is in it, whatever its last bit says
+_CELL_EDGE = 1e-6
+_CHANGES_PER_CLASS = 12  # times as many changes as classes: then these are summed as they last
 
 
 class Coarse(NamedTuple):
@@ -47,8 +43,10 @@ class Coarse(NamedTuple):
 def motion_classes(velocity: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Classes of velocity, a rest by what was before it, and the way (-1, 0, 1)."""
     classes = velocity_classes(velocity)
-    way = np.sign(classes - _BINS * _DECADES)
-    return np.where(way == 0, _BINS * _DECADES * 2 + 2 + _last(way), classes), way
+    way = np.sign(classes - _CLASSES_PER_DECADE * limits.DECADES_TO_REST.value)
+    return np.where(
+        way == 0, _CLASSES_PER_DECADE * limits.DECADES_TO_REST.value * 2 + 2 + _last(way), classes
+    ), way
 
 
 def velocity_classes(velocity: Array) -> NDArray[np.int64]:
@@ -60,11 +58,14 @@ def velocity_classes(velocity: Array) -> NDArray[np.int64]:
     speed = np.abs(np.nan_to_num(velocity))
     fastest = speed.max()
     rank = np.zeros(len(speed), dtype=np.int64)
-    moving = speed > fastest * 10.0**-_DECADES * (1.0 + 1e-9)
+    moving = speed > fastest * 10.0**-limits.DECADES_TO_REST.value * (1.0 + 1e-9)
     # the middle of a class is at the fastest speed, so that its noise stays in one class
-    level = np.round(_BINS * np.log10(speed[moving] / fastest)).astype(np.int64)
-    rank[moving] = np.maximum(level + _BINS * _DECADES, 1)
-    return rank * np.sign(np.nan_to_num(velocity)).astype(np.int64) + _BINS * _DECADES
+    level = np.round(_CLASSES_PER_DECADE * np.log10(speed[moving] / fastest)).astype(np.int64)
+    rank[moving] = np.maximum(level + _CLASSES_PER_DECADE * limits.DECADES_TO_REST.value, 1)
+    return (
+        rank * np.sign(np.nan_to_num(velocity)).astype(np.int64)
+        + _CLASSES_PER_DECADE * limits.DECADES_TO_REST.value
+    )
 
 
 def _last(way: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -83,9 +84,9 @@ def coarse_shift(
 ) -> Coarse | None:
     """Best shift on a grid, the half width in which the true one lies, and others `apart` [s]."""
     spans = force_time[-1] - force_time[0], motion_time[-1] - motion_time[0]
-    cell = max(spans) / _GRID
-    cells = [int(span / cell + _EDGE) + 1 for span in spans]
-    where = ((force_time - force_time[0]) / cell + _EDGE).astype(np.int64)
+    cell = max(spans) / _GRID_CELLS
+    cells = [int(span / cell + _CELL_EDGE) + 1 for span in spans]
+    where = ((force_time - force_time[0]) / cell + _CELL_EDGE).astype(np.int64)
     weights = (np.ones(len(force)), force, force**2)
     sums = [np.asarray(np.bincount(where, w, cells[0]), dtype=float) for w in weights]
     grid = motion_time[0] + cell * (np.arange(cells[1]) + 0.5)
@@ -95,7 +96,7 @@ def coarse_shift(
     between = np.zeros(len(lags))
     for n_k, s_k in by_class:
         between += np.where(n_k > 0.5, s_k**2 / np.maximum(n_k, 0.5), 0.0)
-    enough = number >= _OVERLAP * number.max()
+    enough = number >= limits.MIN_OVERLAP.value * number.max()
     mean_part = whole**2 / np.maximum(number, 0.5)
     spread = np.maximum(squares - mean_part, 1e-9)
     explained = np.where(enough, (between - mean_part) / spread, -np.inf)
@@ -103,10 +104,15 @@ def coarse_shift(
     shifts = lags * cell + force_time[0] - motion_time[0]
     best = explained.max()
     usual = median(explained[enough])
-    if best < _LEAST_EXPLAINED or best - usual < _LEAST_CONTRAST * min(1.0, 1.0 - usual):
+    if best < limits.MIN_EXPLAINED_VARIANCE.value or best - usual < limits.MIN_CONTRAST.value * min(
+        1.0, 1.0 - usual
+    ):
         return None
     peak = (explained >= np.roll(explained, 1)) & (explained >= np.roll(explained, -1))
-    tie = max(usual + _TIE * (best - usual), best - 0.5 * (1.0 - best) - _ALMOST_NOTHING)
+    tie = max(
+        usual + limits.MIN_RIVAL_PEAK.value * (best - usual),
+        best - 0.5 * (1.0 - best) - limits.ROUNDING_OF_VARIANCE.value,
+    )
     good = shifts[peak & (explained >= tie)]
     chosen = float(good[np.argmin(np.abs(good - expected))])
     # the same motion again and again fits at other shifts too, though fewer samples overlap
@@ -114,7 +120,7 @@ def coarse_shift(
     may = may[np.argsort(-explained[may])]
     rivals: list[float] = []
     for shift in map(float, shifts[may]):
-        if len(rivals) == _RIVALS:
+        if len(rivals) == _MAX_RIVALS:
             break
         if all(abs(shift - other) > max(apart, 8.0 * cell) for other in (chosen, *rivals)):
             rivals.append(shift)
@@ -155,7 +161,7 @@ def _by_lag(
 
     whole = [below(p, 0, wide) for p in piled]
     values = np.unique(classes).tolist()
-    if len(ends) > _LASTING * len(values):
+    if len(ends) > _CHANGES_PER_CLASS * len(values):
         return lags, whole, _correlated_classes(sums[:2], classes, lags)
     spans = list(zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True))
 
@@ -279,7 +285,7 @@ def _correlated(residual: Array) -> float:
     """Count samples that hang together: 1 + 2 sum of the autocorrelation up to its first zero."""
     if not residual.size:
         return 1.0
-    block = -(-len(residual) // _GRID)
+    block = -(-len(residual) // _GRID_CELLS)
     rows = len(residual) // block
     means = residual[: rows * block].reshape(rows, block).mean(axis=1)
     if rows < 2 or not means.any():

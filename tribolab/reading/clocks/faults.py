@@ -15,21 +15,19 @@ import numpy as np
 from tribolab.arrays.chunks import chosen, pieces
 from tribolab.arrays.medians import median
 from tribolab.arrays.scratch import room
+from tribolab.reading.clocks import limits
 
-_BLOCK = 1 << 18  # samples looked at in one go, so that no second array of full length is made
-_MANY = 10_000  # small falls that are looked at one by one; a clock with more of them jitters
-_SMALL = 5.0  # in usual intervals: a fall below it may be jitter
-_SCATTER = 8.0  # and so may one below this many robust standard deviations of the intervals
-_ASTRAY = 50  # at most one row in so many goes astray in one go (or ten rows)
+# samples looked at in one go, so that no second array of full length is made
+_BLOCK_SAMPLES = 1 << 18
 
-_TICKS = [10.0**k for k in range(-9, 1)]
+_COUNTER_TICKS = [10.0**k for k in range(-9, 1)]
 # what counters hold: bits of ticks, and a day; a clock that falls by one of them has wrapped
 _COUNTERS = tuple(
     sorted(
         {
             2.0**bits * tick
             for bits in (8, 10, 12, 14, 15, 16, 18, 20, 24, 31, 32)
-            for tick in _TICKS
+            for tick in _COUNTER_TICKS
         }
     )
 )
@@ -63,8 +61,8 @@ class Faults(NamedTuple):
 
 def first_fault(time: np.ndarray) -> int | None:
     """Row (from 0) of the first time that is missing or not later than the one before it."""
-    for start, _ in pieces(0, len(time), _BLOCK):
-        part = time[max(start - 1, 0) : start + _BLOCK]
+    for start, _ in pieces(0, len(time), _BLOCK_SAMPLES):
+        part = time[max(start - 1, 0) : start + _BLOCK_SAMPLES]
         if start == 0 and not np.isfinite(part[0]):
             return 0
         with np.errstate(invalid="ignore"):  # from one infinite time to the next
@@ -145,17 +143,17 @@ class _Search:
         for first, last in pieces(0, self.steps.size):
             self.steps[first:last] = np.diff(time[first : last + 1])
         self.usual, spread = _usual_and_spread(self.steps)
-        self.scatter = _SCATTER * 1.4826 * spread
-        self.small = _SMALL * self.usual + self.scatter
+        self.scatter = limits.MAX_SCATTER_OF_JITTER.value * 1.4826 * spread
+        self.small = limits.MAX_JITTER.value * self.usual + self.scatter
         self.astray = np.zeros(time.size, dtype=bool)
-        self.reach = max(10, time.size // _ASTRAY)
+        self.reach = max(10, time.size // limits.MIN_ROWS_PER_STRAY_BLOCK.value)
         self.starts: list[Start] = []
 
     def run(self) -> None:
         """Judge every fall."""
         falls = np.flatnonzero(self.steps < 0) + 1
         size = -self.steps[falls - 1]
-        if np.count_nonzero(size <= self.small) > _MANY:
+        if np.count_nonzero(size <= self.small) > limits.MAX_BACKWARD_STEPS.value:
             falls = falls[size > self.small]
         self.first, self.top = 0, -np.inf  # of the present part: its first row, its latest time
         done = 0  # rows judged so far

@@ -23,20 +23,20 @@ from numpy.typing import NDArray
 
 from tribolab.arrays.medians import median
 from tribolab.core.aliases import Array
-from tribolab.reading.clocks.basis import SLACKS, Basis
+from tribolab.reading.clocks import limits
+from tribolab.reading.clocks.basis import SLACK_LENGTHS, Basis
 
-_SAMPLES = 2000  # of the force, looked at in one fit
-_CANCELLED = 1e-6  # of the whole: a difference of sums that is smaller is summed itself
-_DRIFT = 8  # hat functions of time, at most
-_POWERS = 2.0, 8.0  # of what a model leaves unexplained: how much less it counts
-_POWER_OF_NOISE = 0.01  # of the independent residuals
-_NO_MODEL = 1.5  # times the error by the models, as the truth is none of them
-_BEFORE = 0.5  # how likely it is beforehand that force leads; else any slack is as likely
-_MOST_UNEXPLAINED = 0.5
-_MOST_EVENTS = 60
-_RIDGE = 1e-7
-_SHIFTS = 17  # on a grid
-_AGAIN = 13  # of a grid about what the one before found: one to each standard error
+_FITTED_SAMPLES = 2000  # of the force, looked at in one fit
+_CANCELLATION = 1e-6  # of the whole: a difference of sums that is smaller is summed itself
+_DRIFT_FUNCTIONS = 8  # hat functions of time, at most
+_POWER_RANGE = 2.0, 8.0  # of what a model leaves unexplained: how much less it counts
+_POWER_PER_RESIDUAL = 0.01  # of the independent residuals
+# how likely it is beforehand that force leads; else any slack is as likely
+_PRIOR_FORCE_LEADS = 0.5
+_MAX_EVENTS = 60
+_RIDGE_PENALTY = 1e-7
+_GRID_SHIFTS = 17  # on a grid
+_REFINED_SHIFTS = 13  # of a grid about what the one before found: one to each standard error
 
 
 class JointShift(NamedTuple):
@@ -100,7 +100,10 @@ def told_by_motion(
     period = sampling(force_time, basis, shift)
     span = min(span, max(least, 0.5 * basis.stroke))
     answers = fit_jointly(force_time, force, basis, shift, span, period)
-    if not answers or min(answer.unexplained for answer in answers) > _MOST_UNEXPLAINED:
+    if (
+        not answers
+        or min(answer.unexplained for answer in answers) > limits.MAX_UNEXPLAINED_VARIANCE.value
+    ):
         return None
     mean, error = mixture(answers)
     least = float(np.hypot(0.5 * period, 0.2 * basis.averaged))
@@ -141,7 +144,11 @@ def fit_jointly(
         return []
     answers = []
     for name, table, (at, error) in models:
-        prior = _BEFORE if name == "before" else (1.0 - _BEFORE) / (1 + len(SLACKS))
+        prior = (
+            _PRIOR_FORCE_LEADS
+            if name == "before"
+            else (1.0 - _PRIOR_FORCE_LEADS) / (1 + len(SLACK_LENGTHS))
+        )
         near = at + error * np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
         answers.append(
             Answer(name, at, error, *_Fit(used, basis.rows, table, near).profile()[1:], prior)
@@ -154,14 +161,16 @@ def mixture(answers: list[Answer]) -> tuple[float, float]:
     unexplained = np.array([answer.unexplained for answer in answers])
     best = int(np.argmin(unexplained))
     # what is left is noise if it hangs together little; else no model is quite right
-    power = np.clip(_POWER_OF_NOISE * answers[best].freedom, *_POWERS)
+    power = np.clip(_POWER_PER_RESIDUAL * answers[best].freedom, *_POWER_RANGE)
     weight = np.array([answer.prior for answer in answers])
     weight *= (unexplained / unexplained[best]) ** -power
     weight /= weight.sum()
     shift = np.array([answer.shift for answer in answers])
     error = np.array([answer.error for answer in answers])
     mean = float(weight @ shift)
-    return mean, _NO_MODEL * float(np.sqrt(weight @ (error**2 + (shift - mean) ** 2)))
+    return mean, limits.ERROR_OF_MODELS.value * float(
+        np.sqrt(weight @ (error**2 + (shift - mean) ** 2))
+    )
 
 
 def _one(
@@ -181,7 +190,7 @@ def _one(
             samples = _samples(force_time, force, basis, at, half)
         if len(samples.time) < 3 * len(table) + 30:
             return None
-        shifts = at + half * np.linspace(-1.0, 1.0, _AGAIN if narrowed else _SHIFTS)
+        shifts = at + half * np.linspace(-1.0, 1.0, _REFINED_SHIFTS if narrowed else _GRID_SHIFTS)
         likelihood = _Fit(samples, basis.rows, table, shifts).profile()[0]
         weight = np.exp(likelihood - likelihood.max())
         weight /= weight.sum()
@@ -201,11 +210,11 @@ def _chosen(force_time: Array, basis: Basis, shift: float, half: float) -> NDArr
     """Choose samples of the force around the changes of the motion, closer the nearer to one."""
     events = basis.time[basis.events] + shift
     inside = (events > force_time[0] + half) & (events < force_time[-1] - half)
-    inside[inside] = np.arange(inside.sum()) % (1 + inside.sum() // _MOST_EVENTS) == 0
+    inside[inside] = np.arange(inside.sum()) % (1 + inside.sum() // _MAX_EVENTS) == 0
     events, around = events[inside], basis.around[inside] + shift
     if not len(events):
         return np.zeros(0, dtype=np.int64)
-    each = max(20, _SAMPLES // len(events)) // 2  # before, and after
+    each = max(20, _FITTED_SAMPLES // len(events)) // 2  # before, and after
     k = np.searchsorted(force_time, events)
     a, b = np.searchsorted(force_time, around.T)
     count = np.stack([b - k, k - a])  # (after or before, event)
@@ -244,9 +253,13 @@ def _samples(force_time: Array, force: Array, basis: Basis, shift: float, half: 
     used = _chosen(force_time, basis, shift, half)
     time, force = force_time[used], force[used]
     if not len(time):
-        return _Samples(time, force, np.zeros((0, _DRIFT)), np.zeros((_DRIFT + 1, 0)))
-    knots = np.linspace(time[0], time[-1], _DRIFT)
-    drift, _ = np.linalg.qr(np.stack([np.interp(time, knots, hat) for hat in np.eye(_DRIFT)], 1))
+        return _Samples(
+            time, force, np.zeros((0, _DRIFT_FUNCTIONS)), np.zeros((_DRIFT_FUNCTIONS + 1, 0))
+        )
+    knots = np.linspace(time[0], time[-1], _DRIFT_FUNCTIONS)
+    drift, _ = np.linalg.qr(
+        np.stack([np.interp(time, knots, hat) for hat in np.eye(_DRIFT_FUNCTIONS)], 1)
+    )
     force = force - drift @ (drift.T @ force)
     return _Samples(time, force, drift, np.concatenate([drift.T, force[None]]))
 
@@ -293,13 +306,13 @@ class _Fit:
             told.append(along[-1])
         normal, right = np.stack(normals), np.stack(told)[:, :, None]
         own = np.einsum("sii->si", normal)
-        ridge = _RIDGE * own + 1e-12 * own.sum(axis=1, keepdims=True)
+        ridge = _RIDGE_PENALTY * own + 1e-12 * own.sum(axis=1, keepdims=True)
         ridged = normal + ridge[:, :, None] * np.eye(own.shape[1])
         amplitudes = np.linalg.solve(ridged, right)
         explained = amplitudes * (2.0 * right - normal @ amplitudes)
         left = self.whole - explained.sum(axis=(1, 2))
         amplitudes = amplitudes[:, :, 0]
-        for k in np.flatnonzero(left < _CANCELLED * self.whole):
+        for k in np.flatnonzero(left < _CANCELLATION * self.whole):
             residual = self.residual(self.shifts[k], amplitudes[k])
             left[k] = residual @ residual
         inertia = np.sqrt(np.maximum(own[:, -1], 0.0)) * np.abs(amplitudes[:, -1])
@@ -319,7 +332,7 @@ class _Fit:
         residual = self.residual(self.shifts[best], amplitudes[best])
         alike = float(residual[1:] @ residual[:-1]) / max(float(residual @ residual), 1e-30)
         hanging = max(1.0, (1.0 + alike) / max(1.0 - alike, 1e-3))
-        freedom = max(len(residual) - amplitudes.shape[1] - _DRIFT, 1) / hanging
+        freedom = max(len(residual) - amplitudes.shape[1] - _DRIFT_FUNCTIONS, 1) / hanging
         squares = np.maximum(squares, 1e-12 * self.whole)
         return (
             -0.5 * freedom * np.log(squares),

@@ -8,6 +8,7 @@ import numpy as np
 
 from tribolab.core.errors import Cure, ReadError
 from tribolab.core.untyped import Json
+from tribolab.reading.clocks import limits
 from tribolab.reading.clocks.shift import estimate_clock_shift
 from tribolab.reading.signals import Signals
 
@@ -17,8 +18,6 @@ _STEPWISE = {
     "step",
     "cycle",
 }  # between two samples the first holds
-_OTHER_DAY = 3600.0  # s between two logs, more than two computers' clocks differ by: refused
-_OTHER_RUN = 60.0  # s between two logs: the signals are not believed
 
 
 def merge(run: Signals, motion: Signals, clock_shift: float | None = None) -> Signals:
@@ -100,7 +99,7 @@ def _shift(
         return float(given), "given", {"clock_shift_uncertainty_s": 0.0, "clock_rate": 0.0}
     apart = _recorded_apart(run, motion)
     gap = 0.0 if apart is None else _gap(apart, force_clock, motion_clock)
-    if gap > _OTHER_DAY:
+    if gap > limits.MAX_GAP_BETWEEN_LOGS.value:
         raise ReadError(
             f"{run.attrs['source']} was recorded at {run.attrs['recorded_at']}, its companion "
             f"{motion.attrs['source']} at {motion.attrs['recorded_at']}: another run's log; put "
@@ -127,7 +126,7 @@ def _shift(
                 "clock_shift_ways": ways,
             }
             refused = estimate.refused
-            if gap > _OTHER_RUN:
+            if gap > limits.MAX_GAP_OF_ONE_RUN.value:
                 refused = f"by their dates one log ended {gap:.0f} s before the other began"
             if not refused:
                 return estimate.shift, "estimated", attrs

@@ -14,18 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tribolab.core.aliases import Array
+from tribolab.reading.clocks import limits
 
-_DECADES = 5  # slower than this many decades below the fastest is rest
-_QUIET = 0.02  # of the fastest speed: most noise that is left after averaging
-_WIDEST = 64  # samples on either side, at most, in an average
-_ABOVE_NOISE = 4.0  # standard deviations of the noise, below which the table is taken to rest
-_BLOCK = 16  # samples, in which noise is looked at
-_NOWHERE = 3e-4  # of the longest way in one go: what is shorter is noise at rest
-_QUIETEST = 3.0  # percentile of the noise in blocks that is taken for that at rest
-_FEW = 1.5  # times the changes of the motion: more are those of noise
-_EVEN = 3.0  # times the time between two counts, that the next two may be apart in one stroke
-_COUNTS = 8  # at least, that make a stroke
-_TOP = 99.0  # percentile of the speed that is called the fastest
+_MAX_HALF_WIDTH = 64  # samples on either side, at most, in an average
+_NOISE_BLOCK = 16  # samples, in which noise is looked at
+_REST_PERCENTILE = 3.0  # percentile of the noise in blocks that is taken for that at rest
+_TOP_PERCENTILE = 99.0  # percentile of the speed that is called the fastest
 
 
 class Motion(NamedTuple):
@@ -56,7 +50,9 @@ def clean_motion(time: Array, velocity: Array) -> Motion:
     velocity = _between_counts(time, velocity, path)
     half, smooth = 0, velocity
     noise = _noise(velocity, 1)
-    while noise > _QUIET * _fastest(smooth) and half < min(_WIDEST, len(time) // 64):
+    while noise > limits.MAX_NOISE_OF_SPEED.value * _fastest(smooth) and half < min(
+        _MAX_HALF_WIDTH, len(time) // 64
+    ):
         wider = max(1, 2 * half)
         tried = _averaged(time, path, wider)
         left = _noise(tried, 2 * wider)
@@ -66,7 +62,8 @@ def clean_motion(time: Array, velocity: Array) -> Motion:
     way = _way(smooth, noise)
     way = _without_short(path, way)
     plain = _way(velocity, 0.0)
-    if _turns(plain) <= _FEW * _turns(way):  # it is quiet at rest: nothing has to be done
+    # it is quiet at rest: nothing has to be done
+    if _turns(plain) <= limits.MAX_CHANGES_OF_NOISE.value * _turns(way):
         return Motion(np.where(plain != 0, velocity, 0.0), plain, 0.0)
     interval = float(np.percentile(np.diff(time), 5))
     return Motion(np.where(way != 0, smooth, 0.0), way, 2 * half * interval)
@@ -81,16 +78,16 @@ def _between_counts(time: Array, velocity: Array, path: Array) -> Array:
     way = _way(velocity, 0.0)  # without the dust of rounding
     edges = np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way)]])
     first, last = edges[:-1][way[edges[:-1]] != 0], edges[1:][way[edges[:-1]] != 0]
-    if len(first) < _COUNTS:
+    if len(first) < limits.MIN_COUNTS_OF_STROKE.value:
         return velocity
     at = 0.5 * (time[first] + time[last - 1])
     gap = np.diff(at)
     usual = np.minimum(np.append(gap[1:], np.inf), np.concatenate([[np.inf], gap[:-1]]))
     bridged = (way[first[1:]] == way[first[:-1]]) & (first[1:] > last[:-1])
-    bridged &= gap < _EVEN * usual
+    bridged &= gap < limits.MAX_INTERVAL_OF_COUNTS.value * usual
     # as many of them in a row as make a stroke
     number = np.concatenate([[0], np.cumsum(~bridged)])
-    bridged &= np.bincount(number)[number[1:]] >= _COUNTS
+    bridged &= np.bincount(number)[number[1:]] >= limits.MIN_COUNTS_OF_STROKE.value
     out, between = velocity.copy(), np.append(bridged, False)
     inside = np.repeat(between, np.diff(np.append(first, len(way))))
     begun = np.flatnonzero(between)
@@ -104,7 +101,7 @@ def _between_counts(time: Array, velocity: Array, path: Array) -> Array:
 
 
 def _fastest(velocity: Array) -> float:
-    return float(np.percentile(np.abs(velocity), _TOP))
+    return float(np.percentile(np.abs(velocity), _TOP_PERCENTILE))
 
 
 def _averaged(time: Array, path: Array, half: int) -> Array:
@@ -117,23 +114,27 @@ def _averaged(time: Array, path: Array, half: int) -> Array:
 def _noise(velocity: Array, apart: int) -> float:
     """Noise where it is least, from second differences of values that share no samples."""
     second = np.diff(velocity[:: max(apart, 1)], 2)
-    blocks = len(second) // _BLOCK
+    blocks = len(second) // _NOISE_BLOCK
     if blocks < 4:
         return 0.0
-    rms = np.sqrt((second[: blocks * _BLOCK].reshape(blocks, _BLOCK) ** 2).mean(axis=1) / 6.0)
-    return float(np.percentile(rms, _QUIETEST))
+    rms = np.sqrt(
+        (second[: blocks * _NOISE_BLOCK].reshape(blocks, _NOISE_BLOCK) ** 2).mean(axis=1) / 6.0
+    )
+    return float(np.percentile(rms, _REST_PERCENTILE))
 
 
 def _way(velocity: Array, noise: float) -> NDArray[np.int64]:
     """Sign of what rises well above the noise, from where it leaves it to where it enters it."""
     speed = np.abs(velocity)
-    least = 10.0**-_DECADES * float(speed.max())
+    least = 10.0**-limits.DECADES_TO_REST.value * float(speed.max())
     above = speed > max(noise, least)
     way = np.where(above, np.sign(velocity), 0.0).astype(np.int64)
     edges = np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way)]])
     number = np.repeat(np.arange(len(edges) - 1), np.diff(edges))
     highest = np.maximum.reduceat(speed, edges[:-1])
-    return np.where((highest > max(_ABOVE_NOISE * noise, least))[number], way, 0)
+    return np.where(
+        (highest > max(limits.MIN_SPEED_OVER_NOISE.value * noise, least))[number], way, 0
+    )
 
 
 def _turns(way: NDArray[np.int64]) -> int:
@@ -144,6 +145,6 @@ def _without_short(path: Array, way: NDArray[np.int64]) -> NDArray[np.int64]:
     """Take what leads nowhere for rest."""
     edges = np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way)]])
     moved = np.abs(path[np.minimum(edges[1:], len(path) - 1)] - path[edges[:-1]])
-    short = moved < _NOWHERE * moved.max(initial=0.0)
+    short = moved < limits.MIN_DISTANCE_OF_MOTION.value * moved.max(initial=0.0)
     number = np.repeat(np.arange(len(short)), np.diff(edges))
     return np.where(short[number], 0, way)

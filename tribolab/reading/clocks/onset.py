@@ -19,15 +19,12 @@ import numpy as np
 
 from tribolab.arrays.medians import median
 from tribolab.core.aliases import Array
+from tribolab.reading.clocks import limits
 
-_PART = 0.05  # of a stroke's length is looked at, and as long before it
-_DISTANCES = 1e-6 * 2.0 ** np.arange(17)  # d, in lengths of the stroke
-_REACH = 0.3  # of a fast stroke's (or rest's) duration, within which the shift is sought
-_NOISE = 1e-3  # of the longest stroke's way: less is noise of a table at rest
-_FAST = 0.1  # strokes at less than this part of the highest speed are too slow to tell the moment
-_SAMPLES = 5000  # most samples of one beginning; one that lasts longer is too slow to tell
-_PLAIN = 20.0  # least rise of L on both sides: noise alone stays below
-_RISE = 4.0  # of L, to the edge of the uncertainty
+_COMPARED_PART = 0.05  # of a stroke's length is looked at, and as long before it
+_STICK_DISTANCES = 1e-6 * 2.0 ** np.arange(17)  # d, in lengths of the stroke
+_SEARCHED_TIME = 0.3  # of a fast stroke's (or rest's) duration, within which the shift is sought
+_MAX_SAMPLES = 5000  # most samples of one beginning; one that lasts longer is too slow to tell
 
 
 class Sharpened(NamedTuple):
@@ -88,9 +85,11 @@ def refine_by_onsets(
     steps = period * np.concatenate([[0.0], 0.5 * 1.25 ** np.arange(30)])
     steps = steps[steps <= half_width]
     left, right = (_misfit(onsets, centre + sign * steps) for sign in (-1.0, 1.0))
-    if min(left.max(), right.max()) - left[0] < _PLAIN:
+    if min(left.max(), right.max()) - left[0] < limits.MIN_PEAK_OF_LIKELIHOOD.value:
         return None
-    risen = np.flatnonzero(np.minimum(left, right)[1:] - left[0] > _RISE)
+    risen = np.flatnonzero(
+        np.minimum(left, right)[1:] - left[0] > limits.LIKELIHOOD_AT_UNCERTAINTY.value
+    )
     if risen.size == 0:
         return None
     when = float(np.mean([onset.motion_time[0] for onset in onsets]))
@@ -106,11 +105,11 @@ def _onsets(
     edges = np.flatnonzero(np.diff(np.concatenate([[0], moving.astype(np.int8), [0]])))
     way = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(motion_time))])
     lengths = way[edges[1::2] - 1] - way[edges[::2]]
-    strokes = lengths > _NOISE * lengths.max(initial=0.0)
+    strokes = lengths > limits.MIN_LENGTH_OF_STROKE.value * lengths.max(initial=0.0)
     firsts, lasts = edges[::2][strokes], edges[1::2][strokes]
     fast = np.array(
         [
-            first > 1 and speed[first:last].max() > _FAST * speed.max()
+            first > 1 and speed[first:last].max() > limits.MIN_SPEED_OF_ONSET.value * speed.max()
             for first, last in zip(firsts, lasts, strict=True)
         ]
     )
@@ -118,16 +117,18 @@ def _onsets(
         return [], 0.0
     rested = motion_time[firsts - 1] - motion_time[np.concatenate([[0], lasts[:-1]])]
     lasted = motion_time[lasts - 1] - motion_time[firsts]
-    half_width = _REACH * float(median(np.minimum(rested, lasted)[fast]))
+    half_width = _SEARCHED_TIME * float(median(np.minimum(rested, lasted)[fast]))
     onsets = []
     for first, last, rest in zip(firsts[fast], lasts[fast], rested[fast], strict=True):
         distance = way[first - 1 : last] - way[first - 1]
         begin = motion_time[first - 1]
-        until = motion_time[first - 1 + int(np.searchsorted(distance, _PART * distance[-1]))]
+        until = motion_time[
+            first - 1 + int(np.searchsorted(distance, _COMPARED_PART * distance[-1]))
+        ]
         before = max(min(until - begin, rest - 2.0 * half_width), 0.0) + half_width
         ends = [begin - before, until + half_width]
         window = slice(*np.searchsorted(force_time - shift, ends))
-        if 8 <= window.stop - window.start <= _SAMPLES and np.ptp(force[window]) > 0:
+        if 8 <= window.stop - window.start <= _MAX_SAMPLES and np.ptp(force[window]) > 0:
             onsets.append(
                 Onset(
                     force_time[window],
@@ -149,7 +150,7 @@ def _misfit(onsets: list[Onset], shifts: Array) -> Array:
         n, force = len(onset.force), onset.force - onset.force.mean()
         square = float(force @ force)
         beside = np.stack([force, np.ones(n)], axis=1)
-        for d in _DISTANCES * onset.length:
+        for d in _STICK_DISTANCES * onset.length:
             rise = way * (-1.0 / d)
             np.expm1(rise, out=rise)
             told, whole = (rise @ beside).T

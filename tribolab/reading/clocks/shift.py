@@ -25,43 +25,22 @@ from numpy.typing import NDArray
 from tribolab.arrays.medians import median
 from tribolab.arrays.threads import one_thread
 from tribolab.core.aliases import Array
+from tribolab.reading.clocks import limits
 from tribolab.reading.clocks.basis import Basis
-from tribolab.reading.clocks.candidate_shifts import APART, Candidate, candidates, likeliest
+from tribolab.reading.clocks.candidate_shifts import Candidate, candidates, likeliest
 from tribolab.reading.clocks.classes import Classes, coarse_shift, motion_classes
 from tribolab.reading.clocks.joint import told_by_motion
 from tribolab.reading.clocks.motion import Motion, clean_motion
 from tribolab.reading.clocks.onset import refine_by_onsets
 from tribolab.reading.clocks.starts import (
-    QUARTZ,
     Logs,
     ToldByStarts,
     changes,
     shift_from_starts,
 )
 
-_LEAST_SIGNIFICANCE = 10.0  # as an F ratio: the classes alone tell that force follows motion
-_LEAST_AT_ALL = 1.5  # with the other ways' consent
-_CONSENT = 0.3  # most that a fit by the motion leaves unexplained for that
-_SHARP = 0.1  # most that the uncertainty may be, in mean durations of a class
-_WORSE = 3.0  # the starts may tell a shift that leaves this many times more unexplained,
-_ALMOST_NOTHING = 1e-3  # and this,
-_STILL_EXPLAINED = 0.95  # as long as this part of what was explained still is
-_POSSIBLE = 1e12  # N, m/s: what lies beyond is a damaged number, and its square would overflow
-_PART = 0.004  # of a stroke's duration: what one way may be off by, if no fit tells more
-_LOST = 10.0  # times the error by classes: starts that know less contradict one another
-_UNSEEN = 1.3  # times the error by the ways: what delays all of them alike
-_WIDE = 300.0  # times the slowest speed
-_MOVED = 0.5  # of a stroke's duration, between classes and starts: then other shifts are tried
-_LEAST_PART = 0.0005  # of a stroke's duration: no way tells it better
-_HELD = 0.15  # least part of the square of the ways' difference that is in the error's
-_LATE = 0.06  # of a stroke's duration, that classes of speed may differ from the starts
-_VAGUE = 3.0  # times the error of the starts: a fit that tells no better confirms little
-_AGREE = 3.0  # standard deviations that two ways may lie apart
-_RIVAL = 1.5  # times more unexplained: a shift that leaves less than this is as good
-_AS_WELL = 3.0  # times what the classes leave unexplained
-_AS_GOOD = 0.8  # nor explains less than this part of what the best does
-_PLACED = 0.1  # most that a fit leaves unexplained that tells the shift to half a stroke
-_DATED = 10.0  # s: dates of both logs tell which of two such shifts it is
+# N, m/s: what lies beyond is a damaged number, and its square would overflow
+_MAX_POSSIBLE_VALUE = 1e12
 
 
 class Told(NamedTuple):
@@ -83,7 +62,7 @@ class ShiftEstimate(NamedTuple):
     uncertainty: float
     explained: float
     rate: float = 0.0
-    rate_uncertainty: float = QUARTZ
+    rate_uncertainty: float = limits.CLOCK_RATE_ERROR.value
     ways: dict[str, Told] = {}  # noqa: RUF012 - never changed
     refused: str = ""
 
@@ -133,9 +112,9 @@ def _estimated(
     expected: float,
     dated: bool,
 ) -> ShiftEstimate | None:
-    good = np.abs(force) < _POSSIBLE
+    good = np.abs(force) < _MAX_POSSIBLE_VALUE
     force_time, force = force_time[good], force[good]
-    velocity = np.where(np.abs(velocity) < _POSSIBLE, velocity, 0.0)
+    velocity = np.where(np.abs(velocity) < _MAX_POSSIBLE_VALUE, velocity, 0.0)
     if len(force_time) < 16 or len(motion_time) < 16 or np.ptp(force) == 0:
         return None
     motion = clean_motion(motion_time, velocity)
@@ -148,7 +127,7 @@ def _estimated(
     basis = Basis(motion_time, motion)
     if not len(basis.begins):  # it moves from the first sample to the last, or ends moving
         return None
-    apart = APART * basis.stroke
+    apart = limits.MIN_DISTANCE_OF_SHIFTS.value * basis.stroke
     coarse = coarse_shift(force_time, force, motion_time, classes, expected, apart)
     if coarse is None:
         return None
@@ -158,19 +137,21 @@ def _estimated(
     wide = _wide(motion, way)
     if len(coarse.rivals) and not wide:
         shifts = np.concatenate([[coarse.shift], coarse.rivals])
-        if dated and abs(coarse.shift - expected) < _DATED:
-            shifts = shifts[np.abs(shifts - expected) < _DATED]
+        if dated and abs(coarse.shift - expected) < limits.MAX_ERROR_OF_DATES.value:
+            shifts = shifts[np.abs(shifts - expected) < limits.MAX_ERROR_OF_DATES.value]
         may = candidates(force_time, force, basis, shifts)
     chosen = likeliest(may)
     shift = _refined(fit, chosen.shift, coarse.half)
     significance = fit.significance(shift)
-    if significance < _LEAST_AT_ALL:
+    if significance < limits.MIN_F_RATIO_WITH_FIT.value:
         return None
     # a drift is explained by any classes that follow one another, but no shift fits it sharply
     uncertainty = fit.uncertainty(shift)
-    sharp = _SHARP * float(np.ptp(motion_time)) / len(np.unique(classes))
-    placed = chosen.unexplained < _PLACED
-    weak = significance < _LEAST_SIGNIFICANCE
+    sharp = (
+        limits.MAX_UNCERTAINTY_OF_SHIFT.value * float(np.ptp(motion_time)) / len(np.unique(classes))
+    )
+    placed = chosen.unexplained < limits.MAX_UNEXPLAINED_OF_PLACE.value
+    weak = significance < limits.MIN_F_RATIO.value
     vague = uncertainty > sharp and not placed
     if vague and (weak or not wide):
         return None
@@ -179,7 +160,10 @@ def _estimated(
     span = max(8.0 * coarse.half, 1.25 * float(median(np.diff(motion_time[changes(way)]))))
     logs = Logs(force_time, force, motion_time, motion.velocity, way)
     ratio = fit.ratio(shift)
-    unexplained = min(_WORSE * (1.0 - ratio) + _ALMOST_NOTHING, 1.0 - _STILL_EXPLAINED * ratio)
+    unexplained = min(
+        limits.MAX_MISFIT_OF_STARTS.value * (1.0 - ratio) + limits.ROUNDING_OF_VARIANCE.value,
+        1.0 - limits.MIN_EXPLAINED_OF_STARTS.value * ratio,
+    )
     reach = 0.5 * basis.stroke if placed else np.inf
 
     def allowed(at: Array) -> NDArray[np.bool_]:
@@ -193,7 +177,10 @@ def _estimated(
     if estimate.rate == 0.0:
         onsets = _sharpened(estimate, force_time, force, motion_time, motion.velocity, fit)
         # of two methods that agree, the sharper one is kept
-        agree = abs(onsets.shift - starts.shift) <= _AGREE * starts.uncertainty
+        agree = (
+            abs(onsets.shift - starts.shift)
+            <= limits.MAX_ERRORS_OF_AGREEMENT.value * starts.uncertainty
+        )
         vaguer = agree and onsets.uncertainty > starts.uncertainty
         estimate = starts if told is not None and vaguer else onsets
     # slack or a stick would delay the slow starts, which only the first of them sees, by more
@@ -202,7 +189,7 @@ def _estimated(
     if vague and not twice:
         return None
     # starts that know so little were looked for at a wrong place
-    if not twice and estimate.uncertainty > _LOST * uncertainty:
+    if not twice and estimate.uncertainty > limits.MAX_ERROR_OF_STARTS.value * uncertainty:
         anew = ShiftEstimate(shift, uncertainty, ratio)
         anew = _sharpened(anew, force_time, force, motion_time, motion.velocity, fit)
         estimate = anew if anew.uncertainty < estimate.uncertainty else estimate
@@ -217,40 +204,51 @@ def _estimated(
     if estimate.rate != 0.0:
         basis = Basis(motion_time + estimate.rate * (motion_time - middle), motion)
     joint = told_by_motion(force_time, force, basis, estimate.shift, near, least)
-    if weak and (joint is None or joint.unexplained > _CONSENT):
+    if weak and (joint is None or joint.unexplained > limits.MAX_UNEXPLAINED_OF_AGREEMENT.value):
         return None
     if joint is not None:
-        apart = QUARTZ if estimate.rate == 0.0 else estimate.rate_uncertainty
+        apart = limits.CLOCK_RATE_ERROR.value if estimate.rate == 0.0 else estimate.rate_uncertainty
         error = float(np.hypot(joint.uncertainty, apart * (joint.time - middle)))
         ways["motion"] = Told(joint.shift, error)
         if weak and not placed and abs(joint.shift - estimate.shift) > 0.5 * sharp:
             return None
         stroke = joint.stroke
-    sharp_fit = joint is not None and joint.uncertainty < _SHARP * stroke
+    sharp_fit = (
+        joint is not None and joint.uncertainty < limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
+    )
     if sharp_fit and told is not None and not agree and _agree(told, ways["motion"]):
         estimate, ways["starts"] = starts, Told(*starts[:2])  # two methods contradict the onsets
-    known = "starts" in ways and estimate.uncertainty < _SHARP * stroke
+    known = (
+        "starts" in ways and estimate.uncertainty < limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
+    )
     if twice and _contradicted(ways, stroke):
         other = onsets if estimate is starts else starts
-        combined, part = _late(ways["starts"], Told(*other[:2])), _LEAST_PART
+        combined, part = _late(ways["starts"], Told(*other[:2])), limits.MIN_ERROR_OF_SHIFT.value
     elif wide and known and "motion" in ways and _agree(ways["starts"], ways["motion"]):
-        combined, part = ways["starts"], _LEAST_PART
+        combined, part = ways["starts"], limits.MIN_ERROR_OF_SHIFT.value
         if abs(combined.shift - ways["motion"].shift) > ways["motion"].uncertainty:
             combined = _late(combined, ways["motion"])
     elif sharp_fit:
         first = ways["classes"]
         if known:
-            vague = ways["motion"].uncertainty > _VAGUE * ways["starts"].uncertainty
+            vague = (
+                ways["motion"].uncertainty
+                > limits.MAX_ERROR_OF_CONFIRMATION.value * ways["starts"].uncertainty
+            )
             first = _late(ways["starts"], ways["classes"]) if vague else ways["starts"]
-        combined, part = _combined(first, ways["motion"]), _PART
+        combined, part = _combined(first, ways["motion"]), limits.ERROR_WITHOUT_FIT.value
     elif "starts" in ways and _confirmed(ways["starts"], ways["classes"], stroke):
-        combined, part = _late(ways["starts"], ways["classes"]), _PART
+        combined, part = _late(ways["starts"], ways["classes"]), limits.ERROR_WITHOUT_FIT.value
     else:
         return estimate._replace(ways=ways, refused="no two ways tell it")
     error = float(np.hypot(combined.uncertainty, part * stroke))
     estimate = estimate._replace(shift=combined.shift, uncertainty=error, ways=ways)
     estimate = estimate._replace(explained=fit.ratio(combined.shift))
-    if wide and not twice and abs(estimate.shift - shift) > _MOVED * stroke:
+    if (
+        wide
+        and not twice
+        and abs(estimate.shift - shift) > limits.MAX_DISTANCE_TO_CLASSES.value * stroke
+    ):
         may = candidates(force_time, force, basis, np.array([estimate.shift, *coarse.rivals]))
         return estimate._replace(refused=_doubt_of_moved(may, stroke))
     rivals = [rival for rival in may if rival is not chosen]
@@ -273,14 +271,19 @@ def _wide(motion: Motion, way: NDArray[np.int64]) -> bool:
     """Whether strokes differ so much in speed that what delays a slow start shows in the starts."""
     change = changes(way)[:-1]
     fastest = np.maximum.reduceat(np.abs(motion.velocity), change)[way[change] != 0]
-    return bool(fastest.max() > _WIDE * fastest.min())
+    return bool(fastest.max() > limits.MAX_SPEED_RATIO.value * fastest.min())
 
 
 def _alike(starts: ShiftEstimate, onsets: ShiftEstimate, stroke: float) -> bool:
     """Whether starts at all speeds and those of fast strokes of a duration [s] tell the same."""
-    sharp = max(starts.uncertainty, onsets.uncertainty) < _SHARP * stroke
+    sharp = (
+        max(starts.uncertainty, onsets.uncertainty) < limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
+    )
     apart = abs(starts.shift - onsets.shift)
-    return sharp and apart < max(_AGREE * starts.uncertainty, _LATE * stroke)
+    return sharp and apart < max(
+        limits.MAX_ERRORS_OF_AGREEMENT.value * starts.uncertainty,
+        limits.MAX_DELAY_OF_CLASSES.value * stroke,
+    )
 
 
 def _contradicted(ways: dict[str, Told], stroke: float) -> bool:
@@ -290,20 +293,25 @@ def _contradicted(ways: dict[str, Told], stroke: float) -> bool:
     strokes of a duration [s]: what is nearer may be right.
     """
     starts, motion = ways["starts"], ways.get("motion")
-    if motion is None or motion.uncertainty > _SHARP * stroke:
+    if motion is None or motion.uncertainty > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke:
         return True
-    return abs(motion.shift - starts.shift) > _SHARP * stroke and not _agree(starts, motion)
+    return abs(
+        motion.shift - starts.shift
+    ) > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke and not _agree(starts, motion)
 
 
 def _agree(first: Told | ToldByStarts, second: Told) -> bool:
     """Whether two ways lie no further apart than their errors allow."""
     error = np.hypot(first.uncertainty, second.uncertainty)
-    return bool(abs(first.shift - second.shift) <= _AGREE * error)
+    return bool(abs(first.shift - second.shift) <= limits.MAX_ERRORS_OF_AGREEMENT.value * error)
 
 
 def _confirmed(starts: Told, classes: Told, stroke: float) -> bool:
     """Whether classes of speed confirm what the starts of strokes of a duration [s] tell."""
-    return _agree(starts, classes) or abs(starts.shift - classes.shift) < _LATE * stroke
+    return (
+        _agree(starts, classes)
+        or abs(starts.shift - classes.shift) < limits.MAX_DELAY_OF_CLASSES.value * stroke
+    )
 
 
 def _late(starts: Told, other: Told) -> Told:
@@ -331,8 +339,10 @@ def _combined(first: Told, second: Told) -> Told:
     weights = np.array([1.0 / (told.uncertainty**2 + apart**2) for told in (first, second)])
     share = float(weights[1] / weights.sum())
     inner = (1.0 - share) * first.uncertainty + share * second.uncertainty
-    error = np.sqrt(inner**2 + max(share * (1.0 - share), _HELD) * apart**2)
-    return Told(first.shift + share * apart, _UNSEEN * float(error))
+    error = np.sqrt(
+        inner**2 + max(share * (1.0 - share), limits.MIN_SHARE_OF_DIFFERENCE.value) * apart**2
+    )
+    return Told(first.shift + share * apart, limits.ERROR_OF_METHODS.value * float(error))
 
 
 def _doubt(
@@ -344,20 +354,32 @@ def _doubt(
     rivals: list[Candidate],
 ) -> str:
     """Why a shift cannot be relied on; empty if it can. Strokes last `stroke` [s]."""
-    if estimate.uncertainty > _SHARP * stroke and "motion" in estimate.ways:
+    if (
+        estimate.uncertainty > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
+        and "motion" in estimate.ways
+    ):
         told = ", ".join(f"{name} {way.shift:.4g} s" for name, way in estimate.ways.items())
         return f"the ways to tell it disagree: {told}"
-    if estimate.uncertainty > _SHARP * stroke:
+    if estimate.uncertainty > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke:
         return f"no way tells it sharply: {estimate.shift:.4g} s to {estimate.uncertainty:.2g} s"
-    left = _RIVAL * (1.0 - estimate.explained) + _ALMOST_NOTHING
+    left = (
+        limits.MAX_MISFIT_OF_RIVAL.value * (1.0 - estimate.explained)
+        + limits.ROUNDING_OF_VARIANCE.value
+    )
     for rival in rivals:
         if chosen.clears(rival):
             continue
         at = _refined(fit, rival.shift, half)
         ratio = fit.ratio(at)
-        as_good = 1.0 - ratio < left and ratio > _AS_GOOD * estimate.explained
+        as_good = (
+            1.0 - ratio < left and ratio > limits.MIN_EXPLAINED_OF_RIVAL.value * estimate.explained
+        )
         # a fit that explains far less than the classes do says nothing against what they tell
-        fitted = chosen.unexplained < _AS_WELL * (1.0 - estimate.explained) + _ALMOST_NOTHING
+        fitted = (
+            chosen.unexplained
+            < limits.MAX_MISFIT_OF_FIT.value * (1.0 - estimate.explained)
+            + limits.ROUNDING_OF_VARIANCE.value
+        )
         fitted &= not np.isnan(rival.unexplained)
         as_good |= fitted and not chosen.surpasses(rival)
         if abs(at - estimate.shift) > 0.5 * stroke and as_good:
@@ -380,7 +402,9 @@ def _sharpened(
     apart = abs(onsets.shift - estimate.shift)
     # known where the fast strokes are; the clocks' rates leave it open elsewhere
     middle = 0.5 * (motion_time[0] + motion_time[-1])
-    error = float(np.hypot(onsets.uncertainty, QUARTZ * (onsets.time - middle)))
+    error = float(
+        np.hypot(onsets.uncertainty, limits.CLOCK_RATE_ERROR.value * (onsets.time - middle))
+    )
     if apart > 3.0 * estimate.uncertainty:  # the two ways disagree, and neither can be trusted more
         error = max(error, apart)
     return ShiftEstimate(onsets.shift, error, fit.ratio(onsets.shift))

@@ -21,15 +21,13 @@ from numpy.typing import NDArray
 
 from tribolab.arrays.medians import median
 from tribolab.core.aliases import Array
+from tribolab.reading.clocks import limits
 
-QUARTZ = 10e-6  # usual relative difference of two quartz clocks: standard deviation
-_MOST_STARTS = 64
-_REACH = 200  # samples after a start that are looked at, and at most as many before it
-_THINNED = 160  # of them, when all would be more
-_FIRST = 0.5  # samples: the distance slid within them is the shortest length
-_LENGTHS = 8  # exponentials that make up a start's curve
-_FLOOR = 20.0  # a start speaks against a shift by no more than this log-likelihood
-_TELLING = 0.3  # the rate is fitted if it becomes this much better known than it was
+_MAX_STARTS = 64
+_COMPARED_SAMPLES = 200  # samples after a start that are looked at, and at most as many before it
+_THINNED_SAMPLES = 160  # of them, when all would be more
+_FIRST_SAMPLES = 0.5  # samples: the distance slid within them is the shortest length
+_CURVE_TERMS = 8  # exponentials that make up a start's curve
 
 
 class ToldByStarts(NamedTuple):
@@ -87,7 +85,7 @@ class Logs:
             begin, early, end = self._path(ends).tolist()
             end = max(end - begin, 1e-300)
             shortest = max(early - begin, 1e-5 * end)
-            lengths = shortest * (end / shortest) ** np.linspace(0.0, 1.0, _LENGTHS)
+            lengths = shortest * (end / shortest) ** np.linspace(0.0, 1.0, _CURVE_TERMS)
             self._curves[start] = _Curve(begin, lengths)
         return self._curves[start]
 
@@ -110,7 +108,7 @@ class Logs:
     def shapes(self, start: _Start, since: Array) -> Array:
         """Functions of the time since the start that make up the force (..., function, time)."""
         lengths = self._curve(start).lengths
-        out = np.empty((*since.shape[:-1], 3 + _LENGTHS, since.shape[-1]))
+        out = np.empty((*since.shape[:-1], 3 + _CURVE_TERMS, since.shape[-1]))
         out[..., 0, :] = 1.0
         np.minimum(since, 0.0, out=out[..., 1, :])
         out[..., 1, :] /= start.before
@@ -136,8 +134,8 @@ def _starts(logs: Logs, shift: float) -> list[_Start]:
     change = changes(logs.way)
     moving = logs.way[change[1:-1]] != 0
     numbers = np.flatnonzero(moving & (np.diff(change[1:]) >= 8)) + 1
-    if len(numbers) > _MOST_STARTS:
-        numbers = numbers[np.linspace(0, len(numbers) - 1, _MOST_STARTS).astype(np.int64)]
+    if len(numbers) > _MAX_STARTS:
+        numbers = numbers[np.linspace(0, len(numbers) - 1, _MAX_STARTS).astype(np.int64)]
     starts = []
     for before, first, last in zip(
         change[numbers - 1], change[numbers], change[numbers + 1], strict=True
@@ -155,9 +153,9 @@ def _starts(logs: Logs, shift: float) -> list[_Start]:
         starts.append(
             _Start(
                 begin,
-                min(0.6 * rest, max(_REACH * interval, 12.0 * float(median(ahead)))),
-                min(0.5 * stroke, max(_REACH * interval, 12.0 * moved)),
-                _FIRST * interval,
+                min(0.6 * rest, max(_COMPARED_SAMPLES * interval, 12.0 * float(median(ahead)))),
+                min(0.5 * stroke, max(_COMPARED_SAMPLES * interval, 12.0 * moved)),
+                _FIRST_SAMPLES * interval,
                 0.5 * float(np.hypot(interval, moved)),
             )
         )
@@ -228,7 +226,9 @@ def _together(logs: Logs, starts: list[_Start], shifts: Array) -> float:
         residual = means - (means @ basis) @ basis.T
         # relative to the variance there, or the quietest place would fit best
         variance = np.maximum((means**2).sum(axis=1), 1e-30)
-        total += np.logaddexp(_likelihood(residual, variance, basis.shape[1]), -_FLOOR)
+        total += np.logaddexp(
+            _likelihood(residual, variance, basis.shape[1]), -limits.MAX_LIKELIHOOD_OF_START.value
+        )
     return float(shifts[np.argmax(total)])
 
 
@@ -236,7 +236,7 @@ def _one(logs: Logs, start: _Start, shifts: Array) -> tuple[float, float]:
     """Shift that one start tells and its standard deviation, from the same samples for all."""
     window = start.time + np.array([shifts[0] - start.before, shifts[-1] + start.after])
     first, last = np.searchsorted(logs.force_time, window)
-    part = slice(first, last, max(1, -(-(last - first) // _THINNED)))
+    part = slice(first, last, max(1, -(-(last - first) // _THINNED_SAMPLES)))
     time, force = logs.force_time[part], logs.force[part]
     force = force - force.mean()
     shapes = logs.shapes(start, time - start.time - shifts[:, None])
@@ -268,7 +268,7 @@ def _likelihood(residual: Array, variance: Array, parameters: int) -> Array:
 def _combined(since: Array, shifts: Array, errors: Array, common: float) -> ToldByStarts:
     """Put the starts' shifts together, at times since the middle; `common` error is in all."""
     design = np.stack([np.ones_like(since), since], axis=1)
-    prior = np.diag([0.0, QUARTZ**-2])
+    prior = np.diag([0.0, limits.CLOCK_RATE_ERROR.value**-2])
     order = np.argsort(shifts)
     half = np.cumsum(errors[order] ** -2.0)
     # from the weighted median, so that a few that are wrong do not matter
@@ -285,7 +285,7 @@ def _combined(since: Array, shifts: Array, errors: Array, common: float) -> Told
     scatter = max(1.0, squares / max(len(shifts) - 1, 1))
     normal = design.T @ (weight[:, None] * design) / scatter + prior
     error = np.sqrt(np.diag(np.linalg.inv(normal)))
-    if error[1] > _TELLING * QUARTZ:
+    if error[1] > limits.MAX_ERROR_OF_CLOCK_RATE.value * limits.CLOCK_RATE_ERROR.value:
         # a rate that is hardly told only moves the shift away from where it is known
         told = np.array([told @ (weight @ design) / weight.sum(), 0.0])
     # the loggers see all starts in the same way, so this does not become less by their number

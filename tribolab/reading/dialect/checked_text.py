@@ -54,7 +54,7 @@ _INSTEAD = {
     "radius": _RULE.format("radius", "sliding_velocity", "rotation_speed * radius"),
     "stress": 'quantity = "shear_stress" or "normal_stress"',
 }
-_ALIKE = {
+_SYNONYMS = {
     **dict.fromkeys(("moment", "couple", "drehmoment"), "torque"),
     **dict.fromkeys(("laps", "lap", "revolutions", "rotations", "revs"), "turns"),
     **dict.fromkeys(("digits", "adc", "bits", "raw", "count"), "counts"),
@@ -67,7 +67,7 @@ def _is_quantity(name: str) -> object:
     try:
         return quantity(name)
     except TribolabError as error:
-        words = [_ALIKE.get(word, word) for word in name.lower().split("_")]
+        words = [_SYNONYMS.get(word, word) for word in name.lower().split("_")]
         rule = next((_INSTEAD[word] for word in words if word in _INSTEAD), None)
         if rule is None:
             raise

@@ -21,7 +21,7 @@ from tribolab.core.aliases import Array
 from tribolab.core.errors import UnitError, nearest, shown
 from tribolab.units.conversion import base_unit, registry, to_si
 
-_LONGEST = 300  # letters
+_MAX_FORMULA = 300  # letters
 _DEEPEST = 20
 _QUANTITY = re.compile(r"\s*[+-]?[\d.]+(?:[eE][+-]?\d+)?\s*(?P<unit>.*?)\s*$")
 _TOKEN = re.compile(
@@ -87,8 +87,8 @@ def parse_formula(text: str) -> Node:
     >>> sorted(names_in(parse_formula("rotation_speed * (radius - '2 mm') / 2")))
     ['radius', 'rotation_speed']
     """
-    if len(text) > _LONGEST:
-        raise UnitError(f"formula '{shown(text)}' is longer than {_LONGEST} letters")
+    if len(text) > _MAX_FORMULA:
+        raise UnitError(f"formula '{shown(text)}' is longer than {_MAX_FORMULA} letters")
     reader = _Reader(text)
     node = reader.sum_of_terms(0)
     if reader.kind:

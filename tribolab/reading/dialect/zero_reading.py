@@ -20,7 +20,7 @@ _FIRST = re.compile(r"^\s*first\s+(\S.*?)\s*$")
 _BETWEEN = re.compile(r"^\s*(\S.*?)\s+to\s+(\S.*?)\s*$")
 _TABLES = re.compile(r"^\s*table\s+(\S.*?)(?:\s+to\s+table\s+(\S.*?))?\s*$")
 _BLANK = re.compile(r"^\s*file\s+(\S.*?)\s*$")
-_FEWEST = 10  # samples
+_MIN_SAMPLES = 10  # samples
 _RUBS = 0.12  # of the highest friction
 _MOVES, _MOSTLY = 0.01, 0.5  # of the highest speed; share of the samples
 _BATCHES = 16  # means whose scatter says how well the zero is known
@@ -226,9 +226,9 @@ def _until_it_rubs(friction: np.ndarray, rows: int) -> int:
 def _zero_of(name: str, text: str, values: np.ndarray, where: str) -> tuple[float, float]:
     """Return the mean of samples that tell a zero, and its standard error."""
     values = values[np.isfinite(values)]
-    if values.size < _FEWEST:
+    if values.size < _MIN_SAMPLES:
         raise ReadError(
-            f"zero of {name}: '{shown(text)}' holds {values.size} numbers, and {_FEWEST} are "
+            f"zero of {name}: '{shown(text)}' holds {values.size} numbers, and {_MIN_SAMPLES} are "
             "needed",
             where=where,
             cure=Cure(*["name a longer stretch in `zero`"] * 3),

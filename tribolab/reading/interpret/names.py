@@ -41,7 +41,7 @@ _OF_STAGE = re.compile(
 _ACROSS = re.compile(r"(?:^|[\s_.\-])z(?:$|[\s_.\-])", re.IGNORECASE)
 _INSTEAD = {"position": "height_displacement"}
 _ANGLES = ("deg", "rad", "°")
-_LONGEST = 1000  # characters of a name that are looked at: searches take their square
+_MAX_NAME = 1000  # characters of a name that are looked at: searches take their square
 _WIDE_BRACKETS = re.compile(r"^(?P<name>.+?)\s*[（［【](?P<unit>[^（）［］【】]+)[）］】]$")
 # what a unit means for a quantity in this SI unit: weights for forces
 _MEANT = {"N": WEIGHTS}
@@ -79,7 +79,7 @@ def device_of(name: str) -> tuple[str, str]:
     (('Stage', 'X'), ('axis', 'x'))
     """
     parts = None
-    if len(name) <= _LONGEST:
+    if len(name) <= _MAX_NAME:
         plain = name.strip()
         parts = _DEVICE.match(plain) or _STAGE.fullmatch(plain) or _OF_STAGE.fullmatch(plain)
     return (parts["device"], parts["name"]) if parts else ("", name)
@@ -136,7 +136,7 @@ def split_unit(label: str) -> tuple[str, str | None]:
     >>> split_unit("rpm_set"), split_unit("tempC"), split_unit("Basic")
     (('rpm_set', 'rpm'), ('temp', 'C'), ('Basic', None))
     """
-    if len(label) > _LONGEST:
+    if len(label) > _MAX_NAME:
         return label, None
     wide = _WIDE_BRACKETS.match(label.strip())
     if wide and is_unit(wide["unit"].strip()):

@@ -24,7 +24,7 @@ from tribolab.reading.runs.return_strokes import goes_back
 from tribolab.units.quantities import QUANTITIES, quantity
 
 _LIGHT, _UNLOADED = 0.4, 0.1  # shares of the usual normal stress: a light one, and none
-_FEWEST = 20  # samples that tell a zero
+_MIN_SAMPLES_OF_ZERO = 20  # samples that tell a zero
 _MOVES, _ONE_SPEED = 0.5, 0.1  # of the speed: less is starting, and more is another speed
 _NO_CONTACT = 0.02  # share of the greatest normal stress below which nothing is pressed
 
@@ -146,7 +146,7 @@ def _without_contact(normal: np.ndarray) -> np.ndarray:
     """
     usual = np.nanpercentile(np.abs(normal), 75)
     light = np.abs(normal) < _LIGHT * usual
-    if np.count_nonzero(light) < _FEWEST:
+    if np.count_nonzero(light) < _MIN_SAMPLES_OF_ZERO:
         return np.zeros(normal.size, dtype=bool)
     level = median(normal[light])
     scatter = median(np.abs(normal[light] - level)) / 0.6745

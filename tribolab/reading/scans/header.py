@@ -28,7 +28,7 @@ from tribolab.reading.scans.unit_words import (
 )
 from tribolab.units.spellings import unit_of_length
 
-_LONGEST = 300  # characters of a line that are looked at
+_MAX_LINE = 300  # characters of a line that are looked at
 _MOST_NUMBERS = 2  # of an entry; more are a date, a time, a row of results
 _NUMBER = r"(?<![\w.])[-+]?\d+(?:[{marks}]\d+)?(?:[eE][-+]?\d+)?"
 _CELL_NUMBER = re.compile(r"[-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?")
@@ -109,7 +109,7 @@ def map_header(
     texts = [
         part
         for line in lines
-        for part in _parts(line[:_LONGEST].replace('"', " ").strip(), commas_part=commas_part)
+        for part in _parts(line[:_MAX_LINE].replace('"', " ").strip(), commas_part=commas_part)
     ]
     entries = [e for text in texts if (e := _entry(text, mark, commas_part=commas_part))]
     bare = [entry for entry in entries if _lacks_unit(entry)]

@@ -14,7 +14,7 @@ from tribolab.core.wording import Count
 
 _END = 0.2  # of the way, at each of its ends, where the sensor turns
 _JUMP = 0.1  # of the way: so far no sensor goes between two rows of a pass
-_FEWEST = 16  # places of a pass
+_MIN_PLACES = 16  # places of a pass
 _GAP = 3.5  # steps without a height, over which none is interpolated
 _UNEVEN = 0.3  # of the places that an even pass would have, at least
 
@@ -52,7 +52,7 @@ def find_passes(x: np.ndarray, height: np.ndarray) -> Passes | None:
     known = np.isfinite(x)
     x, height = x[known], height[known]
     steps = np.diff(x)
-    if steps.size < _FEWEST or (steps > 0).all() or (steps < 0).all():
+    if steps.size < _MIN_PLACES or (steps > 0).all() or (steps < 0).all():
         return None
     low, reach = float(x.min()), float(np.ptp(x))
     if not reach > 0 or np.abs(steps).max() > _JUMP * reach:
@@ -100,7 +100,7 @@ def _ways(x: np.ndarray, low: float, reach: float) -> list[tuple[int, int]]:
 def _pass(x: np.ndarray, height: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
     """Places of one pass from left to right, and the mean height at each."""
     places, place = np.unique(x, return_inverse=True)
-    if places.size < _FEWEST:
+    if places.size < _MIN_PLACES:
         return None
     here = np.isfinite(height)
     number = np.bincount(place[here], minlength=places.size)
@@ -113,7 +113,7 @@ def _pass(x: np.ndarray, height: np.ndarray) -> tuple[np.ndarray, np.ndarray] | 
 def _on(grid: np.ndarray, places: np.ndarray, heights: np.ndarray, pitch: float) -> np.ndarray:
     """Interpolate along straight lines; NaN inside gaps."""
     here = np.isfinite(heights)
-    if here.sum() < _FEWEST:
+    if here.sum() < _MIN_PLACES:
         return np.full(grid.size, np.nan)
     x, z = places[here], heights[here]
     after = np.clip(np.searchsorted(x, grid), 1, x.size - 1)

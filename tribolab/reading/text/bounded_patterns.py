@@ -11,7 +11,7 @@ import regex
 
 from tribolab.core.errors import ReadError, shown
 
-_LONGEST = 1000  # letters of a pattern
+_MAX_PATTERN = 1000  # letters of a pattern
 _SECONDS = 2.0  # that a pattern may take on a little text, and on each _AMOUNT more
 _AMOUNT = 1 << 22
 
@@ -42,8 +42,10 @@ class Guarded(Generic[AnyStr]):
     """
 
     def __init__(self, pattern: AnyStr) -> None:
-        if len(pattern) > _LONGEST:
-            raise PatternError(f"it has {len(pattern)} letters, and at most {_LONGEST} are taken")
+        if len(pattern) > _MAX_PATTERN:
+            raise PatternError(
+                f"it has {len(pattern)} letters, and at most {_MAX_PATTERN} are taken"
+            )
         self.pattern: AnyStr = pattern
         try:
             # of text or of bytes, and then of mapped memory too: the stubs cannot say both

@@ -227,7 +227,7 @@ _NAMED = re.compile(
     r"|[Cc]ut-? ?off)\s*[:=;,\t ]\s*(?P<value>[-+]?\d+(?:[.,]\d+)?|\*[.,*]*\*)"
     r"\s*[;,\t]?\s*(?P<unit>[^\s\d;,*][^\s;,]*)?\s*[;,]*\s*$"
 )
-_FEWEST, _MOST = 3, 200  # lines of results
+_MIN_LINES, _MAX_LINES = 3, 200  # lines of results
 
 
 def is_results(head: bytes) -> bool:
@@ -237,7 +237,7 @@ def is_results(head: bytes) -> bool:
 
 def results_error(head: bytes, where: Path) -> ReadError | None:
     """Return the error about a file that holds results where signals are wanted; else None."""
-    if is_surftest_results(head) or len(named_values(head)) >= _FEWEST:
+    if is_surftest_results(head) or len(named_values(head)) >= _MIN_LINES:
         what = "the file holds the results of a roughness tester, but no profile"
         return ReadError(what, where=where, cure=cures.TESTER_RESULTS)
     text = _text_of(head) if b"\0" not in head[:4096] else ""
@@ -274,7 +274,7 @@ def named_values(head: bytes) -> list[tuple[int, tuple[str, str, str]]]:
     >>> named_values(b"Ra = 0.52 um\nRz\t*.***um\nRsk;-0,31\n")[1:]
     [(2, ('Rz', '*.***', 'um')), (3, ('Rsk', '-0,31', ''))]
     """
-    if head.count(b"\n") > _MOST or b"\0" in head[:4096]:
+    if head.count(b"\n") > _MAX_LINES or b"\0" in head[:4096]:
         return []
     lines = _text_of(head).replace("\r\n", "\n").replace("\r", "\n").split("\n")
     told = [(n, match) for n, line in enumerate(lines, 1) if (match := _NAMED.match(line))]

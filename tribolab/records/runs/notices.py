@@ -11,7 +11,8 @@ import numpy as np
 from tribolab.arrays.medians import median
 from tribolab.core.wording import duration, many, percent
 from tribolab.friction.coefficient.steadiness import chance_limit
-from tribolab.friction.oscillation.critical_stiffness import MASS_COUNTS, STEEPER, STIFFNESS
+from tribolab.friction.oscillation import limits
+from tribolab.friction.oscillation.critical_stiffness import STIFFNESS
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_LOOKED_AT
 from tribolab.friction.segments.find import why_no_segment
 from tribolab.records.parts import Notice
@@ -174,7 +175,7 @@ def distance_to_critical(slip: xr.Dataset) -> str:
     if (kinds == CLASSES[0]).all():
         return f"{said}: above the critical stiffness, as friction is steady at all speeds"
     steepest = slip["loading_stiffness"].values
-    if (steepest > STEEPER.value * rig).any():
+    if (steepest > limits.MIN_SLOPE_OVER_STIFFNESS.value * rig).any():
         return (
             f"{said}, but the force rises by {np.nanmax(steepest):.4g} N/m during sticks, which no "
             "rig so soft allows. Check stiffness, and the gain of the force"
@@ -193,5 +194,5 @@ def distance_to_critical(slip: xr.Dataset) -> str:
     if np.isnan(mass):
         return text
     fastest = float(slip["sliding_speed"].values[known].max())
-    length = 1e6 * fastest * np.sqrt(2 * mass / (MASS_COUNTS.value * ends[0]))
+    length = 1e6 * fastest * np.sqrt(2 * mass / (limits.MIN_RISE_BY_MASS.value * ends[0]))
     return f"{text}; {mass:.3g} kg raise it if the memory length is below {length:.2g} um"

@@ -8,7 +8,7 @@ import xarray as xr
 from tribolab.core.wording import many, percent
 from tribolab.records.runs.same_speed import of_one_speed
 
-_FEWEST = 3  # speeds common to several steps
+_MIN_COMMON_SPEEDS = 3  # speeds common to several steps
 _DIFFERS = 0.1  # relative difference of friction between steps
 
 
@@ -39,7 +39,7 @@ def steps_that_differ(friction: xr.Dataset, values: np.ndarray) -> str:
         means = [values[part][step[part] == each].mean() for each in np.unique(step[part])]
         if len(means) > 1:
             apart.append(float(np.ptp(means)) / abs(float(np.mean(means))))
-    if len(apart) < _FEWEST or np.median(apart) < _DIFFERS:
+    if len(apart) < _MIN_COMMON_SPEEDS or np.median(apart) < _DIFFERS:
         return ""
     steps = np.unique(step[np.isfinite(step)]).size
     usual = percent(float(np.median(apart)))

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from tribolab.core.wording import many, number, percent, speed_text
+from tribolab.friction.points.limits import SPEED_TOLERANCE
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import Notice, number_of
 
 CURVES_AS_FOUND = "stribeck_as_found.csv"  # table of the curves without decisions
 _SPEED, _MU = "sliding_speed_m_s", "friction_coefficient"
-_ALIKE = 0.1  # relative difference of speed up to which two points are one
 
 
 def curve_notices(curve: CurveRecord) -> list[Notice]:
@@ -43,7 +43,7 @@ def _pairs(curve: CurveRecord) -> tuple[list[tuple[float, float, float]], int]:
         if not speed or not mu:
             continue
         apart = np.abs(np.log(speeds / speed))
-        if apart.size and apart.min() <= np.log1p(_ALIKE):
+        if apart.size and apart.min() <= np.log1p(SPEED_TOLERANCE.value):
             pairs.append((speed, float(now[int(apart.argmin())][1]), mu))
         else:
             lost += 1

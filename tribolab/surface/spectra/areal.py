@@ -22,7 +22,7 @@ from tribolab.surface.spectra.annuli import confidence_band
 from tribolab.surface.spectra.binning import correlation, log_bins, window
 from tribolab.units.stamping import stamp
 
-_FEWEST = 16
+_MIN_POINTS_OF_SIDE = 16
 
 
 def _power(maps: np.ndarray) -> tuple[np.ndarray, float]:
@@ -81,7 +81,7 @@ def psd_2d_of_map(
     height = scan.height.transpose(..., "y", "x").values
     size = height.shape[-2:]
     height = height.reshape(-1, *size)
-    if min(size) < _FEWEST:
+    if min(size) < _MIN_POINTS_OF_SIDE:
         raise AnalysisError(
             f"a map of {size} points is too small for a spectrum", function="psd_2d"
         )

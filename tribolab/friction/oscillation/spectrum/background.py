@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 from scipy import special
 
-_CORNERS = 24  # corner frequencies that are tried
-_FLOORS = np.concatenate([[0.0], np.geomspace(1e-6, 1.0, 25)])  # white noise over the red, at zero
-_SHIFTS = np.linspace(-1.2, 1.2, 17)  # of the level (natural log) that are tried
-_MARGIN = 1e-3  # of the cost, far above what single precision loses
-_ABOVE = 0.7  # a band so far (natural log) above the model counts no more than this
+from tribolab.friction.oscillation import limits
+
+_CORNER_FREQUENCIES = 24  # corner frequencies that are tried
+# white noise over the red, at zero
+_WHITE_SHARES = np.concatenate([[0.0], np.geomspace(1e-6, 1.0, 25)])
+_LEVEL_SHIFTS = np.linspace(-1.2, 1.2, 17)  # of the level (natural log) that are tried
+_COST_MARGIN = 1e-3  # of the cost, far above what single precision loses
 
 
 def red_noise(frequency: np.ndarray, power: np.ndarray, freedom: np.ndarray) -> np.ndarray:
@@ -34,10 +36,10 @@ def red_noise(frequency: np.ndarray, power: np.ndarray, freedom: np.ndarray) -> 
     tried at once.
     """
     corners = np.concatenate(
-        [np.geomspace(frequency[0] / 4, frequency[-1] * 2, _CORNERS), [np.inf]]
+        [np.geomspace(frequency[0] / 4, frequency[-1] * 2, _CORNER_FREQUENCIES), [np.inf]]
     )
     shape = 1 / (1 + (frequency[None, :] / corners[:, None]) ** 2)
-    models = np.log(shape[:, None, :] + _FLOORS[None, :, None]).reshape(-1, frequency.size)
+    models = np.log(shape[:, None, :] + _WHITE_SHARES[None, :, None]).reshape(-1, frequency.size)
     # a mean of few exponential values lies below its expectation in the log
     half = freedom / 2
     measured = np.log(np.maximum(power, 1e-300)) - (special.digamma(half) - np.log(half))
@@ -57,12 +59,12 @@ def _least_off(rest: np.ndarray, weight: np.ndarray) -> tuple[int, float]:
     """
     roughly, off = rest.astype(np.float32), np.empty(rest.shape, np.float32)
     cost = np.stack(
-        [_cost(roughly, np.float32(s), weight.astype(np.float32), off) for s in _SHIFTS]
+        [_cost(roughly, np.float32(s), weight.astype(np.float32), off) for s in _LEVEL_SHIFTS]
     )
-    model, shift = np.nonzero(cost.T <= cost.min() + _MARGIN)
+    model, shift = np.nonzero(cost.T <= cost.min() + _COST_MARGIN)
     part = rest[model]
-    best = int(np.argmin(_cost(part, _SHIFTS[shift, None], weight, part)))
-    return int(model[best]), float(_SHIFTS[shift[best]])
+    best = int(np.argmin(_cost(part, _LEVEL_SHIFTS[shift, None], weight, part)))
+    return int(model[best]), float(_LEVEL_SHIFTS[shift[best]])
 
 
 def _cost(
@@ -70,7 +72,7 @@ def _cost(
 ) -> np.ndarray:
     """Weighted sum of what is off (model), far above the model cut; `off` is written over."""
     np.subtract(rest, shift, out=off)
-    np.minimum(off, _ABOVE, out=off)
+    np.minimum(off, limits.MAX_EXCESS_OF_BAND.value, out=off)
     cost: np.ndarray = np.abs(off, out=off) @ weight
     return cost
 

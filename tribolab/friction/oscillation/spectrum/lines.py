@@ -6,16 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-_NEIGHBOURS = 61  # bins around a line that give its background
+from tribolab.friction.oscillation import limits
+
+_BACKGROUND_BINS = 61  # bins around a line that give its background
 LONGEST_TRANSFORM = (
     1 << 18
 )  # samples of one transform; more do not make a line clearer than it must be
-
-
-_FEWEST = 256  # samples of a stretch whose spectrum is worth a look
-_SLOWEST = 130.0  # Hz; a record that is to show 50 and 60 Hz has to be sampled faster
-_LOWEST = 5.0  # Hz; below, rigs do not ring and mains does not hum
-_CHANCE = 1e-6  # that noise alone shows a line anywhere in the spectrum
 
 
 class Line(NamedTuple):
@@ -45,10 +41,10 @@ def segment_lines(
     segment, speed
         Number and sliding speed [m/s], for the record.
     """
-    if values.size < _FEWEST:
+    if values.size < limits.MIN_SAMPLES_OF_SPECTRUM.value:
         return None
     rate = (values.size - 1) / (time[-1] - time[0])
-    if rate < _SLOWEST:
+    if rate < limits.MIN_SAMPLING_RATE.value:
         return None
     resolution = 2 * rate / min(values.size, LONGEST_TRANSFORM)
     return [
@@ -57,7 +53,7 @@ def segment_lines(
             speed=speed,
             mains=bool(mains_harmonic(line.frequency, resolution, rate)),
         )
-        for line in find_lines(time, values, lowest=_LOWEST)
+        for line in find_lines(time, values, lowest=limits.MIN_FREQUENCY_OF_RIG_LINE.value)
     ]
 
 
@@ -109,11 +105,11 @@ def find_lines(time: np.ndarray, values: np.ndarray, lowest: float = 0.0) -> lis
 
     frequency, amplitude = amplitude_spectrum(time, values)
     power = amplitude**2
-    background = ndimage.median_filter(power, size=_NEIGHBOURS, mode="reflect") / np.log(2)
+    background = ndimage.median_filter(power, size=_BACKGROUND_BINS, mode="reflect") / np.log(2)
     background = np.maximum(background, 1e-30 * power.max() + np.finfo(float).tiny)
     prominence = power / background
     peak = np.flatnonzero(
-        (prominence[1:-1] > -np.log(_CHANCE / power.size))
+        (prominence[1:-1] > -np.log(limits.RIG_LINE_BY_CHANCE.value / power.size))
         & (power[1:-1] >= power[:-2])
         & (power[1:-1] > power[2:])
     )

@@ -7,14 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from tribolab.arrays.medians import median
+from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.spectrum.lines import LONGEST_TRANSFORM, amplitude_spectrum
 from tribolab.friction.oscillation.spectrum.spectra import EvenRecord
 
-_SAMPLED = 130.0  # Hz; a record that is to show 50 and 60 Hz has to be sampled faster
-_PEAK = 0.25  # of a bin, by which noise moves a peak
-_GRID = 0.10  # Hz; mains keeps this close to 50 Hz nearly always
+_PEAK_SHIFT_BINS = 0.25  # of a bin, by which noise moves a peak
 _FUNDAMENTAL = {f"{base * k:g} Hz": base for base in (50.0, 60.0) for k in (1, 2, 3)}
-_MAINS_CHANCE = 3e-3  # that noise passes for a line of the mains
 
 
 class Mains(NamedTuple):
@@ -46,14 +44,18 @@ def find_mains(record: EvenRecord) -> tuple[Mains, ...]:
     """
     n = record.values.size
     rate = 1 / record.spacing
-    if not record.even or rate < _SAMPLED or n < 256:
+    if (
+        not record.even
+        or rate < limits.MIN_SAMPLING_RATE.value
+        or n < limits.MIN_SAMPLES_OF_SPECTRUM.value
+    ):
         return ()
     frequency, amplitude = amplitude_spectrum(
         record.time[:LONGEST_TRANSFORM], record.values[:LONGEST_TRANSFORM]
     )
     harmonics = []
     for true in sorted(base * k for base in (50.0, 60.0) for k in (1, 2, 3)):
-        reach = _GRID * true / 50 + frequency[1]
+        reach = limits.MAX_MAINS_DEVIATION.value * true / 50 + frequency[1]
         near = np.flatnonzero(np.abs(frequency - true) <= reach)
         around = np.abs(frequency - true) <= max(40 * frequency[1], 5 * reach)
         if true > 0.45 * rate or near.size == 0 or around.sum() < 4 * near.size:
@@ -61,9 +63,12 @@ def find_mains(record: EvenRecord) -> tuple[Mains, ...]:
         at = near[np.argmax(amplitude[near])]
         usual = median(amplitude[around] ** 2) / np.log(2)
         off = abs(_refined(frequency, amplitude, at) - true)
-        if off > _GRID * true / 50 + _PEAK * frequency[1]:
+        if off > limits.MAX_MAINS_DEVIATION.value * true / 50 + _PEAK_SHIFT_BINS * frequency[1]:
             continue  # of a short record a bin is wide: 57 Hz is no mains
-        if near.size * np.exp(-(amplitude[at] ** 2) / max(usual, 1e-300)) < _MAINS_CHANCE:
+        if (
+            near.size * np.exp(-(amplitude[at] ** 2) / max(usual, 1e-300))
+            < limits.MAINS_BY_CHANCE.value
+        ):
             harmonics.append(Mains(float(frequency[at]), float(amplitude[at]), f"{true:g} Hz"))
     # among hundreds of segments noise passes for one or the other: a harmonic needs its fundamental
     names = {line.name for line in harmonics}

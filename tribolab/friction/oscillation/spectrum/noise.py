@@ -6,7 +6,7 @@ import numpy as np
 
 from tribolab.arrays.medians import median_in_pieces
 
-_LARGEST_SAMPLE = 200_000  # values that suffice to find the quantisation step
+_SAMPLED_VALUES = 200_000  # values that suffice to find the quantisation step
 
 
 def quantisation_step(values: np.ndarray) -> float:
@@ -20,7 +20,7 @@ def quantisation_step(values: np.ndarray) -> float:
     values = _known(values)
     if values.size < 32:
         return 0.0
-    sample = values[:: max(1, values.size // _LARGEST_SAMPLE)]
+    sample = values[:: max(1, values.size // _SAMPLED_VALUES)]
     levels = np.unique(sample)
     if levels.size < 2 or levels.size > 0.5 * sample.size:
         return 0.0

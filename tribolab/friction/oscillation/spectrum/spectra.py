@@ -8,12 +8,13 @@ import numpy as np
 from scipy import fft
 
 from tribolab.arrays.medians import median
+from tribolab.friction.oscillation import limits
 
-_SHORT = 1 << 16  # samples of one transform over the whole record; longer ones are averaged
-_WINDOW = 1 << 13  # samples of the stretches whose spectra are averaged, at least
-_STRETCHES = 384  # that are averaged at most, evenly spread: a spectrum good to 5 %
-_BATCH = 1 << 18  # samples that are worked on at a time: they fit into the cache
-_UNEVEN = 0.1  # rms deviation from even moments, in sample spacings, above which sines are fitted
+# samples of one transform over the whole record; longer ones are averaged
+_WHOLE_TRANSFORM = 1 << 16
+_MIN_WINDOW = 1 << 13  # samples of the stretches whose spectra are averaged, at least
+_MAX_WINDOWS = 384  # that are averaged at most, evenly spread: a spectrum good to 5 %
+_BATCH_SAMPLES = 1 << 18  # samples that are worked on at a time: they fit into the cache
 _HANN_WIDTH = 1.5  # bins that a line takes up
 
 
@@ -52,15 +53,15 @@ def make_record(time: np.ndarray, values: np.ndarray) -> EvenRecord:
         return EvenRecord(time, values, np.nan, True)
     spacing = float(time[-1] - time[0]) / (n - 1)
     # of a long record every so many samples tell: a gap or another rate moves all that follow
-    some = max(1, n // _BATCH)
+    some = max(1, n // _BATCH_SAMPLES)
     off = time[::some] - (time[0] + spacing * np.arange(0, n, some))
-    even = bool(np.sqrt(np.mean(off * off)) < _UNEVEN * spacing)
+    even = bool(np.sqrt(np.mean(off * off)) < limits.MAX_UNEVEN_SPACING.value * spacing)
     if not even:  # a clock that runs a little fast is even all the same: look at the steps
         largest = max(
-            float(np.abs(np.diff(time[i : i + _BATCH + 1]) - spacing).max())
-            for i in range(0, n - 1, _BATCH)
+            float(np.abs(np.diff(time[i : i + _BATCH_SAMPLES + 1]) - spacing).max())
+            for i in range(0, n - 1, _BATCH_SAMPLES)
         )
-        even = largest < _UNEVEN * spacing
+        even = largest < limits.MAX_UNEVEN_SPACING.value * spacing
     return EvenRecord(time, values, spacing, even)
 
 
@@ -106,11 +107,11 @@ def spectrum(record: EvenRecord) -> Spectrum:
     .. [1] Welch (1967), IEEE Trans. Audio Electroacoust. 15, 70. doi:10.1109/TAU.1967.1161901
     """
     method = "periodogram" if record.even else "Lomb-Scargle"
-    size = int(np.ceil(record.values.size / _SHORT))
+    size = int(np.ceil(record.values.size / _WHOLE_TRANSFORM))
     low = _transform(coarsened(record, size))
     if size == 1:
         return Spectrum(*low, method)
-    window = max(_WINDOW, 1 << int(np.ceil(np.log2(64 * size))))
+    window = max(_MIN_WINDOW, 1 << int(np.ceil(np.log2(64 * size))))
     high = _averaged(record, window)
     border = 0.25 / (size * record.spacing)
     below, above = low[0] < border, high[0] >= border
@@ -165,11 +166,11 @@ def _averaged(
     shape = 0.5 - 0.5 * np.cos(2 * np.pi * (np.arange(window) + 0.5) / window)
     power = np.zeros(frequency.size)
     if record.even:
-        rows = max(1, _BATCH // window)
+        rows = max(1, _BATCH_SAMPLES // window)
         level, scale = _level_and_scale(record.values)
         # the fluctuation in single precision: rounding is a white noise 140 dB below it
         shape32 = (shape / scale).astype(np.float32)
-        every = -(-count // _STRETCHES)
+        every = -(-count // _MAX_WINDOWS)
         stretches = record.values[: count * window].reshape(-1, window)[::every]
         count = len(stretches)
         for first in range(0, count, rows):
@@ -192,7 +193,7 @@ def _averaged(
 
 def _level_and_scale(values: np.ndarray) -> tuple[float, float]:
     """Mean and standard deviation of a long record, from a sample of it."""
-    some = values[:: max(1, values.size // _BATCH)]
+    some = values[:: max(1, values.size // _BATCH_SAMPLES)]
     spread = float(some.std())
     return float(some.mean()), spread if spread > 0 else 1.0
 

@@ -8,14 +8,10 @@ import numpy as np
 from scipy import special
 
 from tribolab.arrays.medians import median
+from tribolab.friction.oscillation import limits
 from tribolab.friction.oscillation.spectrum.background import false_alarm, red_noise
 from tribolab.friction.oscillation.spectrum.mains import Mains, find_mains
 from tribolab.friction.oscillation.spectrum.spectra import EvenRecord, Spectrum, bands, spectrum
-
-PER_DECADE = 24  # bands of the spectrum: a tenth wide, as stick-slip lines are
-_RISE = 1e-2  # chance of a spectrum without a peak to stand so far above its slower part
-_TALLER = 1.5  # a peak is so many times its background: the model of that is no better
-CHANCE = 1e-3  # of the significance level that comes with a spectrum
 
 
 class Survey(NamedTuple):
@@ -65,8 +61,12 @@ class Survey(NamedTuple):
 
         Where many bins are averaged, less than the background's own shape is significant.
         """
-        tall = self.power > _TALLER * self.background
-        return (self.chance < CHANCE) & (self.rise < _RISE) & tall
+        tall = self.power > limits.MIN_PEAK_OVER_BACKGROUND.value * self.background
+        return (
+            (self.chance < limits.BAND_BY_CHANCE.value)
+            & (self.rise < limits.RISE_BY_CHANCE.value)
+            & tall
+        )
 
     def without(self, part: np.ndarray) -> Survey:
         """Return the survey with the background in the place of some bins (bin)."""
@@ -87,7 +87,7 @@ def survey(record: EvenRecord) -> Survey | None:
         return None
     mains = find_mains(record)
     fine = _without(spectrum(record), mains)
-    middle, power = bands(fine, PER_DECADE)[:2]
+    middle, power = bands(fine, limits.BANDS_PER_DECADE.value)[:2]
     if middle.size < 4 or not power.max() > 0:
         return None
     return _seen(fine, record.values.size * record.spacing, mains)
@@ -99,7 +99,7 @@ def _seen(
     mains: tuple[Mains, ...],
     background: np.ndarray | None = None,
 ) -> Survey:
-    middle, power, width, freedom, first = bands(fine, PER_DECADE)
+    middle, power, width, freedom, first = bands(fine, limits.BANDS_PER_DECADE.value)
     if background is None:
         background = red_noise(middle, power, freedom)
     chance = false_alarm(power, background, freedom)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import fft
 
-_REACH = 6  # grid points to either side that a sample is spread over: errors of some 1e-6
+_SPREAD_POINTS = 6  # grid points to either side that a sample is spread over: errors of some 1e-6
 
 
 def fourier_sums(time: np.ndarray, values: np.ndarray, step: float, count: int) -> np.ndarray:
@@ -44,9 +44,9 @@ def fourier_sums(time: np.ndarray, values: np.ndarray, step: float, count: int) 
     size = fft.next_fast_len(4 * max(count, 8), real=True)
     place = ((time - time[0]) * step % 1.0) * size  # grid points in one turn of the lowest
     nearest = np.floor(place).astype(np.int64)
-    width = 2 * _REACH / (3 * np.pi)  # variance of the Gaussian for an oversampling of two
+    width = 2 * _SPREAD_POINTS / (3 * np.pi)  # variance of the Gaussian for an oversampling of two
     grid = np.zeros(size)
-    for shift in range(1 - _REACH, _REACH + 1):
+    for shift in range(1 - _SPREAD_POINTS, _SPREAD_POINTS + 1):
         weight = np.exp(-((place - nearest - shift) ** 2) / (2 * width))
         grid += np.bincount((nearest + shift) % size, weight * values, size)
     k = np.arange(count)

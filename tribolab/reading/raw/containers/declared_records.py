@@ -13,7 +13,7 @@ from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, Setting
 from tribolab.reading.raw.unit_endings import is_unit, without_unit
 
-_LONGEST = 1 << 16  # bytes of a header
+_MAX_HEADER = 1 << 16  # bytes of a header
 _SETTING = re.compile(r"^[\s#;*%/!]*(?P<key>[^\W\d][\w .\-/]{0,40}?)\s*[=:]\s*(?P<value>\S.*?)\s*$")
 _OFFSET = re.compile(r"(?:header|head|data)[ _-]?(?:bytes|size|length|offset|start)|offset")
 _TYPE = re.compile(r"(?:data|sample|number|value|num)?[ _-]?(?:type|format)|dtype|datatype")
@@ -102,7 +102,7 @@ def read_declared_records(path: Path) -> RawFile:
     of its range from row to row.
     """
     with path.open("rb") as file:
-        told = _declared(file.read(_LONGEST))
+        told = _declared(file.read(_MAX_HEADER))
         size = file.seek(0, 2)
     if told is None:
         raise ReadError("no header says how its binary numbers are to be read", where=path)
@@ -127,7 +127,7 @@ def _in_units(raw: np.ndarray, channel: _Channel) -> np.ndarray:
 
 
 def _declared(head: bytes) -> _Records | None:
-    first = head[:_LONGEST]
+    first = head[:_MAX_HEADER]
     text = first.split(b"\0")[0].decode("latin-1")
     settings: dict[str, str] = {}
     for line in text.replace("\r", "").split("\n"):

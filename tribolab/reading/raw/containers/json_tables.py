@@ -20,11 +20,11 @@ from tribolab.reading.raw.model import RawColumn, RawFile, RawTable, Setting
 from tribolab.reading.raw.unit_endings import is_unit, without_unit
 
 _JSON = re.compile(r"\ufeff?\s*(?:\{\s*\"[^\"]*\"\s*:|\[\s*[\[{])")
-_FEWEST = 3  # numbers in a column
+_MIN_NUMBERS = 3  # numbers in a column
 _ROWS = 5  # of a table of records
 _DEEPEST = 12  # objects within one another that are looked into
 _MOST_SETTINGS = 60
-_LONGEST = 200  # characters of a setting
+_MAX_SETTING = 200  # characters of a setting
 _SET = re.compile(r"set[_ -]?(?:point)?s?|target|soll\w*|commanded|programmed", re.IGNORECASE)
 
 
@@ -176,9 +176,9 @@ def _values_of(one: Json) -> list[float] | None:
 
 def _listed(values: object) -> list[float] | None:
     """Return a list of numbers, or the numbers of an object that counts them; None of others."""
-    if isinstance(values, dict) and len(values) >= _FEWEST and all(map(str.isdigit, values)):
+    if isinstance(values, dict) and len(values) >= _MIN_NUMBERS and all(map(str.isdigit, values)):
         values = list(values.values())
-    if not isinstance(values, list) or len(values) < _FEWEST:
+    if not isinstance(values, list) or len(values) < _MIN_NUMBERS:
         return None
     if any(value is not None and not _is_number(value) for value in values):
         return None
@@ -218,7 +218,7 @@ def _simple(part: Json, key: str) -> list[Setting]:
     before = f"{_clean(key)} " if _SET.fullmatch(key) else ""
     found = (said for name, value in part.items() if (said := _setting(name, value)))
     few = islice(found, _MOST_SETTINGS)
-    return [s._replace(key=f"{before}{s.key}", text=s.text[:_LONGEST]) for s in few]
+    return [s._replace(key=f"{before}{s.key}", text=s.text[:_MAX_SETTING]) for s in few]
 
 
 def _setting(name: str, value: object) -> Setting | None:

@@ -19,7 +19,7 @@ from tribolab.reading.raw.opening import damage_told, isolated, largest_unpacked
 
 _DEEPEST = 8  # structures within structures
 _MOST_ELEMENTS = 500  # of an array of structures
-_LONGEST = 2000  # letters of a text
+_MAX_TEXT = 2000  # letters of a text
 _MOST_CELLS = 200  # texts of cells
 _HEADER, _COMPRESSED = 128, 15  # bytes before the variables, and the type of a packed one
 _STATED = 64  # packed bytes that hold the type and length of what is packed
@@ -115,7 +115,9 @@ def _variables(name: str, value: Any, depth: int) -> list[Variable]:
             )
         ]
     if value.dtype.kind == "U":
-        return [Variable(name, None, tuple(str(x).strip("\0 ")[:_LONGEST] for x in value.flat[:1]))]
+        return [
+            Variable(name, None, tuple(str(x).strip("\0 ")[:_MAX_TEXT] for x in value.flat[:1]))
+        ]
     if value.dtype.kind == "O":
         cells = [c for c in value.flat if isinstance(c, np.ndarray)]
         alone = all(cell.dtype.kind == "U" and cell.size == 1 for cell in cells)

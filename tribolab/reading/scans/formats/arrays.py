@@ -28,7 +28,7 @@ from tribolab.reading.text.cells import split_name
 from tribolab.units.conversion import conversion
 from tribolab.units.spellings import unit_of_length
 
-_FEWEST = 8  # rows, and heights of each
+_MIN_ROWS = 8  # rows, and heights of each
 _HEIGHTS = frozenset(
     "z zz zs zdata zmap height heights heightmap topo topography topographie elevation elevations "
     "hoogte hoogtes höjd højde høyde "
@@ -142,10 +142,10 @@ def holds_map(path: Path) -> bool:
 
 def _heights(path: Path, held: HeldArrays) -> HeldArray | None:
     """Return the one array that is named as heights are, or is the only matrix in a length."""
-    large = [a for a in held.arrays if a.values.ndim in (1, 2) and a.values.size >= _FEWEST]
+    large = [a for a in held.arrays if a.values.ndim in (1, 2) and a.values.size >= _MIN_ROWS]
     if any(tokens(a.name) & _OF_RUNS for a in large if a.values.ndim == 1):
         return None
-    matrices = [a for a in large if a.values.ndim == 2 and max(a.values.shape) >= _FEWEST]
+    matrices = [a for a in large if a.values.ndim == 2 and max(a.values.shape) >= _MIN_ROWS]
     matrices = [a for a in matrices if min(a.values.shape) > 1 and not a.attrs.keys() & _TABLES]
     for words in (_HEIGHTS, _PERHAPS):
         for some in (matrices, [a for a in large if a.values.ndim == 1]):

@@ -21,7 +21,7 @@ from tribolab.reading.scans.header import MapHeader, map_header
 
 _HEAD = 1 << 16  # bytes in which a column begins
 _HEAD_LINES = 500  # above it
-_FEWEST = 8  # rows, and heights of each
+_MIN_ROWS = 8  # rows, and heights of each
 _ROWS = 20  # numbers that tell a column
 _FAST = r"(?:\S+ ){{0,4}}?{fastest}"
 
@@ -119,7 +119,11 @@ def _map(heights: np.ndarray, header: MapHeader) -> xr.Dataset:
 def _header(above: list[str], mark: str) -> MapHeader | None:
     """Return what stands above, if it says all that is needed."""
     counts = map_header(above, (1, 1), mark)
-    if counts.rows is None or counts.columns is None or min(counts.rows, counts.columns) < _FEWEST:
+    if (
+        counts.rows is None
+        or counts.columns is None
+        or min(counts.rows, counts.columns) < _MIN_ROWS
+    ):
         return None
     told = map_header(above, (counts.rows, counts.columns), mark)
     return told if told.dx and told.dy and told.height else None

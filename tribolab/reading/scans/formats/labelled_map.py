@@ -23,7 +23,7 @@ from tribolab.reading.scans.header import map_header
 from tribolab.units.conversion import conversion
 
 _HEAD_LINES = 60  # above the positions
-_FEWEST = 8  # rows, and heights of each
+_MIN_ROWS = 8  # rows, and heights of each
 _HEAD = 1 << 20  # bytes in which a map begins
 _EVEN = 1e-2  # of a step, by which positions may be rounded
 
@@ -106,7 +106,7 @@ def _tables(path: Path) -> Iterator[tuple[list[list[str]], str]]:
 
 def _grammars(lines: Sequence[str]) -> list[tuple[str | None, str]]:
     """Return by which delimiter and decimal mark lines begin such a map."""
-    head = lines[: _HEAD_LINES + _FEWEST]
+    head = lines[: _HEAD_LINES + _MIN_ROWS]
     return [
         (delimiter, mark)
         for delimiter, mark in GRAMMARS
@@ -121,8 +121,8 @@ def _cell(cell: object) -> str:
 def _begin(rows: Sequence[Sequence[str]], mark: str) -> int | None:
     """Return the row of positions below which rows of as many cells begin with theirs."""
     for place, row in enumerate(islice(rows, _HEAD_LINES)):
-        below = rows[place + 1 : place + 1 + _FEWEST]
-        if len(row) <= _FEWEST or len(below) < _FEWEST or {len(r) for r in below} != {len(row)}:
+        below = rows[place + 1 : place + 1 + _MIN_ROWS]
+        if len(row) <= _MIN_ROWS or len(below) < _MIN_ROWS or {len(r) for r in below} != {len(row)}:
             continue
         if _even(_numbers(row[1:], mark)) and _even(_numbers([r[0] for r in below], mark)):
             return place
@@ -156,7 +156,7 @@ def _map_of(rows: Sequence[Sequence[str]], mark: str) -> _Map | None:
             break
         body.append(values)
     table = np.array(body)
-    if len(body) < _FEWEST or not _even(table[:, 0]):
+    if len(body) < _MIN_ROWS or not _even(table[:, 0]):
         return None
     above = [" ".join(filter(None, row)) for row in rows[:place]]
     x, y = (np.linspace(side[0], side[-1], side.size) for side in (across, table[:, 0]))

@@ -24,7 +24,7 @@ from tribolab.units.conversion import conversion
 _HEAD = 1 << 20  # bytes in which a matrix begins
 _CUT = 8  # bytes of a sign at their end
 _HEAD_LINES = 200  # above a matrix
-_FEWEST = 8  # columns of a matrix; fewer may be a table
+_MIN_COLUMNS = 8  # columns of a matrix; fewer may be a table
 _MOST_OF_LINE = 24  # numbers of one profile in a line
 _ROWS = 4  # of one width tell a matrix
 _MARKS = frozenset(
@@ -109,7 +109,7 @@ def read_matrix(
     if told is None:
         return None
     matrix, header = told
-    if matrix.columns < _FEWEST and header.columns != matrix.columns:
+    if matrix.columns < _MIN_COLUMNS and header.columns != matrix.columns:
         return None
     heights = np.array(matrix.rows)
     if _even(heights[0, 1:]) and _even(heights[1:, 0]):

@@ -19,7 +19,7 @@ NPY = b"\x93NUMPY"
 _HDF5 = b"\x89HDF\r\n\x1a\n"
 _NETCDF = (b"CDF\x01", b"CDF\x02")
 _MATLAB = (b"MATLAB 5.0", b"MATLAB 7.3")
-_LONGEST = 500  # characters of a text that is kept
+_MAX_TEXT = 500  # characters of a text that is kept
 _MOST = 200  # arrays of a file
 
 
@@ -99,7 +99,7 @@ def _of_numpy(path: Path) -> HeldArrays:
 
 def _of_mat(path: Path) -> HeldArrays:
     variables = read_variables(path)
-    held = HeldArrays([], {v.name: v.texts[0][:_LONGEST] for v in variables if v.texts})
+    held = HeldArrays([], {v.name: v.texts[0][:_MAX_TEXT] for v in variables if v.texts})
     for variable in variables:
         if variable.numbers is not None:
             numbers = variable.numbers
@@ -136,10 +136,10 @@ def _of_hdf5(path: Path) -> HeldArrays:
         if item.shape is None or len(held.arrays) >= _MOST or item.dtype.names:
             return
         if attrs.get("MATLAB_class") == "char":
-            held.texts[name] = "".join(map(chr, np.ravel(item[()])[:_LONGEST].tolist()))
+            held.texts[name] = "".join(map(chr, np.ravel(item[()])[:_MAX_TEXT].tolist()))
         elif item.dtype.kind in "OSU":
             if item.size == 1:
-                held.texts[name] = str(plain(item[()]))[:_LONGEST]
+                held.texts[name] = str(plain(item[()]))[:_MAX_TEXT]
         else:
             values = np.asarray(item[()])
             if "MATLAB_class" in attrs:  # whose columns are HDF5's rows
@@ -155,7 +155,7 @@ def _of_hdf5(path: Path) -> HeldArrays:
 
 def _take(held: HeldArrays, name: str, values: np.ndarray, attrs: Json) -> None:
     if values.dtype.kind in "SU" and values.size == 1:
-        held.texts[name] = str(plain(values))[:_LONGEST]
+        held.texts[name] = str(plain(values))[:_MAX_TEXT]
     elif values.dtype.kind in "fiub" and values.size:
         own = np.squeeze(values) if values.ndim > 2 or values.size == 1 else values
         held.arrays.append(HeldArray(name, own, attrs))
@@ -169,6 +169,6 @@ def _tell(held: HeldArrays, name: str, attrs: Json) -> None:
     for key, value in attrs.items():
         full = f"{name}/{key}" if name else key
         if isinstance(value, str):
-            held.texts[full] = value[:_LONGEST]
+            held.texts[full] = value[:_MAX_TEXT]
         elif isinstance(value, int | float):
             held.arrays.append(HeldArray(full, np.asarray(value, dtype=float), {}))

@@ -21,8 +21,8 @@ from tribolab.reading.scans.grid import even
 from tribolab.reading.scans.header import map_header
 from tribolab.units.conversion import conversion
 
-_FEWEST = 16  # numbers of a list that may be a profile
-_LONGEST = 100  # letters of a text that says something
+_MIN_NUMBERS = 16  # numbers of a list that may be a profile
+_MAX_TEXT = 100  # letters of a text that says something
 _PLACE = re.compile(r"(?i)^(x|pos(ition)?s?|abscissa|lateral|distance)")
 # decimal commas: none parts two numbers, for between those stands a blank or a semicolon
 _COMMAS = re.compile(r"(?:[-+]?\d+,\d+(?:[eE][-+]?\d+)?(?:[\s;]+|$)){4}|(?:[-+]?\d+,\d+;)+")
@@ -100,13 +100,13 @@ def _lists(root: ElementTree.Element) -> Iterator[_List]:
     """Numbers in one element's text, or in elements of one name beside each other."""
     for element in root.iter():
         values = _numbers(element.text or "")
-        if values.size >= _FEWEST:
+        if values.size >= _MIN_NUMBERS:
             yield _List(element.tag, values, dict(element.attrib))
         children: dict[str, list[ElementTree.Element]] = {}
         for child in element:
             children.setdefault(str(child.tag), []).append(child)
         for name, some in children.items():
-            if len(some) < _FEWEST:
+            if len(some) < _MIN_NUMBERS:
                 continue
             yield from _of_points(element, some)
             values = _numbers(" ".join((child.text or "nan").strip() or "nan" for child in some))
@@ -140,7 +140,7 @@ def _numbers(text: str) -> np.ndarray:
         cells = [cell.replace(",", ".") for cell in re.split(r"[\s;]+", text)]
     else:
         cells = re.split(r"[\s;]+" if ";" in text else r"[\s,;]+", text)
-    if len(cells) < _FEWEST:
+    if len(cells) < _MIN_NUMBERS:
         return np.empty(0)
     try:
         return np.array([float(cell) for cell in cells])
@@ -152,7 +152,7 @@ def _leaves(root: ElementTree.Element) -> Iterator[tuple[str, str, str | None]]:
     """Give names with what they say, an element's text or an attribute of it, and its x unit."""
     for element in root.iter():
         unit = stated_unit(element.attrib, "x")
-        if len(element) == 0 and element.text and len(element.text) < _LONGEST:
+        if len(element) == 0 and element.text and len(element.text) < _MAX_TEXT:
             yield element.tag, element.text.strip(), unit
         for name, text in element.attrib.items():
             yield name.rpartition("}")[2], text.strip(), unit

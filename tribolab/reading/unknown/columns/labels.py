@@ -16,7 +16,7 @@ from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 from tribolab.units.spellings import unit_in_words
 
-_LONGEST = 300  # characters of a line that are looked at
+_MAX_LINE = 300  # characters of a line that are looked at
 _PURE = ("1", "-")  # what stands for the unit of a pure number
 
 
@@ -96,7 +96,7 @@ def _stated_units(layout: Layout, cells: Sequence[str]) -> dict[int, str]:
     bare = [place for place, cell in enumerate(cells, 1) if cell and split_name(cell)[1] is None]
     if len(bare) > _MOST_NAMES or layout.heading is None or layout.heading.units is not None:
         return {}
-    lines = [line[:_LONGEST] for line in layout.text_above()]
+    lines = [line[:_MAX_LINE] for line in layout.text_above()]
     found = {}
     for place in bare:
         name = cells[place - 1].strip()

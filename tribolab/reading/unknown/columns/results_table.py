@@ -8,8 +8,8 @@ import numpy as np
 
 from tribolab.reading.unknown.model import DraftColumn
 
-_MOST = 400  # rows
-_FEWEST = 3
+_MAX_ROWS = 400  # rows
+_MIN_ROWS = 3
 _RISE = 1.02  # from speed to speed
 _SWEEP = 8  # rows of a sweep up or down, at least, where there are several
 
@@ -19,11 +19,11 @@ def are_points(columns: Sequence[DraftColumn], numbers: np.ndarray) -> bool:
     held = {column.quantity: column for column in columns if column.used}
     speeds = ("sliding_velocity", "rotation_speed", "rolling_speed")
     column = next((held[name] for name in speeds if name in held), None)
-    if column is None or not _FEWEST <= len(numbers) <= _MOST:
+    if column is None or not _MIN_ROWS <= len(numbers) <= _MAX_ROWS:
         return False
     size = np.abs(numbers[:, column.place - 1])
     size = size[np.isfinite(size)]
-    if size.size < _FEWEST or not (size > 0).all():
+    if size.size < _MIN_ROWS or not (size > 0).all():
         return False
     steps = np.log(size[1:] / size[:-1])
     way = np.sign(steps)

@@ -10,7 +10,7 @@ from tribolab.reading.unknown.model import DraftColumn
 
 _MOVES, _RESTS = 0.05, 0.005  # of the highest speed
 _FREE = 0.1  # of the highest load, below which nothing presses
-_FEWEST = 20  # rows
+_MIN_ROWS = 20  # rows
 _NEARLY_ALL = 0.95  # of the rows that move
 _CLEAR = 3.0  # times the scatter
 _SPEEDS = ("sliding_velocity", "rotation_speed")
@@ -40,9 +40,9 @@ def against_motion(columns: Sequence[DraftColumn], numbers: np.ndarray) -> list[
     free = known & (pressed < _FREE * np.max(pressed[known], initial=0.0))
     top = float(np.max(size[known & ~free], initial=0.0))
     moves = known & ~free & (size > _MOVES * top)
-    by_load = np.count_nonzero(free) >= _FEWEST
+    by_load = np.count_nonzero(free) >= _MIN_ROWS
     rests = free if by_load else known & (size < _RESTS * top)
-    if min(np.count_nonzero(rests), np.count_nonzero(moves)) < _FEWEST:
+    if min(np.count_nonzero(rests), np.count_nonzero(moves)) < _MIN_ROWS:
         return list(columns)
     if not by_load and abs(np.median(velocity[rests])) > _CLEAR * _scatter(velocity[rests]):
         return list(columns)  # it slides, only slowly

@@ -16,7 +16,7 @@ from tribolab.reading.unknown.header.calibration_lines import states_raw_zero
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
-_LONGEST = 200  # characters of a line that are looked at
+_MAX_LINE = 200  # characters of a line that are looked at
 
 
 class Gain(NamedTuple):
@@ -33,7 +33,7 @@ def find_gain(layout: Layout, columns: Sequence[DraftColumn], force: str) -> Gai
     """
     column = column_in_volts(columns, force)
     name = re.escape(bare_name(column)[0].strip()) if column is not None else ""
-    lines = [line[:_LONGEST].strip() for line in layout.text_above()]
+    lines = [line[:_MAX_LINE].strip() for line in layout.text_above()]
     mine = [line for line in lines if name and re.search(rf"(?<!\w){name}(?!\w)", line)]
     gains = [(line, n) for line in mine for n in numbers_in(line) if converts(n.unit, "N/V")]
     if column is None or len(gains) != 1 or states_raw_zero(gains[0][0]):

@@ -20,7 +20,7 @@ from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
-_LONGEST = 300  # characters of a line that are looked at
+_MAX_LINE = 300  # characters of a line that are looked at
 _DEGREES = re.compile(
     r"(?<![\d.,])(?P<angle>\d{1,2}(?:[.,]\d+)?)\s?(?:°|º|deg(?:rees?)?\b|grad\b|gradi\b|grados\b)(?!\s?[CFK])",
     re.IGNORECASE,
@@ -61,13 +61,13 @@ def _pattern(kind: str) -> re.Pattern[str]:
 
 
 def _words(text: str) -> str:
-    parts = re.split(r"[\W_]+", text[:_LONGEST])
+    parts = re.split(r"[\W_]+", text[:_MAX_LINE])
     return " ".join(normalise_label(part) for part in parts if part)
 
 
 def find_inclined(layout: Layout) -> Inclined | None:
     """Return the inclined contacts that the text above a table, or the file's name, speaks of."""
-    lines = [line.strip()[:_LONGEST] for line in layout.text_above()]
+    lines = [line.strip()[:_MAX_LINE] for line in layout.text_above()]
     texts = {text: _words(text) for text in (*lines, layout.file.path.stem)}
     found = {
         kind: next((t for t, words in texts.items() if _pattern(kind).search(words)), "")

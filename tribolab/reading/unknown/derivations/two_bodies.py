@@ -24,7 +24,7 @@ from tribolab.reading.unknown.model import DraftColumn
 from tribolab.units.reciprocals import reciprocal
 from tribolab.units.spellings import plain_unit
 
-_LONGEST = 200  # characters of a line that are looked at
+_MAX_LINE = 200  # characters of a line that are looked at
 _SURFACE = "the speed of one of two surfaces"
 _SPEEDS = {"rotation_speed": "Hz", "sliding_velocity": "m/s"}
 # so little tells bodies apart only where the text speaks of two
@@ -49,7 +49,7 @@ def find_surface_speeds(
     for quantity in _SPEEDS:
         mine = [column for column, held in speeds if held == quantity]
         twin = part_pattern("two_bodies")
-        is_twin = len(mine) == 2 and any(twin.search(normalise_label(t[:_LONGEST])) for t in texts)
+        is_twin = len(mine) == 2 and any(twin.search(normalise_label(t[:_MAX_LINE])) for t in texts)
         for bodies in (*pairs_of_bodies(), *((_NUMBERED,) if is_twin else ())):
             pairs = [(a, b) for a in mine for b in mine if a is not b and _are(bodies, a, b)]
             if len(pairs) == 1:
@@ -150,7 +150,7 @@ def shaft_of_torque(layout: Layout, pair: Pair) -> int | None:
     clauses = [
         normalise_label(clause)
         for line in layout.text_above()
-        for clause in re.split(r"[,;.:\uff0c\uff1b\u3002\uff1a]", line[:_LONGEST])
+        for clause in re.split(r"[,;.:\uff0c\uff1b\u3002\uff1a]", line[:_MAX_LINE])
     ]
     shafts = {
         index

@@ -13,7 +13,7 @@ from tribolab.reading.lexicon.lexicon import alternatives, normalise_label, part
 from tribolab.reading.numbers import numbers_in
 from tribolab.reading.unknown.layout.text_layout import Layout
 
-_LONGEST = 200  # characters of a line that are looked at
+_MAX_LINE = 200  # characters of a line that are looked at
 _QUOTED = 3
 _RAW = re.compile(rf"[mkµμu]?V|{alternatives('count')}", re.IGNORECASE)
 _EQUALS = re.compile(rf"\s?{alternatives('equals')}\s?", re.IGNORECASE)
@@ -25,7 +25,7 @@ def calibration_lines(layout: Layout, *, bare: bool = False) -> str:
 
     With `bare`, heights are meant, which may have no header.
     """
-    lines = [line[:_LONGEST].strip() for line in layout.text_above(bare=bare)]
+    lines = [line[:_MAX_LINE].strip() for line in layout.text_above(bare=bare)]
     found = [line for line in lines if states_calibration(line) or states_raw_zero(line)]
     return " or ".join(f"'{shown(line, 50)}'" for line in dict.fromkeys(found[:_QUOTED]))
 

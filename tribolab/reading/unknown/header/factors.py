@@ -20,7 +20,7 @@ from tribolab.reading.unknown.header.calibration_lines import states_calibration
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
-_LONGEST = 200  # characters of a line that are looked at
+_MAX_LINE = 200  # characters of a line that are looked at
 _MOST_CONTACTS = 12
 
 
@@ -32,7 +32,7 @@ def unapplied_factors(layout: Layout) -> list[str]:
     list of str
         A sentence for each line that states one. Factors of one and single contacts are left out.
     """
-    said = (_unapplied(line[:_LONGEST].strip()) for line in layout.text_above())
+    said = (_unapplied(line[:_MAX_LINE].strip()) for line in layout.text_above())
     return [sentence for sentence in said if sentence]
 
 
@@ -55,7 +55,7 @@ def unapplied_height_factors(
     whole = bool(present.size) and bool((present == np.round(present)).all())
     said = []
     for line in layout.text_above(bare=True):
-        text = line[:_LONGEST].strip()
+        text = line[:_MAX_LINE].strip()
         single = single_number(text)
         factor = single and not single[2] and says("height_factor", single[0]) and single[1] != 1
         step = whole and says("step_of_gauge", text) and not _states_one(text)

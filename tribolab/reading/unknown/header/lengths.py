@@ -11,13 +11,13 @@ from tribolab.reading.unknown.header.settings import numeric_settings
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
-_LONGEST = 200  # characters of a line that are looked at
+_MAX_LINE = 200  # characters of a line that are looked at
 
 
 def slides_on_rim(layout: Layout) -> bool:
     """Whether a file says that the track is the outside of what turns, as in block on ring."""
     texts = (layout.file.path.stem, *layout.text_above())
-    return any(says("slides_on_rim", text[:_LONGEST]) for text in texts)
+    return any(says("slides_on_rim", text[:_MAX_LINE]) for text in texts)
 
 
 def find_radius(values: Sequence[Amount], *, rim: bool = False) -> Amount | None:

@@ -9,7 +9,7 @@ from tribolab.reading.lexicon.lexicon import plain_text, says, text_pattern
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.units.spellings import WEIGHTS
 
-_LONGEST = 300  # characters of a line that are looked at
+_MAX_LINE = 300  # characters of a line that are looked at
 _DENIED_WITHIN = 12  # characters before a word
 _SAME_FORCE = 0.01  # relative difference of a weight and of the force of it, both rounded
 
@@ -47,7 +47,7 @@ def _are_one(one: Amount, other: Amount) -> bool:
 
 def lifted_on_return(layout: Layout) -> bool:
     """Whether the text says that nothing presses on the way back: a sled that is lifted."""
-    lines = (line[:_LONGEST] for line in layout.text_above())
+    lines = (line[:_MAX_LINE] for line in layout.text_above())
     return any(_says_lifted(line) and says("on_return", line) for line in lines)
 
 

@@ -26,7 +26,7 @@ _STATES = re.compile(
     r"[\[(]?(?P<unit>(?:1/)?[^\W\d][^\d;\t,\[\]()]*(?:\^?-1)?)?[\])]?[\s;,]*$",
     re.IGNORECASE,
 )
-_LONGEST = 200  # characters of a line that are looked at
+_MAX_LINE = 200  # characters of a line that are looked at
 _BRACKET = re.compile(r"[\[(]([^\[\]()]+)[\])]\s*$")
 _SAMPLE, _PER = alternatives("sample"), alternatives("per")
 _PER_TIME = re.compile(
@@ -125,9 +125,9 @@ def sample_rate_unit(text: str) -> str:
 def _fewer_rows(layout: Layout) -> str:
     """Return the line that says that several samples are averaged or left out; "" if none does."""
     for line in layout.text_above():
-        if _EVERY.search(line[:_LONGEST]):
+        if _EVERY.search(line[:_MAX_LINE]):
             return shown(line.strip(), 40)
-        said = single_number(line.strip()[:_LONGEST])
+        said = single_number(line.strip()[:_MAX_LINE])
         averaged = said and key_pattern("averaging").search(normalise_label(said[0]))
         if said and averaged and said[1] > 1 and said[1] == round(said[1]):
             return shown(line.strip(), 40)

@@ -18,7 +18,7 @@ from tribolab.reading.unknown.layout.step_marks import STEP_WORD
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.reading.unknown.model import DraftColumn
 
-_LONGEST = 300  # characters of a line that are looked at
+_MAX_LINE = 300  # characters of a line that are looked at
 _STEP_ZERO = re.compile(rf"{STEP_WORD}\W{{0,3}}0(?!\d)", re.IGNORECASE)
 _ROW = re.compile(r"\s*\"?[01]\"?\s*[,;\t]")  # of a programme: its first step
 STILL = "it is still in the signal"
@@ -88,7 +88,7 @@ def unloaded_start_in_doubt(layout: Layout, columns: Sequence[DraftColumn]) -> l
     held = {c.quantity for c in columns if c.used}
     if "normal_force" in held or "friction_coefficient" in held:
         return []  # the load tells where nothing presses
-    lines = (line.strip()[:_LONGEST] for line in layout.text_above())
+    lines = (line.strip()[:_MAX_LINE] for line in layout.text_above())
     said = [line for line in lines if _says_unloaded_start(line)]
     return [f"the friction is read as it stands, although '{shown(line, 60)}'" for line in said[:1]]
 
@@ -123,7 +123,7 @@ def _is_still_in(layout: Layout, zero: Amount | None) -> bool:
 
 def _another_line_says(name: str, layout: Layout, zero: Amount | None) -> bool:
     lines = (line for line in layout.text_above() if zero is None or line.strip() != zero.text)
-    return any(says(name, line[:_LONGEST]) for line in lines)
+    return any(says(name, line[:_MAX_LINE]) for line in lines)
 
 
 def _stated(values: Sequence[Amount], unit: str) -> Amount | None:
