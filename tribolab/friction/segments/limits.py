@@ -2,7 +2,7 @@
 
 from tribolab.core.limit import Count, Limit
 
-_STROKES = "tests/benchmarks/stroke_patterns.py, seeds from 10 000; reported on seeds from 20 000"
+_STROKES = "judgement; checked by tests/benchmarks/stroke_patterns.py, seeds from 10 000"
 _TRICKY = "judgement; checked by tests/benchmarks/tricky_runs.py, seeds 0 to 9"
 MIN_SHARE_OF_SPEED = Limit(
     0.5, "1", "a position that moves at less than half of the recorded speed stands still"
