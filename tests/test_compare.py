@@ -15,7 +15,7 @@ from tribolab.app.run import run_campaign
 from tribolab.comparison.calibration_terms import calibration_terms
 from tribolab.comparison.compare import CHANGED, UNCHANGED
 from tribolab.comparison.folder import Folder
-from tribolab.comparison.run_values import Matched
+from tribolab.comparison.run_values import MatchedRuns
 from tribolab.metrology.differences import (
     DIFFERENT,
     EQUIVALENT,
@@ -23,7 +23,7 @@ from tribolab.metrology.differences import (
     differences_of_groups,
     verdicts,
 )
-from tribolab.metrology.resampling import by_rotation
+from tribolab.metrology.resampling import rotation_test
 
 
 def runs(rng, count, points, offset=0.0):
@@ -83,7 +83,7 @@ def test_of_one_point_rotations_are_students_t():
 
     rng = np.random.default_rng(12)
     first, second = runs(rng, 3, 1), runs(rng, 3, 1, 0.02)
-    own, _ = by_rotation(
+    own, _ = rotation_test(
         first, second, np.zeros((0, 1)), np.array([0.05]), np.array([4.0]), 0.05, 0
     )
     # Welch's p of equal scatter and equal numbers is a function of t: how often it is below 5 %
@@ -162,7 +162,7 @@ def folder_with_budget(path, serial, gain, tilt=0.0, instrument="slide"):
 
 def test_a_calibration_that_both_share_is_not_in_their_difference_twice(tmp_path):
     speeds = np.array([1.01e-4, 0.99e-3])
-    condition = Matched("x", speeds, np.zeros((1, 2)), np.zeros((1, 2)), ("a",), ("a",))
+    condition = MatchedRuns("x", speeds, np.zeros((1, 2)), np.zeros((1, 2)), ("a",), ("a",))
     first = folder_with_budget(tmp_path / "1", "42", 0.01)
     assert first.campaign is not None and first.campaign.calibration.serial == "42"
 

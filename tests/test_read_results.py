@@ -13,7 +13,7 @@ from reporting import made_outcome
 
 import tribolab as tl
 from tribolab.core.errors import ReadError
-from tribolab.core.provenance import without_controls
+from tribolab.core.provenance import escape_controls
 from tribolab.friction.joined import joined_curves
 from tribolab.report import tables
 from tribolab.report.results import write_report
@@ -46,7 +46,7 @@ def test_no_cell_begins_like_a_formula_and_all_come_back(tmp_path):
 @given(st.text(st.characters(codec="utf-8", exclude_characters="\r\0"), min_size=1))
 def test_what_is_made_harmless_is_undone(text):
     # control characters stay escaped: they would steer a terminal
-    assert tables.as_it_was(tables.uncomputed(text)) == without_controls(text)
+    assert tables.as_it_was(tables.uncomputed(text)) == escape_controls(text)
 
 
 def test_what_is_no_folder_of_results_says_so(tmp_path):

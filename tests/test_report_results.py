@@ -19,13 +19,13 @@ from reporting import made_outcome, made_run, with_run, without_curves
 import tribolab
 from tribolab.qc.flags import attach
 from tribolab.reading.netcdf.netcdf import read_netcdf
-from tribolab.records.packed import clock_of, packed_points
+from tribolab.records.packed import clock_of, pack_points
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome
 from tribolab.records.runs.run_facts import stick_slip_of
 from tribolab.records.runs.run_record import RunRecord, Waveform
 from tribolab.records.runs.traces import decimated_trace, finer_trace, flagged_spans, script_json
-from tribolab.records.wording import plain_value, with_error
+from tribolab.records.wording import error_text, plain_value
 from tribolab.report.campaign_tables import TABLES
 from tribolab.report.results import shown_curves, write_report
 
@@ -217,7 +217,7 @@ def test_nan_becomes_null_and_infinity_too():
     ],
 )
 def test_error_sets_the_digits(value, error, text):
-    assert with_error(value, error) == text
+    assert error_text(value, error) == text
 
 
 def test_empty_campaign_still_has_a_report(tmp_path):
@@ -492,7 +492,7 @@ def test_points_with_gaps_pack_into_what_they_were(jitter, counted, deflate):
     assert (clock.ticks is None) == counted
     few = np.sort(rng.choice(np.arange(1, time.size - 1), 900, replace=False))
     for pick in (few, np.array([0, time.size - 1]), np.arange(time.size)):
-        packed = packed_points(clock.places(pick), value[pick], deflate=deflate)
+        packed = pack_points(clock.places(pick), value[pick], deflate=deflate)
         found = unpacked(packed, (clock.knots, clock.at_s))
         assert np.abs(found[0] - time[pick]).max() < 0.26e-3
         np.testing.assert_allclose(found[1], value[pick], atol=1e-4)

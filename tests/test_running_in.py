@@ -12,7 +12,7 @@ from tribolab.campaign.runs.running_in import running_in_of
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.mean_error.level import levels_of
 from tribolab.friction.running_in.settling import blocks_of, settling_of
-from tribolab.friction.running_in.steady_part import steady_segments, without_start
+from tribolab.friction.running_in.steady_part import discard_start, steady_segments
 from tribolab.friction.segments.find import find_segments
 from tribolab.records.runs.notices import notices_of
 
@@ -159,7 +159,7 @@ def test_a_pin_on_disc_runs_in_over_a_distance():
 @pytest.mark.parametrize(("discard", "start"), [("50 m", 500.0), ("10 min", 600.0)])
 def test_the_beginning_of_a_run_is_discarded(discard, start):
     run = pin_on_disc()
-    segments = without_start(find_segments(run, trim=0), discard)
+    segments = discard_start(find_segments(run, trim=0), discard)
     assert segments.trimmed_start.item() == pytest.approx(start)
     assert segments.omitted_reason.values.tolist()[-1] == "discarded"
     own = run.sel(time=slice(start, None))
@@ -169,7 +169,7 @@ def test_the_beginning_of_a_run_is_discarded(discard, start):
 
 def test_cycles_are_discarded_and_the_steady_part_is_taken():
     run, segments, friction = crank(0.0, seed=1)
-    left = without_start(segments, "10 cycles")
+    left = discard_start(segments, "10 cycles")
     assert left.sizes["segment"] == segments.sizes["segment"] - 20
     assert steady_segments(run, segments, friction).sizes["segment"] == segments.sizes["segment"]
     pin = pin_on_disc()

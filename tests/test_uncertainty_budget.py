@@ -11,7 +11,7 @@ from tribolab.core.errors import AnalysisError, TribolabError
 from tribolab.metrology.budget_parts import (
     BETWEEN,
     ScatterPart,
-    combined,
+    combine_parts,
     coverage_factor,
     effective_dof,
 )
@@ -194,7 +194,7 @@ def test_u95_of_few_runs_beside_a_calibration_holds_95_per_cent(runs, ratio):
     known = {"friction_gain": Known(wide, np.inf, "calibration", "standard", "")}
     data = xr.Dataset({"friction_coefficient": ("segment", drawn.mean(axis=1))})
     parts = {"friction_gain": np.full(20_000, wide)}
-    result = combined(data, "segment", [scatter], parts, known)
+    result = combine_parts(data, "segment", [scatter], parts, known)
     miss = np.abs(drawn.mean(axis=1) + wide * rng.normal(0, 1, 20_000))
     held = np.mean(miss <= result.friction_coefficient_U95.values)
     assert held == pytest.approx(0.95, abs={2: 0.019, 3: 0.012}[runs])

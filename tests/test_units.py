@@ -49,8 +49,8 @@ def test_usual_units_are_what_the_units_library_says():
     for unit, si_unit in [*units._USUAL, *prefixed]:
         ureg = units.registry()
         source, target = (
-            ureg.Unit(units.as_pint_writes(unit)),
-            ureg.Unit(units.as_pint_writes(si_unit)),
+            ureg.Unit(units.pint_spelling(unit)),
+            ureg.Unit(units.pint_spelling(si_unit)),
         )
         zero, one = (ureg.Quantity(x, source).to(target).magnitude for x in (0.0, 1.0))
         assert conversion(unit, si_unit) == pytest.approx((one - zero, zero), rel=1e-14), unit
@@ -62,7 +62,7 @@ def test_what_is_told_without_the_units_library_is_what_it_says():
         for unit in ("s", "m", "N", "Pa", "V", "m/s"):
             for asked in units._ASKED:
                 if units._measures_another(prefix + unit, asked):
-                    target = ureg.Unit(units.as_pint_writes(asked).replace(" ", "*"))
+                    target = ureg.Unit(units.pint_spelling(asked).replace(" ", "*"))
                     assert not ureg.Unit(prefix + unit).is_compatible_with(target), (unit, asked)
     assert not units._measures_another("mN", "N") and units._measures_another("mN", "m")
 

@@ -21,7 +21,7 @@ from tribolab.fit.model_uncertainty import model_uncertainty
 from tribolab.lubrication.factors import flow_factors, smooth_factors
 from tribolab.lubrication.film import film_profile
 from tribolab.lubrication.stribeck import stribeck_curve
-from tribolab.records.parts import beyond_limits
+from tribolab.records.parts import limit_findings
 from tribolab.records.wording import validity_of
 from tribolab.report.page.templating import environment
 from tribolab.rubber.friction import viscoelastic_friction
@@ -88,7 +88,7 @@ def test_the_reference_contacts_are_inside_every_limit(name):
     ]
     assert [one.attrs["validity"] for one in results] == ["pass"] * len(results)
     assert validity_of(results) == ""
-    assert beyond_limits({"curve": results[0]}) == []
+    assert limit_findings({"curve": results[0]}) == []
 
 
 @pytest.mark.parametrize("name", LIMITS)
@@ -112,7 +112,7 @@ def test_each_limit_has_three_answers(name):
 def test_a_wide_contact_is_said_and_one_wider_than_its_cylinder_refused():
     curve = stribeck_curve(SOFT, None, 1.4, 310.0, 0.0, [1e-3], cells=100)
     assert "half-width of the contact over the radius R is 0.65 at 310 N/m" in validity_of([curve])
-    (finding,) = beyond_limits({"curve": curve})
+    (finding,) = limit_findings({"curve": curve})
     assert finding.severity == "suspect" and finding.message.startswith("curve: half-width")
     for compute in (hertz_half_width, lambda load, body: jkr_half_width(load, body, 0.05)):
         assert compute(310.0, SOFT) < SOFT.radius

@@ -60,7 +60,7 @@ def of_runs(function: Callable[P, R]) -> OfRuns[P, R]:
                     f"{function.__name__}: {count} runs are given, and {len(value)} datasets as "
                     f"{_name(function, key)}; give one for each run"
                 )
-        return [_called(function, given, own, len(args), number) for number in range(count)]
+        return [_call_each(function, given, own, len(args), number) for number in range(count)]
 
     return with_lists
 
@@ -110,14 +110,14 @@ def of_lists(*names: str, beside: str = "") -> Callable[[Callable[P, R]], OfList
                 told = ", ".join(f"{count} for {name}" for name, count in counts.items())
                 raise AnalysisError(f"{function.__name__}: lists of one length are wanted: {told}")
             count = next(iter(counts.values()))
-            return [_called(function, given, own, 0, number) for number in range(count)]
+            return [_call_each(function, given, own, 0, number) for number in range(count)]
 
         return with_lists
 
     return decorate
 
 
-def _called(
+def _call_each(
     function: Callable[..., R],
     given: Mapping[Any, Any],
     own: Mapping[Any, Sequence[Any]],
@@ -178,7 +178,7 @@ def over_dims(**own: tuple[str, ...]) -> Callable[[Callable[P, R]], Callable[P, 
             ]
             if not further:
                 return function(*args, **kwargs)
-            return _along(with_dims, given, further[0])
+            return _apply_along(with_dims, given, further[0])
 
         return with_dims
 
@@ -191,7 +191,7 @@ def _dims(value: Any) -> tuple[Hashable, ...]:
     return tuple(getattr(holder, "dims", ()))
 
 
-def _along(function: Callable[..., Any], given: Arguments, dim: Hashable) -> Any:
+def _apply_along(function: Callable[..., Any], given: Arguments, dim: Hashable) -> Any:
     """Call a function for each position along a dim, and combine the results."""
     # imported late: xarray loads slowly
     import xarray as xr
@@ -200,7 +200,10 @@ def _along(function: Callable[..., Any], given: Arguments, dim: Hashable) -> Any
     first = next(iter(having.values()))
     results = []
     for place in range(first.sizes[dim]):
-        cut = {name: _cut(value.isel({dim: place}, drop=True)) for name, value in having.items()}
+        cut = {
+            name: _drop_missing(value.isel({dim: place}, drop=True))
+            for name, value in having.items()
+        }
         result = function(**(given | cut))
         known = isinstance(result, xr.Dataset | xr.DataArray)
         results.append(result if known else _array(result, function.__name__))
@@ -214,12 +217,12 @@ def _along(function: Callable[..., Any], given: Arguments, dim: Hashable) -> Any
     return joined
 
 
-def as_stated(value: str | float | xr.DataArray) -> str | float:
+def stated_value(value: str | float | xr.DataArray) -> str | float:
     """Return a value as stated, or as a number if it is an array without dims."""
     return float(value.item()) if hasattr(value, "item") else value
 
 
-def _cut(value: Any) -> Any:
+def _drop_missing(value: Any) -> Any:
     """Drop missing entries of one condition: wavenumbers of spectra, segments."""
     if not hasattr(value, "data_vars"):
         return value

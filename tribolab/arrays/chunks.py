@@ -147,12 +147,12 @@ def stretches(holds: Callable[[int, int], np.ndarray], count: int) -> np.ndarray
     return np.concatenate([*edges, end]).reshape(-1, 2)
 
 
-def concatenated(parts: Sequence[np.ndarray]) -> np.ndarray:
+def concatenate_parts(parts: Sequence[np.ndarray]) -> np.ndarray:
     """Return the parts of a record as one array.
 
     Examples
     --------
-    >>> concatenated([np.array([1.0, 2.0]), np.array([3.0])]).tolist()
+    >>> concatenate_parts([np.array([1.0, 2.0]), np.array([3.0])]).tolist()
     [1.0, 2.0, 3.0]
     """
     whole = room(sum(len(part) for part in parts), np.result_type(*parts))

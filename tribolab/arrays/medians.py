@@ -40,7 +40,7 @@ def median_of_known(values: np.ndarray) -> np.float64:
     >>> median_of_known(np.array([3.0, np.nan, 1.0]))
     np.float64(2.0)
     """
-    return _of_ordered(np.sort(np.asarray(values, float), axis=None))
+    return _median_of_sorted(np.sort(np.asarray(values, float), axis=None))
 
 
 def medians_of_rows(rows: np.ndarray) -> np.ndarray:
@@ -110,7 +110,7 @@ class _About(NamedTuple):
 
 def _about(part: Callable[[int, int], np.ndarray], count: int, share: float) -> _About:
     if count >= _MANY:
-        tried = _tried(part, count)
+        tried = _sample_parts(part, count)
         for around in _AROUND if tried.size else ():
             low, high = np.quantile(tried, [max(share - around, 0), min(share + around, 1)])
             about = _near(
@@ -128,11 +128,11 @@ def _about(part: Callable[[int, int], np.ndarray], count: int, share: float) -> 
         end += own.size
     ordered = np.sort(numbers[:end])
     known = int(np.searchsorted(ordered, np.nan))  # NaN is sorted last
-    about = _between(ordered, 0, known, share)
+    about = _quantile_bracket(ordered, 0, known, share)
     return _About(np.float64(np.nan), np.float64(np.nan), 0.0) if about is None else about
 
 
-def _tried(part: Callable[[int, int], np.ndarray], count: int) -> np.ndarray:
+def _sample_parts(part: Callable[[int, int], np.ndarray], count: int) -> np.ndarray:
     """Return samples of short parts of a record, which locate a quantile roughly."""
     starts = np.linspace(0, count - _SHORT, _STRETCHES).astype(int).tolist()
     tried = np.concatenate([part(start, start + _SHORT) for start in starts])
@@ -152,10 +152,10 @@ def _near(
         known += numbers.size
         below += int(np.count_nonzero(numbers < low))
         kept.append(numbers[(numbers >= low) & (numbers <= high)])
-    return _between(np.sort(np.concatenate(kept)), below, known, share)
+    return _quantile_bracket(np.sort(np.concatenate(kept)), below, known, share)
 
 
-def _between(ordered: np.ndarray, below: int, known: int, share: float) -> _About | None:
+def _quantile_bracket(ordered: np.ndarray, below: int, known: int, share: float) -> _About | None:
     """Return the numbers around a quantile from the part of them above a lower bound.
 
     None if it is not among them.
@@ -168,7 +168,7 @@ def _between(ordered: np.ndarray, below: int, known: int, share: float) -> _Abou
     return _About(ordered[first - below], ordered[last - below], rank - first)
 
 
-def _of_ordered(numbers: np.ndarray) -> np.float64:
+def _median_of_sorted(numbers: np.ndarray) -> np.float64:
     """Return the median of sorted numbers, ignoring the NaN at the end."""
     known = int(np.searchsorted(numbers, np.nan))
     return _middle(numbers[:known]) if known else np.float64(np.nan)

@@ -12,7 +12,7 @@ import numpy as np
 
 from tribolab.campaign.recorded import Recorded
 from tribolab.campaign.runs.analysis import AS_FOUND
-from tribolab.campaign.runs.loads import at_level
+from tribolab.campaign.runs.loads import level_mask
 from tribolab.campaign.runs.stage import RunCame
 from tribolab.campaign.settings.naming.run_names import distinct, safe_name
 from tribolab.campaign.store.catalogue import Store
@@ -50,7 +50,7 @@ class _Levels(NamedTuple):
         if not self.measured:
             return slice(None)
         force = friction["normal_force"].values
-        return at_level(force, np.array(self.measured), np.array(self.wanted))
+        return level_mask(force, np.array(self.measured), np.array(self.wanted))
 
 
 @dataclass(frozen=True)
@@ -191,9 +191,9 @@ def process_curve(task: CurveTask) -> CurveRecord:
 
     files = [task.folder / name for name in task.data_files]
     parts = [read_groups(file, ("friction", SLIP), only={SLIP: NEEDED}) for file in files]
-    parts = [_at_load(part, own) for part, own in zip(parts, task.levels, strict=True)]
+    parts = [_segments_at_load(part, own) for part, own in zip(parts, task.levels, strict=True)]
     frictions = [part["friction"] for part in parts]
-    curve, known = _with_budget(frictions, task.speed_tolerance)
+    curve, known = _budget_curve(frictions, task.speed_tolerance)
     levels: list[float | None] = []
     if len(frictions) > 1:
         curve = stamp(curve.assign(run_level=("run", run_levels(frictions, task.speed_tolerance))))
@@ -208,7 +208,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
     curve.attrs |= _labels(task.curve) | {"config_sha256": sha256_of(shaped)}
     points = plain_rows(curve_table(curve))
     points_found: tuple[Row, ...] = ()
-    if (undecided := _as_found(task)) is not None:
+    if (undecided := _curve_as_found(task)) is not None:
         points_found = plain_rows(curve_table(undecided))
         if points_found == points:  # e.g. a note
             points_found = ()
@@ -229,7 +229,7 @@ def process_curve(task: CurveTask) -> CurveRecord:
     )
 
 
-def _with_budget(
+def _budget_curve(
     frictions: list[xr.Dataset], speed_tolerance: float
 ) -> tuple[xr.Dataset, Mapping[str, Known]]:
     """Return the curve of the runs with its full uncertainty, and the stated inputs."""
@@ -253,7 +253,7 @@ def _model_inputs(frictions: Sequence[xr.Dataset]) -> dict[str, float]:
     }
 
 
-def _as_found(task: CurveTask) -> xr.Dataset | None:
+def _curve_as_found(task: CurveTask) -> xr.Dataset | None:
     """Return the curve without a person's decisions; None if nobody decided."""
     # imported late for a quick start
     from tribolab.reading.netcdf.netcdf import read_groups
@@ -265,10 +265,10 @@ def _as_found(task: CurveTask) -> xr.Dataset | None:
     undecided = [part.get(wanted[1], part[wanted[0]]) for part in parts]
     pairs = zip(undecided, task.found_levels, strict=True)
     kept = [friction.isel(segment=own.of(friction)) for friction, own in pairs]
-    return _with_budget(kept, task.speed_tolerance)[0]
+    return _budget_curve(kept, task.speed_tolerance)[0]
 
 
-def _at_load(part: Parts, own: _Levels) -> Parts:
+def _segments_at_load(part: Parts, own: _Levels) -> Parts:
     """Return the segments of a run measured under a curve's load."""
     segments = own.of(part["friction"])
     return {name: data.isel(segment=segments) for name, data in part.items()}

@@ -14,9 +14,9 @@ from tribolab.campaign.engine.stage import Progress, begun, perform
 from tribolab.campaign.models.stage import Models
 from tribolab.campaign.odd_runs import REPEATS, with_odd_repeats
 from tribolab.campaign.runs.kept import keep_runs
-from tribolab.campaign.runs.repeats import with_loads_alike
+from tribolab.campaign.runs.repeats import share_loads
 from tribolab.campaign.runs.stage import RunCame, Runs
-from tribolab.campaign.runs.zeros import to_lend
+from tribolab.campaign.runs.zeros import lent_zeros
 from tribolab.campaign.settings.plan import PlannedRun, planned_runs
 from tribolab.campaign.settings.review import lost_decisions
 from tribolab.campaign.store.catalogue import Store
@@ -84,7 +84,7 @@ def process(
     came = perform(Runs(runs, store), executor, progress)
     _refuse_if_all_died(came)
     came = keep_runs(campaign, store, _with_lent_zeros(runs, came, store, executor))
-    came = with_loads_alike(store, came)
+    came = share_loads(store, came)
     outcomes = tuple(run.outcome for run in came)
     surfacing = begun(Surfaces(campaign, outcomes, store), executor, progress)
     combining = begun(
@@ -120,7 +120,7 @@ def _with_lent_zeros(
 ) -> list[RunCame]:
     """Do runs again whose zero only other runs of the instrument tell."""
     zeros = {run.name: before.zero for run, before in zip(runs, came, strict=True)}
-    again = to_lend(zeros)
+    again = lent_zeros(zeros)
     if not again:
         return list(came)
     lent = [

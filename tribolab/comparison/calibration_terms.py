@@ -10,7 +10,7 @@ import pandas as pd
 
 from tribolab.comparison.folder import Folder
 from tribolab.comparison.labels import labels_of_runs
-from tribolab.comparison.run_values import SPEED_COLUMN, TOLERANCE, Matched
+from tribolab.comparison.run_values import SPEED_COLUMN, TOLERANCE, MatchedRuns
 from tribolab.metrology.budget_curve import EACH_POINT
 from tribolab.metrology.budget_parts import BETWEEN, NOISE, part_words
 
@@ -58,7 +58,7 @@ class CalibrationTerms:
 
 
 def calibration_terms(
-    condition: Matched, first: Folder | None, second: Folder | None
+    condition: MatchedRuns, first: Folder | None, second: Folder | None
 ) -> CalibrationTerms:
     """Calibration errors of the differences in a condition that scatter does not include.
 
@@ -82,7 +82,7 @@ def calibration_terms(
         return CalibrationTerms(np.zeros((0, size)))
     together = first is second
     sides = [
-        _of_side(folder, runs, condition.speeds, together)
+        _side_inputs(folder, runs, condition.speeds, together)
         for folder, runs in ((first, condition.first_runs), (second, condition.second_runs))
     ]
     calibrations = [_calibrations(first, condition.first_runs)]
@@ -116,7 +116,7 @@ def _calibrations(folder: Folder, runs: RunNames) -> frozenset[str]:
     return frozenset(f"{name}\n{which}" for name in names)
 
 
-def _of_side(
+def _side_inputs(
     folder: Folder, runs: RunNames, speeds: np.ndarray, together: bool
 ) -> dict[_Part, np.ndarray]:
     """Return the inputs of one side, each with the effect of one standard uncertainty (point)."""
@@ -127,12 +127,12 @@ def _of_side(
     weight = {c["name"]: len(mine & set(c["runs"])) for c in folder.report["curves"]}
     table = table[table["curve"].map(weight).fillna(0) > 0]
     table = table[~table["part"].isin([NOISE, BETWEEN]) & (table["contribution"].abs() > 0)]
-    whose = _whose(folder, runs, together)
+    whose = _origin(folder, runs, together)
     made: dict[_Part, np.ndarray] = {}
     counted = sum(weight.values())
     for (curve, text, varies), rows in table.groupby(["curve", "part", "varies"], dropna=False):
         name, _, instrument = str(text).partition(", ")
-        row = _at(rows, speeds) * weight[curve] / counted
+        row = _values_at(rows, speeds) * weight[curve] / counted
         if name in _EACH_POINT:
             part, row = _Part(name, ""), np.diag(row)
         else:
@@ -144,7 +144,7 @@ def _of_side(
 _EACH_POINT = tuple(map(part_words, EACH_POINT))
 
 
-def _whose(folder: Folder, runs: RunNames, together: bool) -> Mapping[str, str]:
+def _origin(folder: Folder, runs: RunNames, together: bool) -> Mapping[str, str]:
     """Return the calibration or mount that an input varies with."""
     made = {}
     known = _calibrations(folder, runs)
@@ -159,7 +159,7 @@ def _whose(folder: Folder, runs: RunNames, together: bool) -> Mapping[str, str]:
     return made
 
 
-def _at(rows: pd.DataFrame, speeds: np.ndarray) -> np.ndarray:
+def _values_at(rows: pd.DataFrame, speeds: np.ndarray) -> np.ndarray:
     """Contributions at the speeds of a comparison; 0 where the curve has none."""
     known = rows[SPEED_COLUMN].to_numpy(dtype=float)
     apart = np.abs(np.log(known[:, None] / speeds))
@@ -176,13 +176,13 @@ def terms_text(made: Sequence[CalibrationTerms]) -> str:
         return _NOT_STATED
     said = []
     if own:
-        said.append(f"each of the two has its own {_listed(own)}, and both errors count")
+        said.append(f"each of the two has its own {_join_names(own)}, and both errors count")
     if shared:
         said.append(
-            f"of {_listed(shared)}, which they share, only what acts on them differently counts"
+            f"of {_join_names(shared)}, which they share, only what acts on them differently counts"
         )
     return "in addition to the scatter of the runs: " + "; ".join(said)
 
 
-def _listed(names: tuple[str, ...]) -> str:
+def _join_names(names: tuple[str, ...]) -> str:
     return ", ".join(names[:-1]) + (" and " if len(names) > 1 else "") + names[-1]

@@ -77,13 +77,14 @@ def _pairs(kind: str, first: Mapping[str, str], second: Mapping[str, str]) -> li
 
 def _decisions(first: Folder, second: Folder) -> list[Change]:
     told = [
-        {run["name"]: _decided(run) for run in folder.report["runs"]} for folder in (first, second)
+        {run["name"]: _decision_text(run) for run in folder.report["runs"]}
+        for folder in (first, second)
     ]
     both = [name for name in told[0] if name in told[1]]
     return _pairs("decisions", *({name: of[name] for name in both} for of in told))
 
 
-def _decided(run: Json) -> str:
+def _decision_text(run: Json) -> str:
     rows = run.get("decisions") or []
     return "; ".join(_text([v for k, v in row.items() if k != "number"]) for row in rows) or "none"
 

@@ -10,12 +10,12 @@ import pandas as pd
 
 from tribolab.comparison.calibration_terms import CalibrationTerms, calibration_terms, terms_text
 from tribolab.comparison.changes import Change, changes_between
-from tribolab.comparison.quantities import of_quantities
+from tribolab.comparison.quantities import quantity_rows
 from tribolab.comparison.run_values import (
     CONDITION,
     SPEED_COLUMN,
-    Matched,
-    matched,
+    MatchedRuns,
+    match_runs,
 )
 from tribolab.comparison.sides import Compared, Side, sides_of
 from tribolab.core.errors import AnalysisError
@@ -143,7 +143,7 @@ def compare(
     """
     sides = sides_of(first, second, by, levels)
     kept = [name for name in CONDITION if name != by]
-    conditions = matched(sides[0].segments, sides[1].segments, kept)
+    conditions = match_runs(sides[0].segments, sides[1].segments, kept)
     if not conditions:
         raise AnalysisError(
             "there is nothing to compare: no surface, medium and load was measured in both at one "
@@ -154,7 +154,7 @@ def compare(
     tested = [condition for condition, is_same in zip(conditions, same, strict=True) if not is_same]
     terms = [calibration_terms(c, sides[0].folder, sides[1].folder) for c in conditions]
     own = [part for part, is_same in zip(terms, same, strict=True) if not is_same]
-    by_chance = _tested(tested, own, margin, alpha) if tested else None
+    by_chance = _test_conditions(tested, own, margin, alpha) if tested else None
     points = [_points_of_same(c) for c, is_same in zip(conditions, same, strict=True) if is_same]
     if by_chance is not None:
         points.append(by_chance[1])
@@ -164,7 +164,7 @@ def compare(
     return Comparison(
         names=(sides[0].name, sides[1].name),
         points=rows,
-        quantities=of_quantities(
+        quantities=quantity_rows(
             conditions, same, [part.terms for part in terms], sides[0].tables, sides[1].tables, by
         ),
         changes=()
@@ -178,7 +178,7 @@ def compare(
     )
 
 
-def _all_same(condition: Matched, first: Side, second: Side) -> bool:
+def _all_same(condition: MatchedRuns, first: Side, second: Side) -> bool:
     """Whether both sides of a condition come from the same raw files."""
     if first.folder is None or second.folder is None or first.folder is second.folder:
         return False
@@ -190,7 +190,7 @@ def _all_same(condition: Matched, first: Side, second: Side) -> bool:
     return bool(files[0]) and files[0] == files[1] and all(any(sums) for sums in files[0])
 
 
-def _points_of_same(condition: Matched) -> pd.DataFrame:
+def _points_of_same(condition: MatchedRuns) -> pd.DataFrame:
     """Rows of a condition with the same raw data on both sides, without a test."""
     first, second = (np.nanmean(values, axis=0) for values in (condition.first, condition.second))
     return _rows(
@@ -204,8 +204,8 @@ def _points_of_same(condition: Matched) -> pd.DataFrame:
     )
 
 
-def _tested(
-    conditions: Sequence[Matched], terms: Sequence[CalibrationTerms], margin: str, alpha: float
+def _test_conditions(
+    conditions: Sequence[MatchedRuns], terms: Sequence[CalibrationTerms], margin: str, alpha: float
 ) -> tuple[Differences, pd.DataFrame]:
     compared = differences_of_groups(
         [(c.first, c.second) for c in conditions],
@@ -256,7 +256,7 @@ _NUMBERS = (
 
 
 def _rows(
-    condition: Matched,
+    condition: MatchedRuns,
     first: np.ndarray,
     second: np.ndarray,
     *,

@@ -16,7 +16,7 @@ from tribolab.comparison.watched import (
     GAIN,
     REFERENCE,
     Observation,
-    at_common_speeds,
+    group_by_speed,
     observations_of,
 )
 from tribolab.core.errors import AnalysisError, ReadError, TribolabError
@@ -41,7 +41,7 @@ _DAY = 86400.0
 
 
 @dataclass(frozen=True)
-class Watched:
+class InstrumentHistory:
     """History of one quantity of one instrument.
 
     Parameters
@@ -124,13 +124,13 @@ class History:
         Folders that could not be read, with the reason.
     """
 
-    charts: tuple[Watched, ...]
+    charts: tuple[InstrumentHistory, ...]
     rules: tuple[str, ...]
     due: dict[str, Due] = field(default_factory=dict)
     unread: tuple[str, ...] = ()
 
     @property
-    def signalling(self) -> tuple[Watched, ...]:
+    def signalling(self) -> tuple[InstrumentHistory, ...]:
         """Charts in which a point signals."""
         return tuple(chart for chart in self.charts if chart.signals.size)
 
@@ -220,31 +220,35 @@ def history_of(
 ) -> History:
     """Control charts of observations; arguments as for `history`."""
     groups: dict[tuple[str, str, str], list[Observation]] = {}
-    for point in sorted(at_common_speeds(points), key=lambda point: (point.when, point.folder)):
+    for point in sorted(group_by_speed(points), key=lambda point: (point.when, point.folder)):
         groups.setdefault((point.instrument, point.quantity, point.unit), []).append(point)
-    charts = [_watched(*key, own, rules, baseline) for key, own in sorted(groups.items())]
+    charts = [
+        _instrument_history(*key, own, rules, baseline) for key, own in sorted(groups.items())
+    ]
     return History(tuple(charts), tuple(rules))
 
 
-def _watched(
+def _instrument_history(
     instrument: str,
     quantity: str,
     unit: str,
     points: Sequence[Observation],
     rules: Sequence[str],
     baseline: int | None,
-) -> Watched:
+) -> InstrumentHistory:
     values = np.array([point.value for point in points])
     when = tuple(point.when for point in points)
-    bare = Watched(instrument, quantity, unit, when, tuple(p.folder for p in points), values)
+    bare = InstrumentHistory(
+        instrument, quantity, unit, when, tuple(p.folder for p in points), values
+    )
     count = min(_BASELINE, values.size // 2) if baseline is None else baseline
     if count < FEWEST_OF_BASELINE or values.size <= count:
         few = f"{many(values.size, 'point')}: too few to judge, {2 * FEWEST_OF_BASELINE} are wanted"
-        return Watched(*_fields(bare), remark=few)
+        return InstrumentHistory(*_fields(bare), remark=few)
     try:
         usual = baseline_of(values[:count])
     except AnalysisError as error:
-        return Watched(*_fields(bare), remark=str(error))
+        return InstrumentHistory(*_fields(bare), remark=str(error))
     remark = ""
     if usual.correlated and usual.correlation > 0:
         remark = (
@@ -252,18 +256,18 @@ def _watched(
             "alarms come more often than stated"
         )
     chart = control_chart(values[count:], usual, rules)
-    return Watched(
+    return InstrumentHistory(
         *_fields(bare), baseline_points=count, baseline=usual, chart=chart, remark=remark
     )
 
 
 def _fields(
-    bare: Watched,
+    bare: InstrumentHistory,
 ) -> tuple[str, str, str, tuple[dt.datetime, ...], tuple[str, ...], np.ndarray]:
     return bare.instrument, bare.quantity, bare.unit, bare.when, bare.folders, bare.values
 
 
-def _due(stated: CalibrationTable, charts: Sequence[Watched], instrument: str) -> Due:
+def _due(stated: CalibrationTable, charts: Sequence[InstrumentHistory], instrument: str) -> Due:
     """Date of the next calibration of an instrument, from its interval or its reference's drift."""
     assert stated.date is not None
     interval = None if stated.interval is None else stated.interval / _DAY
@@ -283,7 +287,7 @@ def _due(stated: CalibrationTable, charts: Sequence[Watched], instrument: str) -
     return recalibration_due(stated.date, interval, days[since], relative, stated.limit)
 
 
-def expectations(chart: Watched, rules: Sequence[str]) -> str:
+def expectations(chart: InstrumentHistory, rules: Sequence[str]) -> str:
     """Text on the rate of false alarms and the delay of true ones."""
     if chart.chart is None:
         return chart.remark

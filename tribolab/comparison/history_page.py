@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from tribolab import plot
-from tribolab.comparison.history import History, Watched, expectations
+from tribolab.comparison.history import History, InstrumentHistory, expectations
 from tribolab.comparison.page import Part, Picture, Sheet, cells, write_parts
 from tribolab.core.wording import many
 from tribolab.metrology.control_charts import FEWEST_OF_BASELINE
@@ -40,7 +40,7 @@ def history_verdict(told: History) -> str:
     )
 
 
-def _name(chart: Watched, told: History) -> str:
+def _name(chart: InstrumentHistory, told: History) -> str:
     """Name of the quantity, with the instrument if there are several."""
     several = len({other.instrument for other in told.charts}) > 1
     return f"{chart.instrument}: {chart.quantity}" if several else chart.quantity
@@ -58,17 +58,17 @@ def write_history(told: History, folder: Path) -> Path:
         heading=", ".join(name or "instrument not named" for name in instruments),
         verdict=history_verdict(told),
         fine=not told.signalling and any(chart.chart is not None for chart in told.charts),
-        parts=[_summary(told), *(_chart(chart, told) for chart in _ordered(told))],
+        parts=[_summary(told), *(_chart(chart, told) for chart in _order_charts(told))],
     )
     return page
 
 
-def _ordered(told: History) -> list[Watched]:
+def _order_charts(told: History) -> list[InstrumentHistory]:
     """Return the charts: those that signal first, those without verdict last."""
     return sorted(told.charts, key=lambda chart: (not chart.signals.size, chart.chart is None))
 
 
-def _verdict(chart: Watched) -> str:
+def _verdict(chart: InstrumentHistory) -> str:
     if chart.chart is None:
         return "not judged"
     if not chart.signals.size:
@@ -88,7 +88,7 @@ def _summary(told: History) -> Part:
             ),
             digits=4,
         )
-        for chart in _ordered(told)
+        for chart in _order_charts(told)
     ]  # fmt: skip
     heads = ("Quantity", "Unit", "Points", "Baseline", "Last", "From", "To", "Signals", "Verdict")
     due = [
@@ -102,7 +102,7 @@ def _summary(told: History) -> Part:
         texts=(
             "Each campaign is one point. The first ones define the usual range; a later one "
             "signals if it, or several together, lie further off than chance explains "
-            f"(rules: {', '.join(told.rules)}).{_by_chance(told)}",
+            f"(rules: {', '.join(told.rules)}).{_chance_text(told)}",
             *due,
             *unread,
         ),
@@ -110,7 +110,7 @@ def _summary(told: History) -> Part:
     )
 
 
-def _by_chance(told: History) -> str:
+def _chance_text(told: History) -> str:
     """Text on how often any chart would signal without a change."""
     judged = [chart for chart in told.charts if chart.chart is not None]
     if not judged:
@@ -125,7 +125,7 @@ def _by_chance(told: History) -> str:
     )
 
 
-def _chart(chart: Watched, told: History) -> Part:
+def _chart(chart: InstrumentHistory, told: History) -> Part:
     rows = chart.table()
     name = _name(chart, told)
     drawn = Picture(plot.control(rows, title=name), name, f"{name} over time.")

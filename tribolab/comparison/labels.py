@@ -63,7 +63,7 @@ def labels_of_runs(folder: Folder, campaign: Campaign | None) -> pd.DataFrame:
     for run in folder.done:
         entry = _entry_of(campaign, run) if campaign is not None else None
         named = campaign.campaign.files_named if campaign is not None else None
-        own = _of_entry(entry, run["files"][0], named) if entry is not None else {}
+        own = _entry_labels(entry, run["files"][0], named) if entry is not None else {}
         rows[run["name"]] = {"day": str(run["recorded_at"])[:10]} | own
     table = pd.DataFrame.from_dict(rows, orient="index")
     return table.replace("", None).dropna(axis="columns", how="all")
@@ -76,7 +76,7 @@ def _entry_of(campaign: Campaign, run: Mapping[str, Any]) -> RunEntry | None:
     return None
 
 
-def _of_entry(entry: RunEntry, file: str, files_named: str | None) -> dict[str, str]:
+def _entry_labels(entry: RunEntry, file: str, files_named: str | None) -> dict[str, str]:
     stated = {key: getattr(entry, key) for key in _KEYS}
     named = {}
     if files_named is not None:

@@ -130,7 +130,7 @@ def measuring_plan(
     count = runs_for_standard_error if standard_error is not None else runs_for_half_interval
     rows = []
     for text, speed, runs in _pilots(pilot):
-        told, sliding, mean = _told(runs)
+        told, sliding, mean = _scatter(runs)
         row = {"condition": text, SPEED_COLUMN: speed, "mean": mean, "pilot_runs": len(runs)}
         row |= {"within_std": told.within, "autocorrelation_time_s": told.memory}
         row |= {"between_runs_std": told.between, "sliding_time_s": sliding}
@@ -199,7 +199,7 @@ def _runs(segments: pd.DataFrame) -> pd.DataFrame:
     return grouped[["mean", "variance", "memory"]].mean().join(grouped["time"].sum())
 
 
-def _told(runs: pd.DataFrame) -> tuple[Pilot, float, float]:
+def _scatter(runs: pd.DataFrame) -> tuple[Pilot, float, float]:
     """Scatter of the runs, their sliding time, and their mean."""
     within = math.sqrt(float(runs["variance"].mean()))
     memory = float(np.nan_to_num(runs["memory"].mean()))

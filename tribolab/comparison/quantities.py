@@ -8,15 +8,15 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pandas as pd
 
-from tribolab.comparison.run_values import Matched, condition_text
+from tribolab.comparison.run_values import MatchedRuns, condition_text
 from tribolab.metrology.differences import differences_of_groups, interval
 
 _TWO_SIDED = 1.959963984540054  # standard deviations in half a 95 % interval
 _ROUGHNESS = {"rms_roughness": "_m", "rms_slope": ""}
 
 
-def of_quantities(
-    conditions: Sequence[Matched],
+def quantity_rows(
+    conditions: Sequence[MatchedRuns],
     same: Sequence[bool],
     terms: Sequence[np.ndarray],
     first: Mapping[str, pd.DataFrame],
@@ -79,7 +79,7 @@ def _row(
     return [quantity, of, *values, float(difference[0]), error, *ends, basis]
 
 
-def _mean_friction(condition: Matched, same: bool, terms: np.ndarray) -> list[object]:
+def _mean_friction(condition: MatchedRuns, same: bool, terms: np.ndarray) -> list[object]:
     """Mean friction of each run over the speeds that all runs have, or over its own."""
     means = [np.nanmean(values, axis=1)[:, None] for values in (condition.first, condition.second)]
     everywhere = terms.mean(axis=1, keepdims=True)

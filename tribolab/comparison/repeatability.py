@@ -116,10 +116,10 @@ def repeatability(
     runs = _per_run(segments, names)
     rows, methods = [], []
     for speed in np.unique(runs["level"]).tolist():
-        row, method = _of_speed(runs[runs["level"] == speed], names)
+        row, method = _components_at(runs[runs["level"] == speed], names)
         rows.append({SPEED_COLUMN: speed, "speed": speed_text(speed), **row})
         methods.append(method)
-    rows.append(_pooled(rows, names))
+    rows.append(_pool_speeds(rows, names))
     return Repeatability(
         names,
         pd.DataFrame(rows),
@@ -154,7 +154,7 @@ def _per_run(segments: pd.DataFrame, names: Sequence[str]) -> pd.DataFrame:
     return groups.mean().reset_index()
 
 
-def _of_speed(runs: pd.DataFrame, names: Sequence[str]) -> tuple[dict[str, float], str]:
+def _components_at(runs: pd.DataFrame, names: Sequence[str]) -> tuple[dict[str, float], str]:
     """Return the components at one speed, and the method of estimation."""
     for name in names:
         levels = runs[name].nunique()
@@ -174,8 +174,8 @@ def _of_speed(runs: pd.DataFrame, names: Sequence[str]) -> tuple[dict[str, float
                 f"{shown(first)} and {shown(other)} change together and cannot be separated; "
                 "leave one out"
             )
-    runs = runs.assign(**{VALUE: _alike(runs)})
-    cube = _balanced(runs, names)
+    runs = runs.assign(**{VALUE: _scale_conditions(runs)})
+    cube = _balanced_cube(runs, names)
     if cube is not None:
         study = gauge_study(cube)
         within = study.repeatability
@@ -196,7 +196,7 @@ def _of_speed(runs: pd.DataFrame, names: Sequence[str]) -> tuple[dict[str, float
     return _row(runs, float(within), between, max(1, freedom)), method
 
 
-def _alike(runs: pd.DataFrame) -> pd.Series:
+def _scale_conditions(runs: pd.DataFrame) -> pd.Series:
     """Return the values scaled to equal means of all conditions: relative scatter."""
     means = runs.groupby("condition")[VALUE].transform("mean")
     return runs[VALUE] / means.where(means != 0, 1.0) * runs[VALUE].mean()
@@ -225,7 +225,7 @@ def _row(
     }
 
 
-def _balanced(runs: pd.DataFrame, names: Sequence[str]) -> np.ndarray | None:
+def _balanced_cube(runs: pd.DataFrame, names: Sequence[str]) -> np.ndarray | None:
     """Return (condition, level, run) for a factor crossed equally with conditions; else None."""
     if len(names) != 1 or runs["condition"].nunique() < 2:
         return None
@@ -238,7 +238,7 @@ def _balanced(runs: pd.DataFrame, names: Sequence[str]) -> np.ndarray | None:
     return np.array([[groups.get_group((c, f)) for f in counts.columns] for c in counts.index])
 
 
-def _pooled(rows: Sequence[dict[str, object]], names: Sequence[str]) -> dict[str, object]:
+def _pool_speeds(rows: Sequence[dict[str, object]], names: Sequence[str]) -> dict[str, object]:
     """Return components for all speeds: relative variances, averaged by degrees of freedom."""
     table = pd.DataFrame(rows)
     weight = table["degrees_of_freedom"].to_numpy(dtype=float)

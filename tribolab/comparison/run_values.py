@@ -18,7 +18,7 @@ TOLERANCE = 0.1  # relative distance of speeds that belong together, as in measu
 
 
 @dataclass(frozen=True)
-class Matched:
+class MatchedRuns:
     """Runs of two groups in one condition, at their common speeds.
 
     Parameters
@@ -95,9 +95,9 @@ def speed_levels(speeds: np.ndarray) -> np.ndarray:
     return levels
 
 
-def matched(
+def match_runs(
     first: pd.DataFrame, second: pd.DataFrame, by: Sequence[str] = tuple(CONDITION)
-) -> list[Matched]:
+) -> list[MatchedRuns]:
     """Match two groups of runs by condition and speed.
 
     Parameters
@@ -127,7 +127,7 @@ def matched(
         row = mine.iloc[0].reindex(CONDITION)
         text = condition_text(*(row[name] if name in by else np.nan for name in CONDITION))
         result.append(
-            Matched(
+            MatchedRuns(
                 text,
                 speeds.to_numpy(dtype=float),
                 a[speeds].to_numpy(dtype=float),
@@ -139,7 +139,7 @@ def matched(
     return result
 
 
-def of_level(segments: pd.DataFrame, by: str, level: str) -> pd.DataFrame:
+def select_level(segments: pd.DataFrame, by: str, level: str) -> pd.DataFrame:
     """Return the segments of one level, e.g. of one surface.
 
     Raises

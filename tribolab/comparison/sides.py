@@ -9,7 +9,7 @@ from pathlib import Path
 import pandas as pd
 
 from tribolab.comparison.folder import Folder, open_folder
-from tribolab.comparison.run_values import of_level, segments_of
+from tribolab.comparison.run_values import segments_of, select_level
 from tribolab.core.errors import AnalysisError
 from tribolab.report.read_results import Results
 
@@ -50,7 +50,7 @@ def sides_of(
     """
     if second is not None:
         sides = _side(first, "first"), _side(second, "second")
-        return sides if sides[0].name != sides[1].name else _told_apart(sides)
+        return sides if sides[0].name != sides[1].name else _distinct_names(sides)
     if not by:
         raise AnalysisError(
             "there is nothing to compare with: name a second folder, or say by which column two "
@@ -68,7 +68,7 @@ def sides_of(
     halves = [
         Side(
             level,
-            of_level(whole.segments, by, level),
+            select_level(whole.segments, by, level),
             whole.folder,
             {n: t[t[by].astype(str) == level] for n, t in whole.tables.items() if by in t},
         )
@@ -77,7 +77,7 @@ def sides_of(
     return halves[0], halves[1]
 
 
-def _told_apart(alike: tuple[Side, Side]) -> tuple[Side, Side]:
+def _distinct_names(alike: tuple[Side, Side]) -> tuple[Side, Side]:
     """Return distinct names for two folders of the same name."""
     names = [
         str(side.folder.path) if side.folder else f"{side.name} ({word})"

@@ -95,13 +95,13 @@ def observations_of(path: str | Path) -> tuple[list[Observation], Folder]:
     for name in dict.fromkeys(str(run.get("instrument", "")) for run in folder.done):
         runs = [run for run in folder.done if str(run.get("instrument", "")) == name]
         names = {run["name"] for run in runs}
-        mine = _of_runs(friction, names)
-        noise = None if slip is None else _of_runs(slip, names)
+        mine = _select_runs(friction, names)
+        noise = None if slip is None else _select_runs(slip, names)
         when = _began(runs, folder.made_at)
         for quantity, unit, value in _numbers(folder.campaign, runs, mine, noise):
             if np.isfinite(value):
                 made.append(Observation(name, quantity, unit, when, str(folder.path), value))
-        for value, speed in _of_reference(folder.campaign, runs, mine):
+        for value, speed in _reference_friction(folder.campaign, runs, mine):
             made.append(Observation(name, REFERENCE, "1", when, str(folder.path), value, speed))
     return made, folder
 
@@ -124,7 +124,7 @@ def _table(folder: Folder, name: str, columns: Sequence[str]) -> SeriesColumns |
     return {name: column.to_numpy() for name, column in pairs}
 
 
-def _of_runs(table: SeriesColumns, names: Collection[str]) -> SeriesColumns:
+def _select_runs(table: SeriesColumns, names: Collection[str]) -> SeriesColumns:
     """Return the rows of some runs."""
     mine = np.array([run in names for run in table["run"]], dtype=bool)
     return {name: column[mine] for name, column in table.items()}
@@ -179,7 +179,7 @@ def _gain(campaign: Campaign, runs: Sequence[Json], friction: SeriesColumns) -> 
     weight = campaign.reference.dead_weight
     if weight is None:
         return float("nan")
-    return _middle(_of_runs(friction, mine)["normal_force_N"]) / weight
+    return _middle(_select_runs(friction, mine)["normal_force_N"]) / weight
 
 
 def _reference_runs(campaign: Campaign, runs: Sequence[Json]) -> set[str]:
@@ -192,13 +192,13 @@ def _reference_runs(campaign: Campaign, runs: Sequence[Json]) -> set[str]:
     }
 
 
-def _of_reference(
+def _reference_friction(
     campaign: Campaign | None, runs: Sequence[Json], friction: SeriesColumns
 ) -> Iterable[tuple[float, float]]:
     """Yield mean friction on a reference sample and the speed, for each speed."""
     if campaign is None:
         return
-    mine = _of_runs(friction, _reference_runs(campaign, runs))
+    mine = _select_runs(friction, _reference_runs(campaign, runs))
     value, speed = mine["friction_coefficient"], mine["sliding_speed_m_s"]
     known = np.isfinite(value) & (speed > 0)
     if not known.any():
@@ -208,7 +208,7 @@ def _of_reference(
         yield _middle(value[known][levels == level]), level
 
 
-def at_common_speeds(points: Sequence[Observation]) -> list[Observation]:
+def group_by_speed(points: Sequence[Observation]) -> list[Observation]:
     """Group the observations of campaigns under their common speeds.
 
     Small differences of a campaign's mean speed must not create a new quantity.
@@ -217,7 +217,7 @@ def at_common_speeds(points: Sequence[Observation]) -> list[Observation]:
     --------
     >>> day = dt.datetime(2026, 1, 1)
     >>> points = [Observation("a", "friction", "1", day, "x", 0.5, v) for v in (2.14e-3, 2.16e-3)]
-    >>> [point.quantity for point in at_common_speeds(points)]
+    >>> [point.quantity for point in group_by_speed(points)]
     ['friction at 2.15 mm/s', 'friction at 2.15 mm/s']
     """
     made = [point for point in points if math.isnan(point.speed)]

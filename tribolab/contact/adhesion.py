@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import numpy as np
 import xarray as xr
 
-from tribolab.arrays.broadcasting import as_stated, over_dims
+from tribolab.arrays.broadcasting import over_dims, stated_value
 from tribolab.contact.adhesion_balance import (
     Balance,
     Interface,
@@ -117,7 +117,7 @@ def adhesion(
     """
     surface = rough_interface(psd, effective_modulus, kappa, c_a, nodes)
     over: xr.DataArray = finite_pressures(pressure)
-    work = work_value(as_stated(work_of_adhesion))
+    work = work_value(stated_value(work_of_adhesion))
     return _adhesions(surface, over, psd, (work,), area, max_iterations)[0]
 
 

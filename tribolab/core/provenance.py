@@ -46,12 +46,12 @@ def as_text(path: str | Path) -> str:
     return _STEERS.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
 
 
-def without_controls(text: str) -> str:
+def escape_controls(text: str) -> str:
     r"""Return a text with escaped control characters, except tabs and line ends.
 
     Examples
     --------
-    >>> without_controls("\x1b[31mred\n")
+    >>> escape_controls("\x1b[31mred\n")
     '\\x1b[31mred\n'
     """
     return _STEERS.sub(lambda found: found[0] if found[0] in "\t\n\r" else as_text(found[0]), text)
@@ -104,7 +104,7 @@ def made(
     return {name: value for name, value in attrs.items() if value}
 
 
-def joined_sources(products: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
+def join_sources(products: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
     """Return ``source`` and ``source_sha256`` of a product of several others.
 
     Checksums are left out if one of the products has none, to keep names and checksums paired.
@@ -116,7 +116,7 @@ def joined_sources(products: Iterable[Mapping[Any, Any]]) -> dict[str, str]:
 
     Examples
     --------
-    >>> joined_sources([{"source": "a.csv", "source_sha256": "1f"}, {"source": "b.csv"}])
+    >>> join_sources([{"source": "a.csv", "source_sha256": "1f"}, {"source": "b.csv"}])
     {'source': 'a.csv; b.csv'}
     """
     pairs = dict.fromkeys(
@@ -154,7 +154,7 @@ def provenance(sources: Iterable[str | Path], action: str) -> dict[str, str]:
     )
 
 
-def named_sources(sources: Iterable[tuple[str, str, int]]) -> dict[str, str]:
+def source_attributes(sources: Iterable[tuple[str, str, int]]) -> dict[str, str]:
     """Return ``source`` and ``source_sha256`` from the names, checksums and sizes of files."""
     labels, sums = [], []
     for label, checksum, _ in sources:

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.core.errors import AnalysisError, shown
-from tribolab.core.provenance import joined_sources, made
+from tribolab.core.provenance import join_sources, made
 from tribolab.friction.decisions.rejected import kept
 from tribolab.friction.joined import Label, grouped, joined_curves
 from tribolab.friction.points.mean_of_repeats import Mean, mean_of_repeats, pooled_between_runs
@@ -127,7 +127,7 @@ def measured_stribeck_curve(
     for count in ("runs", "segments"):
         data[count] = "sliding_speed", data[count][1].astype(int)
     curve = xr.Dataset(data, coords={"sliding_speed": columns[0]})
-    origin = made("measured Stribeck curve", **joined_sources(f.attrs for f in frictions))
+    origin = made("measured Stribeck curve", **join_sources(f.attrs for f in frictions))
     return stamp(
         curve,
         **origin,
@@ -212,5 +212,5 @@ def _of_several(
     curves = joined_curves(
         [(measured_stribeck_curve(group, speed_tolerance), key) for group, key in groups]
     )
-    origin = made("measured Stribeck curves", **joined_sources(f.attrs for f in frictions))
+    origin = made("measured Stribeck curves", **join_sources(f.attrs for f in frictions))
     return curves.assign_attrs(**origin, speed_tolerance=float(speed_tolerance))

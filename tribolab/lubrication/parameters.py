@@ -10,7 +10,7 @@ from typing import Any, Literal, NamedTuple, ParamSpec, TypeVar, get_args
 
 import numpy as np
 
-from tribolab.arrays.broadcasting import as_stated
+from tribolab.arrays.broadcasting import stated_value
 from tribolab.contact.area import AreaTheory, check_area
 from tribolab.core.errors import AnalysisError, nearest, shown
 from tribolab.lubrication.factors import FlowFactors, RoughBody
@@ -233,7 +233,7 @@ def parameters_of(
 
 def as_given(value: Any) -> Any:
     """Return an object or what was stated, or of an array without dims its number."""
-    return value if isinstance(value, Liquid | Interface) else as_stated(value)
+    return value if isinstance(value, Liquid | Interface) else stated_value(value)
 
 
 def renamed(**names: str) -> Callable[[Callable[P, R]], Callable[P, R]]:

@@ -11,8 +11,8 @@ from pydantic import ValidationError
 
 from tribolab.core.errors import AnalysisError, Cure, nearest, shown
 from tribolab.friction.stribeck import measured_stribeck_curve
-from tribolab.metrology.budget_curve import with_curve_uncertainty
-from tribolab.metrology.budget_parts import NOISE, ScatterPart, combined
+from tribolab.metrology.budget_curve import curve_uncertainty
+from tribolab.metrology.budget_parts import NOISE, ScatterPart, combine_parts
 from tribolab.metrology.budget_result import UncertaintyBudget
 from tribolab.metrology.sensitivity import contributions, readings_of
 from tribolab.reading.dialect.uncertainty import NAMES, Known, StatedUncertainty, Uncertainty
@@ -77,14 +77,14 @@ def uncertainty_budget(
     """
     if isinstance(friction, xr.Dataset):
         known = known_uncertainties(friction, uncertainty)
-        return UncertaintyBudget(with_uncertainty(friction, known), known)
+        return UncertaintyBudget(segment_uncertainty(friction, known), known)
     curve = measured_stribeck_curve(friction, speed_tolerance)
     alone = [zero_apart(run, known_uncertainties(run, uncertainty)) for run in friction]
     if any(part.friction is not run for part, run in zip(alone, friction, strict=True)):
         own = measured_stribeck_curve([part.friction for part in alone], speed_tolerance)
         curve = curve.assign({name: own[name] for name in _OWN})
     stated = [part.known for part in alone]
-    return UncertaintyBudget(*with_curve_uncertainty(curve, friction, stated))
+    return UncertaintyBudget(*curve_uncertainty(curve, friction, stated))
 
 
 def known_uncertainties(
@@ -126,7 +126,7 @@ def known_uncertainties(
         ) from error
 
 
-def with_uncertainty(friction: xr.Dataset, known: Mapping[str, Known]) -> xr.Dataset:
+def segment_uncertainty(friction: xr.Dataset, known: Mapping[str, Known]) -> xr.Dataset:
     """Friction result with the uncertainty of each segment and its parts.
 
     Parameters
@@ -139,7 +139,7 @@ def with_uncertainty(friction: xr.Dataset, known: Mapping[str, Known]) -> xr.Dat
     Returns
     -------
     xarray.Dataset
-        See `tribolab.metrology.budget_parts.combined`.
+        See `tribolab.metrology.budget_parts.combine_parts`.
 
     Raises
     ------
@@ -157,7 +157,7 @@ def with_uncertainty(friction: xr.Dataset, known: Mapping[str, Known]) -> xr.Dat
     dof = alone.friction.get("friction_coefficient_dof")
     free = np.full(noise.size, np.inf) if dof is None else dof.values.astype(float)
     scatter = [ScatterPart(noise, free, NOISE)]
-    return combined(friction, "segment", scatter, parts, known)
+    return combine_parts(friction, "segment", scatter, parts, known)
 
 
 class ZeroApart(NamedTuple):

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.friction.decisions.rejected import kept
-from tribolab.metrology.budget_parts import BETWEEN, NOISE, ScatterPart, combined, part_name
+from tribolab.metrology.budget_parts import BETWEEN, NOISE, ScatterPart, combine_parts, part_name
 from tribolab.metrology.sensitivity import AMBIGUOUS, contributions, readings_of
 from tribolab.reading.dialect.uncertainty import Known
 
@@ -24,7 +24,7 @@ class CurveUncertainty(NamedTuple):
     Parameters
     ----------
     curve
-        See `tribolab.metrology.budget_parts.combined`.
+        See `tribolab.metrology.budget_parts.combine_parts`.
     known
         Inputs by the names of the parts; for several instruments, those of each.
     """
@@ -41,7 +41,7 @@ class _Part(NamedTuple):
     known: Known | None
 
 
-def with_curve_uncertainty(
+def curve_uncertainty(
     curve: xr.Dataset, frictions: Sequence[xr.Dataset], known: Sequence[Mapping[str, Known]]
 ) -> CurveUncertainty:
     """Measured curve with the uncertainty of each point and its parts.
@@ -71,7 +71,7 @@ def with_curve_uncertainty(
     instruments: dict[str, np.ndarray] = {}
     unstated: dict[str, bool] = {}
     for part, stated in zip(map(kept, frictions), known, strict=True):
-        place, own, count = _at_points(part, points)
+        place, own, count = _point_of_segments(part, points)
         met, instrument = count > 0, str(part.attrs.get("instrument", ""))
         runs += met
         observations += count
@@ -91,13 +91,13 @@ def with_curve_uncertainty(
         "calibration": (runs > 1) & (apart == runs),
     }
     parts, named = {}, {}
-    for label, key in _labelled(sums).items():
+    for label, key in _part_labels(sums).items():
         varies = "stroke" if key.known is None else key.known.varies
         parts[label] = np.where(several[varies], 0.0, sums[key] / np.maximum(runs, 1))
         if key.known is not None:
             named[label] = key.known
     left = [name for name, nothing in unstated.items() if nothing and not all(unstated.values())]
-    result = combined(curve, "sliding_speed", _scatter(curve, runs), parts, named, left)
+    result = combine_parts(curve, "sliding_speed", _scatter(curve, runs), parts, named, left)
     return CurveUncertainty(result, named)
 
 
@@ -111,7 +111,7 @@ def _scatter(curve: xr.Dataset, runs: np.ndarray) -> list[ScatterPart]:
     return scatter
 
 
-def _labelled(parts: Mapping[_Part, np.ndarray]) -> dict[str, _Part]:
+def _part_labels(parts: Mapping[_Part, np.ndarray]) -> dict[str, _Part]:
     """Return the label of each part: its input, and the calibration if there are several."""
     labels: dict[str, _Part] = {}
     for key in parts:
@@ -125,7 +125,7 @@ def _labelled(parts: Mapping[_Part, np.ndarray]) -> dict[str, _Part]:
     return labels
 
 
-def _at_points(
+def _point_of_segments(
     friction: xr.Dataset, points: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the point of each used segment, these segments, and observations per point."""
@@ -152,7 +152,7 @@ def shared_parts(curve: xr.Dataset) -> Iterator[tuple[str, np.ndarray]]:
     Parameters
     ----------
     curve
-        With ``uncertainty_part``, from `with_curve_uncertainty`.
+        With ``uncertainty_part``, from `curve_uncertainty`.
     """
     if "uncertainty_part" not in curve:
         return

@@ -85,7 +85,7 @@ def coverage_factor(dof: np.ndarray | float) -> np.ndarray:
     return np.where(np.isfinite(few), special.stdtrit(np.maximum(few, 1.0), 0.975), np.nan)
 
 
-def combined(
+def combine_parts(
     data: xr.Dataset,
     dim: str,
     scatter: list[ScatterPart],

@@ -56,7 +56,7 @@ class Baseline:
     correlation: float = 0.0
     correlated: bool = False
 
-    def widened(self, limit: float) -> float:
+    def student_limit(self, limit: float) -> float:
         """Return the number of estimated deviations equivalent to `limit` exactly known ones.
 
         Notes
@@ -192,9 +192,9 @@ def control_chart(
     standard = ((y - baseline.centre) / baseline.sigma)[None, :]
     judged = signals_of(standard, baseline, rules)
     centre_error = 1 / baseline.points
-    half = baseline.widened(_LIMIT) * math.sqrt(1 + centre_error) * baseline.sigma
-    smoothed, deviation = _smoothed(standard, centre_error)
-    width = baseline.widened(_EWMA_LIMIT) * deviation * baseline.sigma
+    half = baseline.student_limit(_LIMIT) * math.sqrt(1 + centre_error) * baseline.sigma
+    smoothed, deviation = _smooth(standard, centre_error)
+    width = baseline.student_limit(_EWMA_LIMIT) * deviation * baseline.sigma
     return Chart(
         baseline.centre - half,
         baseline.centre + half,
@@ -218,13 +218,13 @@ def signals_of(standard: Array, baseline: Baseline, rules: Sequence[str]) -> dic
         As for `control_chart`.
     """
     error = 1 / baseline.points
-    limit = baseline.widened(_LIMIT) * math.sqrt(1 + error)
+    limit = baseline.student_limit(_LIMIT) * math.sqrt(1 + error)
     made: dict[str, Signalled] = {}
     if SHEWHART in rules:
         made[SHEWHART] = np.abs(standard) > limit
     if EWMA in rules:
-        smoothed, deviation = _smoothed(standard, error)
-        made[EWMA] = np.abs(smoothed) > baseline.widened(_EWMA_LIMIT) * deviation
+        smoothed, deviation = _smooth(standard, error)
+        made[EWMA] = np.abs(smoothed) > baseline.student_limit(_EWMA_LIMIT) * deviation
     if CUSUM in rules:
         made[CUSUM] = _cusum(standard, baseline)
     if WESTERN in rules:
@@ -232,7 +232,7 @@ def signals_of(standard: Array, baseline: Baseline, rules: Sequence[str]) -> dic
     return made
 
 
-def _smoothed(standard: Array, centre_error: float) -> tuple[Array, Array]:
+def _smooth(standard: Array, centre_error: float) -> tuple[Array, Array]:
     """Exponentially weighted means (series, point), and their standard deviation (point)."""
     z = np.empty_like(standard)
     last = np.zeros(standard.shape[0])
@@ -258,7 +258,7 @@ def cusums(standard: Array, slack: float = _CUSUM_SLACK) -> tuple[Array, Array]:
 
 def _cusum(standard: Array, baseline: Baseline) -> Signalled:
     up, down = cusums(standard)
-    return np.maximum(up, down) > _CUSUM_LIMIT * baseline.widened(_LIMIT) / _LIMIT
+    return np.maximum(up, down) > _CUSUM_LIMIT * baseline.student_limit(_LIMIT) / _LIMIT
 
 
 def _western(standard: Array, limit: float) -> Signalled:

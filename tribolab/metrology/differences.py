@@ -13,9 +13,9 @@ from tribolab.core.aliases import Array
 from tribolab.core.errors import AnalysisError
 from tribolab.metrology.resampling import (
     MOST_ROTATED,
-    by_permutation,
-    by_rotation,
+    permutation_test,
     permutations_will_do,
+    rotation_test,
 )
 
 PairedGroups = Sequence[tuple[Array, Array]]
@@ -120,13 +120,13 @@ def differences_of_groups(
     Notes
     -----
     At each point Welch's t [1]_. The points of a condition are taken together by permutations of
-    its runs (`by_permutation`) where there are four or more in each group, and enough permutations
-    for so many conditions; else by rotations (`by_rotation`), which suppose that runs are normally
-    distributed. Where runs that are too few to be permuted lack points, Bonferroni's rule takes
-    Student's distribution. Conditions are independent of each other, and Sidak's rule takes their
-    number into account. P values and intervals come from the same draws, so that an interval leaves
-    out zero where the adjusted p is at most alpha. No adjusted p is below that of the point alone,
-    and no interval narrower.
+    its runs (`permutation_test`) where there are four or more in each group, and enough
+    permutations for so many conditions; else by rotations (`rotation_test`), which suppose that
+    runs are normally distributed. Where runs that are too few to be permuted lack points,
+    Bonferroni's rule takes Student's distribution. Conditions are independent of each other, and
+    Sidak's rule takes their number into account. P values and intervals come from the same draws,
+    so that an interval leaves out zero where the adjusted p is at most alpha. No adjusted p is
+    below that of the point alone, and no interval narrower.
 
     References
     ----------
@@ -199,13 +199,13 @@ def _together(
     """Return the adjusted p values of a condition's points, factor of the intervals, and method."""
     if permutations_will_do(len(first), len(second), level):
         scores = np.abs(_ratio(at.difference, at.standard_error))
-        return *by_permutation(first, second, terms, scores, level, seed), PERMUTATION
+        return *permutation_test(first, second, terms, scores, level, seed), PERMUTATION
     known = np.isfinite(at.p_value)
     own, factor = np.ones(known.size), np.full(known.size, np.nan)
     whole = first[:, known], second[:, known]
     gaps = not all(np.isfinite(values).all() for values in whole)
     if known.any() and not gaps and len(first) + len(second) <= MOST_ROTATED:
-        own[known], factor[known] = by_rotation(
+        own[known], factor[known] = rotation_test(
             *whole, terms[:, known], at.p_value[known], at.degrees_of_freedom[known], level, seed
         )
         return own, factor, ROTATION

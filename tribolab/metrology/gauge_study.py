@@ -87,7 +87,7 @@ def gauge_study(values: ArrayLike) -> GaugeStudy:
     >>> round(study.parts, 3), round(study.repeatability, 3), study.pooled
     (0.496, 0.016, True)
     """
-    y = _balanced(values)
+    y = _check_balance(values)
     parts, appraisers, trials = y.shape
     grand, of_part, of_appraiser = y.mean(), y.mean(axis=(1, 2)), y.mean(axis=(0, 2))
     cell = y.mean(axis=2)
@@ -151,7 +151,7 @@ def average_and_range(values: ArrayLike) -> RangeStudy:
     A mean range divided by the expected range of as many normal values, d2; for the single range of
     appraisers and that of parts by d2* of one sample, the root of d2^2 + d3^2 (Duncan 1986).
     """
-    y = _balanced(values)
+    y = _check_balance(values)
     parts, appraisers, trials = y.shape
     equipment = float(np.ptp(y, axis=2).mean() / _range_of_normal(trials)[0])
     span_appraisers = np.ptp(y.mean(axis=(0, 2))) / _single_range(appraisers)
@@ -161,7 +161,7 @@ def average_and_range(values: ArrayLike) -> RangeStudy:
     return RangeStudy(equipment, math.sqrt(between), gauge, span_parts)
 
 
-def _balanced(values: ArrayLike) -> Array:
+def _check_balance(values: ArrayLike) -> Array:
     y = np.asarray(values, dtype=float)
     if y.ndim != 3 or min(y.shape) < 2 or not np.isfinite(y).all():
         raise AnalysisError(

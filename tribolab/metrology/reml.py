@@ -80,7 +80,7 @@ def variance_components(
     bounds = optimize.Bounds(np.zeros(len(parts)), np.full(len(parts), _LARGEST))
 
     def loss_at(ratios: NDArray[np.float64]) -> float:
-        return _solved(y / np.sqrt(scale), x, parts, ratios)[0]
+        return _solve(y / np.sqrt(scale), x, parts, ratios)[0]
 
     best: optimize.OptimizeResult | None = None
     for start in itertools.product(_STARTS, repeat=len(parts)):
@@ -89,7 +89,7 @@ def variance_components(
         if best is None or tried.fun < best.fun:
             best = tried
     ratios = np.zeros(0) if best is None else np.asarray(best.x)
-    loss, residual, effects = _solved(y / np.sqrt(scale), x, parts, ratios)
+    loss, residual, effects = _solve(y / np.sqrt(scale), x, parts, ratios)
     return Components(
         tuple(float(ratio * residual * scale) for ratio in ratios),
         float(residual * scale),
@@ -104,9 +104,7 @@ def _indicators(levels: ArrayLike) -> Array:
     return np.eye(int(codes.max()) + 1)[codes]
 
 
-def _solved(
-    y: Array, x: Array, parts: Sequence[Array], ratios: Array
-) -> tuple[float, float, Array]:
+def _solve(y: Array, x: Array, parts: Sequence[Array], ratios: Array) -> tuple[float, float, Array]:
     """Loss (minus the restricted log-likelihood), residual variance and means at given ratios."""
     covariance = np.eye(y.size)
     for ratio, part in zip(ratios, parts, strict=True):

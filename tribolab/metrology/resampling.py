@@ -38,7 +38,7 @@ def permutations_will_do(first: int, second: int, level: float) -> bool:
     return math.floor(level / step * (1 + _SAME)) * step >= _REACHED * level
 
 
-def by_permutation(
+def permutation_test(
     first: Array, second: Array, terms: Array, scores: Array, level: float, seed: int
 ) -> tuple[Array, Array]:
     r"""Return adjusted p values and the factor of simultaneous intervals, by permuting runs.
@@ -71,7 +71,7 @@ def by_permutation(
     """
     rng = np.random.default_rng(seed)
     chosen = _choices(len(first), len(second), rng)
-    about = np.concatenate([_about_mean(first), _about_mean(second)])
+    about = np.concatenate([_centre(first), _centre(second)])
     drawn = _largest(*_means_and_squares(about, chosen), terms, rng)
     same = chosen == chosen[0]
     drawn[same.all(axis=1) | ~same.any(axis=1)] = np.inf  # the groups as measured, or exchanged
@@ -79,7 +79,7 @@ def by_permutation(
     return _share_above(drawn, scores), np.full(scores.shape, float(factor))
 
 
-def by_rotation(
+def rotation_test(
     first: Array,
     second: Array,
     terms: Array,
@@ -93,7 +93,7 @@ def by_rotation(
     Parameters
     ----------
     first, second, terms, level, seed
-        As for `by_permutation`, without gaps.
+        As for `permutation_test`, without gaps.
     p_values, degrees_of_freedom
         Of each point alone (point).
 
@@ -103,7 +103,7 @@ def by_rotation(
     likely as any rotation of it in the space of the runs, whatever binds the points. The smallest p
     of the points (Welch's, of each point's own degrees of freedom) over random rotations tells what
     chance can do [1]_, where the groups scatter alike. P values and intervals come from the same
-    draws, as in `by_permutation`.
+    draws, as in `permutation_test`.
 
     References
     ----------
@@ -111,7 +111,7 @@ def by_rotation(
     """
     counts = len(first), len(second)
     turns = _rotations(sum(counts) - 1, _FEW_DRAWS if level >= _FEW_WILL_DO else _DRAWS, seed)
-    about = np.concatenate([_about_mean(first), _about_mean(second)])
+    about = np.concatenate([_centre(first), _centre(second)])
     drawn = _smallest(about, counts, terms, turns, seed)
     drawn[0] = 0.0  # the groups as measured
     bound = float(np.sort(drawn)[_most(level, drawn.size)])
@@ -124,7 +124,7 @@ def _most(level: float, draws: int) -> int:
     return math.floor(level * draws * (1 + _SAME))
 
 
-def _about_mean(values: Array) -> Array:
+def _centre(values: Array) -> Array:
     known = np.isfinite(values)
     with np.errstate(invalid="ignore", divide="ignore"):
         return values - np.where(known, values, 0.0).sum(axis=0) / known.sum(axis=0)
@@ -134,7 +134,7 @@ def _choices(first: int, second: int, rng: np.random.Generator) -> NDArray[np.bo
     """Return the runs of the first group in each permutation; the first is as measured."""
     if math.comb(first + second, first) <= _EXHAUSTIVE:
         return _all_choices(first, second)
-    return _drawn_choices(first, second, rng)
+    return _draw_choices(first, second, rng)
 
 
 def _all_choices(first: int, second: int) -> NDArray[np.bool_]:
@@ -144,7 +144,7 @@ def _all_choices(first: int, second: int) -> NDArray[np.bool_]:
     return chosen
 
 
-def _drawn_choices(first: int, second: int, rng: np.random.Generator) -> NDArray[np.bool_]:
+def _draw_choices(first: int, second: int, rng: np.random.Generator) -> NDArray[np.bool_]:
     order = rng.random((1 + _DRAWS, first + second)).argsort(axis=1)
     chosen = order < first
     chosen[0] = np.arange(first + second) < first
@@ -167,7 +167,7 @@ def _means_and_squares(values: Array, chosen: NDArray[np.bool_]) -> tuple[Array,
         return mean_b - mean_a, square_a + square_b
 
 
-def _with_terms(difference: Array, terms: Array, rng: np.random.Generator) -> Array:
+def _add_terms(difference: Array, terms: Array, rng: np.random.Generator) -> Array:
     """Add random effects of the terms to each draw except the first, which was measured."""
     moved = difference.copy()
     moved[1:] += rng.normal(size=(len(difference) - 1, len(terms))) @ terms
@@ -178,7 +178,7 @@ def _largest(difference: Array, square: Array, terms: Array, rng: np.random.Gene
     """Largest absolute t of all points in each draw."""
     error = np.sqrt(square + (terms**2).sum(axis=0))
     with np.errstate(invalid="ignore", divide="ignore"):
-        scores = np.abs(_with_terms(difference, terms, rng)) / error
+        scores = np.abs(_add_terms(difference, terms, rng)) / error
     return np.asarray(np.nan_to_num(scores, nan=0.0, posinf=np.inf).max(axis=1, initial=0.0))
 
 
@@ -211,7 +211,7 @@ def _smallest(
         freedom = square**2 / sum(
             part**2 / (count - 1) for part, count in zip(squares, counts, strict=True)
         )
-        score = np.abs(_with_terms(means[1] - means[0], terms, rng)) / np.sqrt(square)
+        score = np.abs(_add_terms(means[1] - means[0], terms, rng)) / np.sqrt(square)
         chance = 2 * special.stdtr(np.minimum(freedom, 1e9), -score)
     return np.asarray(np.nan_to_num(chance, nan=1.0).min(axis=1, initial=1.0))
 

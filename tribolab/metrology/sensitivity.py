@@ -86,7 +86,7 @@ def readings_of(friction: xr.Dataset) -> SegmentReadings:
     change, middle = nothing, nothing
     if both.any() and "normal_force" in friction:
         with np.errstate(divide="ignore"):
-            change = _of_pairs(np.where(load > 0, sign / load, np.nan), pair, both)
+            change = _pair_means(np.where(load > 0, sign / load, np.nan), pair, both)
         middle = np.where(both, _values(friction, "friction_force_offset", 0.0), 0.0)
     by_itself = offset not in ("", "stated") and not offset.startswith("none")
     return SegmentReadings(
@@ -109,7 +109,7 @@ def _values(friction: xr.Dataset, name: str, default: float) -> np.ndarray:
     return np.full(friction.sizes["segment"], default)
 
 
-def _of_pairs(values: np.ndarray, pair: np.ndarray, both: np.ndarray) -> np.ndarray:
+def _pair_means(values: np.ndarray, pair: np.ndarray, both: np.ndarray) -> np.ndarray:
     """Mean of a quantity over both strokes of each pair, at both; 0 without a pair."""
     sums, count = np.zeros((2, int(pair.max(initial=-1)) + 1))
     np.add.at(sums, pair[both], values[both])
@@ -169,10 +169,10 @@ def contributions(at: SegmentReadings, known: Mapping[str, Known]) -> dict[str, 
         "resolution": np.where(one_way, 1.0, np.sqrt(0.5)) * per_load,
     }
     parts = {name: sensitivity[name] * u[name] for name in _OF_FRICTION if name in u}
-    return parts | _left_by_load(at, u, parts)
+    return parts | _load_remainder(at, u, parts)
 
 
-def _left_by_load(
+def _load_remainder(
     at: SegmentReadings, u: Mapping[str, float], parts: Mapping[str, np.ndarray]
 ) -> dict[str, np.ndarray]:
     """Remainder of tilt and zero after a change of load between the strokes.

@@ -144,7 +144,7 @@ def paper_document(
     sources
         Raw files of the simulation with checksum and size.
     """
-    rows = [_row(record, known) for record, known in _paired(table)]
+    rows = [_row(record, known) for record, known in _pair_rows(table)]
     counts = count_statuses(table)
     return plain_value(
         {
@@ -185,7 +185,7 @@ def context_of(document: Json) -> Json:
     }
 
 
-def _paired(table: pd.DataFrame) -> list[tuple[Json, Published]]:
+def _pair_rows(table: pd.DataFrame) -> list[tuple[Json, Published]]:
     """Pair every row with its published number; both have the same order."""
     pairs = list(zip(rows_of(table), xu2026.published, strict=True))
     for record, known in pairs:

@@ -82,7 +82,7 @@ def reproduce(
         with workers(jobs, modules=(__name__,)) as pool:
             campaign = lab.simulate_laboratory(laboratory, folder, pool, tell)
             outcome, scans = lab.analyse_laboratory(campaign, folder, pool, tell)
-            table, fits = _computed(outcome, scans, pool, tell)
+            table, fits = _compute(outcome, scans, pool, tell)
             data = PaperData(folder, outcome.runs, outcome.curves, fits)
             figures = _drawn(data, pool, tell)
         document = paper_document(table, figures, fits, laboratory, outcome.sources)
@@ -96,7 +96,7 @@ def reproduce(
     return Reproduction(place, table, document)
 
 
-def _computed(
+def _compute(
     outcome: Outcome, scans: Sequence[PlannedSurface], pool: Executor | None, tell: Progress
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Compute the theory, compare the numbers, and fit the simulated curves."""
@@ -116,10 +116,10 @@ def _computed(
         tell("theory", len(rows), len(tasks))
     table = pd.DataFrame(rows["published", ""])
     fitted = [row for name in SURFACES for row in rows["wet", name]]
-    return table, _corrected(pd.DataFrame(fitted), folder)
+    return table, _correct_stress(pd.DataFrame(fitted), folder)
 
 
-def _corrected(fits: pd.DataFrame, folder: Path) -> pd.DataFrame:
+def _correct_stress(fits: pd.DataFrame, folder: Path) -> pd.DataFrame:
     """Divide the fitted shear stresses by the growth of the area by adhesion in glycerol."""
     data = PaperData(folder, (), (), fits)
     growth = []

@@ -12,7 +12,7 @@ from tribolab.campaign.store.data_files import write_data
 from tribolab.campaign.surfaces.scans import spectra_of_scans, usable_scans
 from tribolab.campaign.surfaces.stage import sources_of_surface
 from tribolab.core.errors import AnalysisError
-from tribolab.core.provenance import made, named_sources, sha256_of
+from tribolab.core.provenance import made, sha256_of, source_attributes
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.records.frames import rows_of
@@ -86,7 +86,9 @@ def _origin(task: PaperTask) -> dict[str, str]:
     """
     if task.scans is not None:
         config = {"campaign": task.scans.config_sha256, "q_low": _LOWEST_WAVENUMBER}
-        return named_sources(sources_of_surface(task.scans)) | {"config_sha256": sha256_of(config)}
+        return source_attributes(sources_of_surface(task.scans)) | {
+            "config_sha256": sha256_of(config)
+        }
     constants = (xu2026.system, xu2026.surface(task.surface))
     config = {"constants": [asdict(constant) for constant in constants], "forces": task.forces}
     return {"source": xu2026.CITATION, "config_sha256": sha256_of(config)}

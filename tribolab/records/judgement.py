@@ -100,7 +100,7 @@ def why(run: Mapping[str, Any]) -> str:
     if run.get("kept"):
         return str(run["kept"])
     if run["quality"] in _BY_HAND:
-        return _decided(run, _BY_HAND[run["quality"]])
+        return _decision_text(run, _BY_HAND[run["quality"]])
     grave = [row for row in run["checks"] if row["status"] in _GRAVE and not row.get("decision")]
     if not grave:
         return ""
@@ -110,7 +110,7 @@ def why(run: Mapping[str, Any]) -> str:
     return f"{check_words(first['check'])}: {first['message']}{more}"
 
 
-def _decided(run: Mapping[str, Any], action: str) -> str:
+def _decision_text(run: Mapping[str, Any], action: str) -> str:
     """Return who rejected or accepted a run, against which objections, and why."""
     said = [
         f"{run['quality']} by {row['author']}: {row['reason']}"

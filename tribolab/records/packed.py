@@ -122,7 +122,7 @@ def _least_even(since: np.ndarray, first: int, last: int) -> tuple[int, float]:
     return worst, most
 
 
-def packed_points(place: np.ndarray, value: np.ndarray, *, deflate: bool) -> Json:
+def pack_points(place: np.ndarray, value: np.ndarray, *, deflate: bool) -> Json:
     """Return points packed for JSON: position steps, and values as 16-bit shares of their range.
 
     Parameters
@@ -166,13 +166,13 @@ def _planes(whole: np.ndarray, width: int) -> bytes:
     return whole.astype(f"<u{width}").view(np.uint8).reshape(-1, width).T.tobytes()
 
 
-def unpacked_points(packed: Json) -> tuple[np.ndarray, np.ndarray]:
-    """Return positions on the clock and values from `packed_points` (point).
+def unpack_points(packed: Json) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions on the clock and values from `pack_points` (point).
 
     Examples
     --------
-    >>> packed = packed_points(np.array([0, 3]), np.array([1.0, 2.0]), deflate=True)
-    >>> [part.tolist() for part in unpacked_points(packed)]
+    >>> packed = pack_points(np.array([0, 3]), np.array([1.0, 2.0]), deflate=True)
+    >>> [part.tolist() for part in unpack_points(packed)]
     [[0, 3], [1.0, 2.0]]
     """
     raw = base64.b64decode(packed["data"])

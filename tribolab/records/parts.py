@@ -203,7 +203,7 @@ class Finding(NamedTuple):
     check: str = ""
 
 
-def beyond_limits(groups: Mapping[str, xr.Dataset]) -> list[Finding]:
+def limit_findings(groups: Mapping[str, xr.Dataset]) -> list[Finding]:
     """Return a finding for each limit of the theory that a result exceeds, see `validity`.
 
     Parameters

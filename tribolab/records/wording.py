@@ -16,14 +16,14 @@ NORMAL = 1.959963984540054  # standard errors in U95 of a normal distribution
 SYMBOLS = {"friction_coefficient": "µ", "half_loop": "half loop", "friction_force": "F"}
 
 
-def with_error(value: float | None, error: float | None, unit: str = "") -> str:
+def error_text(value: float | None, error: float | None, unit: str = "") -> str:
     """Return value and error as text, rounded to the significant digits of the error.
 
     Examples
     --------
-    >>> with_error(0.81234, 0.0042)
+    >>> error_text(0.81234, 0.0042)
     '0.812 ± 0.004'
-    >>> with_error(5.6312, None, " N")
+    >>> error_text(5.6312, None, " N")
     '5.63 N'
     """
     if value is None or not math.isfinite(value):

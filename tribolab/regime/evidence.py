@@ -55,7 +55,7 @@ def traces(slip: xr.Dataset | None) -> Evidence | None:
     if np.isfinite(drop):  # an oscillation need not show whole cycles
         text += f"; at {speed_text(speed[first])} friction drops by {friction_text(drop)}"
     if np.isfinite(drop):
-        text += _apart(moving.isel(sliding_speed=first))
+        text += _drop_distance(moving.isel(sliding_speed=first))
     if SAW in names and SINE not in names:
         text += ", slow rises and abrupt drops"
     elif SINE in names and SAW not in names:
@@ -65,7 +65,7 @@ def traces(slip: xr.Dataset | None) -> Evidence | None:
     return Evidence(FOR, text, "traces")
 
 
-def _apart(row: xr.Dataset) -> str:
+def _drop_distance(row: xr.Dataset) -> str:
     """Return the distance between drops as text, with the spectral period if periods scatter."""
     spectral = 1e6 * float(row["dominant_wavelength"]) if "dominant_wavelength" in row else np.nan
     apart = 1e6 * float(row["recurrence_distance"]) if "recurrence_distance" in row else np.nan

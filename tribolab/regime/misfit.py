@@ -72,11 +72,11 @@ def misfit_numbers(measured: xr.Dataset, model: xr.Dataset, off: np.ndarray) -> 
         solid = np.interp(np.log(speed), place, model["friction_per_shear_stress"].values)[fine]
     else:
         solid = np.zeros(fine.sum())
-    numbers["model_misfit_resolved"] = _moved(errors, solid) / float(highest)
+    numbers["model_misfit_resolved"] = _error_bound(errors, solid) / float(highest)
     return numbers
 
 
-def _moved(errors: PointErrors, solid: np.ndarray) -> float:
+def _error_bound(errors: PointErrors, solid: np.ndarray) -> float:
     """Upper 95 % bound of the rms of the errors, after fitting a level to them."""
     covariance = errors.covariance
     if np.any(solid > 0):

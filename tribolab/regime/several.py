@@ -107,23 +107,25 @@ def sliding_modes(
             cure=Cure(notebook="weigh it with sliding_mode"),
         )
 
-    def weighed(labels: ConditionLabels) -> SlidingMode | None:
-        if (curve := _cut(measured, labels)) is None:
+    def assess(labels: ConditionLabels) -> SlidingMode | None:
+        if (curve := _condition_part(measured, labels)) is None:
             return None
         return sliding_mode(
             curve,
-            _cut(model, labels),
-            _cut(slip, labels),
-            _known(known or Mode(), adhesion, labels),
-            band=_cut(band, labels),
+            _condition_part(model, labels),
+            _condition_part(slip, labels),
+            _condition_mode(known or Mode(), adhesion, labels),
+            band=_condition_part(band, labels),
             name=_words(labels),
         )
 
-    return SlidingModes.of({dim: labels_along(holder, dim) for dim in dims}, weighed)
+    return SlidingModes.of({dim: labels_along(holder, dim) for dim in dims}, assess)
 
 
-def _known(known: Mode, adhesion: xr.Dataset | None, labels: Mapping[Hashable, object]) -> Mode:
-    mine = _cut(adhesion, labels)
+def _condition_mode(
+    known: Mode, adhesion: xr.Dataset | None, labels: Mapping[Hashable, object]
+) -> Mode:
+    mine = _condition_part(adhesion, labels)
     if mine is None:
         return known
     work = "macroscopic_work_of_adhesion"
@@ -135,7 +137,9 @@ def _known(known: Mode, adhesion: xr.Dataset | None, labels: Mapping[Hashable, o
     )
 
 
-def _cut(data: xr.Dataset | None, labels: Mapping[Hashable, object]) -> xr.Dataset | None:
+def _condition_part(
+    data: xr.Dataset | None, labels: Mapping[Hashable, object]
+) -> xr.Dataset | None:
     """Part of the data that belongs to one condition; None if there is none."""
     if data is None:
         return None
@@ -147,11 +151,11 @@ def _cut(data: xr.Dataset | None, labels: Mapping[Hashable, object]) -> xr.Datas
     curve = next((name for name in _CURVES if name in data), None)
     if curve is None or "sliding_speed" not in data.dims:
         return data
-    data = data.isel(sliding_speed=_told(data[curve]))
+    data = data.isel(sliding_speed=_value_mask(data[curve]))
     return data if data.sizes["sliding_speed"] else None
 
 
-def _told(values: xr.DataArray) -> np.ndarray:
+def _value_mask(values: xr.DataArray) -> np.ndarray:
     """Mask of where curves on common axes have a value or a text."""
     return values.to_numpy() != "" if values.dtype.kind in "OU" else values.notnull().to_numpy()
 

@@ -127,7 +127,7 @@ def sliding_mode(
     known = known or Mode()
     slip = slip if slip is None else one_curve(slip)
     curve = _curve(measured, model, slip, known.fluid)
-    numbers = _numbers(measured, model, curve, known) | _in_band(measured, band)
+    numbers = _numbers(measured, model, curve, known) | _count_in_band(measured, band)
     weighed = tuple(
         told
         for told in (
@@ -209,7 +209,7 @@ def _curve(
     return stamp(xr.Dataset(data, {"sliding_speed": speed}))
 
 
-def _in_band(measured: xr.Dataset, band: xr.Dataset | None) -> dict[str, float]:
+def _count_in_band(measured: xr.Dataset, band: xr.Dataset | None) -> dict[str, float]:
     """Return the number of measured speeds at which friction agrees with the model's 95 % band."""
     if band is None:
         return {"speeds_in_band": float("nan"), "speeds_with_band": float("nan")}

@@ -12,7 +12,7 @@ from typing import IO, Any
 import pandas as pd
 
 from tribolab.core.errors import ReadError, brief
-from tribolab.core.provenance import without_controls
+from tribolab.core.provenance import escape_controls
 from tribolab.records.parts import Notice, Row
 
 _CHUNK = 4_000  # rows that are in memory at once
@@ -45,7 +45,7 @@ def uncomputed(cell: Any) -> Any:
     """
     if not isinstance(cell, str):
         return cell
-    cell = without_controls(cell)
+    cell = escape_controls(cell)
     if not cell.startswith(_ACTIVE):
         return cell
     try:

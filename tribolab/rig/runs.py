@@ -131,8 +131,8 @@ def simulate_run(
         "medium": medium,
         "normal_force_N": force,
         "repeat_factor": factor,
-        "law": _named(law),
-        "stick_slip": _named(slip),
+        "law": _law_parameters(law),
+        "stick_slip": _law_parameters(slip),
         **({} if calibration == TRUE else {"calibration": asdict(calibration)}),
         **_clock_facts(errors, float(moved[0]), float(moved[-1])),
     }
@@ -167,7 +167,7 @@ def _log(time: np.ndarray, **signals: np.ndarray) -> xr.Dataset:
     return stamp(xr.Dataset(data, {"time": time}))
 
 
-def _named(thing: object) -> Json:
+def _law_parameters(thing: object) -> Json:
     """Parameters of a law for the record; the name of a bare function."""
     values = asdict(thing) if is_dataclass(thing) and not isinstance(thing, type) else {}
     # tables are written separately

@@ -95,11 +95,11 @@ class Signals:
             stopped = plan.start[first[k] + 3]
             rests = np.flatnonzero((stroke == k) & ~moving)
             last = direction * float(law(np.array([law.length]))[0])
-            friction[rests] = last * _relaxed(p, time[rests] - stopped)
+            friction[rests] = last * _relaxed_share(p, time[rests] - stopped)
         return friction
 
 
-def _relaxed(protocol: Protocol, time: np.ndarray | float) -> np.ndarray:
+def _relaxed_share(protocol: Protocol, time: np.ndarray | float) -> np.ndarray:
     """Share of the friction force that remains after a time at rest."""
     left = np.exp(-np.asarray(time) / protocol.relaxation_time)
     return protocol.relaxed_part + (1 - protocol.relaxed_part) * left
@@ -153,7 +153,7 @@ def make_signals(
         stroke = StrokeFriction(level, length, ripple, held=left * direction, protocol=protocol)
         strokes.append(stroke)
         last = direction * float(stroke(np.array([length]))[0])
-        left = last * float(_relaxed(protocol, protocol.rest))
+        left = last * float(_relaxed_share(protocol, protocol.rest))
         cut = int(_TRIM * _FINE)
         rows.append(
             {

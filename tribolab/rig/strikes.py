@@ -36,12 +36,12 @@ def _normal(run: SimulatedRun, values: np.ndarray, facts: StrikeFacts) -> Struck
     return run.force_log.assign(normal_force=("time", values)), run.motion_log, facts
 
 
-def _retimed(run: SimulatedRun, time: np.ndarray, facts: StrikeFacts) -> Struck:
+def _replace_times(run: SimulatedRun, time: np.ndarray, facts: StrikeFacts) -> Struck:
     """Return the logs with other times in the force log."""
     return run.force_log.assign_coords(time=time), run.motion_log, facts
 
 
-def _kept(run: SimulatedRun, keep: np.ndarray, facts: StrikeFacts) -> Struck:
+def _keep_rows(run: SimulatedRun, keep: np.ndarray, facts: StrikeFacts) -> Struck:
     """Return the logs with some rows of the force log only."""
     return run.force_log.isel(time=keep), run.motion_log, facts
 
@@ -75,7 +75,7 @@ def time_back(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     time = run.force_log.time.values.copy()
     row, step = int(rng.uniform(0.2, 0.8) * time.size), float(rng.uniform(1, 4))
     time[row:] -= step
-    return _retimed(run, time, {"row": row, "step_s": step})
+    return _replace_times(run, time, {"row": row, "step_s": step})
 
 
 def restart(run: SimulatedRun, rng: np.random.Generator) -> Struck:
@@ -83,7 +83,7 @@ def restart(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     time = run.force_log.time.values.copy()
     row = int(rng.uniform(0.2, 0.8) * time.size)
     time[row:] -= time[row]
-    return _retimed(run, time, {"row": row})
+    return _replace_times(run, time, {"row": row})
 
 
 def lose_stretches(run: SimulatedRun, rng: np.random.Generator) -> Struck:
@@ -94,7 +94,7 @@ def lose_stretches(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     keep = np.ones(time.size, dtype=bool)
     for start, length in zip(starts, lengths, strict=True):
         keep &= (time < start) | (time > start + length)
-    return _kept(run, keep, {"start_s": starts.tolist(), "length_s": lengths.tolist()})
+    return _keep_rows(run, keep, {"start_s": starts.tolist(), "length_s": lengths.tolist()})
 
 
 def jitter(run: SimulatedRun, rng: np.random.Generator) -> Struck:
@@ -104,7 +104,7 @@ def jitter(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     shorter = np.minimum(np.append(step, step[-1]), np.insert(step, 0, step[0]))
     moved = np.round(time + 0.45 * shorter * rng.uniform(-1, 1, time.size), 5)
     moved[0] = 0.0
-    return _retimed(run, np.maximum.accumulate(moved), {"largest_part_of_interval": 0.45})
+    return _replace_times(run, np.maximum.accumulate(moved), {"largest_part_of_interval": 0.45})
 
 
 def rate_switch(run: SimulatedRun, rng: np.random.Generator) -> Struck:
@@ -114,7 +114,7 @@ def rate_switch(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     keep = np.ones(run.force_log.sizes["time"], dtype=bool)
     middle = (rows.start + rows.stop) // 2
     keep[middle : rows.stop] = np.arange(rows.stop - middle) % factor == 0
-    return _kept(run, keep, {"segment": stroke, "factor": factor})
+    return _keep_rows(run, keep, {"segment": stroke, "factor": factor})
 
 
 def dropouts(run: SimulatedRun, rng: np.random.Generator) -> Struck:
@@ -304,7 +304,7 @@ def slow_logger(run: SimulatedRun, rng: np.random.Generator) -> Struck:
     wanted = float(rng.uniform(3.0, 5.0))  # samples in the fastest period
     every = max(2, round(min(per_period) / wanted))
     keep = np.arange(interval.size) % every == 0
-    return _kept(run, keep, {"every": every, "samples_per_period": min(per_period) / every})
+    return _keep_rows(run, keep, {"every": every, "samples_per_period": min(per_period) / every})
 
 
 def rectifier(run: SimulatedRun, rng: np.random.Generator) -> Struck:

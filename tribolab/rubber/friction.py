@@ -117,11 +117,11 @@ def viscoelastic_friction(
     if work > 0 and not complete_contact:
         growth = _growth(over, psd, float(modulus(0.0).real) / (1 - poisson_ratio**2), work)
     shape_of = poisson_ratio, complete_contact, growth, area
-    friction, touching = _solved(speed, over, psd, modulus, *shape_of)
+    friction, touching = _solve(speed, over, psd, modulus, *shape_of)
     rise = _heating(friction, touching, speed, over, psd)
     valid = examine("viscoelastic_friction", slope=rms_slope(psd), heating=rise)
     if isinstance(modulus, TabulatedModulus):
-        other = _solved(speed, over, psd, modulus.continued, *shape_of)
+        other = _solve(speed, over, psd, modulus.continued, *shape_of)
         valid = together([valid, _outside((friction, touching), other, speed, modulus)])
     dims, shape = (*over.dims, *speed.dims), (*over.shape, *speed.shape)
     return stamp(
@@ -141,7 +141,7 @@ def viscoelastic_friction(
     )
 
 
-def _solved(
+def _solve(
     speed: xr.DataArray,
     over: xr.DataArray,
     psd: xr.Dataset,

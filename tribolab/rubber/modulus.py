@@ -137,11 +137,11 @@ class TabulatedModulus:
 
         The difference between both results shows the effect of the unknown frequencies.
         """
-        return _Continued(self)
+        return _ExtrapolatedModulus(self)
 
 
 @dataclass(frozen=True, eq=False)
-class _Continued:
+class _ExtrapolatedModulus:
     """Table extrapolated by the power laws of its first and last decade, up to a glass."""
 
     table: TabulatedModulus

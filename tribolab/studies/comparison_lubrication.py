@@ -80,8 +80,8 @@ def _own_stress(row: Published) -> Own | None:
     ratio = find_published(xu2026.published, "corrected_shear_stress_ratio", "Sb-R / Sb-S")
     other = _stress(_LESS_ROUGH, row.condition)
     low, high = _growth_ratio()
-    printed = _rounded(ratio)
-    (less, more), (own_low, own_high) = _rounded(other), _rounded(row)
+    printed = _rounding_range(ratio)
+    (less, more), (own_low, own_high) = _rounding_range(other), _rounding_range(row)
     words = (
         f"with the paper's own areas and {other.text} {other.unit} for {_LESS_ROUGH} the corrected "
         f"ratio is {own_low / more / high:.3g} to {own_high / less / low:.3g}, not {ratio.text}"
@@ -95,7 +95,7 @@ def _own_ratio(row: Published) -> Own:
     every = []
     for load in _loads():
         (rough, rougher), (less, more) = (
-            _rounded(_stress(name, load)) for name in (_ROUGH, _LESS_ROUGH)
+            _rounding_range(_stress(name, load)) for name in (_ROUGH, _LESS_ROUGH)
         )
         ends = rough / more / high, rougher / less / low
         words = f"the paper's own numbers give {ends[0]:.3g} to {ends[1]:.3g} at {load}"
@@ -124,7 +124,7 @@ def _loads() -> list[str]:
 def _growth_ratio() -> tuple[float, float]:
     """Ratio of the growth of area by adhesion of Sb-R and Sb-S, within rounding."""
     areas = {
-        (surface, which): _rounded(
+        (surface, which): _rounding_range(
             find_published(xu2026.published, "contact_area_ratio", surface, f"0.1 MPa; {which}")
         )
         for surface in (_ROUGH, _LESS_ROUGH)
@@ -138,7 +138,7 @@ def _growth_ratio() -> tuple[float, float]:
     return low, high
 
 
-def _rounded(row: Published) -> tuple[float, float]:
+def _rounding_range(row: Published) -> tuple[float, float]:
     """Range of numbers that round to the printed one [SI]."""
     low, high = row.ends
     return low - row.last_digit / 2, high + row.last_digit / 2

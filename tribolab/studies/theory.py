@@ -33,7 +33,7 @@ _WORK = re.compile(r"w = ([\d.]+) J/m2")
 _OTHER_PRESSURE = 1e5  # Pa, Sec. 7
 
 
-def _stated(pattern: re.Pattern[str], row: Published) -> float:
+def _stated_number(pattern: re.Pattern[str], row: Published) -> float:
     """Return the number in the text of a condition."""
     match = pattern.search(row.condition)
     if match is None:
@@ -80,7 +80,7 @@ class Theory:
     def pressure(self, row: Published) -> float:
         """Exact mean Hertz pressure [Pa] of the load; a pressure without a load is unchanged."""
         if not self.has_load(row):
-            return 1e6 * _stated(_PRESSURE, row)
+            return 1e6 * _stated_number(_PRESSURE, row)
         return float(hertz_mean_pressure(self.load(row), self._contact))
 
     def medium(self, row: Published) -> str:
@@ -99,7 +99,7 @@ class Theory:
 
     def jkr_half_width(self, row: Published) -> float:
         """Half-width [m] of the JKR contact, Eq. (15), with the condition's work of adhesion."""
-        work = _stated(_WORK, row)
+        work = _stated_number(_WORK, row)
         return float(jkr_half_width(self.load(row), self._contact, work))
 
     def roughness(self, surface: str) -> float:

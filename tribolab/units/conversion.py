@@ -99,7 +99,7 @@ _RAISED = re.compile(r"(?<=10)([⁻⁺]?[⁰¹²³⁴⁵⁶⁷⁸⁹]+)")
 _PRODUCT = re.compile(r"(?<!\s)\s*[·⋅・∙•]\s*")  # possessive: no backtracking over blanks
 
 
-def as_pint_writes(unit: str) -> str:
+def pint_spelling(unit: str) -> str:
     """Return a unit, typeset or from netCDF, in the spelling of pint."""
     unit = unit.strip().replace("\u00b5", "u").replace("\u03bc", "u")
     unit = _RAISED.sub(r"^\1", _TIMES.sub("", unit))
@@ -117,7 +117,7 @@ class _Units(NamedTuple):
 
 def _units(text: str) -> _Units:
     """Look up the names of a unit in pint; the text itself is parsed here and never evaluated."""
-    factor, powers = parse_unit(as_pint_writes(text))
+    factor, powers = parse_unit(pint_spelling(text))
     ureg = registry()
     product = ureg.Unit("")
     for name, power in powers.items():
@@ -207,7 +207,7 @@ def conversion(unit: str, si_unit: str, bare: Counted | None = None) -> tuple[fl
         return scale * conversion(plain, si_unit, bare)[0], 0.0
     try:
         # text that breaks the grammar of units is rejected without pint
-        parse_unit(as_pint_writes(unit))
+        parse_unit(pint_spelling(unit))
     except UnitError as error:
         said = shown(unit)
         raise UnitError(f"'{said}' is not a unit that is known; write e.g. '{si_unit}'") from error

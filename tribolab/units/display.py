@@ -30,10 +30,10 @@ def show_units() -> None:
     formatters = getattr(getattr(shell, "display_formatter", None), "formatters", {})
     if "text/html" in formatters:
         for home, name in _HOMES:  # by name, without loading xarray
-            formatters["text/html"].for_type_by_name(home, name, with_units)
+            formatters["text/html"].for_type_by_name(home, name, add_units)
 
 
-def with_units(data: xr.Dataset | xr.DataArray) -> str:
+def add_units(data: xr.Dataset | xr.DataArray) -> str:
     """Return xarray's HTML with the unit of each variable, for our datasets.
 
     Our datasets are recognised by a variable with our unit and long name.
@@ -43,10 +43,10 @@ def with_units(data: xr.Dataset | xr.DataArray) -> str:
     >>> import xarray as xr
     >>> from tribolab.units.stamping import stamp
     >>> run = stamp(xr.Dataset({"friction_force": ("time", [1.0])}))
-    >>> "N, float64" in run._repr_html_(), "N, float64" in with_units(run)
+    >>> "N, float64" in run._repr_html_(), "N, float64" in add_units(run)
     (False, True)
     >>> other = xr.Dataset({"friction_force": ("time", [1.0], {"units": "N"})})
-    >>> "N, float64" in with_units(other)
+    >>> "N, float64" in add_units(other)
     False
     """
     text = data._repr_html_()

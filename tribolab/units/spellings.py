@@ -78,7 +78,7 @@ def plain_unit(unit: str) -> str:
         if (torque := form.fullmatch(text)) and torque["arm"] + torque["weight"] != "mg":
             return f"{_ON_ARM[torque['weight']]}*{torque['arm']}"
     text = re.sub("(?<=/)Nm$", "(N*m)", text)
-    return _NAME.sub(lambda name: _in_full(unit_in_words(name[0])), text)
+    return _NAME.sub(lambda name: _full_name(unit_in_words(name[0])), text)
 
 
 _LENGTHS = {
@@ -100,10 +100,10 @@ def unit_of_length(text: str) -> str:
     return next((_LENGTHS[u] for u in map(plain_unit, (bare, bare.lower())) if u in _LENGTHS), "")
 
 
-def _in_full(name: str) -> str:
+def _full_name(name: str) -> str:
     """Return a unit that is spelt out, in the name used by pint.
 
-    >>> _in_full("Nanometres"), _in_full("INCHES"), _in_full("Ångström"), _in_full("Fx")
+    >>> _full_name("Nanometres"), _full_name("INCHES"), _full_name("Ångström"), _full_name("Fx")
     ('nanometer', 'inch', 'angstrom', 'Fx')
     """
     told = _WRITTEN.fullmatch(name)

@@ -63,7 +63,7 @@ def roughness_lines(scan: xr.Dataset) -> list[str]:
     import numpy as np
 
     from tribolab.records.surfaces.roughness_words import hardly_bends, roughness_u95
-    from tribolab.records.wording import with_error
+    from tribolab.records.wording import error_text
     from tribolab.surface.form import remove_form
     from tribolab.surface.roughness import (
         STANDARD_CUTOFF,
@@ -91,7 +91,7 @@ def roughness_lines(scan: xr.Dataset) -> list[str]:
         if (error := f"{name}_sem") in iso:
             value, sem = (1e6 * float(iso[each].mean()) for each in (name, error))
             row = {f"{name}_sem_m": sem, "sampling_lengths": iso.attrs["sampling_lengths"]}
-            told[name] = f"{with_error(value, roughness_u95(row, name))} um"
+            told[name] = f"{error_text(value, roughness_u95(row, name))} um"
     radius = flat.attrs.get("form_radius_m", math.inf)
     is_map = scan.sizes.get("y", 1) > 1
     form = "polynomial of degree 2" if is_map else "form"

@@ -77,7 +77,7 @@ def _coefficients(friction: xr.Dataset) -> str:
     """Say the friction coefficient: of segments at one speed their mean, else that of each."""
     # late: starting stays quick
     from tribolab.friction.stribeck import measured_stribeck_curve
-    from tribolab.records.wording import with_error
+    from tribolab.records.wording import error_text
 
     name = "friction_coefficient"
     of, values, at = "", friction, ""
@@ -92,7 +92,7 @@ def _coefficients(friction: xr.Dataset) -> str:
         return ""
     if mu.size == 1 and of and np.isfinite(wide[0]):
         count = int(curve["segments"].values[0])
-        said = with_error(float(mu[0]), float(wide[0]))
+        said = error_text(float(mu[0]), float(wide[0]))
         return f", friction coefficient {said} (U95, mean of {count}; statistical only)"
     span = f"{mu.min():.3g}" + (f" to {mu.max():.3g}" if mu.size > 1 else "")
     known = wide[np.isfinite(wide)]

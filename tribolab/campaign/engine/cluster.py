@@ -116,7 +116,7 @@ class Cluster(Executor):
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a call on the cluster and return its future."""
-        return self._inner.submit(_called, pickle.dumps((function, args, kwargs)))
+        return self._inner.submit(_call, pickle.dumps((function, args, kwargs)))
 
     def lost(self) -> str:
         """Return the reason why no answer can come any more; "" if one can."""
@@ -179,7 +179,7 @@ class Cluster(Executor):
         )
 
 
-def _called(packed: bytes) -> Any:
+def _call(packed: bytes) -> Any:
     """Call a packed function in a thread of a worker.
 
     Dask would unpack arguments, with their imports, in the heartbeat thread. Linear algebra uses as

@@ -76,13 +76,13 @@ def _as_they_end(
             if text:
                 raise ClusterGone(gone(text, count - len(futures), count))
             while come:  # release finished results
-                yield futures.pop(come[0]), _explained(come.pop())
+                yield futures.pop(come[0]), _explain_death(come.pop())
     finally:
         for future in futures:
             future.cancel()
 
 
-def _explained(future: Future[Any]) -> Future[Any]:
+def _explain_death(future: Future[Any]) -> Future[Any]:
     """Return the future of a task, with an explanation if its Dask workers died."""
     if type(future.exception()).__name__ != "KilledWorker":
         return future

@@ -18,7 +18,7 @@ from multiprocessing.forkserver import ForkServer, read_signed
 from multiprocessing.process import BaseProcess
 from typing import Any
 
-from tribolab.campaign.engine.processes import ONE_THREAD, Fresh, with_environment
+from tribolab.campaign.engine.processes import ONE_THREAD, Fresh, change_environment
 
 # Arrow's allocator has a thread, with which a process should not be copied.
 _NO_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}
@@ -49,7 +49,7 @@ class Nursery(ForkServer):
     def ensure_running(self) -> None:
         """Start the nursery if needed, with our search path and BLAS on one thread."""
         paths = {"PYTHONPATH": os.pathsep.join(sys.path), "PYTHONSAFEPATH": "1"}
-        with with_environment(ONE_THREAD | _NO_THREAD | paths):
+        with change_environment(ONE_THREAD | _NO_THREAD | paths):
             super().ensure_running()
 
     def connect_to_new_process(self, fds: Sequence[int]) -> tuple[int, int]:

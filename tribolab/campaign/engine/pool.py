@@ -68,13 +68,13 @@ class LastingPool(Executor):
 
     def prepare(self) -> None:
         """Start importing the modules of the work in parallel with the caller."""
-        with _undisturbed(), self._lock:
+        with _defer_signals(), self._lock:
             if self._nursery is not None and not self._closed:
                 self._nursery.ensure_running()
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a call and return its future."""
-        with _undisturbed(), self._lock:
+        with _defer_signals(), self._lock:
             if self._closed:
                 raise RuntimeError("the pool is closed")
             future: Future[Any] = Future()
@@ -207,7 +207,7 @@ class _Lane:
 
 
 @contextlib.contextmanager
-def _undisturbed() -> Iterator[None]:
+def _defer_signals() -> Iterator[None]:
     """Defer signals until processes and threads are started, and Ctrl-C until it is ignored.
 
     An interruption during the start of a process leaves one that dies with a traceback.

@@ -93,12 +93,12 @@ class Fresh(SpawnContext):
 class _FreshProcess(SpawnProcess):
     def start(self) -> None:
         """Start with an environment in which BLAS, loaded there, uses one thread."""
-        with with_environment(ONE_THREAD):
+        with change_environment(ONE_THREAD):
             super().start()
 
 
 @contextlib.contextmanager
-def with_environment(changed: Mapping[str, str]) -> Iterator[None]:
+def change_environment(changed: Mapping[str, str]) -> Iterator[None]:
     """Change environment variables temporarily, for processes started meanwhile."""
     before = {name: os.environ.get(name) for name in changed}
     os.environ.update(changed)

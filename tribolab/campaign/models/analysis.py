@@ -23,7 +23,7 @@ from tribolab.lubrication.film import film_profile
 from tribolab.lubrication.parameters import Interface, Liquid, Solver, parameters_of
 from tribolab.lubrication.solved_curve import solve_curve
 from tribolab.lubrication.stribeck import with_shear_stress
-from tribolab.records.parts import Finding, beyond_limits
+from tribolab.records.parts import Finding, limit_findings
 from tribolab.units.stamping import stamp
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
         attempt(
             "uncertainty of the model", "uncertainty", lambda: _uncertain(contact, psd, fit, given)
         )
-    return groups, findings + beyond_limits(groups)
+    return groups, findings + limit_findings(groups)
 
 
 def _fit(

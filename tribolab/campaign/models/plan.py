@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribolab.core.provenance import joined_sources, named_sources, sha256_of
+from tribolab.core.provenance import join_sources, sha256_of, source_attributes
 from tribolab.core.untyped import Arguments
 
 if TYPE_CHECKING:
@@ -211,7 +211,7 @@ def _repeatability(curves: Sequence[CurveRecord]) -> tuple[float, int]:
 
 def _sealed(model: PlannedModel, curve: CurveRecord, surface: SurfaceRecord) -> PlannedModel:
     """Add what the data are made from, and the checksum of all that shapes the model."""
-    joined = joined_sources([asdict(curve.origin), named_sources(surface.sources)])
+    joined = join_sources([asdict(curve.origin), source_attributes(surface.sources)])
     model = replace(
         model,
         source=joined.get("source", ""),

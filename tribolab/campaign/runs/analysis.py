@@ -77,12 +77,12 @@ def analyse_run(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
         If it cannot be read or analysed, or a decision finds no segment.
     """
     # imported late for a quick start
-    from tribolab.friction.decisions.decide import decide, without_decisions
+    from tribolab.friction.decisions.decide import decide, remove_decisions
     from tribolab.friction.segments.find import find_segments
 
     read = earlier and earlier_signals(earlier)
     read = _read(run) if read is None else read
-    signals = _with_set_points(run, read)
+    signals = _add_set_points(run, read)
     let_go()
     options = dict(run.segments)
     discard, steady = options.pop("discard", None), options.pop("steady", None)
@@ -96,7 +96,7 @@ def analyse_run(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
     segments, whole = _steady_part(run, signals, segments, discard, steady)
     friction, slip, said = _examined(run, signals, segments)
     if run.decisions and before[0] is None:  # the numbers are the same
-        before = without_decisions(friction), said.status_as_found
+        before = remove_decisions(friction), said.status_as_found
     signals = said.marked
     signals.attrs.update({QUALITY: said.status, _FINDINGS: said.rows})
     analysed = Analysed(signals, segments, friction, slip, said.status, *before, whole)
@@ -118,11 +118,11 @@ def _steady_part(
         return segments, None
     # imported late for a quick start
     from tribolab.friction.coefficient.coefficient import friction_coefficient
-    from tribolab.friction.running_in.steady_part import steady_segments, without_start
+    from tribolab.friction.running_in.steady_part import discard_start, steady_segments
 
     whole = friction_coefficient(signals, segments, **run.friction)
     if discard is not None:
-        segments = without_start(segments, discard)
+        segments = discard_start(segments, discard)
     if steady is not None:
         segments = steady_segments(signals, segments, whole)
     return segments, whole
@@ -144,7 +144,7 @@ def _examined(
     from tribolab.friction.coefficient.coefficient import friction_coefficient
     from tribolab.friction.oscillation.stick_slip import stick_slip
     from tribolab.friction.zero.of_run import StatedZeroError
-    from tribolab.metrology.budget import known_uncertainties, with_uncertainty
+    from tribolab.metrology.budget import known_uncertainties, segment_uncertainty
     from tribolab.qc.run.checks import check_run
 
     let_go()
@@ -153,7 +153,7 @@ def _examined(
     except StatedZeroError as error:  # an error of the campaign file, not of the raw file
         raise ConfigError(error.what, where=run.zero_uncertainty_at) from error
     if "friction_coefficient" in friction:
-        friction = with_uncertainty(friction, known_uncertainties(friction))
+        friction = segment_uncertainty(friction, known_uncertainties(friction))
     let_go()
     friction.attrs.update(attributes(friction, run.friction.get("other_zeros", ())))
     slip = stick_slip(signals, segments)
@@ -183,7 +183,7 @@ def _read(run: PlannedRun) -> xr.Dataset:
     return without_inertia(read)  # if no mass is stated, the data may show one
 
 
-def _with_set_points(run: PlannedRun, read: xr.Dataset) -> xr.Dataset:
+def _add_set_points(run: PlannedRun, read: xr.Dataset) -> xr.Dataset:
     """Return the signals with the set-points of the campaign file."""
     signals = read.copy()
     if run.clock_shift is not None and "clock_shift_source" not in signals.attrs:
@@ -202,10 +202,10 @@ def _with_set_points(run: PlannedRun, read: xr.Dataset) -> xr.Dataset:
         signals.attrs[STIFFNESS] = run.stiffness
     if run.sliding_speed is not None:
         signals.attrs |= _stated_speed(signals, run.sliding_speed)
-    return _under_stated_load(signals)
+    return _add_stated_load(signals)
 
 
-def _under_stated_load(signals: xr.Dataset) -> xr.Dataset:
+def _add_stated_load(signals: xr.Dataset) -> xr.Dataset:
     """Return the signals with the stated load, if friction but no load was recorded."""
     load = signals.get("set_normal_force", signals.attrs.get("set_normal_force_N"))
     if load is None or "friction_force" not in signals or _LOADS & set(signals.variables):

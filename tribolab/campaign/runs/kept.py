@@ -67,7 +67,7 @@ def keep_runs(campaign: Campaign, store: Store, runs: Sequence[RunCame]) -> list
         path = store.previous / before.data_file
         outcome = _kept_run(before, entry, path, why[0])
         decided = decisions.get(before.name, ())
-        outcome, known = _with_decisions(outcome, known, decided)
+        outcome, known = _apply_decisions(outcome, known, decided)
         mine = [came for came in kept if set(came.outcome.files) <= set(before.files)]
         names = {came.outcome.name for came in kept if came not in mine}
         if outcome.name in names:  # another run has its name now
@@ -99,7 +99,7 @@ def _kept_run(run: RunOutcome, entry: RunEntry, path: Path, why: str) -> RunOutc
     )
 
 
-def _with_decisions(
+def _apply_decisions(
     outcome: RunOutcome, known: Entry[RunRecord], decided: tuple[Decision, ...]
 ) -> tuple[RunOutcome, Entry[RunRecord]]:
     """Return an earlier run with the decisions made since, if they need no raw file."""

@@ -63,7 +63,7 @@ def load_of(stated: float | None, signals: xr.Dataset, friction: xr.Dataset) -> 
     mean = float(np.average(force[good], weights=lasts[good]))
     if _was_set(signals):
         return RunLoad(load_label(mean), LOAD_STATED, None)
-    return RunLoad(rounded_load(mean), LOAD_MEASURED, mean)
+    return RunLoad(round_load(mean), LOAD_MEASURED, mean)
 
 
 def _was_set(signals: xr.Dataset) -> bool:
@@ -104,7 +104,7 @@ def load_levels(force: np.ndarray, lasts: np.ndarray) -> tuple[float, ...]:
     return tuple(float(np.average(force[group], weights=lasts[group])) for group in groups)
 
 
-def at_level(force: np.ndarray, levels: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+def level_mask(force: np.ndarray, levels: np.ndarray, wanted: np.ndarray) -> np.ndarray:
     """Return a mask of the segments measured at the wanted load levels of a run.
 
     Parameters
@@ -116,7 +116,7 @@ def at_level(force: np.ndarray, levels: np.ndarray, wanted: np.ndarray) -> np.nd
 
     Examples
     --------
-    >>> at_level(np.array([19.8, 40.5, np.nan]), np.array([20.0, 40.0]), np.array([False, True]))
+    >>> level_mask(np.array([19.8, 40.5, np.nan]), np.array([20.0, 40.0]), np.array([False, True]))
     array([False,  True, False])
     """
     known = np.isfinite(force) & (force > 0)
@@ -125,6 +125,6 @@ def at_level(force: np.ndarray, levels: np.ndarray, wanted: np.ndarray) -> np.nd
     return chosen
 
 
-def rounded_load(load: float) -> float:
+def round_load(load: float) -> float:
     """Return a measured load rounded to three digits, as a label."""
     return float(f"{load:.3g}")

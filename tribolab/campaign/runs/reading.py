@@ -61,9 +61,9 @@ def note_reading(run: PlannedRun, read: xr.Dataset, marked: xr.Dataset) -> None:
     if not _is_of_its_files(run, attrs):
         return
     mark = mark_of(run, sources_of_run(run, attrs))
-    changed = {"attrs": _changed(attrs, marked.attrs)} | {
+    changed = {"attrs": _attribute_changes(attrs, marked.attrs)} | {
         "variables": {
-            str(name): _changed(variable.attrs, marked.variables[name].attrs)
+            str(name): _attribute_changes(variable.attrs, marked.variables[name].attrs)
             for name, variable in read.variables.items()
         }
     }
@@ -111,7 +111,7 @@ def earlier_signals(earlier: Earlier) -> xr.Dataset | None:
     return signals
 
 
-def _changed(before: Mapping[object, object], after: Mapping[object, object]) -> Json:
+def _attribute_changes(before: Mapping[object, object], after: Mapping[object, object]) -> Json:
     """Return the changes that restore earlier attributes."""
     was = {str(k): v for k, v in before.items() if k not in after or after[k] is not v}
     return {"was": was, "new": [str(k) for k in after if k not in before]}

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.runs.loads import rounded_load
+from tribolab.campaign.runs.loads import round_load
 from tribolab.core.wording import LOAD_STATED
 from tribolab.records.runs.run_record import RunRecord
 
@@ -19,16 +19,16 @@ _Own = tuple[str, float]  # name of a run, and a load measured in it [N]
 _MAX_LOAD_RATIO = 1.05  # ratio of the largest to the smallest load of repeats
 
 
-def with_loads_alike(store: Store, came: Sequence[RunCame]) -> list[RunCame]:
+def share_loads(store: Store, came: Sequence[RunCame]) -> list[RunCame]:
     """Assign one load to repeats with measured loads; a stated one if another run has it."""
     systems: dict[tuple[str, str], list[RunOutcome]] = {}
     for run in came:
         systems.setdefault((run.outcome.surface, run.outcome.medium), []).append(run.outcome)
-    loads = {own: load for runs in systems.values() for own, load in _alike(runs)}
-    return [_filed(store, run, place, loads) for place, run in enumerate(came)]
+    loads = {own: load for runs in systems.values() for own, load in _common_loads(runs)}
+    return [_refile(store, run, place, loads) for place, run in enumerate(came)]
 
 
-def _filed(store: Store, run: RunCame, place: int, loads: dict[_Own, float]) -> RunCame:
+def _refile(store: Store, run: RunCame, place: int, loads: dict[_Own, float]) -> RunCame:
     """Store a run under its new load, if that has changed."""
     name, measured = run.outcome.name, run.outcome.measured_load
     load = run.outcome.normal_force if measured is None else loads[name, measured]
@@ -43,7 +43,7 @@ def _filed(store: Store, run: RunCame, place: int, loads: dict[_Own, float]) -> 
     return run._replace(outcome=outcome)
 
 
-def _alike(runs: Iterable[RunOutcome]) -> Iterable[tuple[_Own, float]]:
+def _common_loads(runs: Iterable[RunOutcome]) -> Iterable[tuple[_Own, float]]:
     """Return runs and measured loads, each with the load assigned to it."""
     stated = [run.normal_force for run in runs if run.load_from == LOAD_STATED]
     known = [load for load in stated if load is not None and load > 0]
@@ -67,4 +67,4 @@ def _measured(run: RunOutcome) -> tuple[float, ...]:
 
 def _as_one(group: Sequence[tuple[float, str]]) -> Iterable[tuple[_Own, float]]:
     for own, name in group:
-        yield (name, own), rounded_load(sum(load for load, _ in group) / len(group))
+        yield (name, own), round_load(sum(load for load, _ in group) / len(group))

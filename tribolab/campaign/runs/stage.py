@@ -13,7 +13,7 @@ import xarray as xr
 from tribolab.arrays.scratch import tidy_up
 from tribolab.campaign.engine.stage import Stage
 from tribolab.campaign.runs.analysis import QUALITY, analyse_run, run_labels
-from tribolab.campaign.runs.loads import load_of, rounded_load
+from tribolab.campaign.runs.loads import load_of, round_load
 from tribolab.campaign.runs.reading import Earlier, mark_of
 from tribolab.campaign.runs.sources import source_of, sources_of_run
 from tribolab.campaign.runs.zeros import zero_of
@@ -202,7 +202,7 @@ def process_run(task: RunTask) -> RunAnswer:
     # imported late for a quick start
     from tribolab.campaign.runs.running_in import running_in_of
     from tribolab.records.frames import plain_rows, stick_slip_columns
-    from tribolab.records.runs.decision_rows import not_applied
+    from tribolab.records.runs.decision_rows import unapplied_decisions
     from tribolab.records.runs.notices import notices_of
     from tribolab.records.runs.run_facts import facts_of
 
@@ -219,7 +219,7 @@ def process_run(task: RunTask) -> RunAnswer:
         root: dict[str | None, xr.Dataset] = {None: _root(run, signals.attrs)}
         write_data(root | analysed.groups, task.folder / task.data_file)
         facts = facts_of(signals, segments, friction, slip, analysed.friction_as_found)
-        facts = _with_dead_weight(facts, run, signals)
+        facts = _add_dead_weight_gain(facts, run, signals)
         running_in, course = running_in_of(
             signals, friction if analysed.whole is None else analysed.whole
         )
@@ -235,7 +235,7 @@ def process_run(task: RunTask) -> RunAnswer:
         reason, name = explain(error)
         outcome = failed_run(run, reason, name, time.monotonic() - began)
         sources = tuple(map(source_of, run.files, run.labels))
-        facts = RunFacts(decisions=not_applied(run.decisions))
+        facts = RunFacts(decisions=unapplied_decisions(run.decisions))
         return RunAnswer(RunRecord(outcome, sources, facts=facts))
     load = load_of(run.normal_force, signals, friction)
     outcome = RunOutcome(
@@ -247,7 +247,7 @@ def process_run(task: RunTask) -> RunAnswer:
         load_from=load.load_from,
         measured_load=load.measured_load,
         measured_levels=load.levels,
-        load_levels=tuple(map(rounded_load, load.levels)),
+        load_levels=tuple(map(round_load, load.levels)),
         status="done",
         data_file=task.data_file,
         seconds=time.monotonic() - began,
@@ -262,7 +262,7 @@ def process_run(task: RunTask) -> RunAnswer:
     return RunAnswer(record, trace)
 
 
-def _with_dead_weight(facts: RunFacts, run: PlannedRun, signals: xr.Dataset) -> RunFacts:
+def _add_dead_weight_gain(facts: RunFacts, run: PlannedRun, signals: xr.Dataset) -> RunFacts:
     """Add the gain from a dead weight that is placed or removed in the record."""
     # imported late for a quick start
     from tribolab.metrology.dead_weight import dead_weight_gain

@@ -59,7 +59,7 @@ def zeros_text(zeros: Iterable[float]) -> str:
     return "; ".join(f"{zero:.{_DIGITS}g}" for zero in zeros)
 
 
-def to_lend(zeros: Mapping[str, RunZero | None]) -> dict[str, tuple[float, ...]]:
+def lent_zeros(zeros: Mapping[str, RunZero | None]) -> dict[str, tuple[float, ...]]:
     """Return the runs to be repeated, with the zeros of others.
 
     Parameters
@@ -70,10 +70,11 @@ def to_lend(zeros: Mapping[str, RunZero | None]) -> dict[str, tuple[float, ...]]
     Examples
     --------
     >>> one, two = RunZero("rig", 0.5, None), RunZero("rig", 0.7, None)
-    >>> to_lend({"a": one, "b": two, "c": RunZero("rig", None, ""), "d": RunZero("x", None, "")})
+    >>> lent_zeros({"a": one, "b": two, "c": RunZero("rig", None, ""), "d": RunZero("x", None, "")})
     {'c': (0.5, 0.7)}
     >>> unknown = RunZero("", None, "")
-    >>> to_lend({"a": one._replace(instrument=""), "b": two._replace(instrument=""), "c": unknown})
+    >>> nameless = {name: zero._replace(instrument="") for name, zero in (("a", one), ("b", two))}
+    >>> lent_zeros({**nameless, "c": unknown})
     {}
     """
     again = {}

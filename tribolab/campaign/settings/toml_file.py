@@ -12,7 +12,7 @@ from pydantic import BaseModel, ValidationError
 from tribolab.campaign.settings import problems
 from tribolab.core.errors import ConfigError, ReadError, shown
 from tribolab.core.limit import Limit
-from tribolab.core.provenance import without_controls
+from tribolab.core.provenance import escape_controls
 from tribolab.reading.raw.source import check_regular
 
 MOST_TABLES = Limit(
@@ -127,7 +127,7 @@ def _check_entries(path: Path, content: dict[str, object]) -> None:
         key, value = left.pop()
         count += 1
         for text in (key, value):
-            if isinstance(text, str) and without_controls(text) != text:
+            if isinstance(text, str) and escape_controls(text) != text:
                 raise ConfigError(
                     f"{path}: {shown(key)} = '{shown(value)}' contains a control character (shown "
                     "as ?); write it without"

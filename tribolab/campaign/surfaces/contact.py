@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import PchipInterpolator
 
-from tribolab.campaign.surfaces.rubber import no_rubber, rubber_groups
+from tribolab.campaign.surfaces.rubber import rubber_groups, rubber_objection
 from tribolab.contact.adhesion import adhesion_by_works
 from tribolab.contact.gap import gap_distribution
 from tribolab.contact.geometry import Contact, PointContact, make_contact
@@ -26,7 +26,7 @@ from tribolab.contact.point import across_the_middle, rough_point_contact
 from tribolab.core.errors import ReadError, TribolabError
 from tribolab.core.validity import together
 from tribolab.core.wording import explain
-from tribolab.records.parts import Finding, beyond_limits
+from tribolab.records.parts import Finding, limit_findings
 from tribolab.units.stamping import labelled, stamp
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ def contact_groups(surface: PlannedSurface, psd: xr.Dataset) -> tuple[Groups, li
         groups["loads"] = loads
         attempt("dry line contact", ("line",), lambda: (_lines(forces, contact, psd, theory),))
         attempt("gap", ("gap",), lambda: (_gaps(loads, psd, modulus),))
-        if refused := no_rubber(surface):
+        if refused := rubber_objection(surface):
             findings.append(refused)
         else:
             names = ("rubber", "modulus")
@@ -119,8 +119,8 @@ def contact_groups(surface: PlannedSurface, psd: xr.Dataset) -> tuple[Groups, li
         names = ("adhesion", "adhesion_loads")
         attempt("adhesion", names, lambda: _adhesion(surface, grid, loads, contact, psd, modulus))
         if "adhesion_loads" in groups:
-            findings += _undecided(groups["adhesion_loads"])
-    return groups, findings + beyond_limits(groups)
+            findings += _undecided_pull_off(groups["adhesion_loads"])
+    return groups, findings + limit_findings(groups)
 
 
 def _bounds(psd: xr.Dataset) -> dict[str, xr.Dataset]:
@@ -276,7 +276,7 @@ def _adhesion(
     return stamp(joined[0], **limits), stamp(joined[1], **limits)
 
 
-def _undecided(points: xr.Dataset) -> list[Finding]:
+def _undecided_pull_off(points: xr.Dataset) -> list[Finding]:
     """Return a finding if the bounds disagree on a pull-off force."""
     low, high = (
         points[f"macroscopic_work_of_adhesion{ending}"].values > 0 for ending in _ENDINGS[1:]

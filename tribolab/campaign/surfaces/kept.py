@@ -35,7 +35,7 @@ def kept_surface(
     patterns = next(s.scans or () for s in campaign.surface if s.name == now.name)
     names = [label for label, _, _ in sources]
     content = {checksum for _, checksum, _ in record.sources}
-    spoilt = _left_out(now.findings, names) - _left_out(before.findings, names)
+    spoilt = _unreadable_files(now.findings, names) - _unreadable_files(before.findings, names)
     gone = {
         label
         for label, checksum, _ in sources
@@ -59,7 +59,7 @@ def kept_surface(
     return kept_record(store, "surface", known.record, text, planned.data_file) or record
 
 
-def _left_out(findings: Iterable[Finding], labels: Iterable[str]) -> set[str]:
+def _unreadable_files(findings: Iterable[Finding], labels: Iterable[str]) -> set[str]:
     """Return the files that could not be read, from the findings."""
     grave = [f.message for f in findings if f.severity == "fail" and not f.check]
     return {label for label in labels for text in grave if f"scan {label} is left out" in text}

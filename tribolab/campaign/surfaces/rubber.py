@@ -35,7 +35,7 @@ class _Rubber(NamedTuple):
     omega: np.ndarray
 
 
-def no_rubber(surface: PlannedSurface) -> Finding | None:
+def rubber_objection(surface: PlannedSurface) -> Finding | None:
     """Reason why the friction of the rubber is not computed; None if it is."""
     stiffness = surface.contact["youngs_modulus"]
     known = surface.modulus_file is not None or surface.rubber.get("prony_moduli")
@@ -71,7 +71,7 @@ def rubber_groups(
     """
     rubber = _modulus(surface, findings)
     if surface.rubber.get("temperature") is not None:
-        rubber = _shifted(rubber, surface.rubber)
+        rubber = _shift_modulus(rubber, surface.rubber)
     speed = np.geomspace(1e-7, 1e-1, 6 * _PER_DECADE + 1)
     friction = viscoelastic_friction(
         speed,
@@ -131,7 +131,7 @@ def _modulus(surface: PlannedSurface, findings: list[Finding]) -> _Rubber:
     )
 
 
-def _shifted(rubber: _Rubber, stated: Arguments) -> _Rubber:
+def _shift_modulus(rubber: _Rubber, stated: Arguments) -> _Rubber:
     """Shift a modulus from its temperature to that of the rubber."""
     law = WilliamsLandelFerry(stated["c1"], stated["c2"], stated["reference_temperature"])
     kelvin = stated["temperature"]

@@ -103,7 +103,7 @@ def usable_scans(surface: PlannedSurface) -> CheckedScans:
         findings.append(Finding("note", text))
     checks = [_as_row(label[path], row) for path, said in checked.items() for row in said.rows]
     flagged = [checked[path].marked for path in alike]
-    return CheckedScans(filled, _with_flags(together, flagged), findings, quality, checks)
+    return CheckedScans(filled, _add_flags(together, flagged), findings, quality, checks)
 
 
 def _as_row(scan: str, said: FindingRow) -> Row:
@@ -149,7 +149,7 @@ def _shape(scan: xr.Dataset) -> tuple[Any, ...]:
     return tuple(scan.sizes.items()), extent
 
 
-def _said_of(label: str, message: str) -> str:
+def _trim(label: str, message: str) -> str:
     """Return a message without the file name, which the label already contains."""
     name, colon, rest = message.partition(": ")
     return rest if colon and label.endswith(name) else message
@@ -159,7 +159,7 @@ def _objections(label: str, said: Findings) -> list[Finding]:
     return [
         Finding(
             "note" if row["status"] == "pass" else row["status"],
-            f"scan {label}: {row['check']}: {_said_of(label, row['message'])}. {row['cure']}".strip(
+            f"scan {label}: {row['check']}: {_trim(label, row['message'])}. {row['cure']}".strip(
                 ". "
             )
             + ".",
@@ -170,7 +170,7 @@ def _objections(label: str, said: Findings) -> list[Finding]:
     ]
 
 
-def _with_flags(scans: xr.Dataset, flagged: list[xr.Dataset]) -> xr.Dataset:
+def _add_flags(scans: xr.Dataset, flagged: list[xr.Dataset]) -> xr.Dataset:
     """Add the flags of each scan to the heights of all."""
     height = scans.height.assign_attrs(ancillary_variables="height_qc height_qc_tests")
     variables: dict[str, object] = {"height": height}
@@ -227,7 +227,7 @@ def spectra_of_scans(
             by = "none" if form == "none" else "auto"
             groups["psd_1d"] = psd_1d(flat, form=by, tip_radius=tip)
             measured = psd_2d(groups["psd_1d"])
-        psd, doubts = _extrapolated(measured, options, q_low)
+        psd, doubts = _extrapolate(measured, options, q_low)
     except AnalysisError as error:
         if asked:
             raise
@@ -249,7 +249,7 @@ def spectra_of_scans(
     } | removed
     if psd.attrs["rolloff"].startswith("not reached"):
         findings.append(Finding("note", f"roll-off {psd.attrs['rolloff']}"))
-    findings += _what_is_lacking(iso, rms_roughness(part), seen)
+    findings += _missing_waves(iso, rms_roughness(part), seen)
     if share < 1 - _NOTED:
         findings.append(_extrapolated_slope(share, rms_slope(part), float(seen[-1]), asked))
     hurst, unsure = (psd.attrs[f"hurst_exponent{end}"] for end in ("", "_standard_error"))
@@ -263,7 +263,7 @@ def spectra_of_scans(
     return groups, findings
 
 
-def _what_is_lacking(iso: xr.Dataset, held: float, seen: np.ndarray) -> list[Finding]:
+def _missing_waves(iso: xr.Dataset, held: float, seen: np.ndarray) -> list[Finding]:
     """Return a finding on waves missing from the rms height of the spectrum."""
     name, what = ("Sq", "map") if "Sq" in iso else ("Pq", "profile")
     whole = float(iso[name].mean())
@@ -292,7 +292,7 @@ def _extrapolated_slope(share: float, slope: float, last: float, asked: bool) ->
     return Finding("suspect" if relied_on else "note", text)
 
 
-def _extrapolated(
+def _extrapolate(
     measured: xr.Dataset, options: Json, q_low: float | None
 ) -> tuple[xr.Dataset, list[Finding]]:
     """Extrapolate a spectrum; if no power law fits, keep the measured part only.

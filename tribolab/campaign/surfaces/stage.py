@@ -15,7 +15,7 @@ from tribolab.campaign.store.data_files import digest, write_data
 from tribolab.campaign.surfaces.kept import kept_surface
 from tribolab.campaign.surfaces.plan import PlannedSurface, plan_surfaces
 from tribolab.core.errors import OutputError
-from tribolab.core.provenance import made, named_sources
+from tribolab.core.provenance import made, source_attributes
 from tribolab.core.wording import explain
 from tribolab.records.part_records import SurfaceRecord
 from tribolab.records.parts import Finding, RunOutcome, Source, SurfaceOutcome
@@ -217,5 +217,5 @@ def _root(surface: PlannedSurface, sources: tuple[Source, ...], quality: str) ->
     import xarray as xr
 
     what = f"spectrum and contact of {surface.name}"
-    origin = made(what, **named_sources(sources), config_sha256=surface.config_sha256)
+    origin = made(what, **source_attributes(sources), config_sha256=surface.config_sha256)
     return xr.Dataset(attrs={"surface": surface.name, "quality": quality} | origin)

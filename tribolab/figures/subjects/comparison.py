@@ -174,7 +174,7 @@ def control(table: pd.DataFrame) -> FigureSpec:
     Parameters
     ----------
     table
-        Of one chart, as `tribolab.comparison.history.Watched` gives it: ``when``, ``value``,
+        Of one chart, as `tribolab.comparison.history.InstrumentHistory` gives: ``when``, ``value``,
         ``quantity``, ``unit``, ``baseline``, ``low``, ``high``, ``smoothed``, ``smoothed_low``,
         ``smoothed_high`` and ``signal``.
 

@@ -89,7 +89,7 @@ def calibration_covariance(
     model, posterior, priors
         Of the fit.
     curves
-        Of each measured curve ``uncertainty_part`` counts, from `with_curve_uncertainty`; parts of
+        Of each measured curve ``uncertainty_part`` counts, from `curve_uncertainty`; parts of
         one name are one error of all curves.
     speed_error
         Relative standard error [1] of all sliding speeds together.

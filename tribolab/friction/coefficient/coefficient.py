@@ -16,7 +16,7 @@ from tribolab.core.errors import AnalysisError, Cure, nearest, shown
 from tribolab.core.untyped import Json
 from tribolab.friction.coefficient.reversal import reversal_of
 from tribolab.friction.coefficient.steadiness import judged
-from tribolab.friction.decisions.rejected import beside_rejected
+from tribolab.friction.decisions.rejected import compute_both
 from tribolab.friction.run_out import turn_remark, turned
 from tribolab.friction.segments.limits import MAX_LOST_CONTACT
 from tribolab.friction.statistics import (
@@ -153,7 +153,7 @@ def friction_coefficient(
         raise AnalysisError(f"offset: '{shown(offset)}' is not known{nearest(offset, _OFFSETS)}")
     belong(run, segments)
     settings = Settings(offset, pair_tolerance, zero_uncertainty, rectified, other_zeros)
-    return stamp(beside_rejected(segments, lambda part: _of_segments(run, part, settings)))
+    return stamp(compute_both(segments, lambda part: _of_segments(run, part, settings)))
 
 
 def friction_signal(run: xr.Dataset) -> str:
@@ -172,9 +172,9 @@ def friction_signal(run: xr.Dataset) -> str:
 def _of_segments(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
     signal = friction_signal(run)
     if signal == "friction_force":
-        result = _from_forces(run, segments, settings)
+        result = _force_friction(run, segments, settings)
     elif signal == "friction_coefficient":
-        result = _from_ratio(run, segments, settings)
+        result = _ratio_friction(run, segments, settings)
     else:
         raise AnalysisError(
             f"{_name(run)}: the run has neither 'friction_force' nor 'friction_coefficient'"
@@ -231,7 +231,7 @@ def _column(estimates: list[Estimate], name: str) -> np.ndarray:
     return np.array([getattr(estimate, name) for estimate in estimates], dtype=float)
 
 
-def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
+def _force_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
     time, force = run["time"].values, run["friction_force"].values
     parts = trimmed_slices(run, segments)
     turns = _Turning.of(run, segments)
@@ -305,7 +305,7 @@ def _from_forces(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> x
 
     ratios = estimates_of(records())
     remarks = [said.remark(ratio) for said, ratio in zip(pointwise, ratios, strict=True)]
-    mu, tilt = both.without_tilt(_column(ratios, "mean"), signs.sign, held)
+    mu, tilt = both.remove_tilt(_column(ratios, "mean"), signs.sign, held)
 
     with np.errstate(divide="ignore", invalid="ignore"):
         in_common = np.hypot(mu * shared, idle.error) / pressed
@@ -426,7 +426,7 @@ def _ratio(
     return time, np.divide(force, normal, out=force), _Pointwise(left=left)
 
 
-def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
+def _ratio_friction(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr.Dataset:
     """Return the friction of a run whose instrument records only the coefficient."""
     time, ratio = run["time"].values, run["friction_coefficient"].values
     parts = trimmed_slices(run, segments)
@@ -442,7 +442,7 @@ def _from_ratio(run: xr.Dataset, segments: xr.Dataset, settings: Settings) -> xr
     stated = run.attrs.get("uncertainty", {})
     both = reversal_of(zero, pair, alike, middle, about, None, stated)
     read = about + signs.sign * both.tilted
-    mu, tilt = both.without_tilt(read, signs.sign, alike)
+    mu, tilt = both.remove_tilt(read, signs.sign, alike)
     data = {
         "friction_coefficient": mu,
         "tilt_found": tilt,

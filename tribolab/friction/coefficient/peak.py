@@ -66,10 +66,10 @@ def peak_of_start(
         or not np.isfinite(noise)
     ):
         return Peak(np.nan, np.nan, np.nan, False)
-    smooth, width, clear = _smoothed(ratio, sliding, noise)
+    smooth, width, clear = _smooth(ratio, sliding, noise)
     top = int(np.argmax(smooth))
     if clear:
-        moment, height, error = _of_top(time, ratio, smooth, width, sliding, noise)
+        moment, height, error = _top_peak(time, ratio, smooth, width, sliding, noise)
     else:  # highest value expected from noise in so many independent readings
         near, when = ratio[top : top + width], time[top : top + width]
         height, error, moment = float(near.mean()), noise / np.sqrt(near.size), float(when.mean())
@@ -84,7 +84,7 @@ def peak_of_start(
     )
 
 
-def _of_top(
+def _top_peak(
     time: np.ndarray,
     ratio: np.ndarray,
     smooth: np.ndarray,
@@ -112,7 +112,7 @@ def _of_top(
     return moment, float(smooth[top]), float(np.hypot(noise / np.sqrt(width), between))
 
 
-def _smoothed(ratio: np.ndarray, sliding: float, noise: float) -> tuple[np.ndarray, int, bool]:
+def _smooth(ratio: np.ndarray, sliding: float, noise: float) -> tuple[np.ndarray, int, bool]:
     """Return running means over the fewest readings in which the peak is significant.
 
     Also returns the number of readings, and whether the peak is significant; if not, the means are

@@ -36,7 +36,7 @@ class Reversal(NamedTuple):
     most: np.ndarray
     middle: str
 
-    def without_tilt(
+    def remove_tilt(
         self, ratio: np.ndarray, sign: np.ndarray, load: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return the friction coefficients without tilt, and the tilt [rad]; NaN without a pair.
@@ -60,7 +60,7 @@ class Reversal(NamedTuple):
         >>> tilted = np.tan(np.radians([2.0, 2.0]))
         >>> strokes = Reversal(np.array([0, 0]), tilted, tilted, RESTS)
         >>> both = np.tan(np.arctan(1.4) + np.radians([2.0, -2.0]))
-        >>> mu, tilt = strokes.without_tilt(both, np.array([1, -1]), np.ones(2))
+        >>> mu, tilt = strokes.remove_tilt(both, np.array([1, -1]), np.ones(2))
         >>> both.round(4), mu.round(6), np.degrees(tilt).round(6)
         (array([1.5087, 1.3015]), array([1.4, 1.4]), array([2., 2.]))
         """
@@ -69,14 +69,14 @@ class Reversal(NamedTuple):
             return ratio, np.full(ratio.size, np.nan)
         with np.errstate(divide="ignore", invalid="ignore"):
             all_of_it = ratio + sign * (self.most - self.tilted) / load
-        middle = _of_pairs(np.arctan(ratio), self.pair)
-        tilt = _of_pairs(sign * np.arctan(all_of_it), self.pair)
+        middle = _pair_means(np.arctan(ratio), self.pair)
+        tilt = _pair_means(sign * np.arctan(all_of_it), self.pair)
         # unchanged without tilt, or if one of the strokes has no coefficient
         turned = paired & (self.tilted != 0) & np.isfinite(middle)
         return np.where(turned, np.tan(middle), ratio), tilt
 
 
-def _of_pairs(values: np.ndarray, pair: np.ndarray) -> np.ndarray:
+def _pair_means(values: np.ndarray, pair: np.ndarray) -> np.ndarray:
     """Return the mean over the two strokes of each pair, at both; NaN without a pair."""
     paired = pair >= 0
     sums = np.zeros(int(pair.max(initial=-1)) + 1)
@@ -123,7 +123,7 @@ def reversal_of(
     if zero.method != "half loop" or not (members >= 0).any():
         return Reversal(np.full(pair.size, -1), nothing, nothing, "")
     apart = zero.value - (rests.at(time)[0] if rests is not None else 0.0)
-    most = np.nan_to_num(_of_pairs(apart, members))
+    most = np.nan_to_num(_pair_means(apart, members))
     if rests is not None and _is_tilt(apart, members, load, time, ratio, rests):
         return Reversal(members, most, most, RESTS)
     if rests is not None:  # the zero moved since the rest, or the cell is slightly tilted
@@ -131,7 +131,7 @@ def reversal_of(
     tilt, offset = (float(stated.get(n, {}).get("standard", 0)) for n in ("tilt", "friction_zero"))
     if not tilt:
         return Reversal(members, nothing, most, ZERO)
-    tilting = (np.nan_to_num(_of_pairs(load, members)) * tilt) ** 2
+    tilting = (np.nan_to_num(_pair_means(load, members)) * tilt) ** 2
     share = np.divide(tilting, tilting + offset**2, out=np.zeros(pair.size), where=tilting > 0)
     return Reversal(members, share * most, most, WEIGHED)
 
@@ -155,9 +155,9 @@ def _is_tilt(
     # a cell tilted by an angle t moves the middle by t times the load; by t (1 + mu^2) times if
     # the strokes are weighted by loads measured with the tilt
     ways = (np.zeros(ratio.size), ratio**2)
-    felt = [_of_pairs(load, members) * (1 + _of_pairs(way, members)) for way in ways]
-    at = _of_pairs(time, members)[paired]
-    return any(_is_an_angle((_of_pairs(apart, members) / own)[paired], at) for own in felt)
+    felt = [_pair_means(load, members) * (1 + _pair_means(way, members)) for way in ways]
+    at = _pair_means(time, members)[paired]
+    return any(_is_an_angle((_pair_means(apart, members) / own)[paired], at) for own in felt)
 
 
 def _is_an_angle(angle: np.ndarray, time: np.ndarray) -> bool:

@@ -193,7 +193,7 @@ def _starts(
         )
         first, last, end_of_it = np.searchsorted(time, [back, limit, max(limit, latest)])
         if last - first >= limits.MIN_SAMPLES_OF_PEAK.value:
-            rested = _rested(run, begin, end, int(rest))
+            rested = _rest_duration(run, begin, end, int(rest))
             starts.append(_Start(i, int(first), int(last), int(end_of_it), rested))
     return starts
 
@@ -215,7 +215,7 @@ def _slack(run: xr.Dataset, friction: xr.Dataset, start: np.ndarray) -> np.ndarr
     return first
 
 
-def _rested(run: xr.Dataset, begin: np.ndarray, end: np.ndarray, rest: int) -> float:
+def _rest_duration(run: xr.Dataset, begin: np.ndarray, end: np.ndarray, rest: int) -> float:
     """Return the duration of the rest under load before the motion [s]."""
     time = run.variables["time"].values
     first, last = np.searchsorted(time, [begin[rest], end[rest]])
@@ -240,7 +240,7 @@ def _measured(run: xr.Dataset, friction: xr.Dataset, signal: str, start: _Start)
     load = _load(run, friction, i, part)
     ratio = values / load if load is not None else values
     noise = min(noise_between(ratio), noise_between(ratio[start.last - start.first :]))
-    taken = _taken(ratio, start.last - start.first)
+    taken = _count_readings(ratio, start.last - start.first)
     moment, height, error, stands = peak_of_start(time[:taken], ratio[:taken], sliding, sem, noise)
     pressed = float(median_of_known(load)) if load is not None else np.nan
     return _Peak(
@@ -269,7 +269,7 @@ def _load(run: xr.Dataset, friction: xr.Dataset, i: int, part: slice) -> np.ndar
     return np.where(load > 0.5 * usual, load, np.nan)
 
 
-def _taken(ratio: np.ndarray, usual: int) -> int:
+def _count_readings(ratio: np.ndarray, usual: int) -> int:
     """Return the number of readings of a start: the usual ones, or more while friction rises."""
     taken = usual
     while taken < ratio.size:

@@ -14,7 +14,7 @@ LEFT = "outside the bounds that a person set"
 _MIN_SAMPLES = 2  # samples needed for a mean and its scatter
 
 
-def with_bounds(
+def set_bounds(
     segments: xr.Dataset, place: int, decision: Decision, run: xr.Dataset | None
 ) -> xr.Dataset:
     """Return the segments of a run with new bounds of one of them.
@@ -63,7 +63,7 @@ def with_bounds(
             values = segments[name].values.copy()
             values[place] = row[name].item()
             result[name] = "segment", values, segments[name].attrs
-    return _with_omitted(result, old, new)
+    return _update_omitted(result, old, new)
 
 
 def _refuse_bounds(
@@ -100,7 +100,7 @@ def _refused(segments: xr.Dataset, decision: Decision, why: str) -> AnalysisErro
     return AnalysisError(what, where=segments.attrs.get("source", ""), cure=cure)
 
 
-def _with_omitted(
+def _update_omitted(
     segments: xr.Dataset, old: tuple[float, float], new: tuple[float, float]
 ) -> xr.Dataset:
     """Return segments with omitted intervals adjusted to the new bounds."""

@@ -9,7 +9,7 @@ import xarray as xr
 
 from tribolab.core.errors import AnalysisError, Cure
 from tribolab.core.untyped import Json
-from tribolab.friction.decisions.bounds import with_bounds
+from tribolab.friction.decisions.bounds import set_bounds
 from tribolab.friction.decisions.decision import ACCEPT, NEW_BOUNDS, NOTE, REJECT, Decision
 from tribolab.friction.decisions.rejected import REJECTED, rejected
 from tribolab.friction.zero.of_run import PAIRED
@@ -75,12 +75,12 @@ def decide(
     made = (decisions,) if isinstance(decisions, Decision) else tuple(decisions)
     if not made:
         return segments
-    touched = [_touched(segments, decision) for decision in made]
+    touched = [_affected_segments(segments, decision) for decision in made]
     _refuse_contradictions(segments, made, touched)
     result = segments.copy()
     for decision, places in zip(made, touched, strict=True):
         if decision.action == NEW_BOUNDS:
-            result = with_bounds(result, places[0], decision, run)
+            result = set_bounds(result, places[0], decision, run)
     count = segments.sizes["segment"]
     out = rejected(segments)
     told: list[list[str]] = [[] for _ in range(count)]
@@ -101,7 +101,7 @@ def decide(
     return stamp(result).assign_attrs({DECISIONS: rows})
 
 
-def without_decisions(data: xr.Dataset) -> xr.Dataset:
+def remove_decisions(data: xr.Dataset) -> xr.Dataset:
     """Return segments, or a result on them, without the marks of `decide`.
 
     It undoes notes and acceptance; rejection and new bounds change numbers and cannot be undone.
@@ -111,13 +111,13 @@ def without_decisions(data: xr.Dataset) -> xr.Dataset:
     return bare
 
 
-def _touched(segments: xr.Dataset, decision: Decision) -> list[int]:
+def _affected_segments(segments: xr.Dataset, decision: Decision) -> list[int]:
     """Return the indices of the segments that a decision concerns."""
     every = list(range(segments.sizes["segment"]))
     if decision.interval is None:
         places = every
     else:
-        places = [_found(segments, decision, *decision.interval)]
+        places = [_find_segment(segments, decision, *decision.interval)]
     if "omitted" in segments.dims or decision.action not in (REJECT, NEW_BOUNDS):
         return places
     # results cannot be recomputed without the signals
@@ -128,7 +128,7 @@ def _touched(segments: xr.Dataset, decision: Decision) -> list[int]:
     return places
 
 
-def _found(segments: xr.Dataset, decision: Decision, low: float, high: float) -> int:
+def _find_segment(segments: xr.Dataset, decision: Decision, low: float, high: float) -> int:
     """Return the index of the segment with more than half of an interval."""
     start, stop = segments["start"].values, segments["stop"].values
     common = np.minimum(stop, high) - np.maximum(start, low)

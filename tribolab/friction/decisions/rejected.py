@@ -43,9 +43,7 @@ def kept(data: xr.Dataset) -> xr.Dataset:
     return left.isel(event=np.flatnonzero(own))
 
 
-def beside_rejected(
-    segments: xr.Dataset, compute: Callable[[xr.Dataset], xr.Dataset]
-) -> xr.Dataset:
+def compute_both(segments: xr.Dataset, compute: Callable[[xr.Dataset], xr.Dataset]) -> xr.Dataset:
     """Compute results of accepted segments without the rejected ones, and add the latter.
 
     A stroke that slipped off the sample must not affect the zero of its neighbours; its own result

@@ -153,8 +153,8 @@ def histories_of(run: xr.Dataset, friction: xr.Dataset) -> list[History]:
     many = [part for part in groups if part.size >= limits.MIN_VALUES.value]
     if many:
         cycles = _cycles_of(run)
-        return [_of_strokes(run, friction, seen.of(part), cycles) for part in many]
-    alone = _of_stretches(run, friction)
+        return [_stroke_history(run, friction, seen.of(part), cycles) for part in many]
+    alone = _stretch_history(run, friction)
     return [] if alone is None else [alone]
 
 
@@ -166,7 +166,7 @@ def _cycles_of(run: xr.Dataset) -> xr.Dataset | None:
         return None
 
 
-def _of_strokes(
+def _stroke_history(
     run: xr.Dataset, friction: xr.Dataset, seen: Observations, cycles: xr.Dataset | None
 ) -> History:
     """Return the history of strokes, or of pairs of strokes, at one speed."""
@@ -189,7 +189,7 @@ def _of_strokes(
     return _history(run, friction, speed, counted, time, distance, seen.mean, work)
 
 
-def _of_stretches(run: xr.Dataset, friction: xr.Dataset) -> History | None:
+def _stretch_history(run: xr.Dataset, friction: xr.Dataset) -> History | None:
     """Return the history of sliding in one direction at one speed; None for other runs."""
     speed, direction = friction["sliding_speed"].values, friction["direction"].values
     start, stop = friction["start"].values, friction["stop"].values

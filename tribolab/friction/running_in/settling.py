@@ -138,7 +138,7 @@ def _settling(values: np.ndarray) -> Settling:
     unfinished = Settling(NOT_FINISHED, size, size, np.nan, first)
     if constant is None or np.exp(-1 / constant) > limits.NOT_FINISHED.value:
         return unfinished
-    constant = _refined(fit, constant)
+    constant = _refine(fit, constant)
     rest, coefficients, design = fit.rest(np.exp(-time / constant))
     asymptote = middle + scale * float(coefficients[0])
     tail = values[int(min(0.7, 4 * constant) * size) :]
@@ -175,7 +175,7 @@ def _best_course(fit: _Fit) -> tuple[float | None, float]:
     return times[best], squares[best]
 
 
-def _refined(fit: _Fit, constant: float) -> float:
+def _refine(fit: _Fit, constant: float) -> float:
     """Return the time constant with the least squares, by golden-section search."""
 
     def squares(time: float) -> float:

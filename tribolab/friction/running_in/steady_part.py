@@ -13,7 +13,7 @@ from tribolab.friction.segments.stretches import name_of
 DISCARDED, NOT_STEADY = "discarded", "not steady"
 
 
-def without_start(segments: xr.Dataset, discard: str) -> xr.Dataset:
+def discard_start(segments: xr.Dataset, discard: str) -> xr.Dataset:
     """Return segments without the beginning of the run.
 
     Parameters
@@ -50,7 +50,7 @@ def without_start(segments: xr.Dataset, discard: str) -> xr.Dataset:
             )
         stroke = int(2 * amount)
         moment = start[stroke] if stroke < start.size else np.inf
-    return _between(segments, float(moment), np.inf, DISCARDED)
+    return _select_interval(segments, float(moment), np.inf, DISCARDED)
 
 
 def steady_segments(run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset) -> xr.Dataset:
@@ -73,11 +73,11 @@ def steady_segments(run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset)
         start, stop, end = history.places(history.time)
         first = -np.inf if history.settling.start == 0 else start
         last = np.inf if stop >= end else stop
-        part = _between(part, first, last, NOT_STEADY)
+        part = _select_interval(part, first, last, NOT_STEADY)
     return part
 
 
-def _between(segments: xr.Dataset, first: float, last: float, reason: str) -> xr.Dataset:
+def _select_interval(segments: xr.Dataset, first: float, last: float, reason: str) -> xr.Dataset:
     """Return segments between two times [s]; the rest becomes omitted."""
     begin, end = segments["trimmed_start"].values, segments["trimmed_stop"].values
     new_begin, new_end = np.maximum(begin, first), np.minimum(end, last)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from tribolab.arrays.broadcasting import as_stated, of_runs, over_dims
+from tribolab.arrays.broadcasting import of_runs, over_dims, stated_value
 from tribolab.arrays.chunks import one_by_one
 from tribolab.arrays.medians import median
 from tribolab.core.errors import AnalysisError, UnitError, shown
@@ -135,7 +135,7 @@ def find_segments(
     >>> found.direction.values.tolist(), found.omitted_reason.values.tolist()
     ([1, -1], ['at rest', 'at rest', 'at rest'])
     """
-    share = _share(as_stated(trim))
+    share = _share(stated_value(trim))
     if "time" not in run.dims or run.sizes["time"] == 0:
         raise AnalysisError(f"{name_of(run)}: the run has no samples, so no segments can be found")
     shortest = to_si(min_duration, "s", name="min_duration")

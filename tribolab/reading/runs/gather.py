@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tribolab.arrays.chunks import chosen, concatenated
+from tribolab.arrays.chunks import chosen, concatenate_parts
 from tribolab.core.errors import ReadError, shown
 from tribolab.core.provenance import CONVENTIONS, as_text, history_line
 from tribolab.core.untyped import Json
@@ -166,7 +166,7 @@ def _columns(contents: list[Content], dialect: Dialect) -> dict[str, np.ndarray]
         columns = dict(pieces[0].columns)
     else:
         columns = {
-            name: concatenated(
+            name: concatenate_parts(
                 [
                     piece.columns.get(name, np.full(length, np.nan))
                     for piece, length in zip(pieces, lengths, strict=True)

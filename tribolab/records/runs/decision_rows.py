@@ -44,7 +44,7 @@ def decision_rows(
     )
 
 
-def not_applied(decisions: Iterable[Decision]) -> tuple[DecisionRow, ...]:
+def unapplied_decisions(decisions: Iterable[Decision]) -> tuple[DecisionRow, ...]:
     """Return the decisions on a run that failed."""
     return tuple(DecisionRow(**decision.plain(), effect=_NOT_APPLIED) for decision in decisions)
 
@@ -73,7 +73,7 @@ def _effect(
     if action == "reject":
         return f"{many(count, 'segment')} rejected"
     if action == "accept":
-        return _accepted(decision, checks)
+        return _accepted_checks(decision, checks)
     if action == "bounds":
         place = decision["segments"][0] - 1
         new, old = (
@@ -84,7 +84,7 @@ def _effect(
     return ""
 
 
-def _accepted(decision: Mapping[str, Any], checks: Sequence[Mapping[str, Any]]) -> str:
+def _accepted_checks(decision: Mapping[str, Any], checks: Sequence[Mapping[str, Any]]) -> str:
     """Return the checks against whose objection something was accepted, as text."""
     said = [(row["check"], str(row.get("decision", ""))) for row in checks]
     by = f", {decision['author']}, "  # authors of this decision

@@ -19,9 +19,9 @@ from tribolab.friction.zero.of_run import PAIRED
 from tribolab.records.frames import friction_columns, plain_rows
 from tribolab.records.runs.decision_rows import decision_rows
 from tribolab.records.runs.run_record import CheckRow, Highlight, LeftOut, RunFacts, Waveform
-from tribolab.records.runs.same_speed import of_one_speed
+from tribolab.records.runs.same_speed import segments_by_speed
 from tribolab.records.runs.traces import flagged_spans
-from tribolab.records.runs.trends import not_decided
+from tribolab.records.runs.trends import undecided_segments
 from tribolab.records.wording import SPREAD_OF, plain_value
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def facts_of(
     """
     decided = () if as_found is None else decision_rows(friction, as_found, findings_of(run))
     return replace(
-        _of_record(run, friction_facts(friction)),
+        _record_facts(run, friction_facts(friction)),
         decisions=decided,
         position_range_m=position_range(segments),
         stick_slip=stick_slip_of(slip),
@@ -79,7 +79,7 @@ def main_quantity(friction: xr.Dataset) -> str:
     return "friction_coefficient"
 
 
-def _of_record(run: xr.Dataset, facts: RunFacts) -> RunFacts:
+def _record_facts(run: xr.Dataset, facts: RunFacts) -> RunFacts:
     """Return the facts extended by those of the run itself."""
     time = np.asarray(run["time"], float)
     attrs = run.attrs
@@ -148,12 +148,12 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
     middle = friction.attrs.get("stroke_middle")
     told = value[finite]
     if middle is not None:  # one of hundreds of strokes has little weight
-        told = np.array([value[part].mean() for part in of_one_speed(speed, finite)])
+        told = np.array([value[part].mean() for part in segments_by_speed(speed, finite)])
     return RunFacts(
         quantity=name,
         offset=str(friction.attrs.get("offset", "")),
         trim=plain_value(friction.attrs.get("trim")) if middle is None else None,
-        velocity_source=_speed_told(friction.attrs),
+        velocity_source=_speed_text(friction.attrs),
         sliding_speed_min_m_s=plain_value(np.nanmin(speed, initial=np.inf)),
         sliding_speed_max_m_s=plain_value(np.nanmax(speed, initial=-np.inf)),
         value_min=plain_value(told.min()) if told.size else None,
@@ -165,7 +165,7 @@ def friction_facts(friction: xr.Dataset) -> RunFacts:
     )
 
 
-def _speed_told(attrs: Mapping[str, Any]) -> str:
+def _speed_text(attrs: Mapping[str, Any]) -> str:
     """Return the source of the speed, and the part of each stroke used, as text."""
     source = str(attrs.get("velocity_source", ""))
     if source == "recorded":
@@ -251,7 +251,7 @@ def drift_of(friction: xr.Dataset, value: np.ndarray) -> float | None:
     change = change / typical.mean()
     chance, samples = (values_of(friction, n, size) for n in ("trend_p_value", "effective_samples"))
     sure = chance < chance_limit(samples)
-    if not sure.any() and not_decided(change, chance, samples).any():
+    if not sure.any() and undecided_segments(change, chance, samples).any():
         return None
     return float(np.nanmax(np.abs(change[sure]), initial=0.0))
 

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from tribolab.core.wording import many, percent
-from tribolab.records.runs.same_speed import of_one_speed
+from tribolab.records.runs.same_speed import segments_by_speed
 
 _MIN_COMMON_SPEEDS = 3  # speeds common to several steps
 _DIFFERS = 0.1  # relative difference of friction between steps
@@ -35,7 +35,7 @@ def steps_that_differ(friction: xr.Dataset, values: np.ndarray) -> str:
         return ""
     speed, step = (np.asarray(friction[name], float) for name in ("sliding_speed", "step"))
     apart = []
-    for part in of_one_speed(speed, np.isfinite(values) & np.isfinite(step)):
+    for part in segments_by_speed(speed, np.isfinite(values) & np.isfinite(step)):
         means = [values[part][step[part] == each].mean() for each in np.unique(step[part])]
         if len(means) > 1:
             apart.append(float(np.ptp(means)) / abs(float(np.mean(means))))

@@ -17,7 +17,7 @@ from tribolab.friction.running_in.kinds import (
 )
 from tribolab.records.annotations import Natural, means, one_of
 from tribolab.records.parts import Row
-from tribolab.records.wording import with_error
+from tribolab.records.wording import error_text
 
 _MATTERS = 0.02  # change of friction over its mean; smaller than the scatter of repeats
 _COUNTED = "unit of averaging: cycles, single strokes, or intervals of equal duration"
@@ -100,7 +100,7 @@ class RunningIn:
                 f"{number(last or 0.0)} over {whole}, and does not become steady. Its mean depends "
                 "on the length of the run"
             )
-        said = with_error(steady, self.steady_friction_coefficient_U95)
+        said = error_text(steady, self.steady_friction_coefficient_U95)
         parts = []
         if self._moves(first):
             parts.append(

@@ -7,7 +7,7 @@ import numpy as np
 _SAME_SPEED = 0.05  # relative difference of speed within a group
 
 
-def of_one_speed(speed: np.ndarray, known: np.ndarray) -> list[np.ndarray]:
+def segments_by_speed(speed: np.ndarray, known: np.ndarray) -> list[np.ndarray]:
     """Return the indices of segments grouped by speed, the lowest speed first.
 
     Parameters
@@ -20,7 +20,7 @@ def of_one_speed(speed: np.ndarray, known: np.ndarray) -> list[np.ndarray]:
     Examples
     --------
     >>> speed = np.array([1.0, 2.0, 1.01, np.nan])
-    >>> [group.tolist() for group in of_one_speed(speed, np.ones(4, bool))]
+    >>> [group.tolist() for group in segments_by_speed(speed, np.ones(4, bool))]
     [[0, 2], [1]]
     """
     counted = known & (speed > 0)

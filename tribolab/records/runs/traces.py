@@ -16,7 +16,7 @@ from tribolab.core.wording import speed_text
 from tribolab.figures.envelope import envelope_index
 from tribolab.figures.signals import Signal, main_signal
 from tribolab.qc.flags import FAIL, SUSPECT
-from tribolab.records.packed import Clock, clock_of, packed_points
+from tribolab.records.packed import Clock, clock_of, pack_points
 from tribolab.records.parts import FlaggedSpan, PageTrace
 from tribolab.units.quantities import quantity
 
@@ -42,7 +42,7 @@ def page_trace(
     fine_size: int,
 ) -> PageTrace:
     """Trace of a run for the page; parameters as of `decimated_trace` and `finer_trace`."""
-    shared = shared_by_signals(run, friction)
+    shared = shared_trace(run, friction)
     return PageTrace(
         script_json(decimated_trace(run, segments, friction, points, shared)),
         finer_trace(run, segments, friction, points, fine_size, shared),
@@ -56,7 +56,7 @@ class SharedTrace(NamedTuple):
     main: Signal
 
 
-def shared_by_signals(run: xr.Dataset, friction: xr.Dataset | None) -> SharedTrace:
+def shared_trace(run: xr.Dataset, friction: xr.Dataset | None) -> SharedTrace:
     """Return the data that all traces of a run share.
 
     Raises
@@ -127,7 +127,7 @@ def decimated_trace(
         If the run has neither a friction force nor a friction coefficient.
     """
     time = np.asarray(run["time"], float)
-    shared = shared or shared_by_signals(run, friction)
+    shared = shared or shared_trace(run, friction)
     return {
         "length_s": float(time[-1] - time[0]) if time.size else 0.0,
         "samples": int(time.size),
@@ -165,7 +165,7 @@ def finer_trace(
         ``complete`` and ``signals`` as of `decimated_trace`, compressed, as JSON that may stand in
         a script element; "" if that trace is complete or no finer one fits.
     """
-    shared = shared or shared_by_signals(run, friction)
+    shared = shared or shared_trace(run, friction)
     finer = min(_FINEST, int(size / _FINE_CHARACTERS)) if run.sizes["time"] > points else 0
     while finer > points:
         text = script_json(_signals(run, segments, shared, finer))
@@ -200,7 +200,7 @@ def _signals(run: xr.Dataset, segments: xr.Dataset, shared: SharedTrace, points:
                 "label": _LABELS.get(name, known.long_name),
                 "unit": "" if known.unit == "1" else known.unit,
                 "linear_below": below,
-                **packed_points(clock.places(chosen), levels, deflate=True),
+                **pack_points(clock.places(chosen), levels, deflate=True),
             }
         )
     return {

@@ -11,7 +11,7 @@ from tribolab.core.wording import many, percent
 from tribolab.friction.coefficient.steadiness import LIMITS, undecided
 
 
-def not_decided(change: np.ndarray, chance: np.ndarray, samples: np.ndarray) -> np.ndarray:
+def undecided_segments(change: np.ndarray, chance: np.ndarray, samples: np.ndarray) -> np.ndarray:
     """Return a mask of segments whose trend is undecided, as in the check on steadiness."""
     return undecided(change, chance, samples, LIMITS)
 
@@ -93,7 +93,7 @@ def _trends(
     if not (typical > 0).any():
         return None
     change, chance = change / typical.mean(), column("trend_p_value")
-    return change, chance, not_decided(change, chance, column("effective_samples"))
+    return change, chance, undecided_segments(change, chance, column("effective_samples"))
 
 
 def _trend_text(change: float, chance: float, is_open: bool) -> tuple[float, str]:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from tribolab.core.wording import Count, number
 from tribolab.records.parts import Row, number_of
-from tribolab.records.wording import NORMAL, with_error
+from tribolab.records.wording import NORMAL, error_text
 
 _BEND = 0.1  # share of Pq below which a circle is negligible
 _MOST = 5  # surfaces that are listed
@@ -77,10 +77,10 @@ def roughness_in_words(rows: Iterable[tuple[str, Row]]) -> list[str]:
         if number_of(row, "Sq_m") is not None:  # for a map: over its area, not its rows
             form = form_in_words(row, radius=False)
             heading = f"Sq ({form})" if form else "Sq"
-            said = _with_mean_deviation(row, "Sq", "Sa")
+            said = _roughness_text(row, "Sq", "Sa")
         elif number_of(row, "Rq_m") is not None:
-            said = _with_mean_deviation(row, "Rq", "Ra")
-            heading = f"Rq{' ± U95' if '±' in said else ''} ({_evaluated(row)})"
+            said = _roughness_text(row, "Rq", "Ra")
+            heading = f"Rq{' ± U95' if '±' in said else ''} ({_evaluation_text(row)})"
         else:
             continue
         told.setdefault(heading, []).append(f"{name} {said}")
@@ -112,7 +112,7 @@ def roughness_u95(row: Row, name: str) -> float:
     return max(float(special.stdtrit(freedom, 0.975)) * scatter, NORMAL * gaps)
 
 
-def _evaluated(row: Row) -> str:
+def _evaluation_text(row: Row) -> str:
     """Return the cut-off and form removed from a profile, and its sampling lengths, as text."""
     cut, lengths = number_of(row, "lambda_c_m"), number_of(row, "sampling_lengths")
     parts = [form_in_words(row, radius=False)]
@@ -122,10 +122,10 @@ def _evaluated(row: Row) -> str:
     return ", ".join(filter(None, parts))
 
 
-def _with_mean_deviation(row: Row, quadratic: str, mean: str) -> str:
+def _roughness_text(row: Row, quadratic: str, mean: str) -> str:
     """Return rms roughness with its error, followed by the mean deviation, as text."""
     value, behind = (number_of(row, f"{name}_m") for name in (quadratic, mean))
     error = roughness_u95(row, quadratic)
     scaled = 1e6 * (value or 0.0)
-    said = with_error(scaled, 1e6 * error) if error else f"{scaled:.3g}"
+    said = error_text(scaled, 1e6 * error) if error else f"{scaled:.3g}"
     return f"{said} µm" + (f" ({mean} {1e6 * behind:.3g} µm)" if behind is not None else "")

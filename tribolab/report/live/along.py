@@ -13,7 +13,7 @@ from tribolab.friction.running_in.kinds import STRETCHES
 from tribolab.records.parts import BAD, number_of
 from tribolab.records.runs.run_record import RunRecord
 from tribolab.records.runs.running_in_record import RunningIn
-from tribolab.records.wording import with_error
+from tribolab.records.wording import error_text
 
 MAX_RUNS = 8  # that are shown
 
@@ -80,11 +80,11 @@ def _title(runs: Sequence[Along]) -> str:
     if len(runs) > 1:
         return "Friction along the runs"
     (settled,) = (run.settled for run in runs)
-    mean = with_error(settled.mean_friction_coefficient, settled.mean_friction_coefficient_U95)
+    mean = error_text(settled.mean_friction_coefficient, settled.mean_friction_coefficient_U95)
     if settled.is_unsteady:
         return f"not steady at the end of the run; mean over all µ = {mean}"
     steady = settled.steady_friction_coefficient, settled.steady_friction_coefficient_U95
-    return f"steady µ = {with_error(*steady)}; mean over all {mean}"
+    return f"steady µ = {error_text(*steady)}; mean over all {mean}"
 
 
 def _series(run: Along, runs: Sequence[Along], column: str, ends: tuple[str, str]) -> list[Series]:
@@ -101,7 +101,7 @@ def _series(run: Along, runs: Sequence[Along], column: str, ends: tuple[str, str
     start, stop = (getattr(settled, end) for end in ends)
     level, error = settled.steady_friction_coefficient, settled.steady_friction_coefficient_U95
     if None not in (start, stop, level):
-        words = f"{outcome.name}: steady µ = {with_error(level, error)}"
+        words = f"{outcome.name}: steady µ = {error_text(level, error)}"
         drawn.append(
             Series("steady", [start, stop], [level] * 2, "dashed", hover=(words,), **labels | _INK)
         )

@@ -10,7 +10,7 @@ from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, SeriesLabels,
 from tribolab.figures.subjects.curves import FRICTION_AXIS, SPEED_AXIS
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import number_of
-from tribolab.records.wording import with_error
+from tribolab.records.wording import error_text
 from tribolab.report.live.curves import (
     FrictionOverSpeed,
     labels_of,
@@ -93,7 +93,7 @@ def _shares(curve: CurveRecord, label: str, colour: int) -> Series | None:
         error=errors,
         hover=[
             f"v = {plain_speed(number_of(row, 'sliding_speed_m_s'))}\n"
-            f"{with_error(share, error)} of {number(top)}, the highest µ"
+            f"{error_text(share, error)} of {number(top)}, the highest µ"
             for row, share, error in zip(rows, shares, errors, strict=True)
         ],
         link=curve.outcome.run_names[:1],

@@ -16,7 +16,7 @@ from tribolab.figures.spec import FigureSpec, Panel, Series, SeriesLabels
 from tribolab.figures.subjects.curves import stribeck
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome, number_of
-from tribolab.records.wording import with_error
+from tribolab.records.wording import error_text
 from tribolab.report.document.models import ModelRow
 from tribolab.report.live.points import RunPoint, at_speed, of_curve, point_error, told_point
 from tribolab.report.live.record import Band
@@ -215,7 +215,7 @@ def _as_found(curve: CurveRecord) -> list[xr.Dataset]:
     rows = [row for row in curve.points_as_found if row[_MU] is not None]
     words = [
         f"{_AS_FOUND}\nv = {plain_speed(number_of(row, _SPEED))}\n"
-        f"µ = {with_error(number_of(row, _MU), number_of(row, f'{_MU}_U95'))}"
+        f"µ = {error_text(number_of(row, _MU), number_of(row, f'{_MU}_U95'))}"
         for row in rows
     ]
     return [_dataset(curve.outcome, rows, _AS_FOUND, hover=words)] if rows else []

@@ -17,7 +17,7 @@ from tribolab.figures.subjects.film import film_profiles, lubrication_factors
 from tribolab.figures.subjects.mixed import mixed_curve, shear_stress
 from tribolab.records.models.model_words import shear_stress_u95, stress_interval
 from tribolab.records.parts import number_of
-from tribolab.records.wording import with_error
+from tribolab.records.wording import error_text
 from tribolab.report.document.models import ModelRow
 from tribolab.report.live.curves import system_name
 from tribolab.report.live.record import Band
@@ -105,7 +105,7 @@ def shear_stress_figure(models: Sequence[ModelRow], surfaces: Sequence[str]) -> 
 def _told(row: ModelRow, fit: Mapping[str, Any], name: str) -> str:
     error = "corrected_shear_stress_error_Pa" if name else "shear_stress_total_error_Pa"
     u95 = shear_stress_u95(fit, fit[error]) * _MPA
-    value = with_error(fit[f"{name}shear_stress_Pa"] * _MPA, u95, " MPa")
+    value = error_text(fit[f"{name}shear_stress_Pa"] * _MPA, u95, " MPa")
     lines = [f"load {force_text(row.model.normal_force)}", f"σ = {value} (U95)"]
     if not name:
         interval = stress_interval(fit["shear_stress_low_Pa"], fit["shear_stress_high_Pa"])

@@ -13,7 +13,7 @@ from tribolab.friction.points.strokes import run_means
 from tribolab.friction.statistics import NORMAL
 from tribolab.friction.zero.of_run import PAIRED
 from tribolab.records.parts import Row, number_of
-from tribolab.records.wording import with_error
+from tribolab.records.wording import error_text
 from tribolab.report.plain import plain_speed
 
 _NAMED = 4  # runs, at a point
@@ -169,7 +169,7 @@ def told_point(
     `says` is what its uncertainty does not hold.
     """
     speed, mu = row["sliding_speed_m_s"], row["friction_coefficient"]
-    lines = [f"v = {plain_speed(speed)}", f"µ = {with_error(mu, error.size)} (U95, {error.holds})"]
+    lines = [f"v = {plain_speed(speed)}", f"µ = {error_text(mu, error.size)} (U95, {error.holds})"]
     runs = int(row.get("runs") or 1)
     if runs > 1:
         lines.append(f"mean of {runs} runs")

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from tribolab.core.wording import force_text, many
-from tribolab.records.wording import NORMAL, with_error
+from tribolab.records.wording import NORMAL, error_text
 from tribolab.report.live.curves import system_name
 from tribolab.report.plain import listed
 
@@ -91,7 +91,7 @@ def oscillation_text(mode: Mapping[str, Any]) -> str:
         return f"{of} alone {verb} like stick-slip, as noise does now and then."
     text = f"Stick-slip in {of}."
     if mode["scaling_exponent"] is not None:
-        power = with_error(mode["scaling_exponent"], NORMAL * mode["scaling_error"])
+        power = error_text(mode["scaling_exponent"], NORMAL * mode["scaling_error"])
         scaling = str(mode["scaling"])
         text += f" {scaling[:1].upper()}{scaling[1:]} (frequency goes with speed to the {power})."
     return text

@@ -10,7 +10,7 @@ from tribolab.records.models.model_words import is_described, stress_interval
 from tribolab.records.parts import Row, number_of
 from tribolab.records.runs.running_in_record import length_text
 from tribolab.records.surfaces.roughness_words import roughness_u95
-from tribolab.records.wording import NORMAL, with_error
+from tribolab.records.wording import NORMAL, error_text
 from tribolab.report.live.curves import system_name
 from tribolab.report.live.points import point_error
 from tribolab.report.page.in_words import by_speed, half_speed
@@ -37,7 +37,7 @@ def friction_numbers(document: Mapping[str, Any]) -> KeyTable:
     """Return what each measured curve amounts to: highest and lowest friction, and the model."""
     models = {model["curve"]: model["fit"] for model in document.get("models", ())}
     rough = {
-        surface["name"]: with_error(
+        surface["name"]: error_text(
             1e6 * surface["roughness"]["Rq_m"],
             None if (u := roughness_u95(surface["roughness"], "Rq")) is None else 1e6 * u,
         )
@@ -78,7 +78,7 @@ def _extremes(known: Sequence[Mapping[str, Any]]) -> list[str]:
 
 
 def _at_speed(row: Mapping[str, Any]) -> str:
-    mu = with_error(row["friction_coefficient"], point_error(row, ()).size)
+    mu = error_text(row["friction_coefficient"], point_error(row, ()).size)
     return f"{mu} at {plain_speed(row['sliding_speed_m_s'])}"
 
 
@@ -121,7 +121,7 @@ _MEANS = ("steady", "mean")
 
 def _mean(settled: Mapping[str, Any], name: str) -> str:
     name = f"{name}_friction_coefficient"
-    return with_error(settled[name], settled[f"{name}_U95"])
+    return error_text(settled[name], settled[f"{name}_U95"])
 
 
 def roughness_numbers(document: Mapping[str, Any]) -> KeyTable:
@@ -135,8 +135,8 @@ def roughness_numbers(document: Mapping[str, Any]) -> KeyTable:
             cells = (
                 surface["name"],
                 *(_micrometres(row, name) for name in ("Ra", "Rq", "Rz")),
-                with_error(row["rms_slope"], None),
-                with_error(row["hurst_exponent"], _u95(row["hurst_exponent_standard_error"])),
+                error_text(row["rms_slope"], None),
+                error_text(row["hurst_exponent"], _u95(row["hurst_exponent_standard_error"])),
                 f"{row['scans']:g}",
             )
         rows.append(KeyRow(cells, surface["name"]))
@@ -150,6 +150,6 @@ def _u95(standard_error: float | None) -> float | None:
 
 def _micrometres(row: Row, name: str) -> str:
     value, error = number_of(row, f"{name}_m"), roughness_u95(row, name)
-    return with_error(
+    return error_text(
         None if value is None else 1e6 * value, None if error is None else 1e6 * error
     )

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from tribolab.core.wording import MINUS
 from tribolab.records.judgement import is_bad, status_word, why
-from tribolab.records.wording import UNITS, with_error
+from tribolab.records.wording import UNITS, error_text
 from tribolab.report.live.points import RunPoint, at_speed
 from tribolab.report.page.sparkline import spark_path
 from tribolab.report.plain import plain_speed
@@ -79,7 +79,7 @@ def listed_runs(
     for place, run in enumerate(runs, start=1):
         name, unit = run["name"], UNITS.get(run["quantity"] or "", "")
         values = tuple(
-            (with_error(mu, None, unit) if mu is not None else "", _signed(deviation))
+            (error_text(mu, None, unit) if mu is not None else "", _signed(deviation))
             for mu, deviation in zip(means[name], off[name], strict=True)
         )
         spark = spark_path(traces[name]) if name in traces else ""

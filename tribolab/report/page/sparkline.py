@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from tribolab.records.packed import unpacked_points
+from tribolab.records.packed import unpack_points
 
 WIDTH, HEIGHT = 150, 30  # of the picture, in its own units
 _COLUMNS = 50  # each with its lowest and its highest value
@@ -21,7 +21,7 @@ def spark_path(trace: Mapping[str, Any]) -> str:
     trace
         As `tribolab.records.runs.traces.decimated_trace` has it.
     """
-    places, values = unpacked_points(trace["signals"][0])
+    places, values = unpack_points(trace["signals"][0])
     knots, at_s = trace["clock"]
     known = np.isfinite(values)
     if known.sum() < 2 or not trace["length_s"] > 0:

@@ -17,7 +17,7 @@ import jinja2.bccache
 from markupsafe import Markup
 
 from tribolab.core import wording as words
-from tribolab.core.provenance import without_controls
+from tribolab.core.provenance import escape_controls
 from tribolab.core.untyped import Json
 from tribolab.core.wording import aligned, force_text, number
 from tribolab.records import judgement, wording
@@ -135,7 +135,7 @@ def _printed(value: object) -> object:
     if not isinstance(value, str):
         return value
     kind = Markup if isinstance(value, Markup) else str
-    return kind(without_controls(value))
+    return kind(escape_controls(value))
 
 
 def environment(folder: Path) -> jinja2.Environment:
@@ -175,7 +175,7 @@ def environment(folder: Path) -> jinja2.Environment:
     }
     jinja.tests["is_bad"] = judgement.is_bad
     jinja.globals |= {
-        "with_error": wording.with_error,
+        "with_error": wording.error_text,
         "span": words.span,
         "load_text": words.load_text,
         "judge": judgement.judge,

@@ -125,7 +125,7 @@ def _joined(values: Iterable[float]) -> str:
     return "; ".join(f"{value:.9g}" for value in values)
 
 
-def _changed(scans: xr.Dataset, height: np.ndarray, **attrs: float | str) -> xr.Dataset:
+def _change_heights(scans: xr.Dataset, height: np.ndarray, **attrs: float | str) -> xr.Dataset:
     """Return scans with other heights, rounded to the gauge's resolution."""
     digits = np.round(height / 1e-9) * 1e-9
     return scans.assign(height=scans.height.copy(data=digits)).assign_attrs(attrs)
@@ -140,7 +140,7 @@ def _dropouts(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
     row = _one(scans, rng)
     for first in rng.integers(0, height.shape[1] - 200, 6):
         height[row, first : first + int(rng.integers(20, 200))] = np.nan
-    return _changed(scans, height)
+    return _change_heights(scans, height)
 
 
 def _lifted(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
@@ -148,7 +148,7 @@ def _lifted(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
     points = height.shape[1]
     first = int(rng.integers(0, points // 2))
     height[_one(scans, rng), first : first + points // 4] = np.nan
-    return _changed(scans, height)
+    return _change_heights(scans, height)
 
 
 def _steps(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
@@ -157,25 +157,25 @@ def _steps(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
     largest = np.abs(np.diff(height[row])).max()
     for place in rng.integers(1000, height.shape[1] - 1000, 2):
         height[row, place:] += rng.choice([-1, 1]) * rng.uniform(5, 10) * largest
-    return _changed(scans, height)
+    return _change_heights(scans, height)
 
 
 def _saturation(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
     height = scans.height.values
     top = np.quantile(height, 1 - rng.uniform(0.03, 0.1))
-    return _changed(scans, np.minimum(height, top))
+    return _change_heights(scans, np.minimum(height, top))
 
 
 def _tilt(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
     slope = np.tan(np.radians(rng.uniform(6.0, 12.0))) * rng.choice([-1, 1])
-    return _changed(scans, scans.height.values + slope * scans.x.values)
+    return _change_heights(scans, scans.height.values + slope * scans.x.values)
 
 
 def _blunt_tip(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
     radius = float(rng.uniform(50e-6, 100e-6))
     height = touch(scans.height.values, scans.attrs["pitch_m"], radius)
     noise = 5e-9 * rng.standard_normal(height.shape)
-    return _changed(scans, height + noise, tip_radius_m=radius)
+    return _change_heights(scans, height + noise, tip_radius_m=radius)
 
 
 def _uneven(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
@@ -185,7 +185,7 @@ def _uneven(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
     places *= x[-1] / places[-1]
     rows = [np.interp(places, x, row) for row in scans.height.values]
     brought = [even("scan", places, row) for row in rows]
-    resampled = _changed(scans, np.stack([b[1] for b in brought]), **brought[0][2])
+    resampled = _change_heights(scans, np.stack([b[1] for b in brought]), **brought[0][2])
     return resampled.assign_coords(recorded_x=("x", places))  # as written in the file
 
 
@@ -200,7 +200,7 @@ def _odd_scan(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
     strange = simulate(other, 1, seed=rng, length=length).height.values[0]
     height = scans.height.values.copy()
     height[_one(scans, rng)] = strange
-    return _changed(scans, height)
+    return _change_heights(scans, height)
 
 
 def _wrong_results(scans: xr.Dataset, rng: np.random.Generator) -> xr.Dataset:
