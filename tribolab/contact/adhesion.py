@@ -128,7 +128,7 @@ def adhesion_by_works(
     works_of_adhesion: Sequence[float],
     area: AreaTheory = "persson",
 ) -> list[xr.Dataset]:
-    """`adhesion` for each of several works of adhesion, in one go: half as long as one by one.
+    """Adhesion results for several works of adhesion in one calculation.
 
     Parameters
     ----------
@@ -184,7 +184,7 @@ def _adhesion(
     area: AreaTheory,
     solved: Balance,
 ) -> xr.Dataset:
-    """Say what the solution means: areas at the pressures, and those of another theory."""
+    """Dataset of a solution: areas at the pressures, also by another theory."""
     flat = over.values.ravel()
     pushed = np.maximum(flat, surface.small_pressure)
     free, touching = surface.without_adhesion(pushed, area), solved.area.copy()
@@ -240,7 +240,7 @@ def macroscopic_work_of_adhesion(
     nodes: int = _NODES,
     max_iterations: int = _ITERATIONS,
 ) -> xr.Dataset:
-    """Effective work of adhesion at magnification 1 and vanishing load: the verdict on pull-off.
+    """Effective work of adhesion at magnification 1 and zero load, which decides on pull-off.
 
     Parameters
     ----------
@@ -305,7 +305,7 @@ def macroscopic_work_of_adhesion(
 
 
 def finite_pressures(pressure: str | AnyPressure) -> xr.DataArray:
-    """Return pressures as a DataArray, none of them infinite or negative."""
+    """Return pressures as a DataArray; AnalysisError if infinite or negative."""
     over = labelled(pressure, "pressure")
     wrong = over.values[(over.values < 0) | np.isinf(over.values)]
     if wrong.size:
@@ -317,6 +317,6 @@ def finite_pressures(pressure: str | AnyPressure) -> xr.DataArray:
 
 
 def pressure_coords(over: xr.DataArray) -> dict[Hashable, Any]:
-    """Coordinates of the pressures, and the pressures themselves."""
+    """Coordinates of the pressures, and the pressures."""
     kept = {name: values for name, values in over.coords.items() if name != "pressure"}
     return {**kept, "pressure": (over.dims, over.values)}

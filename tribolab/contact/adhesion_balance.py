@@ -1,4 +1,4 @@
-"""The energy balance of adhesion: Eqs. (11) and (12) solved together with the contact area P(q).
+"""Energy balance of adhesion: Eqs. (11) and (12) solved with the contact area P(q).
 
 Differentiated, Eq. (11) runs forward in wavenumber: the binding energy g(q) = gamma_eff P grows by
 the elastic energy that finer roughness would cost, and P(q) is lost where the diffusing stress
@@ -51,7 +51,7 @@ class Balance(NamedTuple):
 
 @dataclass(frozen=True)
 class Interface:
-    """A rough surface on an elastic solid, prepared on nodes of wavenumber for Eq. (11)."""
+    """Rough surface on an elastic solid, prepared on nodes of wavenumber for Eq. (11)."""
 
     wavenumber: np.ndarray  # [rad/m] (n)
     modulus: float  # E* [Pa]
@@ -101,7 +101,7 @@ class Interface:
 
     @property
     def small_pressure(self) -> float:
-        """Pressure [Pa] that stands for the limit p -> 0: 1e-4 of the stress scale E* xi/2."""
+        """Pressure [Pa] used for the limit p -> 0: 1e-4 of the stress scale E* xi/2."""
         return _SMALL_PRESSURE * float(np.sqrt(self.diffusion.time[-1]))
 
     @property
@@ -121,7 +121,7 @@ class Interface:
         return area * (self.kappa + (1 - self.kappa) * area * area)
 
     def march(self, start: np.ndarray, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Carry P and g = gamma_eff P from q0 to q1.
+        """Integrate P and g = gamma_eff P from q0 to q1.
 
         Parameters
         ----------
@@ -177,7 +177,7 @@ class Interface:
         return np.asarray((self.elastic * (reduced[:, 1:] + reduced[:, :-1]) / 2).sum(axis=1))
 
     def thinned(self) -> Interface:
-        """Return the interface on a quarter of its nodes, the first and the last among them."""
+        """Return the interface on a quarter of its nodes, including both ends."""
         kept = np.unique(np.append(np.arange(0, self.wavenumber.size - 1, _THINNED), -1))
         kept = np.append(kept[1:], self.wavenumber.size - 1)
         return replace(
@@ -219,7 +219,7 @@ class Interface:
 def rough_interface(
     psd: xr.Dataset, effective_modulus: str | float, kappa: float, c_a: float, nodes: int
 ) -> Interface:
-    """Prepare a rough interface from what a caller states.
+    """Prepare a rough interface from stated parameters.
 
     Raises
     ------
@@ -293,7 +293,7 @@ def balance(
 
 
 def parameters(surface: Interface) -> dict[str, float | int]:
-    """Parameters that a result must carry to be read."""
+    """Parameters of a result for its attributes."""
     return {
         "effective_modulus_Pa": surface.modulus,
         "kappa": surface.kappa,

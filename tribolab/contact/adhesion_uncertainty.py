@@ -1,4 +1,4 @@
-"""How far the uncertainty of surface energies reaches into the adhesive contact area."""
+"""Uncertainty of the adhesive contact area due to surface energies."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def adhesion_uncertainty(
     nodes: int = 200,
     max_iterations: int = 100,
 ) -> xr.Dataset:
-    """Contact area with the spread that uncertain surface energies and contact angles give it.
+    """Contact area with its spread due to uncertain surface energies and contact angles.
 
     Parameters
     ----------

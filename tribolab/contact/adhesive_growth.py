@@ -1,4 +1,4 @@
-"""How much adhesion adds to the contact area, tabulated over the pressure for solvers."""
+"""Growth of the contact area by adhesion, tabulated over pressure."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _POINTS = 21  # pressures of the table
 
 
 class AdhesiveGrowth(NamedTuple):
-    """Contact area with adhesion over that without, over the pressure.
+    """Ratio of contact area with and without adhesion over pressure.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The contact area of a rough surface as one function of the reduced pressure, in three theories.
+"""Contact area of a rough surface against reduced pressure, in three theories.
 
 Persson's theory lets the stress diffuse as in complete contact. Where the contact is partial a wave
 stores less elastic energy than that, and by the share S(P) of it that is left does the variance of
@@ -59,14 +59,14 @@ def area_of(reduced: np.ndarray, area: AreaTheory) -> np.ndarray:
 
 
 def check_area(area: str) -> None:
-    """Raise an AnalysisError unless it is an `AreaTheory`."""
+    """Raise an AnalysisError unless the argument is an `AreaTheory`."""
     known = list(get_args(AreaTheory))
     if area not in known:
         raise AnalysisError(f"area: '{shown(area)}' is not one{nearest(area, known)}")
 
 
 def other_area(area: AreaTheory) -> AreaTheory:
-    """Return the theory to compare with: the corrected one, or Persson's with any other."""
+    """Theory for comparison: the corrected one, or Persson's for any other."""
     return "corrected" if area == "persson" else "persson"
 
 

@@ -1,4 +1,4 @@
-"""First passage of a diffusion through a moving, absorbing boundary, for many starts at once.
+"""First-passage probability of a diffusion to a moving absorbing boundary.
 
 The stress at a point of a rough contact diffuses as finer roughness is let in: "time" is its
 variance, and contact is lost where the stress falls to the boundary (zero without adhesion, a
@@ -18,7 +18,7 @@ from tribolab.core.errors import AnalysisError
 
 @dataclass(frozen=True)
 class Diffusion:
-    """Time nodes of a diffusion and the Volterra weights that depend on them alone.
+    """Time nodes of a diffusion and their Volterra weights.
 
     Notes
     -----
@@ -60,7 +60,7 @@ class Diffusion:
         levels: np.ndarray,
         losses: np.ndarray,
     ) -> np.ndarray:
-        """Probability of reaching the boundary in one step, given all steps before it.
+        """Probability of reaching the boundary in one step, given all earlier steps.
 
         Parameters
         ----------
@@ -95,7 +95,7 @@ class Diffusion:
 
 
 def survival(start: ArrayLike, boundary: ArrayLike, time: ArrayLike) -> np.ndarray:
-    """Probability that a diffusion has not yet met a moving boundary below it.
+    """Probability that a diffusion has not yet reached a moving boundary below it.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Distribution of the interfacial gap between a rough and a flat surface, and averages over it."""
+"""Distribution of the interfacial gap of a rough contact, and averages over it."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _PANELS, _POINTS = 2, 16  # panels per decade of u, Gauss-Legendre points on eac
 
 
 class _Openings(NamedTuple):
-    """What opens at each magnification: a share of the area, its mean gap and its roughness."""
+    """Area that opens at each magnification, with its mean gap and roughness."""
 
     share: np.ndarray  # (pressure, bin)
     gap: np.ndarray  # u1 (pressure, bin) [m]
@@ -51,7 +51,7 @@ def gap_distribution(
     gamma: float = 0.45,
     cutoff: str | float = 1e-9,
 ) -> xr.Dataset:
-    """Distribution P(u) of the gap where the surfaces do not touch.
+    """Distribution P(u) of the gap in the area without contact.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ def gap_distributions(
     cutoff: str | float = 1e-9,
     points: int = _POINTS,
 ) -> list[xr.Dataset]:
-    """Several variants of `gap_distribution` at once: what they share is computed but once.
+    """Several variants of `gap_distribution` with shared intermediate results.
 
     Half the `points` in each half decade of u do where the surfaces are within some ten
     roughnesses.
@@ -170,7 +170,7 @@ def _distribution(
     cutoff: float,
     points: int,
 ) -> xr.Dataset:
-    """Spread the openings of each pressure over a grid of gaps, with the mean that is given."""
+    """Distribute the openings of each pressure over a grid of gaps, for a given mean."""
     if variant == "flow":
         height = openings.height * openings.gap / np.hypot(openings.height, openings.gap)
         openings = openings._replace(height=height)
@@ -238,7 +238,7 @@ def gap_averages(
 def _openings(
     stiffness: np.ndarray, q: np.ndarray, spectrum: np.ndarray, gamma: float
 ) -> tuple[_Openings, np.ndarray]:
-    """Find what opens between neighbouring magnifications, and the area that stays closed.
+    """Area that opens between neighbouring magnifications, and the area in contact.
 
     On a panel of wavenumbers 1/q is its mean over the slope there, from exact moments, so a coarse
     grid of magnifications loses nothing of a noisy spectrum.
@@ -264,7 +264,7 @@ def _openings(
 def _nested_separation(
     stiffness: np.ndarray, slope2: np.ndarray, mean_inverse: np.ndarray, gamma: float
 ) -> np.ndarray:
-    """Mean separation in the area seen at each magnification, on the roughness not yet seen.
+    """Mean separation of the area at each magnification, due to finer roughness.
 
     Parameters
     ----------
@@ -292,7 +292,7 @@ def _nested_separation(
 
 
 def _folded_mean(openings: _Openings) -> np.ndarray:
-    """Mean of |u| over all openings, u being Gaussian about u1 with the opening's height."""
+    """Mean of |u| over all openings, with u Gaussian about u1."""
     share, gap, height = openings
     with np.errstate(divide="ignore", invalid="ignore"):
         z = np.nan_to_num(gap / (np.sqrt(2) * height), posinf=np.inf)
@@ -320,7 +320,7 @@ def _grid(openings: _Openings, cutoff: float, points: int) -> tuple[np.ndarray, 
 
 
 def _bell(z: np.ndarray) -> np.ndarray:
-    """exp(-z^2/2), in the place of z."""
+    """Gaussian exp(-z^2/2), computed in place."""
     np.multiply(z, z, out=z)
     np.multiply(z, -0.5, out=z)
     return np.exp(z, out=z)
@@ -329,7 +329,7 @@ def _bell(z: np.ndarray) -> np.ndarray:
 def _density(
     at: np.ndarray, first: float, share: np.ndarray, gap: np.ndarray, height: np.ndarray
 ) -> np.ndarray:
-    """Sum of folded Gaussians at the gaps asked for; the mean density in the first cell."""
+    """Sum of folded Gaussians at given gaps; the mean density in the first cell."""
     some = share > _NEGLIGIBLE * share.sum()
     share, gap, height = share[some], gap[some], np.maximum(height[some], 1e-3 * first)
     narrow, b = 1 / height, gap / height

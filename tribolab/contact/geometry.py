@@ -1,4 +1,4 @@
-"""The contacts: a cylinder or a ball on an elastic flat."""
+"""Geometry and elasticity of a cylinder or a ball on an elastic flat."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribolab.units.conversion import positive, to_si
 
 
 class Elasticity:
-    """What a line contact and a point contact share: radius, layer and elastic bodies."""
+    """Common parameters of line and point contacts: radius, layer and elastic bodies."""
 
     radius: float
     youngs_modulus: float
@@ -25,7 +25,7 @@ class Elasticity:
     is_round: ClassVar[bool]
 
     def __post_init__(self) -> None:
-        """Turn text into SI floats and refuse what is no contact."""
+        """Convert text to SI values and raise an error for impossible ones."""
         for field in fields(self):  # type: ignore[arg-type]
             value = getattr(self, field.name)
             if field.name.endswith("poisson_ratio"):
@@ -46,7 +46,7 @@ class Elasticity:
 
     @property
     def compliance_share(self) -> float:
-        """Share [1] of the compliance that is the flat's; 1 if the counter body is rigid."""
+        """Share [1] of the flat in the compliance; 1 for a rigid counter body."""
         return self.effective_modulus * (1 - self.poisson_ratio**2) / self.youngs_modulus
 
     def layer(self, length: float) -> Layer | None:
@@ -62,7 +62,7 @@ class Elasticity:
 
 @dataclass(frozen=True)
 class LineContact(Elasticity):
-    """A cylinder pressed on an elastic flat.
+    """Cylinder pressed on an elastic flat.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ class LineContact(Elasticity):
 
 @dataclass(frozen=True)
 class PointContact(Elasticity):
-    """A ball pressed on an elastic flat.
+    """Ball pressed on an elastic flat.
 
     Parameters
     ----------
@@ -147,12 +147,12 @@ Contact = LineContact | PointContact
 
 
 def make_contact(geometry: str = "cylinder", **known: float) -> Contact:
-    """Return a `PointContact` of a ``"ball"`` or a `LineContact` of a ``"cylinder"``."""
+    """Return a `PointContact` for a ``"ball"`` or a `LineContact` for a ``"cylinder"``."""
     return PointContact(**known) if geometry == "ball" else LineContact(**known)
 
 
 def plane_strain_ratio(value: str | float) -> float:
-    """Return a Poisson's ratio as a float; 0.5 (rubber) is allowed, as E/(1 - nu^2) stays finite.
+    """Poisson's ratio as a float; 0.5 (rubber) is allowed.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Roots of many functions at once that are dear, each beside a cheap one that is much like it."""
+"""Roots of expensive functions, guided by similar cheap ones."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SECANTS = 12
 
 
 class Root(NamedTuple):
-    """Where functions vanish (k), what they are there, and in how many steps that was reached."""
+    """Roots of functions (k), function values there, and number of steps."""
 
     x: np.ndarray
     value: np.ndarray
@@ -25,7 +25,7 @@ class Root(NamedTuple):
 def guided_root(
     dear: Functions, cheap: Functions, low: np.ndarray, high: np.ndarray, iterations: int
 ) -> Root:
-    """Find the root of each function between two ends, by a cheap one of nearly the same root.
+    """Find the root of each function between two ends, guided by a cheap function.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def _by_secants(
     high: np.ndarray,
     steps: int,
 ) -> Root:
-    """Go on by secants from points where a slope is known."""
+    """Continue by secants from points with known slope."""
     x, low, high, slope = (part.copy() for part in (start, low, high, slope))
     value, taken = np.full_like(x, np.nan), np.zeros(x.size, dtype=int)
     todo = np.arange(x.size)

@@ -1,4 +1,4 @@
-"""Smooth contacts of a line or a ball: Hertz without adhesion, JKR with it."""
+"""Smooth line and point contacts: Hertz without adhesion, JKR with it."""
 
 from __future__ import annotations
 
@@ -58,14 +58,14 @@ def hertz_half_width(load: str | ArrayLike, contact: Contact) -> np.ndarray | fl
 
 
 def hertz_max_pressure(load: str | ArrayLike, contact: Contact) -> np.ndarray | float:
-    """Maximum pressure [Pa], ``2 F/(pi a L)`` or of a ball ``3 F/(2 pi a^2)``; 0 without load."""
+    """Maximum pressure [Pa], ``2 F/(pi a L)`` or ``3 F/(2 pi a^2)`` for a ball."""
     if contact.thickness < np.inf:
         return _smooth(load, contact)[1]
     return (1.5 if contact.is_round else 4 / np.pi) * hertz_mean_pressure(load, contact)
 
 
 def hertz_mean_pressure(load: str | ArrayLike, contact: Contact) -> np.ndarray | float:
-    """Mean pressure [Pa], ``F / (2 a L)`` or of a ball ``F/(pi a^2)``: the nominal pressure.
+    """Mean pressure [Pa], ``F / (2 a L)`` or ``F/(pi a^2)`` for a ball: nominal pressure.
 
     Examples
     --------
@@ -88,7 +88,7 @@ def hertz_mean_pressure(load: str | ArrayLike, contact: Contact) -> np.ndarray |
 def _smooth(
     load: str | ArrayLike, contact: Contact
 ) -> tuple[np.ndarray | float, np.ndarray | float]:
-    """Half-width [m] and highest pressure [Pa]; the latter of a contact on a layer alone."""
+    """Half-width [m] and maximum pressure [Pa], the latter only for a layer."""
     force = _loads(load, contact)
     if np.any(force < 0):
         raise AnalysisError(
@@ -120,7 +120,7 @@ def hertz_pressure(x: ArrayLike, load: str | float, contact: Contact) -> np.ndar
 
 
 def hertz_pressure(x: ArrayLike, load: str | float, contact: Contact) -> np.ndarray | float:
-    """Pressure [Pa] of a Hertz contact at x [m] (any dims) from its middle; 0 outside.
+    """Pressure [Pa] of a Hertz contact at x [m] (any dims) from its centre; 0 outside.
 
     On a layer it is the same half ellipse over the contact's width there, with the load's integral.
     """
@@ -134,7 +134,7 @@ def hertz_pressure(x: ArrayLike, load: str | float, contact: Contact) -> np.ndar
 
 
 def jkr_smallest_load(contact: Contact, work_of_adhesion: str | float) -> float:
-    """Smallest load [N/m], of a ball [N], at which an adhesive contact holds; negative: a pull.
+    """Smallest load [N/m], or [N] for a ball, of an adhesive contact; negative is a pull.
 
     Parameters
     ----------
@@ -240,7 +240,7 @@ def _detaching(contact: Contact, w: float) -> float:
 
 
 def _adhesive(contact: Contact, work_of_adhesion: str | float) -> float:
-    """Return the work of adhesion; on a layer JKR's formulas do not hold."""
+    """Return the work of adhesion; AnalysisError on a layer, where JKR is not valid."""
     work = _work(work_of_adhesion)
     if work and contact.thickness < np.inf:
         raise AnalysisError("work_of_adhesion: JKR's theory is of a half-space, not of a layer")

@@ -1,4 +1,4 @@
-"""An elastic layer on a rigid base: how it yields, and the smooth contacts on it."""
+"""Elastic layer on a rigid base: compliance, and smooth contacts on it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _FAR = 12.0  # thicknesses, from where on a line sees the base as rigid
 
 
 class Layer(NamedTuple):
-    """A layer bonded to a rigid base."""
+    """Layer bonded to a rigid base."""
 
     thickness: float
     poisson_ratio: float
@@ -23,7 +23,7 @@ class Layer(NamedTuple):
 
 
 def layer_compliance(x: np.ndarray, poisson_ratio: float) -> np.ndarray:
-    """Displacement of a bonded layer over that of a half-space at x = q d (any shape).
+    """Displacement of a bonded layer relative to a half-space at x = q d (any shape).
 
     Notes
     -----
@@ -62,7 +62,7 @@ def _line_layer(poisson_ratio: float, share: float) -> tuple[CubicSpline, CubicS
 
 
 def line_layer_kernel(x: np.ndarray, width: np.ndarray, layer: Layer) -> np.ndarray:
-    """Displacement that the base takes from a line's half-space kernel, for E* = 1 (n, n).
+    """Reduction of a line's half-space displacement by the base, for E* = 1 (n, n).
 
     ``(2/pi) int_cell I(|x_i - x'|/d) dx'``: what is to be added to the logarithmic kernel.
     """
@@ -92,7 +92,7 @@ def _round_layer(poisson_ratio: float, share: float) -> CubicSpline:
 def round_layer_kernel(
     radius: np.ndarray, faces: np.ndarray, sectors: int, layer: Layer
 ) -> np.ndarray:
-    """Displacement that the base takes from the cells of `kernel_around`, for E* = 1."""
+    """Reduction of the displacement of `kernel_around` by the base, for E* = 1."""
     thickness = layer.thickness
     curve = _round_layer(layer.poisson_ratio, layer.share)
     t, weight = np.polynomial.legendre.leggauss(3)
@@ -115,7 +115,7 @@ def round_layer_kernel(
 
 
 def line_layer_load(half_width: float, layer: Layer, order: int = 24) -> tuple[float, float]:
-    """Load and highest pressure of a smooth line contact on a layer, for R = E* = 1.
+    """Load and maximum pressure of a smooth line contact on a layer, for R = E* = 1.
 
     Notes
     -----
@@ -143,7 +143,7 @@ def line_layer_load(half_width: float, layer: Layer, order: int = 24) -> tuple[f
 
 
 def round_layer_load(radius: float, layer: Layer, order: int = 48) -> tuple[float, float]:
-    """Load and highest pressure of a smooth round contact on a layer, for R = E* = 1.
+    """Load and maximum pressure of a smooth round contact on a layer, for R = E* = 1.
 
     Notes
     -----
@@ -170,7 +170,7 @@ def round_layer_load(radius: float, layer: Layer, order: int = 48) -> tuple[floa
 def layer_contact(
     load: float, layer: Layer, round_contact: bool, widest: float
 ) -> tuple[float, float]:
-    """Half-width and highest pressure of a smooth contact on a layer at a load, for R = E* = 1.
+    """Half-width and maximum pressure of a smooth contact on a layer, for R = E* = 1.
 
     Parameters
     ----------

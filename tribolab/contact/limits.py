@@ -1,4 +1,4 @@
-"""How far a contact lies inside the limits of the theory, see `tribolab.core.validity`."""
+"""Validity of contact theory for a line contact, see `tribolab.core.validity`."""
 
 from __future__ import annotations
 

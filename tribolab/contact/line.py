@@ -1,4 +1,4 @@
-"""Dry contact of a rough cylinder with a flat at rest: pressure and separation across it."""
+"""Dry contact of a rough cylinder with a flat at rest: pressure and separation."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ def rough_line_contact(
 
 
 class LineProfile(NamedTuple):
-    """Pressure and separation over the cells of a dry line contact, and how they were reached."""
+    """Pressure and separation over the cells of a dry line contact, with convergence data."""
 
     x: np.ndarray  # [m] (n)
     pressure: np.ndarray  # [Pa] (n)
@@ -196,7 +196,7 @@ def contact_width(x: np.ndarray, pressure: np.ndarray, level: float = WIDTH_LEVE
 
 
 def _cells(force: float, contact: LineContact, decay_length: float, points: int) -> np.ndarray:
-    """Middles of equal cells, out to where pressure has fallen below 1e-12 of its maximum.
+    """Centres of equal cells, out to a pressure of 1e-12 of its maximum.
 
     Beyond the Hertz contact u grows faster than (x^2 - a^2)/2R would without elasticity nearby, and
     p falls as exp(-u/u0): x^2 = a^2 + 2 R u0 ln(1e12) is far enough.
@@ -215,7 +215,7 @@ def solve_dry(
     table: Separation,
     kernel: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, int, float]:
-    """Solve p = p_cont(c + gap + K p) with the load given; returns p, u, steps, residual.
+    """Solve p = p_cont(c + gap + K p) for a given load; returns p, u, steps, residual.
 
     Parameters
     ----------
@@ -262,7 +262,7 @@ def _line_search(
     weight: np.ndarray,
     table: Separation,
 ) -> float:
-    """Find how far to go along a Newton step: to where the energy stops falling, at most 1.
+    """Step length, at most 1, along a Newton step to the energy minimum.
 
     The energy's derivative along the step is ``sum (p - p_cont(u)) du``; it is negative at the
     start and grows steadily, so a few secant steps inside a bracket find its zero.

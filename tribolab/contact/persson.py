@@ -101,7 +101,7 @@ def apparent_contact_area_ratio(
     effective_modulus: str | float,
     area: AreaTheory = "persson",
 ) -> xr.DataArray:
-    """Apparent relative contact area P(q) = A(q)/A0 at every wavenumber of the spectrum.
+    """Apparent contact area ratio P(q) = A(q)/A0 at every wavenumber of the spectrum.
 
     Parameters
     ----------
@@ -200,7 +200,7 @@ def mean_separation(
 
 
 def _with(result: Pressure, valid: dict[str, str]) -> Pressure:
-    """Add the attributes of `tribolab.core.validity` to a result that has attributes."""
+    """Add the validity attributes to a result that has attributes."""
     return result.assign_attrs(valid) if isinstance(result, xr.DataArray) else result
 
 
@@ -238,7 +238,7 @@ def slope_quadrature(q: np.ndarray, spectrum: np.ndarray) -> tuple[np.ndarray, n
 
 
 def rough_band(psd: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Return q and C as `spectrum_arrays`, less zeros at both ends but the one next to roughness.
+    """Return q and C as `spectrum_arrays`, without zeros at the ends except next to roughness.
 
     No moment changes, since C is linear in the bin beside a zero; what is 0/0 where nothing is
     rough, such as the gap that opens there, is never asked for.
@@ -262,7 +262,7 @@ def tail(y: np.ndarray, gamma: float) -> np.ndarray:
 
 
 def coarse_tail(log_y: np.ndarray, gamma: float) -> np.ndarray:
-    """F of `tail` over ln y, to 1e-5 of it where y < 1: quicker, for sums over very many y."""
+    """Return the function F of `tail` over ln y, to 1e-5 for y < 1; faster for sums over many y."""
     values, steps, lowest, per_unit = _coarse_table(float(gamma))
     place = np.clip((log_y - lowest) * per_unit, 0, values.size - 1)
     cell = place.astype(np.intp)

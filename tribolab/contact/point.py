@@ -1,4 +1,4 @@
-"""Dry contact of a rough ball with a flat at rest: pressure and separation over the radius."""
+"""Dry contact of a rough ball with a flat at rest: pressure and separation over radius."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _SECTORS = 12  # of a mesh whose pressure depends on the radius alone
 
 
 def across_the_middle(profile: xr.Dataset) -> xr.Dataset:
-    """Return a profile over the radius as one over x [m] through the middle, as a line's is.
+    """Return a radial profile as one over x [m] through the centre.
 
     It has ``contact_width`` [m], the diameter where pressure is 1e-3 of its maximum.
     """
@@ -41,7 +41,7 @@ def across_the_middle(profile: xr.Dataset) -> xr.Dataset:
 
 
 class RoundProfile(NamedTuple):
-    """Pressure and separation over the rings of a dry point contact, and how they were reached."""
+    """Pressure and separation over the rings of a dry point contact, with convergence data."""
 
     radius: np.ndarray  # [m] (n)
     area: np.ndarray  # of the rings [m2] (n)

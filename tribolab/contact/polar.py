@@ -1,4 +1,4 @@
-"""Cells around a round contact: rings and sectors, and how pressure on them bends the bodies."""
+"""Rings and sectors around a round contact, and their elastic displacement."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class PolarMesh(NamedTuple):
 def polar_mesh(
     rings: int, sectors: int, edge: float, end: float, size: float = 1.0, layer: Layer | None = None
 ) -> PolarMesh:
-    """Choose rings, fine at the edge of the contact, and sum their elasticity.
+    """Choose rings, fine at the edge of the contact, and compute their elasticity.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Rolling friction by the hysteresis of the bodies' bulk."""
+"""Rolling friction due to hysteresis in the bulk of the bodies."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tribolab.contact.hertz import hertz_half_width
 def rolling_friction(
     load: str | float, contact: Contact, loss_share: float, counter_loss_share: float = 0.0
 ) -> float:
-    """Return the rolling friction coefficient [1] of a contact whose bodies lose energy.
+    """Return the rolling friction coefficient [1] of a contact with viscoelastic bodies.
 
     Parameters
     ----------

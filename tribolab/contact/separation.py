@@ -1,4 +1,4 @@
-"""Contact pressure as a function of the mean separation, tabulated for solvers."""
+"""Contact pressure against mean separation, tabulated for solvers."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _MORE_THAN_EPS = 1e-14
 
 @dataclass(frozen=True, eq=False)
 class Separation:
-    """Pressure p(u) and separation u(p) of one rough surface, each other's exact inverse.
+    """Contact pressure p(u) and its exact inverse u(p) for one rough surface.
 
     Made by `separation_table`. Monotone everywhere: inside the table ln p is a cubic in
     ``U = ln(exp(u/h_rms) - 1)`` with the theory's own slopes; at larger u it goes on as
@@ -60,7 +60,7 @@ class Separation:
 
     @functools.cached_property
     def _with_slope(self) -> PPoly:
-        """The curve and its slope (2), looked up at once."""
+        """Curve and its slope (2) from one look-up."""
         curve = self._curve
         both = np.zeros((*curve.c.shape, 2))
         both[..., 0], both[1:, :, 1] = curve.c, curve.derivative().c
@@ -146,7 +146,7 @@ class Separation:
             return pressure, pressure * slope
 
     def _invert(self, log_p: np.ndarray) -> np.ndarray:
-        """Solve the table's own cubic for u: Newton's method, kept inside its interval."""
+        """Solve the table's cubic for u by Newton's method within its interval."""
         knots, curve = self._curve.x, self._curve
         levels = curve(knots)[::-1]
         cell = np.clip(np.searchsorted(levels, log_p, side="right") - 1, 0, levels.size - 2)
@@ -234,7 +234,7 @@ def separation_table(
 def _of_unit_modulus(
     q_bytes: bytes, spectrum_bytes: bytes, gamma: float, points: int
 ) -> Separation:
-    """Tabulate a spectrum at E* = 1 Pa, all pressures going with E*; the last few are kept."""
+    """Tabulate a spectrum at E* = 1 Pa; the last few tables are cached."""
     q, spectrum = np.frombuffer(q_bytes), np.frombuffer(spectrum_bytes)
     slope, weight = slope_quadrature(q, spectrum)
     height = float(np.sqrt(2 * np.pi * cumulative(q, spectrum, 1)[-1]))

@@ -16,7 +16,7 @@ from tribolab.units.stamping import stamp
 
 
 class BoundedValue(NamedTuple):
-    """A value and the bounds between which it is reported."""
+    """Value with its bounds in the literature."""
 
     value: float
     low: float

@@ -1,1 +1,1 @@
-"""Mixed lubrication of a rough line contact: flow and friction factors, the solver, curves."""
+"""Mixed lubrication of rough line and point contacts: flow factors, solver, curves."""

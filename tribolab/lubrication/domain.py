@@ -1,4 +1,4 @@
-"""Scales and mesh of a speed, how much of the gap is solved, and the drag beyond its ends."""
+"""Scales and mesh for a speed, the solved part of the gap, and the drag outside it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ SHORTEST = 1.5  # half-widths from the middle to where the liquid may begin
 
 
 class MeshLayout(NamedTuple):
-    """All but the cells that the mesh of a speed hangs on, as `graded_mesh` takes it."""
+    """Parameters of the mesh of a speed except its number of cells, for `graded_mesh`."""
 
     edge: float
     inlet: float
@@ -34,7 +34,7 @@ class MeshLayout(NamedTuple):
 def layout(
     film: float, decay: float, domain: float, inlet_length: float, flooded: bool = False
 ) -> MeshLayout:
-    """Choose the mesh for the film of one speed alone, whatever other speeds are asked for.
+    """Choose the mesh for the film of one speed, independent of other speeds.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def thinned_film(contact: LineContact, liquid: Liquid, load: float, speed: float
 
 
 def half_width(contact: Contact, separation: Separation | None, load: float) -> float:
-    """Half-width b [m] of the contact: Hertz's, as far as roughness widens it."""
+    """Half-width b [m] of the contact: Hertz, increased by roughness."""
     decay = separation.decay_length if separation else 0.0
     return float(np.sqrt(hertz_half_width(load, contact) ** 2 + 4 * contact.radius * decay))
 
@@ -110,7 +110,7 @@ def lubrication_problem(
     domain: float,
     liquid: Liquid | None = None,
 ) -> Problem:
-    """Choose scales and mesh.
+    """Choose scales and mesh of a line contact at one load and speed.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ def lubrication_problem(
 
 
 def outside_drag(problem: Problem, solution: Solution) -> tuple[float, float]:
-    """Couette and pressure part of the drag beyond the domain's ends, in units of g p.
+    """Couette and pressure part of the drag outside the solved domain, in units of g p.
 
     Notes
     -----
@@ -197,7 +197,7 @@ def _tail(power: int, start: float, constant: float) -> float:
 
 
 def _resolving(cells: int, decay: float) -> int:
-    """Cells as many to a decade, also where the contact's edge is thousandths of its width.
+    """Return the number of cells with the same cells per decade at a narrow contact edge.
 
     Parameters
     ----------
@@ -213,5 +213,5 @@ def _resolving(cells: int, decay: float) -> int:
 
 
 def _rounded(value: float) -> float:
-    """Two digits, so that neighbouring loads share a mesh."""
+    """Round to two digits, so that similar loads share a mesh."""
     return float(f"{value:.2g}")

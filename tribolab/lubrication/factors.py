@@ -1,4 +1,4 @@
-"""Flow and friction factors of a rough surface, tabulated over the mean separation."""
+"""Flow and friction factors of a rough surface, tabulated over mean separation."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _NEAR, _FAR, _LOW, _POINTS = 1e-5, 8.0, 1e-3, 64
 
 
 class Factors(NamedTuple):
-    """The five factors [1] at the separations asked for."""
+    """Five flow and friction factors [1] at given separations."""
 
     phi_p: np.ndarray
     phi_s: np.ndarray
@@ -50,7 +50,7 @@ class Factors(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FlowFactors:
-    """Flow and friction factors of one surface over the mean separation; smooth ones are trivial.
+    """Flow and friction factors of one surface over mean separation; trivial if smooth.
 
     Made by `flow_factors`, `smooth_factors` or `tribolab.lubrication.patir_cheng.patir_cheng`.
 
@@ -234,7 +234,7 @@ def flow_factors(
 def _tabulated(
     q: bytes, spectrum: bytes, percolation: float, cutoff: float, gamma: float
 ) -> FlowFactors:
-    """Tabulate a spectrum's factors; they hang on nothing else, so the last few are kept."""
+    """Tabulate the factors of a spectrum; the last few tables are cached."""
     psd = xr.Dataset(
         {"psd_2d": ("wavenumber", np.frombuffer(spectrum))},
         coords={"wavenumber": np.frombuffer(q)},
@@ -284,14 +284,14 @@ def _tabulated(
 
 
 def smooth_factors(rough_body: RoughBody = "stationary") -> FlowFactors:
-    """Factors between smooth surfaces: phi_p, phi_f, phi_fp are 1, phi_s and phi_fs 0."""
+    """Factors of smooth surfaces: phi_p, phi_f, phi_fp are 1, phi_s and phi_fs 0."""
     check_rough_body(rough_body)
     return FlowFactors(0.0, 0.0, rough_body, "smooth")
 
 
 @dataclass(frozen=True, eq=False)
 class FactorTable:
-    """Some factors, each a cubic in ln phi over ln(u - origin), with their far ends.
+    """Table of factors: cubics in ln phi over ln(u - origin), with asymptotes at both ends.
 
     The cubics are monotone ones, or splines where the factors are known to be smooth.
 
@@ -350,7 +350,7 @@ def _averages(
     cutoff: float,
     gamma: float,
 ) -> tuple[np.ndarray, ...]:
-    """phi_p, phi_fp, phi_fs and phi_f at mean separations u, by sums over P(u)."""
+    """Factors phi_p, phi_fp, phi_fs and phi_f at mean separations u, by sums over P(u)."""
     pressure = pressure_of.pressure(u)
     flow, plain = gap_distributions(pressure, psd, 1.0, ("flow", "plain"), gamma, cutoff, points=8)
     gap, weight = flow["gap"].values, flow["gap_weight"].values
@@ -376,7 +376,7 @@ def _averages(
 def _effective(
     local: np.ndarray, weight: np.ndarray, touching: np.ndarray, dimension: float
 ) -> np.ndarray:
-    """Solve 1 = <d s_e/D> for s_e by bisection in ln s_e; 0 where the contact percolates."""
+    """Effective conductivity: solve 1 = <d s_e/D> for s_e by bisection; 0 if contact percolates."""
 
     def excess(log_s: np.ndarray) -> np.ndarray:
         s = np.exp(log_s)[:, None]
@@ -394,7 +394,7 @@ def _effective(
 
 
 def check_rough_body(rough_body: str) -> None:
-    """Raise an AnalysisError unless it is a `RoughBody`."""
+    """Raise an AnalysisError unless the argument is a `RoughBody`."""
     known = ["stationary", "moving"]
     if rough_body not in known:
         raise AnalysisError(

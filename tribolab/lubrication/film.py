@@ -1,4 +1,4 @@
-"""Separation and pressures across a lubricated contact."""
+"""Profiles of separation and pressures across a lubricated contact."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def film_profile(
     solver: Solver | None = None,
     **options: Any,
 ) -> xr.Dataset:
-    """Separation and pressures across the contact at one speed, or at each of several.
+    """Separation and pressures across the contact at one or several speeds.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def film_profile(
 def _profile(
     system: System, force: float, v: float, point: SolvedSpeed | SolvedPoint
 ) -> xr.Dataset:
-    """Say what was solved at one speed."""
+    """Profile of the solution at one speed."""
     side = -1 if v < 0 else 1
     x, film, solid, fluid, cavity = _along(point)
     whole = solid + fluid
@@ -128,7 +128,7 @@ def _profile(
 def _along(
     point: SolvedSpeed | SolvedPoint,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, int]:
-    """X [m], film [m], both pressures [Pa] and the first place in the cavity, along the middle."""
+    """X [m], film [m], both pressures [Pa] and the start of the cavity, on the centre line."""
     parts: tuple[np.ndarray, ...]
     if isinstance(point, SolvedSpeed):
         line, fields = point.problem, point.solution.fields
@@ -156,7 +156,7 @@ def _flux(system: System, point: SolvedSpeed) -> float:
 
 
 def _put_together(films: list[xr.Dataset]) -> xr.Dataset:
-    """Profiles at several speeds over (sliding_speed, point): each is on a grid of its own."""
+    """Profiles at several speeds over (sliding_speed, point), each on its own grid."""
     rows = [f.reset_index("x").reset_coords("x").rename_dims(x="point") for f in films]
     joined = xr.concat(
         rows, "sliding_speed", data_vars="all", coords="different", compat="equals", join="outer",

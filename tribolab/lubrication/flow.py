@@ -1,4 +1,4 @@
-"""What flows between the middles of neighbouring cells, by the film in between."""
+"""Flow between the centres of neighbouring cells, from the film between them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _STRAIGHT, _CURVED = 0.3, 0.6
 
 
 class Flow(NamedTuple):
-    """Resistance and entrainment at the points of `Between`, and summed from middle to middle.
+    """Flow resistance and entrainment at the points of `Between`, and summed between centres.
 
     Lengths along x in b, gaps in g, pressures in p; a flux is in units of g^3 p/(12 eta b).
     The gradient of the fluid's pressure is ``resistance * (entrained - flux)`` at every point, so
@@ -43,7 +43,7 @@ def flow_between(
     couette: float,
     film: np.ndarray,
 ) -> Flow:
-    """Sum what resists and what is entrained between the middles of cells with these films (n).
+    """Integrate resistance and entrainment between the centres of cells with these films (n).
 
     Notes
     -----
@@ -70,7 +70,7 @@ def flow_between(
 
 
 def flux_slopes(between: Between, flow: Flow, flux: np.ndarray) -> np.ndarray:
-    """Slope of the flux between middles over the film of the four cells around (4, n + 1)."""
+    """Return the derivative of the flux between centres by the films of four cells (4, n + 1)."""
     steep = flow.resistance * flow.entrained_slope
     steep += (flow.entrained - flux) * flow.resistance_slope
     steep *= between.weight * flow.conductance
@@ -80,7 +80,7 @@ def flux_slopes(between: Between, flow: Flow, flux: np.ndarray) -> np.ndarray:
 def _film_between(
     between: Between, film: np.ndarray, roughness: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Film at the points, and the share of the four cells around in it (its slope)."""
+    """Film at the points, and its derivative with respect to the four cells around."""
     around = film[between.cell]
     u, share = (between.share * around).sum(axis=1), between.share
     thinner = np.minimum(around[1], around[2])

@@ -1,4 +1,4 @@
-"""Friction of the fluid in a solved film."""
+"""Fluid friction in a solved film."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from tribolab.lubrication.speeds import System
 
 
 class FluidFriction(NamedTuple):
-    """Couette and pressure part of a friction coefficient, Eq. (4) without the solid's."""
+    """Couette and pressure parts of the fluid friction coefficient, Eq. (4)."""
 
     couette: float
     pressure: float
 
 
 def friction_parts(system: System, rough: FluidFriction, plain: FluidFriction) -> dict[str, float]:
-    """Return the fluid's friction as a curve has it, with or without friction factors.
+    """Return the fluid friction for a curve, with or without friction factors.
 
     Notes
     -----
@@ -36,7 +36,7 @@ def friction_parts(system: System, rough: FluidFriction, plain: FluidFriction) -
 
 
 def fluid_friction(problem: Problem, solution: Solution) -> tuple[FluidFriction, FluidFriction]:
-    """Friction of the fluid with the friction factors, and with phi_f = phi_fp = 1, phi_fs = 0.
+    """Fluid friction with the friction factors, and with phi_f = phi_fp = 1, phi_fs = 0.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""Cells across the contact, fine where film and pressure change fast, and their elasticity."""
+"""Cells across the contact, refined where film and pressure change fast, with elasticity."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ENDS = ((-1, 2.5, 2.0), (1, 2.5, 1.0))  # place, weight and width over that ask
 
 
 class Mesh(NamedTuple):
-    """Cells in units of the contact's half-width b; sliding is to +x, the inlet at x < 0."""
+    """Cells in units of the contact half-width b; sliding to +x, inlet at x < 0."""
 
     x: np.ndarray  # middles (n)
     width: np.ndarray  # (n)
@@ -38,7 +38,7 @@ def graded_mesh(
     size: float = 1.0,
     layer: Layer | None = None,
 ) -> Mesh:
-    """Cells of equal weight under a density that peaks at x = -size and x = size.
+    """Graded mesh with the highest density of cells at x = -size and x = size.
 
     Parameters
     ----------

@@ -20,14 +20,14 @@ _ROUNDING = 1e-8  # the same, where a further step no longer gains
 
 
 class Repulsion(Protocol):
-    """What pushes the bodies apart where they are near: a rough contact, or what stands in."""
+    """Interface of contact pressure against separation: a rough contact or a substitute."""
 
     def pressure_and_slope(self, separation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Pressure [Pa] and its slope [Pa/m] at separations [m]."""
 
 
 class Problem(NamedTuple):
-    """All that does not change with speed; lengths along x in b, gaps in g, pressures in p."""
+    """Quantities independent of speed; lengths along x in b, gaps in g, pressures in p."""
 
     mesh: Mesh
     factors: FlowFactors
@@ -67,7 +67,7 @@ class State(NamedTuple):
 
 
 class Fields(NamedTuple):
-    """What follows from a state, in the problem's units."""
+    """Fields derived from a state, in the problem's units."""
 
     contact: np.ndarray  # pressure carried by the solid (n)
     fluid: np.ndarray  # (n)
@@ -77,7 +77,7 @@ class Fields(NamedTuple):
 
 
 class Solution(NamedTuple):
-    """A converged state with its proof."""
+    """Converged state with its residuals."""
 
     couette: float
     state: State
@@ -90,11 +90,11 @@ class Solution(NamedTuple):
 
 
 class NotConvergedError(Exception):
-    """Newton's method did not get there; the sweep over the speed then takes a smaller step."""
+    """Raised if Newton's method does not converge; the sweep then takes a smaller step."""
 
 
 class _Film(NamedTuple):
-    """The equations at one state."""
+    """Equations at one state."""
 
     fields: Fields
     flow: Flow
@@ -108,7 +108,7 @@ class _Film(NamedTuple):
 
 
 def couette_number(problem: Problem, viscosity: float, speed: float) -> float:
-    """Couette flux over Poiseuille flux, 6 eta v b/(g^2 p): all that the speed enters by."""
+    """Ratio of Couette to Poiseuille flux, 6 eta v b/(g^2 p), the only effect of speed."""
     return 6 * viscosity * speed * problem.half_width / (problem.gap**2 * problem.pressure)
 
 
@@ -204,7 +204,7 @@ def _film(problem: Problem, couette: float, state: State) -> _Film:
 
 
 def _factored(problem: Problem, film: _Film) -> tuple[np.ndarray, np.ndarray]:
-    """Factors of the transposed Jacobian, and their pivots."""
+    """LU factors of the transposed Jacobian, and their pivots."""
     factor, pivots, singular = lapack.dgetrf(_jacobian(problem, film).T, overwrite_a=True)
     if singular:
         raise NotConvergedError("the linearised equations are singular")
@@ -212,13 +212,13 @@ def _factored(problem: Problem, film: _Film) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _lacking(problem: Problem, film: _Film) -> np.ndarray:
-    """Minus the residual, and minus what the load lacks."""
+    """Negative residual, and negative deficit of the load."""
     lack = problem.mesh.weight @ film.total - problem.load
     return -np.append(film.residual, film.total.max() / problem.load * lack)
 
 
 def _jacobian(problem: Problem, film: _Film) -> np.ndarray:
-    """Slopes of the residual and of the load over the film and the constant."""
+    """Return the derivatives of residual and load with respect to film and constant."""
     mesh, n = problem.mesh, film.residual.size
     front, rear = film.fields.front, film.fields.rear
     full = film.scale.copy()
@@ -252,7 +252,7 @@ def _jacobian(problem: Problem, film: _Film) -> np.ndarray:
 
 
 def _flux_row(problem: Problem, film: _Film, face: int) -> np.ndarray:
-    """Slope of the flux through a face over the films and the constant (n + 1)."""
+    """Return the derivative of the flux through a face by films and constant (n + 1)."""
     mesh, n = problem.mesh, film.residual.size
     row = np.zeros(n + 1)
     for cell, sign in ((face, -1), (face - 1, 1)):
@@ -266,7 +266,7 @@ def _flux_row(problem: Problem, film: _Film, face: int) -> np.ndarray:
 def _rupture(
     entrained: np.ndarray, conductance: np.ndarray, lowest: float
 ) -> tuple[int, int, float]:
-    """First cell of the cavity, first behind it and the flux up to it, in a given film.
+    """First cell of the cavity, first cell after it, and the flux up to it, for a given film.
 
     Full cells 0 ... k - 1 and p = 0 at both ends make the flux J_k the mean of what is entrained,
     weighted with the resistance of the faces 0 ... k. The film ruptures at the first k from which
@@ -282,7 +282,7 @@ def _rupture(
 def _cavity(
     entrained: np.ndarray, conductance: np.ndarray, lowest: float
 ) -> tuple[int, int, float]:
-    """Return the same where the liquid holds tension down to a pressure, and is behind, too.
+    """Return the cavity if the liquid sustains tension, with the region after it.
 
     Without a cavity the flux is the mean over all faces. Where the pressure would fall below the
     lowest, the film ruptures as in `_rupture`, but at that pressure; it forms again in the first
@@ -305,7 +305,7 @@ def _cavity(
 
 
 def _contact(problem: Problem, film: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Contact pressure and its slope over the film."""
+    """Contact pressure and its derivative with respect to the film."""
     if problem.separation is None:
         return np.zeros_like(film), np.zeros_like(film)
     pressure, slope = problem.separation.pressure_and_slope(film * problem.gap)
@@ -313,7 +313,7 @@ def _contact(problem: Problem, film: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def _proof(problem: Problem, couette: float, state: State, film: _Film, step: int) -> Solution:
-    """Collect the evidence; a fluid that pulls, or a cavity that closes again, is no solution."""
+    """Check the solution; tension in the fluid or a reforming film is no solution."""
     fields = film.fields
     carried = fields.contact + fields.fluid
     highest = carried.max()
@@ -336,7 +336,7 @@ def _proof(problem: Problem, couette: float, state: State, film: _Film, step: in
 
 
 def _flux_variation(fields: Fields, flow: Flow) -> float:
-    """Spread of the flux over the full film, taken anew from film and fluid pressure."""
+    """Variation of the flux over the full film, recomputed from film and pressure."""
     if fields.front < 2:
         return 0.0
     flux = (flow.drive[1:-1] - flow.conductance[1:-1] * np.diff(fields.fluid))[: fields.front]

@@ -1,4 +1,4 @@
-"""Cells of unequal width to the fourth order: between middles is a parabola or a cubic."""
+"""Fourth-order integration on cells of unequal width, by parabolas and cubics."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _FINE = 129  # points where the lowest film is looked for: 1e-4 of a cell's chan
 
 
 class Between(NamedTuple):
-    """Two Gauss points between neighbouring middles; halves of the outermost cells at the ends.
+    """Two Gauss points between neighbouring centres; half cells at both ends.
 
     The film there is that of the cubic through the four middles around, of the parabola through
     three beside the outermost cells, and in their outer halves that of their middles.
@@ -27,7 +27,7 @@ class Between(NamedTuple):
 
 
 def between_middles(x: np.ndarray, width: np.ndarray) -> Between:
-    """Choose the points of `Between` for cells with these middles and widths (n)."""
+    """Points of `Between` for cells with these centres and widths (n)."""
     n = x.size
     # four cells around each face; at the ends, where there is none, one counts for nothing
     cell = np.arange(-2, 2)[:, None] + np.arange(n + 1)
@@ -54,7 +54,7 @@ def between_middles(x: np.ndarray, width: np.ndarray) -> Between:
 
 
 def curved_weights(x: np.ndarray, width: np.ndarray) -> np.ndarray:
-    """Weights (n) that integrate what is known at the middles over all cells.
+    """Weights (n) that integrate values at the centres over all cells.
 
     In a cell it is the parabola through its middle and those beside it; level in the outermost.
     """
@@ -80,7 +80,7 @@ def curved_kernel(x: np.ndarray, width: np.ndarray) -> np.ndarray:
 
 
 def _parabolas(x: np.ndarray) -> list[tuple[int, np.ndarray, np.ndarray]]:
-    """Give slope and curvature at inner middles (n - 2) by the cell before, itself and the next."""
+    """Slope and curvature at inner centres (n - 2) from three neighbouring cells."""
     before, after = x[1:-1] - x[:-2], x[2:] - x[1:-1]
     both = before + after
     return [
@@ -113,13 +113,13 @@ def _moments(x: np.ndarray, width: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _antiderivatives(t: np.ndarray, scale: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of t^k ln(|t|/l) for k = 0, 1, 2."""
+    """Antiderivatives of t^k ln(|t|/l) for k = 0, 1, 2."""
     log = np.log(np.where(t == 0, 1.0, np.abs(t)) / scale)
     return t * (log - 1), t**2 / 2 * (log - 1 / 2), t**3 / 3 * (log - 1 / 3)
 
 
 def lowest(x: np.ndarray, values: np.ndarray) -> float:
-    """Lowest value between the middles, on the quartic through the five around the lowest one."""
+    """Minimum between the centres, from the quartic through the five lowest points."""
     middle = min(max(int(np.argmin(values)), 2), x.size - 3)
     around = slice(middle - 2, middle + 3)
     fine = np.linspace(x[middle - 1], x[middle + 1], _FINE)
@@ -127,7 +127,7 @@ def lowest(x: np.ndarray, values: np.ndarray) -> float:
 
 
 def value_at(x: np.ndarray, values: np.ndarray, at: float) -> float:
-    """Value anywhere inside the cells, on the cubic through the four middles around."""
+    """Value at any place in the cells, from the cubic through four neighbouring centres."""
     after = min(max(int(np.searchsorted(x, at)), 2), x.size - 2)
     around = slice(after - 2, after + 2)
     return float(_polynomial(x[around], values[around], np.array([at]))[0])

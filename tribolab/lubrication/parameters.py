@@ -1,4 +1,4 @@
-"""What a lubricated contact is made of, as frozen objects: liquid, interface and solver."""
+"""Parameters of a lubricated contact: liquid, interface and solver."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _one_of(name: str, value: str, kind: Any) -> None:
 
 @dataclass(frozen=True)
 class Liquid:
-    """The liquid between the bodies.
+    """Liquid between the bodies.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Liquid:
     thinning: ShearThinning | None = None
 
     def __post_init__(self) -> None:
-        """Turn text into SI floats and refuse what is not possible."""
+        """Convert text to SI values and raise an error for impossible ones."""
         set_ = object.__setattr__
         set_(self, "viscosity", positive(self.viscosity, "Pa s", "viscosity"))
         if self.extent is not None:
@@ -77,13 +77,13 @@ class Liquid:
 
     @property
     def lowest_pressure(self) -> float:
-        """Pressure [Pa] of the cavity, relative to that outside."""
+        """Pressure [Pa] of the cavity, relative to ambient."""
         return 0.0 if self.outlet == "vented" else self.cavity_pressure
 
 
 @dataclass(frozen=True)
 class Interface:
-    """Where the bodies meet: friction of the real contact, roughness and motion.
+    """Interface of the bodies: friction of the real contact, roughness and motion.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ class Interface:
     slide_roll: float | None = None
 
     def __post_init__(self) -> None:
-        """Turn text into SI floats and refuse what is not possible."""
+        """Convert text to SI values and raise an error for impossible ones."""
         stress = to_si(self.shear_stress, "Pa", name="shear_stress")
         object.__setattr__(self, "shear_stress", stress)
         if not 0 <= stress < np.inf:
@@ -135,7 +135,7 @@ class Interface:
 
 @dataclass(frozen=True)
 class Solver:
-    """How a contact is computed.
+    """Numerical parameters of the solution.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ class Solver:
     method: Method = "full"
 
     def __post_init__(self) -> None:
-        """Refuse what is not possible."""
+        """Raise an error for impossible values."""
         check_area(self.area)
         _one_of("method", self.method, Method)
         if self.cells < 50:
@@ -180,7 +180,7 @@ class Solver:
 
 
 class Parameters(NamedTuple):
-    """All of a model but contact, roughness, load and speed."""
+    """Parameters of a model except contact, roughness, load and speed."""
 
     liquid: Liquid
     interface: Interface = Interface()
@@ -198,7 +198,7 @@ def parameters_of(
     solver: Solver | None = None,
     **options: Any,
 ) -> Parameters:
-    """Put together what a model is made of.
+    """Combine the parameters of a model.
 
     Parameters
     ----------
@@ -232,12 +232,12 @@ def parameters_of(
 
 
 def as_given(value: Any) -> Any:
-    """Return an object or what was stated, or of an array without dims its number."""
+    """Return an object or a stated value, or a number for an array without dims."""
     return value if isinstance(value, Liquid | Interface) else stated_value(value)
 
 
 def renamed(**names: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Let a function take arguments by the names that they had in the last release."""
+    """Accept the argument names of the last release."""
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:
         @functools.wraps(function)
@@ -250,7 +250,7 @@ def renamed(**names: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
 
 
 def warn_of_old(function: str, options: Mapping[str, Any]) -> None:
-    """Say which object takes the options of a call that are no arguments any more."""
+    """Warn of options that are now part of an object."""
     if not options:
         return
     homes = sorted({_HOME[_RENAMED.get(n, n)] for n in options if _RENAMED.get(n, n) in _HOME})

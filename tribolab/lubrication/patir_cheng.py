@@ -1,4 +1,4 @@
-"""The factors of Patir and Cheng, for comparison."""
+"""Flow and friction factors of Patir and Cheng, for comparison."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def _mean_gap(distance: np.ndarray) -> np.ndarray:
 
 
 def _mean_inverse(distance: np.ndarray) -> np.ndarray:
-    """<1/gap> over Gaussian heights, by the trapezoidal rule in the gap's logarithm."""
+    """Mean of 1/gap over Gaussian heights, by the trapezoidal rule in ln(gap)."""
     log_gap = np.linspace(np.log(_CONTACT), np.log(80.0), 4001)
     bell = np.exp(-((np.exp(log_gap) - distance[:, None]) ** 2) / 2) / np.sqrt(2 * np.pi)
     return np.trapezoid(bell, log_gap, axis=1)

@@ -1,4 +1,4 @@
-"""A Stribeck curve of one surface: its films solved, and the friction that is in them."""
+"""Stribeck curve of one surface from its solved films."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from tribolab.units.stamping import stamp
 
 
 class SolvedCurve(NamedTuple):
-    """A curve, and what it was made from: curves of like contacts may start there."""
+    """Stribeck curve with its solutions, from which similar contacts can start."""
 
     curve: xr.Dataset
     points: list[list[SolvedSpeed]]  # of each load
@@ -46,7 +46,7 @@ def solve_curve(
     parameters: Parameters,
     near: SolvedCurve | None = None,
 ) -> SolvedCurve:
-    """Compute a Stribeck curve of one surface, if need be beside another one.
+    """Compute a Stribeck curve of one surface, starting from another if needed.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def _curve(system: System, force: float, points: list[SolvedSpeed]) -> dict[str,
 def _row(
     system: System, point: SolvedSpeed, force: float, hertz: float, area: np.ndarray
 ) -> dict[str, float]:
-    """All that a curve has of one speed, the relative contact area in its cells being known.
+    """Values of a curve at one speed, for a given contact area ratio of its cells.
 
     That is of the theory asked for, and of the other one (2, cells).
     """

@@ -1,4 +1,4 @@
-"""A lubricated contact solved at any speeds: each on the mesh of its own film."""
+"""Solution of a lubricated line contact at given speeds, each on its own mesh."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _FAR = 10.0  # times the speed before: so far a state is not carried if there is
 
 
 class System(NamedTuple):
-    """Everything but load and speed, in SI."""
+    """System parameters except load and speed, in SI."""
 
     contact: Contact
     psd: xr.Dataset | None
@@ -45,7 +45,7 @@ class System(NamedTuple):
 
     @property
     def line(self) -> LineContact:
-        """The contact, if it is a line."""
+        """Line contact, if it is one."""
         assert isinstance(self.contact, LineContact)
         return self.contact
 
@@ -75,7 +75,7 @@ class System(NamedTuple):
 
 
 class SolvedSpeed(NamedTuple):
-    """A solved speed [m/s] and the problem, with its mesh, that it was solved on."""
+    """Solution at a speed [m/s], with its problem and mesh."""
 
     speed: float
     problem: Problem
@@ -85,7 +85,7 @@ class SolvedSpeed(NamedTuple):
 def solve_speeds(
     system: System, force: float, speeds: np.ndarray, near: Sequence[SolvedSpeed] = ()
 ) -> list[SolvedSpeed]:
-    """Solve at each speed [m/s], not negative, in rising order and with none twice.
+    """Solve at each of increasing speeds [m/s].
 
     Speeds whose films are alike share a mesh, and which one that is depends on the speed alone: so
     does the solution. From one mesh to the next the last state is carried over.
@@ -125,7 +125,7 @@ def solve_speeds(
 def _carried_on(
     system: System, force: float, problem: Problem, speeds: list[float], last: SolvedSpeed
 ) -> list[Solution] | None:
-    """Go on from the last speed on another mesh; None if that leads nowhere."""
+    """Continue from the last speed on another mesh; None if that fails."""
     around = problem, system.line, system.liquid, force
     soon = system.psd is None or is_thick(*around, speeds[0])  # is there by itself
     if not last.speed or (soon and speeds[0] > _FAR * last.speed):
@@ -138,7 +138,7 @@ def _carried_on(
 
 
 def _afresh(system: System, force: float, problem: Problem, speeds: np.ndarray) -> list[Solution]:
-    """Solve from the dry contact on, from thick films down, or between smooth surfaces.
+    """Solve from the dry contact, from thick films, or between smooth surfaces.
 
     The solution is the same whichever way it is reached. From the dry contact is the sure way, but
     where that has closed its channels, or the first speed parts the surfaces, it is a long one.
@@ -185,5 +185,5 @@ def _afresh(system: System, force: float, problem: Problem, speeds: np.ndarray) 
 
 
 def _is_sealed(problem: Problem, rest: State) -> bool:
-    """Whether the dry contact has closed its last channel somewhere."""
+    """Whether the dry contact closes all flow channels somewhere."""
     return bool(rest.film.min() * problem.gap < problem.factors.percolation_separation)

@@ -117,7 +117,7 @@ def stribeck_curve(
 
 
 def with_shear_stress(curve: xr.Dataset, shear_stress: float | xr.DataArray) -> xr.Dataset:
-    """Add a shear stress to a computed curve that has none, without computing it again.
+    """Add a shear stress to a computed curve without solving it again.
 
     Parameters
     ----------

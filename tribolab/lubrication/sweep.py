@@ -1,4 +1,4 @@
-"""From the dry contact up in speed: a state to start from, and a step that never jumps."""
+"""Starting states of a line contact, and continuation to increasing speeds."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def dry_state(problem: Problem, contact: LineContact, separation: Separation, lo
 
 
 def carried_state(problem: Problem, before: Problem, state: State) -> State:
-    """Take a state over from another mesh of the same contact: its pressure, and the film to it."""
+    """Interpolate a state to another mesh of the same contact."""
     mesh, old = problem.mesh, before.mesh
     pressure = np.interp(mesh.x, old.x, state.pressure, left=0.0, right=0.0)
     pressure *= problem.load / (mesh.weight @ pressure)
@@ -68,7 +68,7 @@ def carried_state(problem: Problem, before: Problem, state: State) -> State:
 def is_thick(
     problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> bool:
-    """Whether a speed parts the surfaces by much more than their roughness."""
+    """Whether the film at a speed is much thicker than the roughness."""
     film = thinned_film(contact, liquid, load, speed)
     return film >= _THICK * problem.factors.rms_roughness
 
@@ -76,7 +76,7 @@ def is_thick(
 def lifted_state(
     problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> State:
-    """Find a state at one speed from above, where the film is thick beside the roughness.
+    """Find a state at one speed from a film that is thick compared with the roughness.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def lifted_state(
 def wet_state(
     problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> State:
-    """Find a state between smooth surfaces at one speed, from the Hertz contact on a cushion.
+    """Find a state between smooth surfaces at one speed, from a Hertz contact on a soft layer.
 
     A repulsion that ends at a third of the film expected there stands in for the contact until
     the fluid carries the load: as with roughness, rising speed lifts the bodies off it. Where the
@@ -121,7 +121,7 @@ def wet_state(
 def _cushioned(
     problem: Problem, contact: LineContact, liquid: Liquid, load: float, speed: float
 ) -> State:
-    """Solve at rest on the cushion, then at the speed."""
+    """Solve at rest with the auxiliary repulsion, then at the speed."""
     film = thinned_film(contact, liquid, load, speed)
     x = problem.mesh.x * problem.half_width
     pressure = hertz_pressure(x, load, contact) / problem.pressure
@@ -136,7 +136,7 @@ def _cushioned(
 
 
 class _Cushion(NamedTuple):
-    """p = p_max exp(10 - 30 u/film): p_max at a third of the film, nothing at the whole."""
+    """Auxiliary repulsion p = p_max exp(10 - 30 u/film) between smooth surfaces."""
 
     highest: float  # p_max [Pa]
     film: float  # [m]
@@ -154,7 +154,7 @@ def sweep(
     start: State | None,
     lifted: Callable[[], State] | None = None,
 ) -> list[Solution]:
-    """Solve at rising speeds, each from the ones before it.
+    """Solve at increasing speeds, each from the previous ones.
 
     Parameters
     ----------
@@ -197,7 +197,7 @@ def sweep(
 def sweep_beside(
     problem: Problem, viscosity: float, speeds: list[float], near: Sequence[State]
 ) -> list[Solution] | None:
-    """Solve at rising speeds, each from the state of a like contact; None if that leads nowhere.
+    """Solve at increasing speeds, each from a similar contact; None if that fails.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def sweep_beside(
 def _march(
     problem: Problem, viscosity: float, speeds: list[float], start: State
 ) -> tuple[list[Solution], NotConvergedError | None]:
-    """Go through the speeds in their order; what was solved, and why it ended early if it did."""
+    """Solve speed by speed; return the solutions, and the reason of an early end."""
     solved: list[Solution] = []
     known: list[tuple[float, State]] = []  # ln v and state of the last three, the newest last
     budget = _SUBSTEPS
@@ -269,7 +269,7 @@ def _predicted(mesh: Mesh, known: list[tuple[float, State]], start: State, aim: 
 def _moved_alike(
     mesh: Mesh, state: State, pairs: Sequence[tuple[State, State]], weights: Sequence[float]
 ) -> State:
-    """Move a state as, by these weights, the first of each pair lies away from the second."""
+    """Shift a state by the weighted differences of pairs of states."""
     if not pairs:
         return state
     weighted = list(zip(weights, pairs, strict=True))
@@ -280,7 +280,7 @@ def _moved_alike(
 
 
 def _extrapolation(at: list[float], aim: float) -> list[float]:
-    """Weights of the values at the last points that go on to the aim.
+    """Weights of the last points that extrapolate to a target.
 
     By the parabola where the steps are alike, by the secant where they are not, but by no more
     than three of its steps; the last value alone where rounding tells two points apart.

@@ -1,4 +1,4 @@
-"""What Stribeck curves and film profiles share: checked inputs, and what results say of them."""
+"""Checked inputs of Stribeck curves and film profiles, and their attributes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _REFERENCE = (
 
 
 def system_of(contact: Contact, psd: xr.Dataset | None, parameters: Parameters) -> System:
-    """Collect what all speeds and loads share."""
+    """Collect the parameters common to all speeds and loads."""
     liquid, interface, solver = parameters
     factors, body = interface.factors, interface.rough_body
     if factors is None:
@@ -49,7 +49,7 @@ def system_of(contact: Contact, psd: xr.Dataset | None, parameters: Parameters) 
 
 
 def checked_loads(load: str | ArrayLike, contact: Contact) -> xr.DataArray:
-    """Return loads [N/m], of a ball [N] (load); AnalysisError if one is not above zero."""
+    """Return loads [N/m], or [N] for a ball (load); AnalysisError unless positive."""
     if contact.is_round:
         loads = labelled(load, "normal_force").rename("load")
         if "normal_force" in loads.dims:
@@ -76,7 +76,7 @@ def checked_speeds(speed: str | ArrayLike, psd: xr.Dataset | None) -> xr.DataArr
 
 
 def system_attributes(system: System) -> dict[str, str | float | int]:
-    """Attributes that say what was computed, and on which grid."""
+    """Attributes of a result with its parameters and grid."""
     return {
         "viscosity_Pa_s": system.viscosity,
         "youngs_modulus_Pa": system.contact.youngs_modulus,
@@ -95,7 +95,7 @@ def system_attributes(system: System) -> dict[str, str | float | int]:
 
 
 def _beyond_default(system: System) -> dict[str, str | float | int]:
-    """Attributes of what differs from a half-space, a rigid counter body and a vented outlet."""
+    """Attributes for layers, elastic counter bodies and sealed outlets."""
     contact, liquid, factors = system.contact, system.liquid, system.factors
     balance = factors.roughness_balance
     told = {
@@ -113,7 +113,7 @@ def _beyond_default(system: System) -> dict[str, str | float | int]:
 def with_adhesion(
     system: System, highest_load: float, work_of_adhesion: str | float | None
 ) -> System:
-    """Return the system with what adhesion adds to its contact area up to a load [N/m]."""
+    """Return the system with the growth of contact area by adhesion up to a load [N/m]."""
     if work_of_adhesion is None or system.psd is None:
         return system
     modulus = _stiffness(system)

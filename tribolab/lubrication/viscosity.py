@@ -1,4 +1,4 @@
-"""Viscosity of liquids that are known by name, from temperature and water content."""
+"""Viscosity of known liquids from temperature and water content."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _EXPANSION = 9.5e-4  # 1/K, of the volume of these oils
 
 
 class Viscosity(NamedTuple):
-    """Viscosity of a liquid, and what moves it.
+    """Viscosity of a liquid, with its sensitivities.
 
     Parameters
     ----------
@@ -144,7 +144,7 @@ def liquid_viscosity(
 
 
 def knows_liquid(name: str) -> bool:
-    """Whether a medium's name is that of a liquid whose viscosity is known.
+    """Whether the viscosity of a medium is known by its name.
 
     Examples
     --------
@@ -188,7 +188,7 @@ def _glycerol(celsius: float, water: float) -> float:
 
 
 def _oil(nominal: float, kelvin: float) -> Viscosity:
-    """Viscosity of a silicone oil of so many mm2/s at 25 degrees Celsius."""
+    """Viscosity of a silicone oil of a given grade [mm2/s at 25 degrees Celsius]."""
     from scipy.optimize import brentq  # who names no oil waits for nothing
 
     density, falls = _of_grade(nominal)
@@ -212,7 +212,7 @@ def _oil(nominal: float, kelvin: float) -> Viscosity:
 
 
 def _of_grade(nominal: float) -> tuple[float, float]:
-    """Density over water's and fall of the viscosity, between grades over their logarithm."""
+    """Density relative to water and temperature dependence of viscosity for a grade."""
     for low, high in zip(_OILS, _OILS[1:], strict=False):
         if low[0] <= nominal <= high[0]:
             part = math.log(nominal / low[0]) / math.log(high[0] / low[0])

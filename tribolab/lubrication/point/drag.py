@@ -1,4 +1,4 @@
-"""Friction of the fluid in the solved film of a round contact."""
+"""Fluid friction in the solved film of a round contact."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribolab.lubrication.point.equations import PointProblem, PointSolution
 def point_friction(
     problem: PointProblem, solution: PointSolution
 ) -> tuple[FluidFriction, FluidFriction]:
-    """Friction of the fluid with the friction factors, and with phi_f = phi_fp = 1, phi_fs = 0.
+    """Fluid friction with the friction factors, and with phi_f = phi_fp = 1, phi_fs = 0.
 
     Notes
     -----
@@ -39,7 +39,7 @@ def point_friction(
 
 
 def streamer_share(problem: PointProblem, solution: PointSolution) -> np.ndarray:
-    """Share of each cell that liquid covers: 1 in the full film, less in the cavity.
+    """Share of each cell covered by liquid: 1 in the full film, less in the cavity.
 
     There the liquid goes with the flow, div(s (v/2)(u + h phi_s)) = 0, upwind from where the film
     ruptures.

@@ -23,7 +23,7 @@ FULL_LOAD = 8 / 3  # of a ball in units of P a^2, whatever the load
 
 
 class Faces(NamedTuple):
-    """Faces between the cells of a mesh: first the radial ones, then those between sectors."""
+    """Faces between the cells of a mesh: radial ones first, then those between sectors."""
 
     gradient: sparse.csr_matrix  # rise across each face (faces, cells)
     sides: sparse.csr_matrix  # 1 at each of the two cells (faces, cells)
@@ -67,7 +67,7 @@ def _faces(faces: bytes, sectors: int) -> Faces:
 
 
 class PointProblem(NamedTuple):
-    """All that does not change with speed; lengths in a, gaps in g = a^2/2R, pressures in P."""
+    """Quantities independent of speed; lengths in a, gaps in g = a^2/2R, pressures in P."""
 
     mesh: PolarMesh
     factors: FlowFactors
@@ -93,7 +93,7 @@ class PointProblem(NamedTuple):
         return _faces(self.mesh.faces.tobytes(), self.mesh.sectors)
 
     def contact(self, film: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Contact pressure and its slope over the film."""
+        """Contact pressure and its derivative with respect to the film."""
         if self.separation is None:
             return np.zeros_like(film), np.zeros_like(film)
         pressure, slope = self.separation.pressure_and_slope(film * self.gap)
@@ -107,12 +107,12 @@ class PointState(NamedTuple):
     constant: float
 
     def film(self, mesh: PolarMesh) -> np.ndarray:
-        """Film thickness over g."""
+        """Film thickness in units of g."""
         return np.asarray(self.constant + mesh.squared + mesh.kernel @ self.pressure)
 
 
 class PointSolution(NamedTuple):
-    """A converged state with its proof."""
+    """Converged state with its residuals."""
 
     couette: float
     state: PointState
@@ -223,7 +223,7 @@ def _balance(
 
 
 def _newton_step(problem: PointProblem, now: _Balance, lack: float) -> tuple[np.ndarray, float]:
-    """Change of pressure and constant; cells of the cavity that nothing touches are known."""
+    """Newton step of pressure and constant; pressures inside the cavity stay fixed."""
     mesh, faces = problem.mesh, problem.faces
     n = now.film.size
     full = (~now.dry / now.stiff)[:, None]

@@ -1,4 +1,4 @@
-"""What a Stribeck curve of a ball has of each speed, by the full theory, by strips, or by both."""
+"""Columns of a ball's Stribeck curve, by the full theory, by strips, or by both."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FULL, STRIPS = "rings and sectors", "strips"
 def ball_rows(
     system: System, force: float, speeds: np.ndarray
 ) -> tuple[dict[str, np.ndarray], np.ndarray]:
-    """Return the columns of a curve over speeds [m/s] in rising order, and where strips were used.
+    """Columns of a curve over increasing speeds [m/s], and where strips were used.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def _full_rows(system: System, force: float, speeds: np.ndarray) -> list[dict[st
 
 
 def point_row(system: System, force: float, hertz: float, point: SolvedPoint) -> dict[str, float]:
-    """Return all that a curve has of one solved speed."""
+    """Values of a curve at one solved speed."""
     _, problem, solution = point
     mesh, film = problem.mesh, solution.film
     solid, whole = areas_of(problem.pressure, solution.contact, solution.fluid)
@@ -73,12 +73,12 @@ def point_row(system: System, force: float, hertz: float, point: SolvedPoint) ->
 def areas_of(
     pressure: float, contact: np.ndarray, fluid: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Pressure of the solid and the whole one [Pa], of which areas are made."""
+    """Contact pressure and total pressure [Pa], from which areas are computed."""
     return contact * pressure, (contact + fluid) * pressure
 
 
 def method_used(strips: Sequence[np.ndarray]) -> str:
-    """Say which theory a curve is from."""
+    """Name of the theory of a curve."""
     used = np.concatenate([np.ravel(part) for part in strips])
     if used.all():
         return STRIPS

@@ -1,4 +1,4 @@
-"""A ball as strips along the direction of sliding, each a line contact: quick, and within 6 %."""
+"""Strip approximation of a ball by line contacts along the sliding direction, within 6 %."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _LEAK, _OBLIQUE = 0.88, 5 / 3  # entrainment of a strip, v' = 0.88 v cos^(5/3) t
 
 
 def within_strips(system: System, force: float, speed: np.ndarray) -> np.ndarray:
-    """Whether strips hold at speeds [m/s]: thin films on a half-space in a Newtonian liquid."""
+    """Mask of speeds [m/s] at which strips are valid: thin films, half-space, Newtonian."""
     contact = system.contact
     if system.contact.thickness < np.inf or system.liquid.thinning or not contact.is_round:
         return np.zeros(np.shape(speed), dtype=bool)
@@ -38,7 +38,7 @@ def within_strips(system: System, force: float, speed: np.ndarray) -> np.ndarray
 
 
 def strip_rows(system: System, force: float, speeds: np.ndarray) -> list[dict[str, float]]:
-    """Compute all that a curve has of each speed [m/s], in rising order, from six strips.
+    """Values of a curve at increasing speeds [m/s], from six strips.
 
     Notes
     -----

@@ -1,4 +1,4 @@
-"""A lubricated round contact solved at any speeds: from the dry contact up, or from thick films."""
+"""Solution of a lubricated round contact at given speeds, from rest or from thick films."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ SHORTEST = 1.5  # radii of the contact where the liquid may end
 
 
 class SolvedPoint(NamedTuple):
-    """A solved speed [m/s] and the problem, with its mesh, that it was solved on."""
+    """Solution at a speed [m/s], with its problem and mesh."""
 
     speed: float
     problem: PointProblem
@@ -44,7 +44,7 @@ class SolvedPoint(NamedTuple):
 
 
 def ball_film(contact: PointContact, viscosity: float, load: float, speed: float) -> float:
-    """Film thickness [m] in the middle of a smooth ball: the soft or the rigid limit, the larger.
+    """Central film thickness [m] of a smooth ball: the larger of the soft and the rigid limit.
 
     Notes
     -----
@@ -70,7 +70,7 @@ def expected_film(contact: PointContact, liquid: Liquid, load: float, speed: flo
 
 
 def point_problem(system: System, force: float, speed: float) -> PointProblem:
-    """Choose scales and mesh at a load [N] and speed [m/s], that of rest included.
+    """Choose scales and mesh at a load [N] and speed [m/s], including rest.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def point_problem(system: System, force: float, speed: float) -> PointProblem:
 
 
 def solve_points(system: System, force: float, speeds: np.ndarray) -> list[SolvedPoint]:
-    """Solve at each speed [m/s], not negative, in rising order and with none twice.
+    """Solve at each of increasing speeds [m/s].
 
     Raises
     ------
@@ -141,7 +141,7 @@ def solve_points(system: System, force: float, speeds: np.ndarray) -> list[Solve
 def _from_above(
     system: System, force: float, speeds: list[float]
 ) -> tuple[list[SolvedPoint], NotConvergedError | None]:
-    """Solve from a thick film, both up and down in speed."""
+    """Solve from a thick film, to higher and lower speeds."""
     contact = _ball(system)
     a = float(hertz_half_width(force, contact))
     wanted = max(_LIFTED * a**2 / (2 * contact.radius), _THICK * system.factors.rms_roughness)
@@ -167,7 +167,7 @@ def _from_above(
 def _march(
     system: System, force: float, speeds: Sequence[float], start: SolvedPoint
 ) -> tuple[list[SolvedPoint], NotConvergedError | None]:
-    """Go through the speeds in their order; what was solved, and why it ended early if it did."""
+    """Solve speed by speed; return the solutions, and the reason of an early end."""
     solved: list[SolvedPoint] = []
     last, known = start, [(np.log(start.speed), start.solution.state)]
     budget, first = _SUBSTEPS, start.solution.couette == 0
@@ -209,7 +209,7 @@ def _march(
 def carried_state(
     problem: PointProblem, before: PointProblem, solution: PointSolution
 ) -> PointState:
-    """Take a state over to other rings: its pressure, and the thinnest film."""
+    """Interpolate a state to another mesh by its pressure and smallest film."""
     mesh, old = problem.mesh, before.mesh
     rows = solution.state.pressure.reshape(-1, old.sectors)
     moved = np.stack([np.interp(mesh.radius, old.radius, row) for row in rows.T], axis=1).ravel()
@@ -221,7 +221,7 @@ def carried_state(
 def _predicted(
     problem: PointProblem, known: list[tuple[float, PointState]], state: PointState, aim: float
 ) -> PointState:
-    """Go on by the secant through the last two, as far as no film changes by more than 60 %."""
+    """Secant prediction from the last two solutions, limited to 60 % change of any film."""
     if len(known) < 2 or known[-1][0] == known[-2][0]:
         return state
     (before, old), (at, new) = known[-2:]
@@ -234,7 +234,7 @@ def _predicted(
 
 
 def _dry(system: System, force: float) -> tuple[PointProblem, PointState]:
-    """Solve the contact at rest on the rings, for a state to start from."""
+    """Solve the contact at rest on the mesh, as a starting state."""
     problem = point_problem(system, force, 0.0)
     assert system.separation is not None
     mesh = problem.mesh
@@ -245,7 +245,7 @@ def _dry(system: System, force: float) -> tuple[PointProblem, PointState]:
 
 
 def _gentle(problem: PointProblem, dry: PointSolution, system: System) -> float:
-    """Speed [m/s] at which the fluid's pressure is still small beside the contact's."""
+    """Speed [m/s] at which the fluid pressure is small compared with the contact pressure."""
     thinnest = float(dry.film.min())
     phi = float(problem.moving(0.0).transport(np.array([thinnest * problem.gap]))[0][0])
     number = _GENTLE * thinnest**2 * max(phi, 1e-6)
