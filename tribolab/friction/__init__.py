@@ -1,1 +1,1 @@
-"""What the friction signals say: segments, friction coefficients, measured curves."""
+"""Analysis of friction signals: segments, friction coefficients, measured curves."""

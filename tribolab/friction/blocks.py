@@ -1,4 +1,4 @@
-"""How well a mean is known, seen without theory: from the means of blocks of the record."""
+"""Empirical error of a mean, from the means of blocks of the record."""
 
 from __future__ import annotations
 

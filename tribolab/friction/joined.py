@@ -18,7 +18,7 @@ Label = str | float
 def grouped(
     runs: Sequence[xr.Dataset], labels: Mapping[str, Sequence[Label]], function: str
 ) -> list[tuple[list[xr.Dataset], dict[str, Label]]]:
-    """Return the runs that have the same labels together, with these.
+    """Return the runs grouped by equal labels, with these labels.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Numbers that decide how a record is averaged."""
+"""Limits for averaging a record."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The moving mass between contact and sensor, found from the force against the acceleration."""
+"""Moving mass between contact and sensor, from the force against the acceleration."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MAX_SAMPLES = 1 << 20  # samples: a mass does not change within a run
 
 
 class MovingMass(NamedTuple):
-    """A mass and its standard error [kg], and from how many pairs of strokes."""
+    """Mass with its standard error [kg], and the number of stroke pairs used."""
 
     mass: float
     error: float
@@ -28,7 +28,7 @@ class MovingMass(NamedTuple):
 
 
 def moving_mass(run: xr.Dataset) -> MovingMass | None:
-    """Find the mass whose inertia is in the friction force; None where the data do not tell.
+    """Find the mass whose inertia is in the friction force; None if undetermined.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def moving_mass(run: xr.Dataset) -> MovingMass | None:
 
 
 def without_inertia(run: xr.Dataset, mass: str | float | None = None) -> xr.Dataset:
-    """Take the inertia of a moving mass out of the friction force.
+    """Remove the inertia of a moving mass from the friction force.
 
     Parameters
     ----------

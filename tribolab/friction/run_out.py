@@ -1,4 +1,4 @@
-"""What repeats with each turn of a rig, and what of it an unfinished turn leaves in a mean.
+"""Waves that repeat with each turn of a rig, and their effect on the mean of an unfinished turn.
 
 Notes
 -----
@@ -168,7 +168,7 @@ def turns_of(angle: np.ndarray) -> float:
 
 
 def turn_remark(turns: float) -> str:
-    """Say that less than a turn was seen; "" where it was more, or is not known.
+    """Return a remark if less than a turn was recorded; else "".
 
     Examples
     --------

@@ -48,7 +48,7 @@ _WIDTHS = special.stdtrit(_DOF, 0.975)
 
 
 class Estimate(NamedTuple):
-    """What a record says of its mean and trend.
+    """Mean and trend of a record, with errors.
 
     ``t_0.975(dof) sem`` is ``u95``, of the mean over the path; those that end in ``_beyond`` are of
     a mean that is to hold beyond it, where a course along the path is a wander that may go on.
@@ -232,7 +232,7 @@ def _described(
 
 
 def _without_many_turns(record: _Record, fine: np.ndarray, angle: np.ndarray) -> _Record:
-    """Take out of a record what repeats with each of many turns, seen in finer stretches."""
+    """Remove waves that repeat with each of many turns, from finer intervals."""
     waves = fitted_waves(fine, in_step(fine, angle))
     repeated = np.sum([wave.signal for wave in waves], axis=0)
     return record._replace(
@@ -290,7 +290,7 @@ def _width(dof: float) -> float:
 
 
 def _without_turns(records: list[_Record]) -> tuple[np.ndarray, np.ndarray]:
-    """Give the stretches without what repeats with each turn, and the error that it leaves."""
+    """Return the intervals without waves that repeat with each turn, and the remaining error."""
     blocks = np.stack([record.blocks for record in records])
     left = np.array([record.left for record in records])
     turns = np.array([turns_of(record.angle) for record in records])
@@ -313,7 +313,7 @@ def _without_turns(records: list[_Record]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def undetermined_remark(estimate: Estimate) -> str:
-    """Say that a record is too short for an error of its mean; "" where it is not.
+    """Return a remark if a record is too short for an error of its mean; else "".
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Measured Stribeck curve: repeats of a measurement combined, with what spreads them kept."""
+"""Measured Stribeck curve from repeats of a measurement, with their scatter."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def measured_stribeck_curve(
     over: str = "sliding_speed",
     **labels: Sequence[Label],
 ) -> xr.Dataset:
-    """Combine the segments of one or more runs into friction coefficient over sliding speed.
+    """Combine the segments of runs into friction coefficient against sliding speed.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def _row(
 
 
 def _repeats_are(frictions: Sequence[xr.Dataset]) -> str:
-    """Say what the scatter between runs is a scatter of."""
+    """Return the kind of repeats whose scatter is used."""
     specimens = [str(friction.attrs.get("specimen", "")) for friction in frictions]
     if len(frictions) > 1 and all(specimens) and len(set(specimens)) == len(frictions):
         return "between specimens"
@@ -195,7 +195,7 @@ def _repeats_are(frictions: Sequence[xr.Dataset]) -> str:
 
 
 def _as_sliding(friction: xr.Dataset, over: str) -> xr.Dataset:
-    """Return a friction result with another speed in the place of the sliding speed."""
+    """Return a friction result with another speed as the sliding speed."""
     if over not in friction:
         raise AnalysisError(
             f"{friction.attrs.get('source', 'run')}: the segments have no '{shown(over)}'",

@@ -1,4 +1,4 @@
-"""Weights that make a mean over rows a mean over time, whatever the sampling rate does.
+"""Weights by time for means over unevenly sampled rows.
 
 Notes
 -----
@@ -19,7 +19,7 @@ _INTERVALS_AROUND = 5  # intervals whose median is the usual one
 
 
 def sample_weights(time: np.ndarray) -> np.ndarray | None:
-    """Weights by time, summing to one; None if the rows are even, so that the plain mean will do.
+    """Weights by time, summing to one; None for even sampling.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""How far the mean of a record whose samples are correlated may be off."""
+"""Standard error of the mean of a record with correlated samples."""

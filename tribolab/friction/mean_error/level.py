@@ -1,4 +1,4 @@
-"""The level of a record, and how far it may be off: oscillations and courses first, then wander.
+"""Level of a record with its error: oscillations and trends first, then slow drift.
 
 Notes
 -----
@@ -24,7 +24,7 @@ from tribolab.friction.mean_error.wander import errors_of_means
 
 
 class Levels(NamedTuple):
-    """What records say of their levels (record); all in the unit of the records."""
+    """Levels of records with errors (record), in the unit of the records."""
 
     level: np.ndarray  # without oscillations
     sem: np.ndarray

@@ -1,4 +1,4 @@
-"""Numbers that decide the error of a mean; calibrated by ``tests/benchmarks/mean_coverage.py``."""
+"""Limits for the error of a mean; calibrated by ``tests/benchmarks/mean_coverage.py``."""
 
 from tribolab.core.limit import Count, Limit
 

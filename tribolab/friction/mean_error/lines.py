@@ -1,4 +1,4 @@
-"""Oscillations in records: sines that stand far above the noise beside them."""
+"""Oscillations in records: sines far above the noise."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the lowest cosines of a record say of the error of its mean.
+"""Error of the mean of a record due to slow drift, from its lowest cosine terms.
 
 Notes
 -----
@@ -70,7 +70,7 @@ class MeanErrors(NamedTuple):
 def errors_of_means(
     rest: np.ndarray, lines: Sequence[Sequence[float]], courses: Sequence[int]
 ) -> MeanErrors:
-    """Return how far the means of records may be off.
+    """Return standard errors and U95 of the means of records.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def errors_of_means(
 def _kept_cosines(
     rest: np.ndarray, most: int, lines: Sequence[Sequence[float]], courses: Sequence[int]
 ) -> np.ndarray:
-    """Return which of the lowest cosines tell of the wander (record, cosine), as 0 or 1."""
+    """Return a mask of the lowest cosines that determine the drift (record, cosine)."""
     count, samples = rest.shape
     highest = np.full(count, most)
     if samples >= 2 * _MIN_COSINES:

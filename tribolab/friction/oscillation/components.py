@@ -1,4 +1,4 @@
-"""All oscillations of a record that are significant, each with its own frequency."""
+"""All significant oscillations of a record, each with its own frequency."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _WINDOW_BINS = 0.8  # bins, that the window makes of a line
 
 
 class Component(NamedTuple):
-    """An oscillation of its own: frequency [Hz], error [Hz], swing (signal's unit), chance."""
+    """Oscillation: frequency [Hz], error [Hz], swing (signal's unit), p value."""
 
     frequency: float
     frequency_error: float
@@ -30,7 +30,7 @@ class Component(NamedTuple):
 
 
 def components(seen: Survey) -> tuple[Component, ...]:
-    """Find all oscillations that are significant, the strongest first.
+    """Find all significant oscillations, the strongest first.
 
     Parameters
     ----------
@@ -82,13 +82,13 @@ def components(seen: Survey) -> tuple[Component, ...]:
 
 
 def _line(seen: Survey, at: int) -> np.ndarray:
-    """Which bins a narrow line covers (bin)."""
+    """Mask of the bins that a narrow line covers (bin)."""
     f = seen.fine.frequency
     return np.abs(f - f[at]) <= max(limits.WIDTH_OF_LINE.value * f[at], 2.01 * seen.fine.width[at])
 
 
 def _hold(seen: Survey, core: np.ndarray, lines: list[Component]) -> bool:
-    """Whether narrow lines hold most of the power where they lie."""
+    """Whether narrow lines contain most of the power at their place."""
     if len(lines) < 2:
         return True
     f = seen.fine.frequency
@@ -132,7 +132,7 @@ def _harmonics(
 
 
 def _stands_out(seen: Survey, core: np.ndarray, at: int) -> bool:
-    """Whether a bin stands so high among those around it that they do not explain it."""
+    """Whether a bin exceeds its neighbours significantly."""
     f, power = seen.fine.frequency, seen.fine.power
     beside = ~core & ~_line(seen, at)
     levels = [np.interp(f[at], seen.middle, seen.background)]

@@ -1,4 +1,4 @@
-"""How far a stick-slip cycle is from steady sliding: bounds of the critical stiffness."""
+"""Bounds of the critical stiffness, below which stick-slip occurs."""
 
 from __future__ import annotations
 

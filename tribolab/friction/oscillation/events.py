@@ -1,4 +1,4 @@
-"""Sticks and slips of a record: turning points beyond a hysteresis, whatever the noise between."""
+"""Stick and slip events of a record: turning points beyond a hysteresis."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Events(NamedTuple):
 
 
 def without_spikes(values: np.ndarray, noise: float) -> tuple[np.ndarray, int]:
-    """Put the middle of its neighbours in the place of each single sample that stands off.
+    """Replace each single outlying sample by the mean of its neighbours.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def without_spikes(values: np.ndarray, noise: float) -> tuple[np.ndarray, int]:
 
 
 def turning_points(values: np.ndarray, hysteresis: float) -> np.ndarray:
-    """Find the valleys and peaks that are left when swings below a threshold are dropped.
+    """Find the valleys and peaks that remain after dropping swings below a threshold.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ def find_events(time: np.ndarray, values: np.ndarray, hysteresis: float) -> Even
 def _half_way(
     time: np.ndarray, values: np.ndarray, peak: np.ndarray, valley: np.ndarray
 ) -> np.ndarray:
-    """When each fall is half done: as many samples after the peak as lie above its middle."""
+    """Return the time at which half of each drop is complete."""
     count = valley - peak + 1
     first = np.cumsum(count) - count
     inside = np.arange(count.sum()) + np.repeat(peak - first, count)
@@ -167,7 +167,7 @@ def _half_way(
 
 
 def loading_rate(time: np.ndarray, values: np.ndarray, events: Events) -> float:
-    """Return how fast friction rises where the sample sticks best [unit/s]; NaN without events.
+    """Return the highest loading rate of friction while sticking [unit/s]; NaN without events.
 
     Parameters
     ----------

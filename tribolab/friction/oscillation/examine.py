@@ -1,4 +1,4 @@
-"""One record seen whole: oscillation, events and form at the scale of its own period."""
+"""Analysis of one record: oscillation, events and waveform at the scale of its period."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _SIMULATION_ROUNDS = 2
 
 
 class EventLimits(NamedTuple):
-    """What an event has to exceed, and what is looked at; see `stick_slip`."""
+    """Limits for events and records; see `stick_slip`."""
 
     hysteresis: float = 0.5
     noise_levels: float = 4.0
@@ -55,7 +55,7 @@ _DEFAULT = EventLimits()
 
 
 class Examined(NamedTuple):
-    """What a record holds; numbers carry the signal's unit."""
+    """Results for a record; numbers have the signal's unit."""
 
     oscillation: Oscillation
     events: Events
@@ -72,7 +72,7 @@ class Examined(NamedTuple):
 
 
 class View(NamedTuple):
-    """An oscillation with its cycles, and the record they were sought in."""
+    """Oscillation with its cycles, and the record in which they were found."""
 
     oscillation: Oscillation
     record: EvenRecord
@@ -84,7 +84,7 @@ class View(NamedTuple):
 def examine_record(
     time: np.ndarray, values: np.ndarray, thresholds: EventLimits = _DEFAULT, *, force: bool = False
 ) -> Examined | str:
-    """Look at one record; text where there is nothing to see, saying why.
+    """Analyse one record, or return the reason why it cannot be.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def _settled(record: EvenRecord, surveyed: Survey, noise: float, thresholds: Eve
 def _beside_slow_wave(
     record: EvenRecord, surveyed: Survey, view: View, noise: float, thresholds: EventLimits
 ) -> tuple[EvenRecord, Survey, View]:
-    """Take a slow wave off if a larger regular oscillation is left; else change nothing.
+    """Remove a slow wave if a larger regular oscillation remains.
 
     What is left of a wave of few periods is its harmonics, which are smaller.
     """
@@ -183,7 +183,7 @@ def _beside_slow_wave(
 
 
 def _without_drift(record: EvenRecord, frequency: float) -> EvenRecord:
-    """Take a drift off, far slower than the oscillation: it would make falls unlike rises."""
+    """Remove drift far slower than the oscillation, which makes drops unlike rises."""
     periods = frequency * record.values.size * record.spacing
     degree = int(
         np.clip(
@@ -201,7 +201,7 @@ def _without_drift(record: EvenRecord, frequency: float) -> EvenRecord:
 
 
 def _beside_wander(record: EvenRecord, oscillation: Oscillation) -> EvenRecord | None:
-    """Take the mean over one period off; None where there is hardly a wander.
+    """Remove the mean over one period; None if there is hardly any drift.
 
     A wave's mean over its own period does not change, so that its cycles stay as they are. Half a
     period is lost at either end.
@@ -226,7 +226,7 @@ def _view(
     thresholds: EventLimits,
     fewest: int = _SAMPLES_PER_PERIOD,
 ) -> View:
-    """Seek the cycles of an oscillation at the scale of its period."""
+    """Find the cycles of an oscillation at the scale of its period."""
     most = int(1 / (oscillation.frequency * fewest * record.spacing))
     # no more is averaged than the noise calls for: means round off what is abrupt
     wanted = min(limits.SWING_OVER_NOISE.value * noise / max(oscillation.swing, 1e-300), 1e6) ** 2
@@ -259,7 +259,7 @@ def _view(
 def _excess(
     record: EvenRecord, view: View, form: WaveformFeatures, probability: np.ndarray
 ) -> float:
-    """By how much the mean of the drops, as picked from valley to peak, is too large."""
+    """Bias of the mean drop from valley to peak."""
     if probability[0] >= 0.5:
         return 0.0
     oscillation, events = view.oscillation, view.events
@@ -292,7 +292,7 @@ def _excess(
 def noise_excess(
     record: EvenRecord, oscillation: Oscillation, events: Events, hysteresis: float
 ) -> float:
-    """By how much the noise makes the mean drop look larger.
+    """Bias of the mean drop due to noise.
 
     Parameters
     ----------
@@ -348,7 +348,7 @@ def noise_excess(
 def _cycles(
     time: np.ndarray, values: np.ndarray, events: Events
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Moments within the events, straight lines from turn to turn, and what is left beside them."""
+    """Return the times within the events, straight lines between turning points, and residuals."""
     knots = np.append(np.stack([events.start, events.peak], axis=1).ravel(), events.stop[-1])
     first, last = np.searchsorted(time, knots[[0, -1]])
     time, values = time[first : last + 1], values[first : last + 1]

@@ -1,4 +1,4 @@
-"""One slow wave in a record, too few periods of it to be told from a wander for sure."""
+"""Slow wave with too few periods to be distinguished from drift."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SINE_COLUMNS = 4  # first columns of a wave's basis: straight line, cosine, sin
 
 
 class SlowWave(NamedTuple):
-    """Periods in the record, part of the variance beside a straight line that the wave holds."""
+    """Number of periods in the record, and the wave's share of the variance about a line."""
 
     periods: float
     explained: float
@@ -39,7 +39,7 @@ def _bases() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def slow_wave(record: EvenRecord) -> SlowWave | None:
-    """Find one slow wave that nearly all of the fluctuation is; None where there is none.
+    """Find one slow wave that explains nearly all of the fluctuation; else None.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def slow_wave(record: EvenRecord) -> SlowWave | None:
 
 
 def without_slow_wave(record: EvenRecord) -> tuple[EvenRecord, float] | None:
-    """Take the slow sine off that explains most, return its swing, too; None if it is small.
+    """Remove the dominant slow sine, and return its swing; None if it is small.
 
     Beside a slow oscillation the spectrum does not tell a faster one from a wander.
 

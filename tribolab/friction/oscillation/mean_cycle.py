@@ -1,4 +1,4 @@
-"""The drop of the mean cycle: noise averages out before anything is measured."""
+"""Drop of the mean cycle, in which noise averages out."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The strongest oscillation of a record: its frequency, its size, and whether noise explains it."""
+"""Strongest oscillation of a record: frequency, size, and significance."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _MEAN_FREQUENCY_ROUNDS = 15  # in which its mean settles
 
 
 class Oscillation(NamedTuple):
-    """What the spectrum of one record says.
+    """Result of the spectrum of one record.
 
     Parameters
     ----------
@@ -212,7 +212,7 @@ def mean_frequency(fine: Spectrum, start: float, floor: float) -> tuple[float, f
 
 
 def _swing(powers: np.ndarray) -> float:
-    """From valley to peak: between a sine's and a saw's, by the share of the harmonics."""
+    """Peak-to-valley swing, between that of a sine and a sawtooth by the share of harmonics."""
     variance = powers.sum()
     share = min(powers[1:].sum() / max(variance, 1e-300) / 0.39, 1.0)  # 0.39: an ideal saw's
     factor = np.sqrt(8.0) * (1 - share) + np.sqrt(12.0) * share

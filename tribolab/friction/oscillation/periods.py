@@ -1,4 +1,4 @@
-"""Whether drops and spectrum agree on a period, and what may be claimed if they do not."""
+"""Agreement of drops and spectrum on a period, and the resulting claim."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ AT_ODDS = "the spectrum tells a period"  # begins the remark that drops tell ano
 
 
 class PeriodVerdict(NamedTuple):
-    """What is claimed of a record.
+    """Verdict on the periods of a record.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class PeriodVerdict(NamedTuple):
 
 
 def at_odds(oscillation: Oscillation, seen: Regularity) -> bool:
-    """Whether spectrum and drops tell different periods, beyond their errors."""
+    """Whether spectrum and drops give different periods, beyond their errors."""
     periods = seen.periods
     if not periods.size:
         return False
@@ -183,7 +183,7 @@ def period_verdict(
 
 
 def _mixed(oscillation: Oscillation, lines: tuple[Component, ...], form: WaveformFeatures) -> str:
-    """Say why an oscillation is no sine, or not the only one of its size; "" if it may be.
+    """Return the reason why an oscillation is not a single sine; "" if it may be.
 
     A sine on a larger sawtooth rounds it off, and its line may be the stronger: half of the swing
     of a sawtooth is in its first harmonic.

@@ -1,4 +1,4 @@
-"""How regular an oscillation is: alike periods, scattered ones, or trains with quiet between."""
+"""Regularity of an oscillation: regular, irregular, or intermittent."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SLIP_KINDS = ("regular", "irregular", "intermittent")
 
 
 class Regularity(NamedTuple):
-    """How an oscillation goes on.
+    """Regularity of an oscillation.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class Regularity(NamedTuple):
 
 
 def regularity(record: EvenRecord, events: Events) -> Regularity:
-    """Tell regular, irregular and intermittent oscillations apart.
+    """Distinguish regular, irregular and intermittent oscillations.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def regularity(record: EvenRecord, events: Events) -> Regularity:
 
 
 def scatter(periods: np.ndarray) -> float:
-    """Return the standard deviation over the mean; NaN of fewer than two."""
+    """Return the standard deviation over the mean; NaN for fewer than two."""
     return float(np.std(periods, ddof=1) / periods.mean()) if periods.size > 1 else np.nan
 
 

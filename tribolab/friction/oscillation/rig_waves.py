@@ -1,4 +1,4 @@
-"""What repeats with each turn or stroke of a rig: its run-out, not stick-slip of the contact.
+"""Waves that repeat with each turn or stroke of a rig: run-out, not stick-slip.
 
 Notes
 -----
@@ -39,7 +39,7 @@ _TIMES = {1: "once", 2: "twice"}
 
 
 class RigWave(NamedTuple):
-    """What repeats with a rig: its values (time), its swing, and how often in a turn or cycle.
+    """Wave that repeats with a rig: its values (time), its swing, and its order.
 
     `undersampled` waves are faster than half the rate of the record.
     """
@@ -64,7 +64,7 @@ class RigWave(NamedTuple):
 
 
 class RigMotion(NamedTuple):
-    """How fast a rig turns [rad/s] (time), or goes to and fro; and what its period is called."""
+    """Rotation rate [rad/s] (time) or reciprocation of a rig, and the name of its period."""
 
     rate: np.ndarray | float
     what: str
@@ -77,7 +77,7 @@ class RigMotion(NamedTuple):
 
 
 def motion_of(run: xr.Dataset) -> RigMotion | None:
-    """Return how a rig turns, or goes to and fro in strokes that are not told apart.
+    """Return the rotation of a rig, or its reciprocation in unseparated strokes.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def motion_of(run: xr.Dataset) -> RigMotion | None:
 
 
 def rig_wave(values: np.ndarray, angle: np.ndarray) -> RigWave | None:
-    """Find what repeats with each turn of a rig in a record; None where nothing stands out.
+    """Find waves that repeat with each turn of a rig; None if not significant.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def _fit(
 def _believed(
     orders: np.ndarray, fits: list[_Fit], turns: float, off: float
 ) -> tuple[np.ndarray, float]:
-    """Places of the orders that stand out and stay in step, and the part that noise is not."""
+    """Significant orders with a stable phase, and their part without noise."""
     size = np.array([fit.size for fit in fits])
     power, beside = (abs(size) ** 2).mean(axis=0), np.mean([fit.beside for fit in fits], axis=0)
     ratio = power / np.maximum(beside, 1e-300)

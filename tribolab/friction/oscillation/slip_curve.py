@@ -1,4 +1,4 @@
-"""Stick-slip of several runs against sliding speed, and whether frequency goes with the speed."""
+"""Stick-slip of several runs against sliding speed, and scaling of frequency with speed."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ NEEDED = frozenset(
 
 
 class Scaling(NamedTuple):
-    """How frequency goes with speed: f ~ v^exponent.
+    """Scaling of frequency with speed: f ~ v^exponent.
 
     Parameters
     ----------
@@ -248,7 +248,7 @@ def _row(
 
 
 def _commonest(words: np.ndarray) -> str:
-    """Return the most frequent word; of equally frequent ones that which comes first."""
+    """Return the most frequent word; the first one of equally frequent words."""
     known = words.astype(str).tolist()
     return max(dict.fromkeys(known), key=known.count, default="")
 

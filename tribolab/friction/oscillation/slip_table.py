@@ -1,4 +1,4 @@
-"""What was seen in the segments of a run, as columns, spectra on one grid, and a list of events."""
+"""Results of the segments of a run: columns, spectra on one grid, and a list of events."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _OF_NOISE = (
 
 
 def ringing(kind: np.ndarray, frequency: np.ndarray, speed: np.ndarray) -> np.ndarray:
-    """Find the segments whose oscillation keeps its frequency, whatever the speed.
+    """Find the segments whose oscillation keeps its frequency at all speeds.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def _row(e: Examined, speed: float, load: float) -> SlipRow:
 
 
 def oscillates(seen: Examined | str) -> TypeGuard[Examined]:
-    """Whether an oscillation is claimed of a segment."""
+    """Whether a segment has a significant oscillation."""
     return class_of(seen) in CLASSES[1:]
 
 
@@ -258,7 +258,7 @@ def _grid(axes: list[np.ndarray]) -> np.ndarray:
 
 
 def _on(grid: np.ndarray, axis: np.ndarray, power: np.ndarray) -> np.ndarray:
-    """Carry a spectrum over to the grid, straight in the logarithms; NaN beyond its ends."""
+    """Interpolate a spectrum to the grid in logarithms; NaN beyond its ends."""
     log = np.log(np.maximum(power, 1e-300))
     return np.exp(np.interp(np.log(grid), np.log(axis), log, left=np.nan, right=np.nan))
 
@@ -269,7 +269,7 @@ def _stack(rows: list[np.ndarray | None], size: int) -> np.ndarray:
 
 
 def event_list(examined: list[Examined | str]) -> xr.Dataset:
-    """All events of a run in the order of time."""
+    """All events of a run in temporal order."""
     seen = [
         (number, e.events)
         for number, e in enumerate(examined)

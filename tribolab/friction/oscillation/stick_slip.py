@@ -1,4 +1,4 @@
-"""Stick-slip of each segment: spectrum, events, waveform and its class."""
+"""Stick-slip of each segment: spectrum, events, and class of waveform."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ _REVERSED = (
 
 
 class SegmentSignal(NamedTuple):
-    """Friction of one segment, positive as resistance, and what the sensor gave."""
+    """Friction of one segment, positive as resistance, and the sensor signal."""
 
     part: slice
     time: np.ndarray
@@ -215,7 +215,7 @@ def stick_slip(
 
 
 def _signals(run: xr.Dataset, segments: xr.Dataset) -> Iterator[SegmentSignal]:
-    """Friction of each segment, one at a time: a long run is never held twice."""
+    """Friction of each segment, one at a time to save memory."""
     time, parts = run["time"].values, trimmed_slices(run, segments)
     direction = segments["direction"].values.astype(float)
     signal = friction_signal(run)
@@ -334,7 +334,7 @@ def _form_words(examined: Examined, speed: float) -> list[str]:
 def _beside_rig(
     signal: SegmentSignal, motion: RigMotion | None
 ) -> tuple[np.ndarray, RigWave | None]:
-    """Take what repeats with each turn or stroke of the rig out of a segment's friction."""
+    """Remove waves that repeat with each turn or stroke of the rig from a segment."""
     if motion is None:
         return signal.values, None
     good = np.isfinite(signal.values)
@@ -355,7 +355,7 @@ def _instrument(
     waves: list[RigWave | None],
     motion: RigMotion | None,
 ) -> list[str]:
-    """Name what is the instrument's: the mains, its turns, and lines that ignore the speed."""
+    """Name oscillations due to the instrument: mains, turns, and lines independent of speed."""
     kind = np.array([class_of(e) for e in examined], dtype=object)
     own = np.array([np.nan if isinstance(e, str) else e.oscillation.frequency for e in examined])
     texts = []

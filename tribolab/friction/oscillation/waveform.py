@@ -1,4 +1,4 @@
-"""The form of an oscillation: how steeply it rises and falls, how alike its periods are.
+"""Waveform of an oscillation: steepness of rise and fall, and similarity of periods.
 
 The class follows from eleven features by a multinomial logistic model. Its coefficients stand
 below; they were fitted to simulated traces (``tests/benchmarks/calibrate_stick_slip.py``, whose
@@ -20,7 +20,7 @@ from tribolab.friction.oscillation.regularity import scatter
 
 
 class WaveformFeatures(NamedTuple):
-    """Features of the form.
+    """Features of the waveform.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class WaveformFeatures(NamedTuple):
 def describe_waveform(
     values: np.ndarray, lag: int, events: Events, period: np.ndarray
 ) -> WaveformFeatures:
-    """Features of the form of a record.
+    """Features of the waveform of a record.
 
     Parameters
     ----------

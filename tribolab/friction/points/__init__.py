@@ -1,1 +1,1 @@
-"""From strokes to the points of a curve: which speeds are one, and what their mean is."""
+"""Points of a curve from strokes: grouping of speeds, and means."""

@@ -1,4 +1,4 @@
-"""Numbers that decide which speeds make one point, how repeats combine, and which contradict."""
+"""Limits for grouping speeds, combining repeats, and finding outlying repeats."""
 
 from tribolab.core.limit import Count, Limit
 

@@ -1,4 +1,4 @@
-"""The mean of a few repeats whose own errors differ, and whose scatter is hardly known.
+"""Mean of a few repeats with different errors and poorly known scatter.
 
 Notes
 -----
@@ -45,7 +45,7 @@ class Pooled(NamedTuple):
 
 
 def mean_of_repeats(values: np.ndarray, errors: np.ndarray, pooled: Pooled | None = None) -> Mean:
-    """Return the mean of repeats and how far it may be off.
+    """Return the mean of repeats with its standard error and U95.
 
     Parameters
     ----------

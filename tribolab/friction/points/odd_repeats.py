@@ -1,4 +1,4 @@
-"""Repeats that contradict: an offset far beyond the repeatability of the other conditions.
+"""Outlying repeats, with an offset far beyond the repeatability of other conditions.
 
 Notes
 -----
@@ -23,7 +23,7 @@ _SEED = 7
 
 
 class OddRepeat(NamedTuple):
-    """Repeats of one condition that contradict.
+    """Outlying repeats of one condition.
 
     `repeat` is the odd one, -1 of two; `deviation` is relative to the others' mean, of two their
     difference; `repeatability` is the relative standard deviation elsewhere; `odd` is False if it
@@ -84,7 +84,7 @@ def _by_chance(repeats: tuple[int, ...]) -> np.ndarray:
 
 
 def odd_repeats(groups: Sequence[np.ndarray]) -> list[OddRepeat]:
-    """Return the repeats that contradict, the worst first.
+    """Return the outlying repeats, the worst first.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Which of many speeds are one: no chain of neighbours, and no group wider than the tolerance."""
+"""Grouping of speeds within a tolerance, without chains of neighbours."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def speed_groups(
     tolerance: float = limits.SPEED_TOLERANCE.value,
     apart: np.ndarray | None = None,
 ) -> SpeedGroups:
-    """Group speeds that were meant to be the same.
+    """Group speeds with the same set-point.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Strokes of runs as observations, and what a run says at each of its speeds."""
+"""Strokes of runs as observations, and the mean of a run at each speed."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def grouped_strokes(
     pairs: np.ndarray,
     known: np.ndarray,
 ) -> Observations:
-    """Take the two strokes of a pair together: they share one error (stroke).
+    """Combine the two strokes of a pair, which share one error (stroke).
 
     Parameters
     ----------
@@ -128,14 +128,14 @@ def grouped_strokes(
 
 
 class Grouping(NamedTuple):
-    """The observations of each point, from the slowest on, and how clearly points differ."""
+    """Observations of each point, from the lowest speed on, and the separation of points."""
 
     members: list[np.ndarray]
     verdict: str
 
 
 def grouped_by_speed(seen: Observations, tolerance: float) -> Grouping:
-    """Put observations at one speed together; set speeds, if all are known, decide.
+    """Group observations by speed, using set speeds if all are known.
 
     Parameters
     ----------
@@ -212,7 +212,7 @@ def shared_error(friction: xr.Dataset) -> np.ndarray | None:
 
 
 class RunMean(NamedTuple):
-    """What a run says at one of its speeds [m/s]: the mean, its U95, and the strokes it is of."""
+    """Mean of a run at one of its speeds [m/s], its U95, and its strokes."""
 
     speed: float
     mean: float
@@ -230,7 +230,7 @@ def run_means(
     tolerance: float = limits.SPEED_TOLERANCE.value,
     shared: np.ndarray | None = None,
 ) -> list[RunMean]:
-    """Return the mean of a run at each of its speeds, as the points of a curve have it.
+    """Return the mean of a run at each of its speeds, as in the points of a curve.
 
     Parameters
     ----------

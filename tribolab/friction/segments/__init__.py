@@ -1,1 +1,1 @@
-"""Pieces of constant speed: found, and judged."""
+"""Segments of constant speed and direction, and the strokes they belong to."""

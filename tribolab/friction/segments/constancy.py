@@ -1,4 +1,4 @@
-"""Whether a piece of a velocity record holds its speed, by its own data and by how it ends.
+"""Tests whether a part of a velocity record has constant speed.
 
 Notes
 -----
@@ -30,7 +30,7 @@ _FEW_READINGS = 16 * _BINS_OF_PIECE
 
 
 class MeanVelocities:
-    """Mean velocities of a record over any bins, from its velocity or from its position.
+    """Mean velocities of a record in bins, from its velocity or its position.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def _smoothed(values: np.ndarray) -> np.ndarray:
 
 
 def held_part(data: MeanVelocities, first: int, last: int, drift: float) -> tuple[int, int]:
-    """Return the samples [first, last) of a piece without the ends that stand off its level.
+    """Return the samples [first, last) of a piece without ends that deviate from its level.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ def held_part(data: MeanVelocities, first: int, last: int, drift: float) -> tupl
 
 
 def is_constant(data: MeanVelocities, first: int, last: int, drift: float) -> bool:
-    """Whether a piece holds its speed.
+    """Whether a piece has constant speed.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ def is_constant(data: MeanVelocities, first: int, last: int, drift: float) -> bo
 
 
 def _changes(place: np.ndarray, values: np.ndarray, most: float) -> bool:
-    """Whether bins surely change by more than `most` along the piece."""
+    """Whether bins change significantly by more than `most` along the piece."""
     cubic = _fit(place, values, 3)
     left = float(((values - cubic) ** 2).sum())
     about = float(((values - values.mean()) ** 2).sum())
@@ -220,7 +220,7 @@ def _changes(place: np.ndarray, values: np.ndarray, most: float) -> bool:
 
 
 def _fluctuates(data: MeanVelocities, begin: float, end: float, samples: int, most: float) -> bool:
-    """Whether a motion to and fro, and not noise, moves the speed by more than `most` (rms)."""
+    """Whether an oscillation, not noise, changes the speed by more than `most` (rms)."""
     count = min(samples, 1024)
     # wider bins show what noise hides from narrow ones
     while count >= 4 * limits.MIN_BINS_OF_CURVATURE.value:
@@ -249,7 +249,7 @@ def _goes_on(
     level: float,
     drift: float,
 ) -> bool:
-    """Whether one smooth motion passes through the piece and what lies beside it."""
+    """Whether one smooth motion passes through the piece and its neighbours."""
     count = inside.size
     width = (end - begin) / count
     steps = np.arange(int(_NEIGHBOURHOOD * count) + 1)

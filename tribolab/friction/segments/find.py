@@ -1,4 +1,4 @@
-"""Constant-speed segments of a run, and what was left out of them, and why."""
+"""Segments of constant speed of a run, and the omitted intervals with reasons."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def find_segments(
     position_range: tuple[str | float, str | float] | None = None,
     stroke_middle: str | float | None = None,
 ) -> xr.Dataset:
-    """Find the segments of a run that slide at constant speed, or the middles of its strokes.
+    """Find the segments of constant speed of a run, or the middles of its strokes.
 
     Parameters
     ----------
@@ -193,19 +193,19 @@ def find_segments(
 
 
 def _covered(run: xr.Dataset, plateaus: xr.Dataset) -> float:
-    """Return the share of a run's time that its plateaus take."""
+    """Share of a run's time in plateaus."""
     time = run["time"].values
     lasted = float((plateaus["stop"] - plateaus["start"]).sum())
     return lasted / float(time[-1] - time[0]) if time[-1] > time[0] else 1.0
 
 
 def _of_points(run: xr.Dataset, source: str) -> xr.Dataset:
-    """Return each row as a segment: a result at one speed, of what lasted nobody knows how long."""
+    """Return each row as a segment: a result at one speed, of unknown duration."""
     return measured(run, of_points(run), source, 0.0, None).assign_attrs(rows_are="points")
 
 
 def why_no_segment(segments: xr.Dataset) -> str:
-    """Say in a sentence why a run has no segment; empty where it has one.
+    """Return the reason why a run has no segment, as a sentence; else "".
 
     Parameters
     ----------
@@ -236,7 +236,7 @@ def why_no_segment(segments: xr.Dataset) -> str:
 
 
 def _driven(run: xr.Dataset, stretch: Stretch) -> Stretch:
-    """Call a ramp what a crank drives to and fro, so that its mean velocity is nothing."""
+    """Reclassify as ramps the strokes of a crank, whose mean velocity has no meaning."""
     first, last = np.searchsorted(run["time"].values, (stretch.start, stretch.stop))
     if stretch.kind != "at rest" or not run["sliding_velocity"].values[first : last + 1].any():
         return stretch
@@ -290,7 +290,7 @@ def measured(
     position_range: tuple[str | float, str | float] | None,
     trimmed: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> xr.Dataset:
-    """Return the stretches of a run as `find_segments` does: trimmed, with speed and distance.
+    """Return the intervals of a run as from `find_segments`: trimmed, with speed and distance.
 
     Parameters
     ----------
@@ -384,7 +384,7 @@ def _within(
 def _mean_velocity(
     run: xr.Dataset, first: np.ndarray, last: np.ndarray, guess: np.ndarray
 ) -> np.ndarray:
-    """Mean of the recorded velocity over each trimmed segment, wild readings left out."""
+    """Mean of the recorded velocity over each trimmed segment, without outliers."""
     velocity = run["sliding_velocity"].values
     result = guess.copy()
     for i in one_by_one(range(first.size)):

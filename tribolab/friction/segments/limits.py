@@ -1,4 +1,4 @@
-"""Numbers that decide where a run slides and where it stops."""
+"""Limits that decide where a run slides and where it stops."""
 
 from tribolab.core.limit import Count, Limit
 

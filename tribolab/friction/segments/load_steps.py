@@ -1,4 +1,4 @@
-"""Where the load of a stretch at constant speed goes from one level to another."""
+"""Steps of the load within an interval of constant speed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _CHANGES = "load changes"
 def at_levels(
     time: np.ndarray, force: np.ndarray, stretch: Stretch, min_samples: int
 ) -> list[Stretch]:
-    """Return a stretch, cut where its load steps; what is between two levels is no segment.
+    """Return an interval cut at steps of its load; transitions are not segments.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def at_levels(
 
 
 def _levels(mean: np.ndarray, first: int, last: int) -> list[tuple[int, int]]:
-    """Part bins at the place that leaves least scatter, as long as both sides differ by a step."""
+    """Split bins where the scatter becomes smallest, if both sides differ by a step."""
     part = mean[first:last]
     if part.size < 2 * limits.MIN_BINS_OF_LEVEL.value:
         return [(first, last)]
@@ -88,7 +88,7 @@ def _levels(mean: np.ndarray, first: int, last: int) -> list[tuple[int, int]]:
 
 
 def _held(mean: np.ndarray, first: int, last: int) -> tuple[int, int]:
-    """Return the bins of a level without what goes on to the next, or comes from the one before."""
+    """Return the bins of a level without transitions at its ends."""
     level = float(median(mean[first:last]))
     near = np.flatnonzero(
         np.abs(mean[first:last] - level) <= limits.MAX_SCATTER_OF_LEVEL.value * abs(level)

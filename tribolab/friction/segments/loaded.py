@@ -1,4 +1,4 @@
-"""Sliding without load is no friction: what of the constant stretches of a run is loaded."""
+"""Loaded parts of the intervals of constant speed."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def _cut(
     least: float,
     min_samples: int,
 ) -> list[Stretch]:
-    """One stretch, cut where its load comes or goes."""
+    """Interval cut where its load begins or ends."""
     first, last = np.searchsorted(time, [stretch.start, stretch.stop])
     count = min(_CONTACT_BINS, last - first)
     if count < 1:
@@ -137,7 +137,7 @@ def _cut(
 
 
 def _grown(seed: np.ndarray, allowed: np.ndarray) -> np.ndarray:
-    """Return the runs of allowed bins that hold a seed: the load's way down and up again."""
+    """Return the runs of allowed bins that contain a seed, including load ramps."""
     allowed = allowed | seed
     number = np.cumsum(np.diff(allowed, prepend=False) & allowed)
     holding = np.unique(number[seed])

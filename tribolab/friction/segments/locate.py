@@ -1,4 +1,4 @@
-"""Where the plateaus of a velocity record lie: block reduction, classes of pieces, recursion."""
+"""Plateaus of a velocity record, by block averaging, classification and recursion."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _KEPT = ("constant", "at rest")
 
 
 class VelocityPiece(NamedTuple):
-    """Samples [first, last), the mean velocity, and what the piece is."""
+    """Piece of a velocity record: samples [first, last), mean velocity, and class."""
 
     first: int
     last: int
@@ -39,7 +39,7 @@ class VelocityPiece(NamedTuple):
 
 
 class ConstancyLimits(NamedTuple):
-    """What counts as constant; see `find_segments`."""
+    """Limits that define constant speed; see `find_segments`."""
 
     resolution: float
     drift: float
@@ -50,7 +50,7 @@ class ConstancyLimits(NamedTuple):
 def locate(
     time: np.ndarray, velocity: np.ndarray, constancy: ConstancyLimits, floor: float = 0.0
 ) -> list[VelocityPiece]:
-    """Return the pieces of a record without gaps in it, in order and touching.
+    """Return the contiguous pieces of a record without gaps.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def moving(
     constancy: ConstancyLimits,
     velocity: np.ndarray | None = None,
 ) -> list[VelocityPiece]:
-    """Call creep at rest: beside the highest speed it is slow, and it gets nowhere.
+    """Reclassify creep as rest if it is slow compared with the highest speed.
 
     So is the noise of a speed that was recorded without its sign: its mean is not zero.
 
@@ -127,7 +127,7 @@ def _is_folded_noise(velocity: np.ndarray) -> bool:
 def held(
     data: MeanVelocities, pieces: list[VelocityPiece], constancy: ConstancyLimits
 ) -> list[VelocityPiece]:
-    """Keep of each plateau what holds its speed by its own data; the rest is a ramp.
+    """Keep the part of each plateau with constant speed; the rest becomes ramp.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def held(
 def _beside(
     data: MeanVelocities, pieces: list[VelocityPiece], constancy: ConstancyLimits
 ) -> list[VelocityPiece]:
-    """Call a plateau that is short beside a ramp a ramp, if the data do not prove that it is none.
+    """Merge a short plateau into an adjacent ramp unless the data show that it is distinct.
 
     A ramp is all that lies between two plateaus or rests.
     """
@@ -172,7 +172,7 @@ def _beside(
 
 
 def _until_kept(time: np.ndarray, pieces: list[VelocityPiece], index: int, way: int) -> float:
-    """Time [s] from a piece to the next plateau or rest on one side of it, without pauses.
+    """Time [s] from a piece to the next plateau or rest on one side, without pauses.
 
     In a pause nothing was recorded, so that it shows no ramp.
     """
@@ -227,7 +227,7 @@ def _blocks(time: np.ndarray, velocity: np.ndarray, size: int) -> tuple[np.ndarr
 
 
 def _despiked(velocity: np.ndarray, noise: Noise) -> np.ndarray:
-    """Replace single samples that stand far from their neighbours' median."""
+    """Replace single samples that deviate far from their neighbours' median."""
     median = running_median(velocity)
     limit = 6 * np.sqrt(noise.variance(median))
     limit = np.maximum(limit, 1e-3 * np.abs(median))
@@ -300,7 +300,7 @@ def _leftover(
     first: int,
     last: int,
 ) -> list[VelocityPiece]:
-    """Look again, with finer blocks, at what lies between two kept pieces."""
+    """Search again, with finer blocks, between two accepted pieces."""
     if first >= last:
         return []
     if last - first == time.size:  # nothing was kept: go on with shorter stretches

@@ -1,4 +1,4 @@
-"""Plateaus of a noisy signal: where a velocity is constant, found on blocks at many scales.
+"""Plateaus of a noisy velocity, from blocks at many scales.
 
 Works on bare arrays and knows nothing of files or forces; `segments` gives it the velocity.
 
@@ -87,7 +87,7 @@ def running_median(values: np.ndarray) -> np.ndarray:
 
 
 def quantum(values: np.ndarray) -> float:
-    """Return the step of quantised readings; 0 if they are not quantised."""
+    """Return the step of quantised readings; 0 if not quantised."""
     some = values[:: 1 + values.size // 8192]
     levels = np.unique(some)
     if levels.size < 2 or 2 * levels.size > some.size:
@@ -99,7 +99,7 @@ def quantum(values: np.ndarray) -> float:
 
 
 def is_commanded(velocity: np.ndarray, step: float) -> bool:
-    """Whether a velocity is what a drive was told, and no rounded reading of it.
+    """Whether a velocity is a set-point and not a rounded reading.
 
     Parameters
     ----------
@@ -197,7 +197,7 @@ def _differences(velocity: np.ndarray) -> tuple[np.ndarray, ...]:
 
 
 def _spread(deviation: np.ndarray) -> float:
-    """Return the standard deviation from deviations, most of which are noise.
+    """Return the robust standard deviation of deviations that are mostly noise.
 
     Quantised readings repeat, so that their median deviation is zero: then the mean below the
     largest tenth stands in.
@@ -263,7 +263,7 @@ def _bends(total: np.ndarray, noise: Noise, width: int, far: int, k: np.ndarray)
 
 
 def _peaks(position: np.ndarray, height: np.ndarray, width: int) -> np.ndarray:
-    """Return the highest candidates, none nearer to another than `width`."""
+    """Return the highest candidates at least `width` apart."""
     if position.size == 0:
         return position
     if width == 1:
@@ -329,7 +329,7 @@ def straight_pieces(
     breaks: np.ndarray,
     resolution: float,
 ) -> Pieces:
-    """Merge neighbours that one straight line describes as well as two, best first."""
+    """Merge neighbouring pieces that one straight line describes as well as two."""
     starts = np.concatenate([[0], breaks])
     # the weight follows the mean of the piece: single readings would draw the mean towards zero
     size = np.diff(np.append(starts, time.size))

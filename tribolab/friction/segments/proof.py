@@ -1,4 +1,4 @@
-"""Whether the data prove a short plateau beside a long ramp, or a ramp describes it as well.
+"""Test whether a short plateau next to a long ramp is distinct from the ramp.
 
 Notes
 -----
@@ -38,14 +38,14 @@ _TURN_REFINEMENTS = 4  # times the places of the turn are narrowed down, tenfold
 
 
 class Readings(NamedTuple):
-    """Readings of a stretch: moments [s], and velocities [m/s] or positions [m]."""
+    """Readings of an interval: times [s], and velocities [m/s] or positions [m]."""
 
     time: np.ndarray
     values: np.ndarray
     is_position: bool
 
     def within(self, begin: float, end: float) -> Readings:
-        """Return the readings between two moments, averaged where they are many."""
+        """Return the readings between two times, averaged if there are many."""
         first, last = np.searchsorted(self.time, [begin, end])
         time, values = self.time[first:last], self.values[first:last]
         median = running_median(values)
@@ -76,7 +76,7 @@ class Fit(NamedTuple):
 
 
 def _fit(basis: np.ndarray, values: np.ndarray) -> Fit:
-    """Least squares; readings whose residuals have a memory count for less."""
+    """Least squares, with reduced weight of readings with correlated residuals."""
     terms = np.linalg.lstsq(basis, values, rcond=None)[0]
     rest = values - basis @ terms
     n, k = basis.shape
@@ -154,7 +154,7 @@ def is_proven(
     most: float,
     sides: tuple[bool, bool],
 ) -> bool:
-    """Whether a piece holds its speed where a long ramp begins or ends.
+    """Whether a piece next to a long ramp has constant speed.
 
     Parameters
     ----------
@@ -176,7 +176,7 @@ def is_proven(
 def _is_level(
     readings: Readings, begin: float, end: float, sides: tuple[bool, bool], beside: float
 ) -> bool:
-    """Whether a level with its flanks is better than one smooth motion or one turn."""
+    """Whether a level with flanks fits better than one smooth motion or one reversal."""
     size = beside * (end - begin)
     window = readings.within(begin - sides[0] * size, end + sides[1] * size)
     time, values = window.time, window.values - window.values.mean()

@@ -1,4 +1,4 @@
-"""Velocity from a position record: robust slopes over blocks; pointwise dx/dt is useless."""
+"""Velocity from a position record, by robust slopes over blocks."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def position_noise(time: np.ndarray, position: np.ndarray) -> float:
 
 
 def _off_chord(time: np.ndarray, position: np.ndarray) -> np.ndarray:
-    """Distance of each reading from the chord of its neighbours, over what white noise makes it."""
+    """Distance of each reading from the chord of its neighbours, relative to white noise."""
     share = (time[1:-1] - time[:-2]) / (time[2:] - time[:-2])
     chord = position[:-2] + share * (position[2:] - position[:-2])
     size = np.sqrt(1 + share**2 + (1 - share) ** 2)
@@ -41,7 +41,7 @@ def _off_chord(time: np.ndarray, position: np.ndarray) -> np.ndarray:
 
 
 def is_staircase(position: np.ndarray) -> bool:
-    """Whether most readings repeat the one before: the digits are coarser than the motion."""
+    """Whether most readings repeat the one before, so that digits are coarser than the motion."""
     steps = position.size - 1
     still = sum(
         int(np.count_nonzero(np.diff(position[a : b + 1]) == 0)) for a, b in pieces(0, steps)
@@ -50,7 +50,7 @@ def is_staircase(position: np.ndarray) -> bool:
 
 
 def digit(position: np.ndarray) -> float:
-    """Return the last digit of the readings [m]; 0 where they are no multiples of one.
+    """Return the resolution of the readings [m]; 0 if they are not multiples of one.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def digit(position: np.ndarray) -> float:
 
 
 def _is_commanded(position: np.ndarray, step: float) -> bool:
-    """Whether a position goes on by the same step at every sample, as it was told to, or rests.
+    """Whether a position increases by equal steps or rests, as a set-point does.
 
     Readings that are rounded to their last digit stand still now and then in the middle of a
     motion, or go on by another number of digits.
@@ -126,7 +126,7 @@ def _far(time: np.ndarray, position: np.ndarray) -> np.ndarray:
 
 
 def without_resets(time: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Join a position record where it jumps without a motion: set to zero in mid-run, wrapped.
+    """Join a position record at jumps without motion: reset to zero, or wrapped.
 
     Parameters
     ----------
@@ -244,7 +244,7 @@ def velocity_blocks(
 
 
 def _fine(speed: np.ndarray, error: float) -> bool:
-    """Whether the blocks' velocities are good where most of the way is covered."""
+    """Whether the velocities of the blocks are accurate over most of the distance."""
     sure = np.maximum(speed - 3 * error, 0.0)  # what noise covers is no way
     if not sure.any():
         return False
@@ -255,7 +255,7 @@ def _fine(speed: np.ndarray, error: float) -> bool:
 
 
 def line(time: np.ndarray, position: np.ndarray) -> tuple[float, float]:
-    """Offset and slope of the straight line through a stretch, single wild readings left out."""
+    """Offset and slope of the straight line through an interval, without single outliers."""
     t0 = time.mean()
     keep = np.ones(time.size, dtype=bool)
     offset = slope = 0.0

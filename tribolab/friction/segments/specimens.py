@@ -1,4 +1,4 @@
-"""Specimens one after another in a record: each pulled anew, from where the one before began."""
+"""Successive specimens in one record, each pulled from the same starting position."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tribolab.friction.segments.stretches import Stretch, finite
 
 
 def begins_of_specimens(run: xr.Dataset) -> np.ndarray:
-    """Return when each specimen but the first begins [s] (specimen - 1).
+    """Return the start of each specimen except the first [s] (specimen - 1).
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def begins_of_specimens(run: xr.Dataset) -> np.ndarray:
 
 
 def apart(run: xr.Dataset, stretches: list[Stretch]) -> list[Stretch]:
-    """Cut stretches where another specimen begins.
+    """Cut intervals at the start of another specimen.
 
     Parameters
     ----------

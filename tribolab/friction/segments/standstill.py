@@ -1,4 +1,4 @@
-"""Where a recorded position stands still although the recorded velocity says that it moves."""
+"""Standstills of the recorded position while the recorded velocity is not zero."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _BLOCK_COUNTS = (32, 16, 8)  # of a segment: as many as the noise of the positio
 
 
 def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list[Stretch], float]:
-    """Return the stretches with every standstill of the position at rest, and their duration [s].
+    """Return the intervals with standstills marked as rest, and their duration [s].
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def without_standstills(run: xr.Dataset, stretches: list[Stretch]) -> tuple[list
 
 
 def _block(time: np.ndarray, stretch: Stretch, noise: float, digit: float) -> int:
-    """Return the samples of a block in which the position is resolved; 0 if there are none."""
+    """Return the number of samples in which the position is resolved; 0 if none."""
     if stretch.kind != "constant" or not stretch.velocity:
         return 0
     for parts in _BLOCK_COUNTS:
@@ -80,7 +80,7 @@ def _block(time: np.ndarray, stretch: Stretch, noise: float, digit: float) -> in
 
 
 def _standing(share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return first and last block of each standstill, from the speed over the recorded one."""
+    """Return first and last block of each standstill, from the ratio of both speeds."""
     slow = share < MIN_SHARE_OF_SPEED.value
     edges = np.flatnonzero(np.diff(np.concatenate([[False], slow, [False]])))
     begin, end = edges[::2], edges[1::2]
@@ -91,7 +91,7 @@ def _standing(share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _cut(stretch: Stretch, time: np.ndarray, begin: np.ndarray, end: np.ndarray) -> list[Stretch]:
-    """Return a stretch in parts that slide and, from sample to sample, parts at rest."""
+    """Return an interval in sliding parts and, from sample to sample, parts at rest."""
     result, at = [], 0
     ends = [*time.tolist(), stretch.stop]
     for a, b in zip(begin.tolist(), np.minimum(end, time.size).tolist(), strict=True):

@@ -1,4 +1,4 @@
-"""Stretches of a run, from whatever tells its speed: velocity, position, steps or set speed."""
+"""Intervals of a run from its velocity, position, steps or set speed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _INTERVALS_OF_GAP = 4  # intervals on each side of one that tell whether it is a
 
 
 class Stretch(NamedTuple):
-    """One stretch of the run [s] and what it is; `kind` "constant" makes it a segment."""
+    """Interval of the run [s] and its kind; "constant" makes it a segment."""
 
     start: float
     stop: float
@@ -30,12 +30,12 @@ class Stretch(NamedTuple):
 
 
 def name_of(run: xr.Dataset) -> str:
-    """Return what errors call the run: its source file if known."""
+    """Return the name of the run for errors: its source file if known."""
     return str(run.attrs.get("source", "run"))
 
 
 def velocity_source(run: xr.Dataset) -> str:
-    """Say what tells the speed of the run: the best of what it has."""
+    """Return the source of the speed of the run, the best one available."""
     stated = "set_speed" in run or "set_speed_m_s" in run.attrs
     clocked = run.attrs.get("time_source") != "row number"
     for name, source in (("sliding_velocity", "recorded"), ("position", "position")):
@@ -73,13 +73,13 @@ def finite(run: xr.Dataset, name: str) -> tuple[np.ndarray, np.ndarray]:
 
 
 def track(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
-    """Time and position where there is one, joined where its sensor was reset."""
+    """Time and position, if recorded, joined at resets of the sensor."""
     time, position = finite(run, "position")
     return time, slopes.without_resets(time, position)[0]
 
 
 def of_points(run: xr.Dataset) -> list[Stretch]:
-    """Return a stretch of no length for each row: results of an instrument, each at its speed."""
+    """Return an interval of zero length for each row of an instrument's results."""
     time = run["time"].values
     name = next((n for n in ("sliding_velocity", "set_speed") if n in run), "")
     if not name:
@@ -126,7 +126,7 @@ def from_position(
 def _by_slopes(
     time: np.ndarray, position: np.ndarray, constancy: ConstancyLimits, least: int
 ) -> list[VelocityPiece]:
-    """Pieces by slopes over blocks; what is too slow for these blocks by longer ones."""
+    """Pieces from slopes over blocks, with longer blocks for slow motion."""
     t, v, size, error = slopes.velocity_blocks(time, position, least)
     fewest = constancy._replace(min_samples=max(3, constancy.min_samples // size))
     # digits leave blocks without noise beside such that hold a whole step
@@ -160,7 +160,7 @@ def _with_slope(time: np.ndarray, position: np.ndarray, piece: VelocityPiece) ->
 def _getting_somewhere(
     time: np.ndarray, pieces: list[VelocityPiece], noise: float
 ) -> list[VelocityPiece]:
-    """Call at rest what gets no farther than the noise of a reading: a dwell between strokes."""
+    """Reclassify as rest a motion below the noise of a reading: a dwell between strokes."""
     return [
         piece._replace(kind="at rest")
         if piece.kind == "constant"
@@ -174,7 +174,7 @@ def _getting_somewhere(
 def _kinks(
     time: np.ndarray, position: np.ndarray, pieces: list[VelocityPiece], size: int
 ) -> list[VelocityPiece]:
-    """Put the border of two neighbouring plateaus where their straight lines cross."""
+    """Move the border of two neighbouring plateaus to the intersection of their lines."""
     kept = [i for i, p in enumerate(pieces) if p.kind == "constant"]
     result = list(pieces)
     for i, j in zip(kept[:-1], kept[1:], strict=True):
@@ -245,7 +245,7 @@ def _wide(time: np.ndarray, index: int, piece: VelocityPiece) -> bool:
 def _gaps(
     time: np.ndarray, piece: VelocityPiece, max_gap: float | None, share: float
 ) -> np.ndarray:
-    """Return the samples of a plateau or ramp after which too long a pause follows."""
+    """Return the samples of a plateau or ramp that precede a long pause."""
     inside = time[piece.first : piece.last]
     if piece.kind not in ("constant", "ramp") or inside.size < 2:
         return np.zeros(0, dtype=int)
@@ -289,7 +289,7 @@ def from_steps(run: xr.Dataset, min_samples: int) -> list[Stretch]:
 
 
 def from_set_speed(run: xr.Dataset, min_samples: int) -> list[Stretch]:
-    """One stretch for each set speed; the whole record if only an attribute holds it."""
+    """Return one interval for each set speed, or the whole record for a single value."""
     time = run["time"].values
     if "set_speed" in run:
         value = np.asarray(run["set_speed"].values, dtype=float)
@@ -320,7 +320,7 @@ def _set_speed(run: xr.Dataset, first: int, last: int) -> float:
 
 
 def _signed(run: xr.Dataset, first: int, last: int, speed: float) -> float:
-    """Set speed with the sign of the mean friction, NaN's sign lost: 0 where nothing tells it."""
+    """Return the set speed with the sign of the mean friction; 0 if the sign is unknown."""
     for name in ("friction_force", "friction_coefficient"):
         if name in run:
             values = run[name].values[first:last]

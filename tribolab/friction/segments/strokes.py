@@ -1,4 +1,4 @@
-"""Strokes of a slider that moves to and fro, whatever the shape of its motion."""
+"""Strokes of a reciprocating slider, for any form of motion."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tribolab.friction.segments.turns import EQUAL, last_side, turns_of
 
 
 class Strokes(NamedTuple):
-    """Whole strokes of a run, in the order of time.
+    """Whole strokes of a run in temporal order.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ class Strokes(NamedTuple):
 
 
 def find_strokes(run: xr.Dataset) -> Strokes:
-    """Find the strokes of a run that slides to and fro.
+    """Find the strokes of a reciprocating run.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def find_strokes(run: xr.Dataset) -> Strokes:
 
 
 def shuttles(run: xr.Dataset) -> bool:
-    """Whether a run is stroke after stroke, each like the last, and friction turns with them.
+    """Whether a run consists of equal strokes whose friction reverses with direction.
 
     As a crank or a shaker drives it: such a run has no plateau of constant speed to be found.
 
@@ -124,7 +124,7 @@ def shuttles(run: xr.Dataset) -> bool:
 
 
 def _turns_with(strokes: Strokes, friction: np.ndarray) -> bool:
-    """Whether friction differs clearly between the two ways."""
+    """Whether friction differs clearly between the two directions."""
     number = strokes.number
     inside = (number >= 0) & (np.abs(strokes.place - 0.5) < 0.25) & np.isfinite(friction)
     count = np.bincount(number[inside], minlength=strokes.way.size)
@@ -156,7 +156,7 @@ def _settings(run: xr.Dataset) -> np.ndarray | None:
 
 
 def _usual(run: xr.Dataset, first: np.ndarray, length: np.ndarray) -> np.ndarray:
-    """Whether a stroke is as long as those of its step are, and lies in one step (stroke)."""
+    """Mask of strokes of usual length that lie within one step (stroke)."""
     step = _settings(run)
     if step is None:
         return length > limits.MIN_LENGTH_OF_STROKE.value * median(length)
@@ -219,7 +219,7 @@ def _by_velocity(run: xr.Dataset) -> _Parts:
 
 
 def _limit(run: xr.Dataset, velocity: np.ndarray) -> float | np.ndarray:
-    """Return the speed below which a sample does not say which way it goes [m/s]."""
+    """Return the speed below which the direction of a sample is unknown [m/s]."""
     step = _settings(run)
     if step is None:
         return limits.MIN_SPEED_OF_STROKE.value * float(np.percentile(np.abs(velocity), 90))

@@ -1,4 +1,4 @@
-"""Where a slider turns, and the strokes between turns that hold their speed."""
+"""Reversals of a slider, and the strokes of constant speed between them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _INNER_PARTS = 4  # of the inner part, whose speeds are compared
 
 
 def last_side(values: np.ndarray, low: float | np.ndarray, high: float | np.ndarray) -> np.ndarray:
-    """Say whether a signal was last above `high` (+1) or below `low` (-1); 0 before either.
+    """Side where a signal was last: above `high` (+1) or below `low` (-1); 0 before either.
 
     Parameters
     ----------
@@ -27,7 +27,7 @@ def last_side(values: np.ndarray, low: float | np.ndarray, high: float | np.ndar
 
 
 def turns_of(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the samples at which a position turns, and the ways (+1, -1) between them.
+    """Return the samples at which a position reverses, and the directions between them.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def turns_of(position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def strokes_within(
     time: np.ndarray, position: np.ndarray, pieces: list[VelocityPiece], constancy: ConstancyLimits
 ) -> list[VelocityPiece]:
-    """Return the pieces with a plateau for each straight stroke that the blocks have missed.
+    """Return the pieces with a plateau added for each straight stroke that was missed.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def strokes_within(
 
 
 def _completed(pieces: list[VelocityPiece], strokes: list[VelocityPiece]) -> list[VelocityPiece]:
-    """Put the strokes in place of what lies there, unless plateaus already cover each of them."""
+    """Insert the strokes unless plateaus already cover them."""
     if not strokes:
         return pieces
     first, last = (np.array([getattr(p, k) for p in pieces]) for k in ("first", "last"))
@@ -131,7 +131,7 @@ def _strokes_of(
     constancy: ConstancyLimits,
     noise: float,
 ) -> list[VelocityPiece]:
-    """Return the straight strokes of a piece; none where most strokes are not straight."""
+    """Return the straight strokes of a piece; empty if most are not straight."""
     part = position[piece.first : piece.last]
     if np.ptp(part) < limits.MIN_STROKE_OVER_NOISE.value * noise:
         return []  # to and fro is but noise

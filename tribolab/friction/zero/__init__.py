@@ -1,1 +1,1 @@
-"""The zero of the friction force: where it is known from, and what is in doubt about it."""
+"""Zero of the friction force: its source, and doubts about it."""

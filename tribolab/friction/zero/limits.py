@@ -1,4 +1,4 @@
-"""Numbers that decide what the zero of the forces is."""
+"""Limits that decide on the zero of the forces."""
 
 from tribolab.core.limit import Count, Limit
 

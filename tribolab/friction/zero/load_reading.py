@@ -1,4 +1,4 @@
-"""How far the reading of the load may be off: retained load, friction in the reading, creep."""
+"""Uncertainty of the load reading: retained load, cross-talk from friction, creep."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _READING_BLOCKS = 5  # of a reading: their scatter includes slow waves and ramps
 
 
 class LoadReading(NamedTuple):
-    """Standard uncertainty of the load of each segment [N] (segment), and what is in doubt."""
+    """Standard uncertainty of the load of each segment [N] (segment), with doubts."""
 
     error: np.ndarray
     doubts: tuple[Doubt, ...]
@@ -36,7 +36,7 @@ def load_reading(
     friction: np.ndarray,
     zero: ZeroReference,
 ) -> LoadReading:
-    """Return how far the load of each segment may be off by what the run itself shows.
+    """Return the uncertainty of the load of each segment from the run itself.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def load_reading(
 
 
 def _retained(offset: np.ndarray, load: float) -> LoadReading:
-    """Return what the zero of the cell adds if some load was left at the rests that show it."""
+    """Return the error of the zero if some load was retained at the rests."""
     level = np.where(offset > limits.UNLOADED_SHARE.value * load, offset, 0.0)
     usual = float(np.mean(level))
     doubts: tuple[Doubt, ...] = ()
@@ -89,7 +89,7 @@ def _leak(
     friction: np.ndarray,
     zero: ZeroReference,
 ) -> LoadReading:
-    """Compare the load that is read while sliding with that of the nearest loaded rest."""
+    """Compare the load reading while sliding with that of the nearest loaded rest."""
     rests = stretches_of(run, segments, "at rest") if "omitted" in segments.dims else []
     starts, reads = segments["trimmed_start"].values, pressed + offset
     normal = run["normal_force"].values
@@ -125,7 +125,7 @@ def _leak(
 
 
 class _Rest(NamedTuple):
-    """A rest: its middle [s], the readings of load and friction, the load's standard error [N]."""
+    """Rest: middle [s], readings of load and friction, and the load's standard error [N]."""
 
     time: float
     normal: float
@@ -134,7 +134,7 @@ class _Rest(NamedTuple):
 
 
 def _loaded_rest(run: xr.Dataset, part: slice, before: bool, load: float) -> _Rest | None:
-    """Read the half of a rest that is nearer to a segment, if it is under the segment's load."""
+    """Read the half of a rest next to a segment, if it has the segment's load."""
     half = (part.stop - part.start) // 2
     near = slice(part.start + half, part.stop) if before else slice(part.start, part.start + half)
     time, normal, force = (run[k].values[near] for k in ("time", "normal_force", "friction_force"))

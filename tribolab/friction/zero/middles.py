@@ -1,4 +1,4 @@
-"""Middles of the loops: the zero of a force from strokes both ways, followed as it drifts."""
+"""Middles of the loops: zero of a force from strokes in both directions, with drift."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tribolab.friction.zero.offsets import Wander, wander
 
 
 class Middles(NamedTuple):
-    """Pairs of strokes in the order of time.
+    """Pairs of strokes in temporal order.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class Middles(NamedTuple):
 def middles(
     mean: np.ndarray, load: np.ndarray, sign: np.ndarray, pair: np.ndarray, time: np.ndarray
 ) -> Middles | None:
-    """Return the middle of each pair's loop and how it drifts; None without a pair.
+    """Return the middle of each pair's loop and its drift; None without a pair.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ class StrokeSums(NamedTuple):
 def interpolated(
     middles: Middles, pair: np.ndarray, time: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, StrokeSums]:
-    """Zero at each segment from the middles of the loops, its drift, and the rows of its error.
+    """Zero at each segment from the middles of the loops, drift, and error terms.
 
     Returns
     -------
@@ -188,7 +188,7 @@ def error_of_rows(
 
 
 def _movements(middles: Middles, error: np.ndarray) -> tuple[Wander, Wander]:
-    """Return how the zero moves from loop to loop: all in all, and beyond a common drift."""
+    """Return the change of the zero between loops: total, and beyond a common drift."""
     order = np.flatnonzero(np.isfinite(middles.value))
     order = order[np.argsort(middles.time[order], kind="stable")]
     value, error, time = middles.value[order], error[order], middles.time[order]

@@ -1,4 +1,4 @@
-"""What a run says of the zero of its friction signal: rests, strokes, sign, and what is stated."""
+"""Zero of the friction signal of a run, from rests, strokes, sign, and stated values."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ PAIRED = ("half loop", _WITHOUT_SIGN)
 
 
 class StatedZeroError(AnalysisError):
-    """The stated uncertainty of the zero does not fit the friction signal of the run."""
+    """Raised if the stated zero uncertainty does not fit the friction signal of the run."""
 
 
 @dataclass(frozen=True)
 class Settings:
-    """What somebody wants or knows of the zero.
+    """User settings for the zero.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class Settings:
 
 @dataclass(frozen=True)
 class Signs:
-    """Direction of each segment, and by what its signal is multiplied before anything else."""
+    """Direction of each segment, and the factor applied to its signal first."""
 
     sign: np.ndarray
     unfold: np.ndarray
@@ -81,7 +81,7 @@ def zero_of_run(
     rests: Zeros | None,
     settings: Settings,
 ) -> tuple[ZeroReference, Signs, np.ndarray]:
-    """Decide what the zero of the friction signal rests on.
+    """Determine the source of the zero of the friction signal.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def _lost(fold: Fold) -> bool:
 
 
 def _read(run: xr.Dataset, name: str) -> tuple[float, str]:
-    """Return the error of a zero that was read and taken off when the file was, and where."""
+    """Return the error of a zero that was removed while reading, and its place."""
     unit = quantity(name).unit
     ending = "" if unit == "1" else f"_{unit}"
     error = float(run.attrs.get(f"{name}_zero_sem{ending}", np.nan))
@@ -179,7 +179,7 @@ def _torque(given: str | float) -> float | None:
 
 
 def _arm(run: xr.Dataset, name: str) -> float:
-    """Return the arm [m] with which the friction force was made from a torque."""
+    """Return the lever arm [m] that converted a torque to the friction force."""
     formula = str(dict(run.attrs.get("derived", {})).get(name, ""))
     made = _FROM_TORQUE.fullmatch(formula)
     arm = float("nan")
@@ -196,7 +196,7 @@ def _arm(run: xr.Dataset, name: str) -> float:
 
 
 def _numbers(segments: xr.Dataset) -> np.ndarray:
-    """Return what tables call the segments: counted from 1 as found, some taken out or not."""
+    """Return the numbers of the segments in tables, counted from 1 as found."""
     if "segment" in segments.coords:
         return segments["segment"].values + 1
     return np.arange(segments.sizes["segment"]) + 1
@@ -205,7 +205,7 @@ def _numbers(segments: xr.Dataset) -> np.ndarray:
 def _pairs(
     segments: xr.Dataset, settings: Settings, rests: Zeros | None, stated: float
 ) -> np.ndarray:
-    """Pairs of one speed; of any speeds where the zero would rest on nothing else."""
+    """Pairs of equal speed, or of any speeds if no other zero is available."""
     pair = pair_strokes(segments, settings.pair_tolerance)
     wanted = settings.offset == "half loop" or (
         settings.offset == "auto" and rests is None and not np.isfinite(stated)

@@ -1,4 +1,4 @@
-"""Pairs of strokes that are run both ways, and how the zero moves between them."""
+"""Pairs of strokes in both directions, and the drift of the zero between them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tribolab.friction.zero import limits
 
 
 def pair_strokes(segments: xr.Dataset, tolerance: float) -> np.ndarray:
-    """Return the number of the pair that each segment belongs to, -1 for none (segment).
+    """Return the number of the pair of each segment, -1 for none (segment).
 
     Neighbours in time of opposite direction pair if their speeds differ by no more than
     `tolerance` of their mean and, where the run has set speeds and `tolerance` is no more than
@@ -36,14 +36,14 @@ def pair_strokes(segments: xr.Dataset, tolerance: float) -> np.ndarray:
 
 
 class Wander(NamedTuple):
-    """How a zero moves: variance between neighbouring strokes [u2], and rate of its walk [u2/s]."""
+    """Drift of a zero: variance between neighbouring strokes [u2], and random-walk rate [u2/s]."""
 
     fast: float
     rate: float
 
 
 def wander(offset: np.ndarray, error: np.ndarray, time: np.ndarray) -> Wander:
-    """Tell how the zero moves from the offsets of successive pairs of strokes.
+    """Estimate the drift of the zero from the offsets of successive pairs of strokes.
 
     A zero that moves more slowly than a stroke lasts does not show within the stroke, but it
     falsifies the half loop: the backward stroke comes later than the forward one.

@@ -1,4 +1,4 @@
-"""A friction force that lost its sign in a part of the run only, or whose zero jumped there."""
+"""Friction force that lost its sign, or whose zero jumped, in a part of the run."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tribolab.friction.zero.parts import Doubt, StrokeMeans, doubt
 
 
 def of_parts(strokes: StrokeMeans) -> tuple[Doubt, ...]:
-    """Doubt pairs of strokes with one sign both ways, beside others whose sign changes.
+    """Doubt pairs with one sign in both directions, if other pairs change sign.
 
     Half the difference of such a pair is no friction: of levels mu N and mu N nothing is left.
 

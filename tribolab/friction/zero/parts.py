@@ -1,4 +1,4 @@
-"""What a zero is sought from, and what is found: the strokes, what else is known, the reference."""
+"""Inputs and result of the zero determination."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribolab.friction.zero.rests import Zeros
 
 @dataclass(frozen=True)
 class StrokeMeans:
-    """What a zero is sought from: one entry for each segment.
+    """Means of the strokes, for the zero: one entry for each segment.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class StrokeMeans:
 
 @dataclass(frozen=True)
 class KnownOfZero:
-    """What is known of the zero besides the strokes.
+    """Information on the zero from other sources than the strokes.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class KnownOfZero:
 
 
 class Doubt(TypedDict):
-    """What is not sure of the zero of some segments: which check says so, and what settles it."""
+    """Doubt about the zero of some segments: its check, and the measurement that resolves it."""
 
     check: str
     status: str
@@ -90,7 +90,7 @@ class Doubt(TypedDict):
 
 @dataclass(frozen=True)
 class ZeroReference:
-    """The zero of each segment and what it rests on.
+    """Zero of each segment and its source.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ class ZeroReference:
 
 
 def doubt(text: str, cure: str, which: np.ndarray, status: str = "suspect") -> Doubt:
-    """Return what is not sure of the zero of some segments, and what settles it."""
+    """Return a doubt about the zero of some segments, with the measurement that resolves it."""
     return {
         "check": "zero_reference",
         "status": status,

@@ -1,4 +1,4 @@
-"""Was the sign of the friction force lost? Told by the force at the reversals."""
+"""Detection of a rectified friction force from its values at the reversals."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Pressed:
 
 
 class ForceTrace(NamedTuple):
-    """What a fold is told by: the samples of the force and where the strokes are.
+    """Samples of the force and positions of the strokes, to detect a lost sign.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ class ForceTrace(NamedTuple):
 
 
 class Fold(NamedTuple):
-    """Whether the force lost its sign ("signed", "rectified", "undecided"), and what shows it."""
+    """Whether the force lost its sign ("signed", "rectified", "undecided"), with the evidence."""
 
     kind: str
     why: str
@@ -117,7 +117,7 @@ SIGNED = Fold("signed", "")
 
 
 def folded(trace: ForceTrace) -> Fold:
-    """Tell whether a friction force was recorded without its sign.
+    """Decide whether a friction force was recorded without its sign.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def folded(trace: ForceTrace) -> Fold:
 
 
 def _both_ways(trace: ForceTrace, known: np.ndarray) -> Fold:
-    """Directions are recorded, the force has one sign."""
+    """Decide for recorded directions and a force of one sign."""
     forward, backward = (
         np.flatnonzero(known & (trace.sign * direction > 0)) for direction in (1, -1)
     )
@@ -251,7 +251,7 @@ def _noise_reaches(count: int) -> float:
 
 
 def _one_way(trace: ForceTrace) -> Fold:
-    """No direction is recorded: a force that touches zero at the stops and is never below it."""
+    """Decide without recorded direction, for a force that touches zero at the reversals."""
     if len(trace.parts) < 2 or anywhere(lambda part: _negative(trace.turned * part), trace.force):
         return SIGNED
     level = float(median_of_known(trace.mean))
@@ -285,7 +285,7 @@ def _negative(force: np.ndarray) -> np.ndarray:
 
 
 def _touches(trace: ForceTrace, number: int) -> bool | None:
-    """Whether the force comes to zero between two strokes, as near as its noise and steps allow."""
+    """Whether the force reaches zero between two strokes, within noise and resolution."""
     turn, stroke = trace.between(number), trace.within(trace.parts[number])
     if turn.size < 3 or stroke.size < 3:
         return None

@@ -1,4 +1,4 @@
-"""What the zero of the friction force rests on, for each segment, and what is in doubt about it."""
+"""Source of the zero of the friction force for each segment, with doubts."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _OFFSET_OF_ITSELF = 'say offset = "auto" in [friction]'
 def find_reference(
     strokes: StrokeMeans, known: KnownOfZero, wanted: str, fold: Fold, name: str
 ) -> ZeroReference:
-    """Decide what the zero of each segment rests on.
+    """Determine the source of the zero of each segment.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def find_reference(
 
 
 def _turned(strokes: StrokeMeans, rests: Zeros | None, loops: Middles) -> Middles:
-    """Return the middles of the loops of loads turned back by the tilt, if they agree better.
+    """Return the middles of the loops corrected for tilt, if they then agree better.
 
     Through a tilt the load reads less one way and more the other, in proportion to friction, and
     middles that are weighed with such loads go with friction: they would pass for a zero that
@@ -155,7 +155,7 @@ def _from_rests(strokes: StrokeMeans, known: KnownOfZero, rests: Zeros) -> ZeroR
 
 
 def _from_loops(strokes: StrokeMeans, known: KnownOfZero, loops: Middles) -> ZeroReference:
-    """Zeros from the middles of the loops; strokes without a partner from rests, if there are."""
+    """Zeros from the middles of the loops; strokes without a partner use rests, if any."""
     good = np.isfinite(loops.value)
     pair = np.where((strokes.pair >= 0) & good[strokes.pair.clip(0)], strokes.pair, -1)
     paired = pair >= 0
@@ -189,7 +189,7 @@ def _from_loops(strokes: StrokeMeans, known: KnownOfZero, loops: Middles) -> Zer
 def _checked(
     strokes: StrokeMeans, known: KnownOfZero, loops: Middles, loop: ZeroReference, fold: Fold
 ) -> ZeroReference:
-    """Compare the middles of the loops with a zero that does not rest on them.
+    """Compare the middles of the loops with an independent zero.
 
     Where the two differ by more than their errors and by more than `MAX_ASYMMETRY` of friction,
     friction depends on direction, or the load tilts the zero: the other zero is used, and that is
@@ -249,7 +249,7 @@ def _checked(
 def _ambiguous(
     strokes: StrokeMeans, loops: Middles, loop: ZeroReference, fold: Fold
 ) -> ZeroReference:
-    """Say that an offset and an asymmetry look the same where no other zero tells them apart."""
+    """Return a doubt if offset and asymmetry cannot be separated."""
     half = (strokes.mean[loops.member] * (0.5, -0.5)).sum(axis=1)
     offset, usual = median_of_known(loops.value), median_of_known(np.abs(half))
     share = float(abs(offset) / usual) if usual > 0 and np.isfinite(offset) else 0.0
@@ -277,7 +277,7 @@ def _ambiguous(
 
 
 def _from_outside(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroReference:
-    """Zero that the run itself does not tell: stated, from other runs, or nothing."""
+    """Zero from outside the run: stated, from other runs, or none."""
     if np.isfinite(known.stated):
         words = f"stated: zero within {known.stated:.3g}{strokes.unit}"
         if known.read_from:
@@ -325,7 +325,7 @@ def _from_outside(strokes: StrokeMeans, known: KnownOfZero, fold: Fold) -> ZeroR
 
 
 def _example(strokes: StrokeMeans) -> str:
-    """Return an error of the zero that is one of these strokes: a fiftieth of their friction."""
+    """Return an example of a zero uncertainty: a fiftieth of the friction of these strokes."""
     size = np.abs(strokes.mean[np.isfinite(strokes.mean)])
     share = limits.EXAMPLE_OF_ZERO_ERROR.value * float(median(size)) if size.size else 0.0
     if not strokes.unit or not share > 0:

@@ -1,4 +1,4 @@
-"""Zeros of the sensors from rests and other stretches without load, and between them."""
+"""Zeros of the sensors from unloaded rests, and interpolation between them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _REST_BINS = 100  # in a stretch of which a part may be without load
 
 
 class Zeros(NamedTuple):
-    """Readings of a sensor without load: when [s], how much, and standard error [N] (rest)."""
+    """Readings of an unloaded sensor: times [s], values, and standard errors [N] (rest)."""
 
     time: np.ndarray
     value: np.ndarray
@@ -70,7 +70,7 @@ class Zeros(NamedTuple):
 
 
 class PartialContact(NamedTuple):
-    """Rests that read more than the unloaded one: how many, how much [N], the first when [s]."""
+    """Rests that read more than the unloaded one: number, excess [N], time of the first [s]."""
 
     rests: int
     level: float
@@ -78,7 +78,7 @@ class PartialContact(NamedTuple):
 
 
 class Rests(NamedTuple):
-    """Zeros of friction and of the normal force from rests without load; rests that are none."""
+    """Zeros of friction and normal force from unloaded rests, and rejected rests."""
 
     friction: Zeros | None
     normal: Zeros | None
@@ -86,7 +86,7 @@ class Rests(NamedTuple):
 
 
 def unloaded_rests(run: xr.Dataset, segments: xr.Dataset, load: float) -> Rests:
-    """Zeros of the friction force and of the normal force from rests without load.
+    """Zeros of the friction force and of the normal force from unloaded rests.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ def _without_partial(
     run: xr.Dataset,
     segments: xr.Dataset,
 ) -> tuple[list[np.ndarray], PartialContact | None]:
-    """Leave out rests that read more than the lowest one and whose excess is no drift."""
+    """Drop rests that read more than the lowest one by more than drift."""
     if len(levels) < 2:
         return levels, None
     reads = np.array([float(np.mean(normal[level])) for level in levels])
@@ -161,7 +161,7 @@ def _drifts(
     reads: np.ndarray,
     segments: xr.Dataset,
 ) -> bool:
-    """Whether the load of the strokes changes with the readings at rest: the cell's zero drifts."""
+    """Whether the load of the strokes changes with the readings at rest, as for a drifting zero."""
     at = np.array([float(time[level].mean()) for level in levels])
     ends = (segments[f"trimmed_{end}"].values for end in ("start", "stop"))
     first, last = (np.searchsorted(time, end) for end in ends)
@@ -178,7 +178,7 @@ def _drifts(
 
 
 class LightRest(NamedTuple):
-    """A rest [s] at which the normal force reads little [N]: its zero, or a light load."""
+    """Rest [s] with a small normal force [N]: its zero, or a light load."""
 
     start: float
     stop: float
@@ -188,7 +188,7 @@ class LightRest(NamedTuple):
 def light_rest(
     run: xr.Dataset, segments: xr.Dataset, load: float, loads: np.ndarray
 ) -> LightRest | None:
-    """Return the first rest that may be one without load, where none surely is.
+    """Return the first rest that may be unloaded, if none certainly is.
 
     Parameters
     ----------
@@ -216,14 +216,14 @@ def light_rest(
 def _resting(
     run: xr.Dataset, segments: xr.Dataset, load: float
 ) -> tuple[np.ndarray, np.ndarray, list[tuple[float, float]]] | None:
-    """Return time, normal force, and the limits of the rests [s]; None where no load is known."""
+    """Return time, normal force, and the limits of the rests [s]; None without a load signal."""
     if "normal_force" not in run or not load > 0 or "omitted" not in segments.dims:
         return None
     return run["time"].values, run["normal_force"].values, _limits(segments, "at rest")
 
 
 def _limits(segments: xr.Dataset, reason: str = "") -> list[tuple[float, float]]:
-    """Return the limits [s] of the stretches that were omitted for a reason, or for any."""
+    """Return the limits [s] of the intervals omitted for a given reason, or for any."""
     reasons = segments["omitted_reason"].values
     chosen = reasons == reason if reason else np.ones(reasons.size, bool)
     starts, stops = (segments[name].values[chosen] for name in ("omitted_start", "omitted_stop"))
@@ -233,7 +233,7 @@ def _limits(segments: xr.Dataset, reason: str = "") -> list[tuple[float, float]]
 def _unloaded(
     time: np.ndarray, normal: np.ndarray, intervals: list[tuple[float, float]], load: float
 ) -> list[np.ndarray]:
-    """Return the samples of each stretch at which nothing pressed."""
+    """Return the unloaded samples of each interval."""
     before, levels = 0.0, []
     for start, stop in intervals:
         first, last = np.searchsorted(time, [start, stop])
@@ -252,7 +252,7 @@ def _unloaded(
 def _bare(
     time: np.ndarray, normal: np.ndarray, intervals: list[tuple[float, float]], load: float
 ) -> list[np.ndarray]:
-    """Return the samples of stretches, however they move, in a part of which nothing pressed.
+    """Return the samples of intervals, at any motion, that are partly unloaded.
 
     A load that rises in the same stretch passes through every level: only what stays at one counts.
     """
@@ -280,7 +280,7 @@ def _bare(
 
 
 def level_without_load(normal: np.ndarray, first: int, last: int, load: float) -> np.ndarray:
-    """Return the samples of a rest that lie at one level far below the load, if there is one.
+    """Return the samples of a rest at one level far below the load, if any.
 
     However far below zero: at rest nothing pulls, and what reads so has an offset.
     """

@@ -1,4 +1,4 @@
-"""Loops of strokes at different speeds: what friction may change between the two."""
+"""Loops of strokes at different speeds, and the change of friction between them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _LN_SPEED_OF_NEIGHBOURS = np.log(10)  # loops further apart than a decade say no
 
 
 def across_speeds(half: np.ndarray, speed: np.ndarray) -> tuple[np.ndarray, bool]:
-    """Return by how much the half loop of unequal speeds may miss the friction of either stroke.
+    """Return the error of the half loop of unequal speeds as friction of either stroke.
 
     Parameters
     ----------

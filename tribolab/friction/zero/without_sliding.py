@@ -1,4 +1,4 @@
-"""What the friction signal reads where nothing can rub: before any sliding, and without load."""
+"""Friction signal without rubbing: before any sliding, and without load."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class WithoutSliding(NamedTuple):
 def without_sliding(
     run: xr.Dataset, segments: xr.Dataset, rests: Zeros | None, load: float
 ) -> WithoutSliding:
-    """Return what the friction signal reads before any sliding, and in strokes without load.
+    """Return the friction signal before any sliding, and in unloaded strokes.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def without_sliding(
 
 
 def stretches_of(run: xr.Dataset, segments: xr.Dataset, reason: str) -> list[slice]:
-    """Return the samples of the stretches that were omitted for a reason."""
+    """Return the samples of the intervals omitted for a reason."""
     time, chosen = run["time"].values, segments["omitted_reason"].values == reason
     starts, stops = (segments[f"omitted_{end}"].values[chosen] for end in ("start", "stop"))
     first, last = (np.searchsorted(time, ends) for ends in (starts, stops))
@@ -58,7 +58,7 @@ def stretches_of(run: xr.Dataset, segments: xr.Dataset, reason: str) -> list[sli
 def _before_sliding(
     run: xr.Dataset, segments: xr.Dataset, rests: Zeros, load: float
 ) -> tuple[float, float]:
-    """Read the loaded rest before anything has slid: afterwards friction holds the sample."""
+    """Read the loaded rest before any sliding; later rests retain friction."""
     time, force = run["time"].values, run["friction_force"].values
     normal = run["normal_force"].values
     begins = float(segments["start"].values.min(initial=np.inf))
@@ -109,7 +109,7 @@ def _without_load(
 
 
 class LoadedAndIdle(NamedTuple):
-    """What a tilt and drag below their limits add to the error of friction [N], and doubts."""
+    """Errors of friction [N] due to tilt and drag below their limits, with doubts."""
 
     error: float
     doubts: tuple[Doubt, ...]
@@ -118,7 +118,7 @@ class LoadedAndIdle(NamedTuple):
 def of_loaded_and_idle(
     readings: WithoutSliding, zero: ZeroReference, mean: np.ndarray, load: float
 ) -> LoadedAndIdle:
-    """Doubt friction that a loaded rest or strokes without load contradict.
+    """Doubt friction that a loaded rest or unloaded strokes contradict.
 
     Below the limits the readings count as uniform errors of either sign.
 

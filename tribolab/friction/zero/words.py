@@ -1,4 +1,4 @@
-"""What the zero of a segment rests on, in words, and what is in doubt about it."""
+"""Text on the source of the zero of a segment, and on doubts."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tribolab.friction.zero.rests import LightRest, PartialContact
 def words_of(
     strokes: StrokeMeans, loops: Middles, pair: np.ndarray, allowance: np.ndarray, i: int
 ) -> str:
-    """Say what the zero of a segment rests on."""
+    """Text on the source of the zero of a segment."""
     number = strokes.number
     drift = ", drift between the loops taken out" if np.any(loops.slope != 0) else ""
     if pair[i] >= 0:
@@ -48,7 +48,7 @@ def of_speeds(
     allowance: np.ndarray,
     measured: bool,
 ) -> list[Doubt]:
-    """Doubt pairs across speeds that nobody stated to be alike and the run does not measure."""
+    """Doubt pairs of unequal speeds whose friction is not known to be equal."""
     speed = strokes.speed[loops.member]
     mean = speed.mean(axis=1)
     apart = np.abs(speed[:, 0] - speed[:, 1])
@@ -72,7 +72,7 @@ def of_speeds(
 
 
 def of_fold(fold: Fold, unfolded: bool, size: int) -> tuple[Doubt, ...]:
-    """Return the doubt about a sign that was lost, if there is one."""
+    """Return the doubt about a lost sign, if any."""
     if fold.kind == "signed" or not fold.why:
         return ()
     done = "the direction of sliding was put back as its sign" if unfolded else "it was left as is"
@@ -99,7 +99,7 @@ def of_partial_contact(partial: PartialContact, load: float, segments: int) -> D
 
 
 def of_retained_load(level: float, load: float, segments: int) -> Doubt:
-    """Note a zero of the load cell that may be a load retained at the rests that show it."""
+    """Note a zero of the load cell that may include a retained load."""
     text = (
         f"the load cell reads {level:.3g} N ({level / load:.1%} of the load) in the rests without "
         "load. This was taken for its zero. It may also be load that the rests retain: the "

@@ -1,1 +1,1 @@
-"""The spectrum of a record: lines, mains hum, and what stands out of the noise."""
+"""Spectrum of a record: lines, mains hum, and significance above noise."""

@@ -1,4 +1,4 @@
-"""What a spectrum would be without a line: red noise on white noise, and what stands above it."""
+"""Background of a spectrum: red noise on white noise, and power above it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _COST_MARGIN = 1e-3  # of the cost, far above what single precision loses
 
 
 def red_noise(frequency: np.ndarray, power: np.ndarray, freedom: np.ndarray) -> np.ndarray:
-    """Fit an AR(1) process on white noise to a spectrum, peaks left aside.
+    """Fit an AR(1) process plus white noise to a spectrum, ignoring peaks.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ LONGEST_TRANSFORM = (
 
 
 class Line(NamedTuple):
-    """A line: frequency [Hz], amplitude in the signal's unit, power over the background.
+    """Spectral line: frequency [Hz], amplitude in the signal's unit, power over the background.
 
     Where it was found in a segment of a run, also the segment's number and sliding speed [m/s],
     and whether it is of the mains.
@@ -120,7 +120,7 @@ def find_lines(time: np.ndarray, values: np.ndarray, lowest: float = 0.0) -> lis
 
 
 def mains_harmonic(frequency: float, resolution: float, sampling_rate: float) -> str:
-    """Name the mains line that a frequency is, folded ones included; empty if it is none.
+    """Name of the mains harmonic at a frequency, including aliases; else "".
 
     Parameters
     ----------

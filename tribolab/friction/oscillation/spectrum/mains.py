@@ -1,4 +1,4 @@
-"""Lines of the mains in a record."""
+"""Mains lines in a record."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Power spectrum of one record: full length where short, averaged where long, even or not."""
+"""Power spectrum of a record: one transform if short, averaged if long; even or uneven."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Spectrum(NamedTuple):
 
 
 class EvenRecord(NamedTuple):
-    """A record as the analysis takes it: moments [s], values, and whether the moments are even."""
+    """Record for the analysis: times [s], values, and whether sampling is even."""
 
     time: np.ndarray
     values: np.ndarray
@@ -38,7 +38,7 @@ class EvenRecord(NamedTuple):
 
 
 def make_record(time: np.ndarray, values: np.ndarray) -> EvenRecord:
-    """Leave out what is not a number, and see whether the moments are even.
+    """Drop NaN, and determine whether sampling is even.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""A record's spectrum in bands beside what noise would have been: what stands out of it."""
+"""Spectrum of a record in bands, with its noise background."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tribolab.friction.oscillation.spectrum.spectra import EvenRecord, Spectrum,
 
 
 class Survey(NamedTuple):
-    """A spectrum and what noise is in it.
+    """Spectrum with its fitted noise.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ class Survey(NamedTuple):
 
 
 def survey(record: EvenRecord) -> Survey | None:
-    """Take the spectrum of a record and fit its noise; None if it is too short.
+    """Compute the spectrum of a record and fit its noise; None if it is too short.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def above_lower(
 
 
 def _without(spectrum: Spectrum, mains: tuple[Mains, ...]) -> Spectrum:
-    """Put the median of the surroundings where a line of the mains stands."""
+    """Replace mains lines by the median of their surroundings."""
     power = spectrum.power.copy()
     for line in mains:
         at = int(np.argmin(np.abs(spectrum.frequency - line.frequency)))

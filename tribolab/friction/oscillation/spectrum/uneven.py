@@ -1,4 +1,4 @@
-"""Fourier sums over samples at any moments, at the cost of a fast transform."""
+"""Fourier sums over samples at arbitrary times, by a fast transform."""
 
 from __future__ import annotations
 
