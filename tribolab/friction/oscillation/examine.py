@@ -133,7 +133,7 @@ def examine_record(
 
 
 def _settled(record: EvenRecord, surveyed: Survey, noise: float, thresholds: EventLimits) -> View:
-    """Look at the scale of the strongest line; another view counts where it is regular.
+    """Use the scale of the strongest line, or of another one that is regular.
 
     Of few periods of a saw, the second harmonic may be the strongest line that counts: then the
     drops repeat at another period, and the spectrum is looked at there. Slow wander may hide or

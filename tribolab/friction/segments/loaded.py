@@ -23,7 +23,7 @@ _CONTACT_BINS = 200  # in a stretch
 
 
 def loaded(run: xr.Dataset, stretches: list[Stretch], constancy: ConstancyLimits) -> list[Stretch]:
-    """Take out of the constant stretches what slides without load.
+    """Remove unloaded sliding from the intervals of constant speed.
 
     Parameters
     ----------

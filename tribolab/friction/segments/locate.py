@@ -113,7 +113,7 @@ def moving(
 
 
 def _is_folded_noise(velocity: np.ndarray) -> bool:
-    """Whether a speed is noise about zero without its sign: its spread is 0.76 of its mean."""
+    """Whether a speed is rectified noise about zero: its scatter is 0.76 of its mean."""
     if (
         velocity.size < limits.MIN_SAMPLES_OF_UNSIGNED_NOISE.value
         or velocity.min() < 0 < velocity.max()
@@ -190,7 +190,7 @@ def _until_kept(time: np.ndarray, pieces: list[VelocityPiece], index: int, way: 
 
 
 def _paused(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
-    """Call a ramp's short pause on its way a ramp: both sides of it are long and go one way."""
+    """Merge a short pause into a long ramp that continues in the same direction."""
     result = list(pieces)
     for i in range(1, len(pieces) - 1):
         before, piece, after = pieces[i - 1 : i + 2]
@@ -324,7 +324,7 @@ def _kind(
 
 
 def _fused(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
-    """Join touching pieces of one kind and one velocity, such as a plateau and its last samples."""
+    """Join adjacent pieces of equal class and velocity."""
     result: list[VelocityPiece] = []
     for piece in pieces:
         if result and _same(result[-1], piece, constancy):
@@ -355,7 +355,7 @@ def _same(a: VelocityPiece, b: VelocityPiece, constancy: ConstancyLimits) -> boo
 
 
 def _bridged(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
-    """Join two plateaus of one velocity across a disturbance that is short beside both."""
+    """Join two plateaus of equal velocity across a disturbance that is short compared with both."""
     result: list[VelocityPiece] = []
     for piece in pieces:
         if len(result) > 1 and piece.kind == "constant" == result[-2].kind:
@@ -371,7 +371,7 @@ def _bridged(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[Ve
 
 
 def _proven(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
-    """Call a short piece a ramp if noise hides that it is one, or if it is a speck of one."""
+    """Reclassify a short piece as ramp unless the data show that its speed is constant."""
     result = list(pieces)
     for i, piece in enumerate(pieces):
         around = pieces[max(i - 2, 0) : i] + pieces[i + 1 : i + 3]
@@ -385,7 +385,7 @@ def _proven(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[Vel
 
 
 def _settled(pieces: list[VelocityPiece], constancy: ConstancyLimits) -> list[VelocityPiece]:
-    """Call the tail of a ramp a ramp: a short drifting piece that leads into a long plateau."""
+    """Reclassify as ramp a short drifting piece that leads into a long plateau."""
     result = list(pieces)
     for i, piece in enumerate(pieces):
         if piece.kind != "constant":

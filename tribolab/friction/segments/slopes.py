@@ -111,7 +111,7 @@ def is_rounding(position: np.ndarray, noise: float) -> bool:
 
 
 def _far(time: np.ndarray, position: np.ndarray) -> np.ndarray:
-    """Return the samples behind which the position goes on far away."""
+    """Return the samples after which the position jumps far away."""
     least = limits.MIN_JUMP.value * float(np.ptp(position)) if position.size else 0.0
     least = max(least, limits.MIN_DIGITS_OF_JUMP.value * quantum(position))
     parts = [

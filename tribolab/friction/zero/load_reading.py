@@ -149,7 +149,7 @@ def _loaded_rest(run: xr.Dataset, part: slice, before: bool, load: float) -> _Re
 def _creep(
     run: xr.Dataset, segments: xr.Dataset, parts: list[slice], pressed: np.ndarray
 ) -> np.ndarray:
-    """Return what a creep of the load reading adds to the error of each segment [N] (segment)."""
+    """Return the error of each segment due to creep of the load reading [N] (segment)."""
     full = np.array([part.stop - part.start >= 10 * _READING_BLOCKS for part in parts], bool)
     full &= np.isfinite(pressed) & (pressed > 0)
     if not full.any():
@@ -191,6 +191,6 @@ def _tenth(values: np.ndarray, order: slice) -> tuple[float, float]:
 
 
 def _mean_of_blocks(values: np.ndarray) -> tuple[float, float]:
-    """Return a mean and its standard error, with slow waves and ramps in it."""
+    """Return a mean and its standard error, including slow waves and ramps."""
     means = [float(np.nanmean(block)) for block in np.array_split(values, _READING_BLOCKS)]
     return float(np.mean(means)), float(np.std(means, ddof=1)) / np.sqrt(_READING_BLOCKS)
