@@ -225,10 +225,10 @@ _RADIUS_TYPED = (
 
 for _name, _about, _run, _write in (
     ("rotary_steps", "disc: steps, radius in the header", on_disc, _rotary_steps),
-    ("stated_ratio", "mean speed, slide-to-roll ratio in the header", on_disc, _stated_ratio),
+    ("stated_ratio", "mean speed, slide-roll ratio in the header", on_disc, _stated_ratio),
     ("rotary_torque", "disc: torque and radius", on_disc, _rotary_torque),
     ("two_load_channels", "two load channels, one filled", on_disc, _two_load_channels),
-    ("mini_traction", "rolling speed, slide-to-roll ratio", on_disc, _mini_traction),
+    ("mini_traction", "rolling speed, slide-roll ratio", on_disc, _mini_traction),
     ("stroke_settings", "stroke, frequency in the header", by_crank, _stroke_settings),
     ("crank_position", "crank, position recorded", by_crank, _crank_position),
     ("sled", "sled, mass in the header", pulled, _sled),
