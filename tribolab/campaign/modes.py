@@ -11,6 +11,7 @@ import numpy as np
 
 from tribolab.campaign.curves import SLIP
 from tribolab.campaign.recorded import Recorded
+from tribolab.campaign.settings.contacts import contact_of_label
 from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.data_files import optional_data, read_data
 from tribolab.core.provenance import sha256_of
@@ -213,7 +214,8 @@ def _known(campaign: Campaign, record: CurveRecord, surface: SurfaceRecord | Non
     fluid = (
         curve.medium != "dry" if medium is None else campaign.viscosity_of(curve.medium) is not None
     )
-    mode = Mode(youngs_modulus=campaign.contact.youngs_modulus, fluid=fluid)
+    contact = contact_of_label(campaign, curve.surface)
+    mode = Mode(youngs_modulus=contact.youngs_modulus, fluid=fluid)
     rows = surface.rows if surface else None
     adhesion = [row for row in rows.adhesion if row["medium"] == curve.medium] if rows else []
     if not adhesion:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -63,8 +64,8 @@ class JointTask:
         known.
     dry
         Friction measured without the liquid, by surface; none if it is not to be used.
-    contact
-        The table [contact].
+    contacts
+        The table of the contact, by surface.
     area, adhesion
         Theory of the contact area, and whether the models' area is that with adhesion.
     viscosity, viscosity_range
@@ -82,7 +83,7 @@ class JointTask:
     measured: tuple[str, ...]
     enhancement: tuple[float | None, ...]
     dry: tuple[JointDry, ...]
-    contact: Arguments
+    contacts: Mapping[str, Arguments]
     area: AreaTheory
     adhesion: bool
     viscosity: float

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from tribolab.campaign.joint.plan import JointDry, JointTask, Work
 from tribolab.campaign.recorded import Recorded
+from tribolab.campaign.settings.contacts import contact_of_label
 from tribolab.campaign.settings.naming.run_names import safe_name
 from tribolab.campaign.store.catalogue import Store, fingerprint_of
 from tribolab.core.provenance import sha256_of
@@ -97,6 +98,7 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
         stated = self._stated_of(outcomes)
         liquid = self._campaign.viscosity_of(medium, stated)
         assert liquid is not None  # else there were no models
+        contacts = {surface: contact_of_label(self._campaign, surface) for surface in surfaces}
         task = JointTask(
             name=f"joint_{safe_name('_'.join(filter(None, (*surfaces, medium))))}",
             surfaces=surfaces,
@@ -105,8 +107,8 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
             measured=tuple(self._files[outcome.curve] for outcome in outcomes),
             enhancement=tuple(_enhancement(model) for model in ordered),
             dry=self._dry(surfaces, medium),
-            contact=self._campaign.contact.bodies(),
-            area=self._campaign.contact.area,
+            contacts={surface: contact.bodies() for surface, contact in contacts.items()},
+            area=contacts[surfaces[0]].area,
             adhesion=self._campaign.model.adhesion,
             viscosity=liquid.value,
             viscosity_range=liquid.bounds,
@@ -117,7 +119,7 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
         for dry in task.dry:
             files += [dry.surface_file, *dry.measured]
         shaping = [
-            [task.name, task.enhancement, task.contact, task.viscosity, task.viscosity_range],
+            [task.name, task.enhancement, task.contacts, task.viscosity, task.viscosity_range],
             [task.area, task.adhesion, [asdict(dry) for dry in task.dry], task.speed_error],
             [self._store.identity(file) for file in files],
         ]

@@ -131,7 +131,7 @@ def _dry_contacts(task: JointTask, dry: JointDry) -> list[DryContact]:
     ]
     if not kept:
         return []
-    contact = make_contact(**task.contact)
+    contact = make_contact(**task.contacts[dry.surface])
     psd = read_data(task.folder / dry.surface_file, "psd")
     load = np.array([contact.load(force) for force, _ in kept])
     pressure = np.asarray(hertz_mean_pressure(load, contact))
@@ -220,7 +220,7 @@ def _wet(task: JointTask) -> list[_Beside]:
     # late: starting stays quick
     from tribolab.contact.geometry import make_contact
 
-    contact = make_contact(**task.contact)
+    contacts = {surface: make_contact(**known) for surface, known in task.contacts.items()}
     curves = []
     for model, file in zip(task.models, task.measured, strict=True):
         assert model.normal_force is not None  # else it were not in the plan
@@ -228,7 +228,7 @@ def _wet(task: JointTask) -> list[_Beside]:
             _Beside(
                 name=_curve_name(task, model.surface, model.normal_force),
                 surface=model.surface,
-                load=contact.load(model.normal_force),
+                load=contacts[model.surface].load(model.normal_force),
                 measured=read_data(task.folder / file),
                 computed=_computed(task, model),
             )

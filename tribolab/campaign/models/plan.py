@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from tribolab.campaign.settings.contacts import contact_of_label, contact_table
 from tribolab.core.provenance import join_sources, sha256_of, source_attributes
 from tribolab.core.untyped import Arguments
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
+    from tribolab.campaign.settings.measured import Contact
     from tribolab.contact.area import AreaTheory
     from tribolab.records.part_records import CurveRecord, SurfaceRecord
     from tribolab.records.parts import CurveOutcome, SurfaceOutcome
@@ -32,7 +34,7 @@ class PlannedModel:
     surface_file
         Data file of the surface, with its spectrum.
     contact
-        The table [contact].
+        The table of the contact, [contact] or [contact.NAME].
     viscosity
         [Pa s]
     viscosity_range, youngs_modulus_range
@@ -123,14 +125,15 @@ def plan_models(
         return ()
     spread, freedom = _repeatability(done)
     known = {surface.outcome.name: surface for surface in surfaces}
-    contact = campaign.contact.bodies()
     settings = campaign.model.model_dump(exclude={"compute", "uncertainty", "adhesion"})
     planned, led = [], set()
     for record, viscosity in sorted(wet, key=lambda pair: pair[0].outcome.normal_force or np.inf):
         curve, surface = record.outcome, known.get(record.outcome.surface)
         stated = campaign.stated_errors(record.model_inputs)
-        modulus_range = _modulus_range(campaign, stated.get("youngs_modulus"))
-        missing = _missing(curve, contact, surface.outcome if surface else None)
+        contact = contact_of_label(campaign, curve.surface)
+        modulus_range = _modulus_range(contact, stated.get("youngs_modulus"))
+        table = contact_table(campaign, curve.surface)
+        missing = _missing(curve, table, contact.bodies(), surface.outcome if surface else None)
         work, works = _adhesion(campaign, curve.medium)
         if campaign.model.adhesion and work is None:
             missing = missing or f"[medium.{curve.medium}] wants work_of_adhesion"
@@ -140,7 +143,7 @@ def plan_models(
         model = PlannedModel(
             curve=curve,
             surface_file=surface.outcome.data_file if surface else "",
-            contact=contact,
+            contact=contact.bodies(),
             viscosity=viscosity.value,
             viscosity_range=viscosity.bounds,
             youngs_modulus_range=modulus_range,
@@ -149,7 +152,7 @@ def plan_models(
             work_of_adhesion=work,
             work_of_adhesion_range=works,
             settings=settings,
-            area=campaign.contact.area,
+            area=contact.area,
             leading=first,
             uncertain={"all": True, "none": False}.get(campaign.model.uncertainty, first),
             repeatability=spread,
@@ -161,9 +164,9 @@ def plan_models(
     return tuple(sorted(planned, key=lambda model: order[model.curve.name]))
 
 
-def _modulus_range(campaign: Campaign, error: float | None) -> tuple[float, float] | None:
+def _modulus_range(contact: Contact, error: float | None) -> tuple[float, float] | None:
     """Return between which values [Pa] Young's modulus is, as stated or by its uncertainty."""
-    modulus, stated = campaign.contact.youngs_modulus, campaign.contact.youngs_modulus_range
+    modulus, stated = contact.youngs_modulus, contact.youngs_modulus_range
     if stated is not None or modulus is None or error is None:
         return stated
     factor = float(np.exp(_95 * error))
@@ -189,10 +192,12 @@ def _adhesion(campaign: Campaign, medium: str) -> tuple[float | None, tuple[floa
     return table.work_of_adhesion, table.work_of_adhesion_range
 
 
-def _missing(curve: CurveOutcome, contact: Arguments, surface: SurfaceOutcome | None) -> str:
+def _missing(
+    curve: CurveOutcome, table: str, contact: Arguments, surface: SurfaceOutcome | None
+) -> str:
     unknown = [name for name, value in contact.items() if value is None]
     if unknown:
-        return f"[contact] wants {', '.join(unknown)}"
+        return f"{table} wants {', '.join(unknown)}"
     if curve.normal_force is None or not curve.normal_force > 0:
         return "no normal force is known"
     if surface is None or not surface.done:

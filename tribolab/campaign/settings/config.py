@@ -8,10 +8,10 @@ from pathlib import Path
 from pydantic import PrivateAttr
 
 from tribolab.campaign.settings.analysed import Friction, Qc, Roughness, Segments
+from tribolab.campaign.settings.contacts import Contacts
 from tribolab.campaign.settings.fields import LabelPattern, SomeText
 from tribolab.campaign.settings.measured import (
     CalibrationTable,
-    Contact,
     Medium,
     Reference,
     RunEntry,
@@ -51,7 +51,7 @@ class Campaign(Table):
     """A friction campaign as tribolab analyses it."""
 
     campaign: About
-    contact: Contact = Contact()
+    contact: Contacts = Contacts()
     medium: dict[SomeText, Medium] = {}
     segments: Segments = Segments()
     friction: Friction = Friction()
@@ -80,7 +80,7 @@ class Campaign(Table):
     def quality_options(self, entry: RunEntry) -> Arguments:
         """Return the arguments of `check_run` for a run."""
         options = self.qc.run_options()
-        contact = self.contact.whole()
+        contact = self.contact.by_name[entry.contact or ""].whole()
         if contact is not None and entry.normal_force is not None:
             # late: starting stays quick
             from tribolab.contact.hertz import hertz_half_width

@@ -26,6 +26,12 @@ def scan_files(campaign: Campaign) -> list[Path]:
     return [path for surface in campaign.surface for path in scans_of(campaign, surface)]
 
 
+def modulus_files(campaign: Campaign) -> list[Path]:
+    """Return the files of the moduli that the contacts name, each once."""
+    named = (contact.modulus_file for contact in campaign.contact.by_name.values())
+    return [campaign.raw / name for name in dict.fromkeys(named) if name is not None]
+
+
 def scans_of(campaign: Campaign, surface: Surface) -> list[Path]:
     """Return the topography scans of one surface, each once."""
     named = (
@@ -41,8 +47,7 @@ def inputs_of(campaign: Campaign) -> list[tuple[Path, str]]:
     for entry in campaign.run:
         inputs += [(f, "a raw file") for p in entry.files for f in matching_files(campaign.raw, p)]
     inputs += [(file, "a scan") for file in scan_files(campaign)]
-    if (name := campaign.contact.modulus_file) is not None:
-        inputs.append((campaign.raw / name, "the modulus file"))
+    inputs += [(file, "the modulus file") for file in modulus_files(campaign)]
     for instrument in _instruments(campaign):
         if instrument.endswith(_OWN):
             words = "a reader in Python" if instrument.endswith(".py") else "a dialect"

@@ -131,6 +131,8 @@ class RunEntry(Table):
     """Name of a [[surface]]."""
     medium: SomeText | None = None
     """Name of a [medium.*] table."""
+    contact: SomeText | None = None
+    """Name of a [contact.*] table; by default the contact is [contact]."""
     normal_force: Annotated[float, PositiveSi("N", "31 N")] | None = None
     """Set-point of the normal force; used as the load if the files record none. Default: runs are
     grouped by measured load."""

@@ -38,6 +38,7 @@ keep it. The following names are used by the analysis:
 
 # Names of tables that hold tables of the user's own names, and of lists of tables.
 _TABLE_NAMES = {
+    "contact": "[contact] and [contact.NAME]",
     "medium": "[medium.NAME]",
     "surface": "[[surface]]",
     "run": "[[run]]",

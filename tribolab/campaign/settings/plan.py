@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
+from tribolab.campaign.settings.contacts import pair_label
 from tribolab.campaign.settings.files import (
     instrument_of,
     label_of,
@@ -116,10 +117,7 @@ def plan_runs(campaign: Campaign) -> Plan:
     owner: dict[Path, int] = {}
     for number, surface in enumerate(campaign.surface):
         resolve_patterns(campaign.raw, surface.scans or (), ("surface", number, "scans"), problems)
-    if (name := campaign.contact.modulus_file) and not (campaign.raw / name).is_file():
-        there = (campaign.raw / name).exists()
-        what = f"{'no regular' if there else 'there is no'} file {campaign.raw / name}"
-        problems.append(SettingsProblem(("contact", "modulus_file"), what))
+    problems += _of_moduli(campaign)
     for number, entry in enumerate(campaign.run):
         where = ("run", number, "files")
         files = resolve_patterns(campaign.raw, entry.files, where, problems)
@@ -141,17 +139,20 @@ def plan_runs(campaign: Campaign) -> Plan:
     runs = tuple(
         _decided(
             _weighed(
-                _named(
-                    PlannedRun(
-                        name=name,
-                        files=tuple(files),
-                        labels=tuple(label_of(campaign, file) for file in files),
-                        mount=_label(entry, files[0], "mount"),
-                        specimen=_label(entry, files[0], "specimen"),
-                        zero_uncertainty_at=places[id(entry)],
-                        **settings[id(entry)],
+                _in_contact(
+                    _named(
+                        PlannedRun(
+                            name=name,
+                            files=tuple(files),
+                            labels=tuple(label_of(campaign, file) for file in files),
+                            mount=_label(entry, files[0], "mount"),
+                            specimen=_label(entry, files[0], "specimen"),
+                            zero_uncertainty_at=places[id(entry)],
+                            **settings[id(entry)],
+                        ),
+                        campaign,
                     ),
-                    campaign,
+                    entry.contact or "",
                 ),
                 campaign,
                 weighed,
@@ -161,6 +162,26 @@ def plan_runs(campaign: Campaign) -> Plan:
         for (entry, files), name in zip(groups, names, strict=True)
     )
     return Plan(runs, [])
+
+
+def _of_moduli(campaign: Campaign) -> list[SettingsProblem]:
+    """Return the moduli that a contact names and that are no files."""
+    problems = []
+    tables = {(): campaign.contact} | {(n,): t for n, t in campaign.contact.named.items()}
+    for where, contact in tables.items():
+        if (name := contact.modulus_file) and not (campaign.raw / name).is_file():
+            there = (campaign.raw / name).exists()
+            what = f"{'no regular' if there else 'there is no'} file {campaign.raw / name}"
+            problems.append(SettingsProblem(("contact", *where, "modulus_file"), what))
+    return problems
+
+
+def _in_contact(run: PlannedRun, contact: str) -> PlannedRun:
+    """Return a run whose surface is called by its contact, too, if that has a name."""
+    if not contact:
+        return run
+    mark = sha256_of([run.config_sha256, contact])
+    return replace(run, surface=pair_label(run.surface, contact), config_sha256=mark)
 
 
 def _zero_stated_at(campaign: Campaign, number: int) -> str:

@@ -106,9 +106,11 @@ def _within(outer: tuple[str | int, ...], inner: tuple[str | int, ...]) -> bool:
 
 def _words(item: Any, table: type[BaseModel] | None) -> str:
     kind, value = item["type"], item.get("input")
-    if kind == "extra_forbidden" and table is not None:
+    key = str(item["loc"][-1]) if item["loc"] else ""
+    unknown = table is not None and kind == "model_type" and key not in table.model_fields
+    if table is not None and (kind == "extra_forbidden" or unknown):
         known = [field.alias or name for name, field in table.model_fields.items()]
-        return f"unknown key{nearest(str(item['loc'][-1]), known)}"
+        return f"unknown key{nearest(key, known)}"
     if kind == "missing":
         if item["loc"] == ("campaign",):
             return 'is missing; add [campaign] with name = "..." at the top'
@@ -150,7 +152,7 @@ def _walk(
             table = here
             where.append(part)
             field = here.model_fields.get(str(part))
-            here = field.annotation if field else None
+            here = field.annotation if field else getattr(table, "named_table", None)
         elif typing.get_origin(here) in (dict, tuple):
             table = None
             where.append(part)

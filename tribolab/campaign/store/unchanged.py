@@ -8,7 +8,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
-from tribolab.campaign.settings.files import instrument_of, label_of, scans_of, sha256_of_dialect
+from tribolab.campaign.settings.files import (
+    instrument_of,
+    label_of,
+    modulus_files,
+    scans_of,
+    sha256_of_dialect,
+)
 from tribolab.campaign.settings.plan import PlannedRun
 from tribolab.campaign.settings.review import REVIEW_FILE, lost_decisions
 from tribolab.campaign.store.catalogue import CATALOGUE, Catalogue, Identity
@@ -148,8 +154,7 @@ def _inputs(campaign: Campaign, runs: Sequence[PlannedRun]) -> list[tuple[Path, 
     """Return every file that is read, and its label."""
     files = [pair for run in runs for pair in zip(run.files, run.labels, strict=True)]
     others = [scan for surface in campaign.surface for scan in scans_of(campaign, surface)]
-    if campaign.contact.modulus_file is not None:
-        others.append(campaign.raw / campaign.contact.modulus_file)
+    others += modulus_files(campaign)
     return files + [(file, label_of(campaign, file)) for file in others]
 
 

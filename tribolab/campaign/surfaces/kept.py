@@ -32,7 +32,6 @@ def kept_surface(
     before, sources = known.record.outcome, known.record.sources
     if not before.done:
         return record
-    patterns = next(s.scans or () for s in campaign.surface if s.name == now.name)
     names = [label for label, _, _ in sources]
     content = {checksum for _, checksum, _ in record.sources}
     spoilt = _unreadable_files(now.findings, names) - _unreadable_files(before.findings, names)
@@ -41,7 +40,7 @@ def kept_surface(
         for label, checksum, _ in sources
         if label not in {mine for mine, _, _ in record.sources}
         and checksum not in content
-        and is_named(campaign, patterns, label)
+        and is_named(campaign, planned.patterns, label)
     }
     why = sorted(f"{PurePosixPath(label).name}: {GONE}" for label in gone)
     why += sorted(f"{PurePosixPath(label).name} cannot be read" for label in spoilt)

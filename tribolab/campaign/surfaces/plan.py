@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from tribolab.campaign.settings.contacts import contact_pairs
 from tribolab.campaign.settings.files import instrument_of, label_of, scans_of, sha256_of_dialect
 from tribolab.campaign.settings.naming.run_names import distinct, safe_name
 from tribolab.core.provenance import sha256_of, sha256_of_file
@@ -35,17 +36,17 @@ class PlannedSurface:
     Parameters
     ----------
     name
-        Name in the campaign file.
+        Name in the campaign file, with the name of the contact if it has one.
     data_file
         Path of its data file relative to the results folder.
-    files, labels
-        Scans, absolute, and relative to the campaign file.
+    patterns, files, labels
+        Scans as the campaign file names them, absolute, and relative to the campaign file.
     instrument
         Dialect of the scans, if the campaign file names one.
     roughness
         The table [roughness].
     contact
-        The table [contact]; None if empty.
+        The table of its contact; None if empty.
     forces
         Normal forces of the runs on this surface, and those of [contact] [N], increasing.
     lowest_force
@@ -70,6 +71,7 @@ class PlannedSurface:
 
     name: str
     data_file: str
+    patterns: tuple[str, ...]
     files: tuple[Path, ...]
     labels: tuple[str, ...]
     instrument: str | None
@@ -103,32 +105,38 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
         for load in run.load_levels or (run.normal_force,)
         if load is not None and load > 0
     ]
-    stated = [float(f"{force:.4g}") for force in campaign.contact.normal_forces]
-    every = [force for _, force in known] + stated
+    pairs = contact_pairs(campaign, [surface for surface, _ in known])
+    stated = {
+        pair.label: [float(f"{force:.4g}") for force in pair.contact.normal_forces]
+        for pair in pairs
+    }
+    every = [force for _, force in known] + [force for each in stated.values() for force in each]
     media = tuple(
         PlannedMedium(name, work, *(medium.work_of_adhesion_range or (work, work)))
         for name, medium in campaign.medium.items()
         # at or below zero the liquid separates the surfaces: there is no adhesion to compute
         if (work := medium.work_of_adhesion) is not None and work > 0
     )
-    files = distinct(f"surface_{safe_name(surface.name)}" for surface in campaign.surface)
-    modulus = campaign.contact.modulus_file
-    path = None if modulus is None else campaign.raw / modulus
-    read_as = (campaign.contact.sweep, campaign.contact.modulus_unit)
+    files = distinct(f"surface_{safe_name(pair.label)}" for pair in pairs)
     sticky = campaign.rubber.adhesion
     planned = []
-    for surface, file in zip(campaign.surface, files, strict=True):
+    for pair, file in zip(pairs, files, strict=True):
+        surface, contact = pair.surface, pair.contact
+        path = None if contact.modulus_file is None else campaign.raw / contact.modulus_file
+        read_as = (contact.sweep, contact.modulus_unit)
         scans = scans_of(campaign, surface)
         instrument = surface.instrument and instrument_of(campaign, surface.instrument)
         facts: Arguments = {
-            "name": surface.name,
+            "name": pair.label,
             "data_file": f"data/{file}.nc",
             "instrument": instrument,
             "roughness": campaign.roughness.model_dump(exclude_none=True),
-            "contact": campaign.contact.bodies(),
-            "area": campaign.contact.area,
+            "contact": contact.bodies(),
+            "area": contact.area,
             "forces": tuple(
-                sorted({*stated, *(force for name, force in known if name == surface.name)})
+                sorted(
+                    {*stated[pair.label], *(force for name, force in known if name == pair.label)}
+                )
             ),
             "lowest_force": min(every, default=None),
             "media": media,
@@ -145,6 +153,7 @@ def plan_surfaces(campaign: Campaign, runs: Iterable[RunOutcome]) -> tuple[Plann
         }
         planned.append(
             PlannedSurface(
+                patterns=surface.scans or (),
                 files=tuple(scans),
                 labels=tuple(label_of(campaign, scan) for scan in scans),
                 modulus_file=None if path is None else (path, label_of(campaign, path)),

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from tribolab.campaign.settings.contacts import contact_of_label, contact_pairs
 from tribolab.campaign.settings.files import instrument_of
 from tribolab.campaign.settings.problems import SettingsProblem
 from tribolab.core.errors import ConfigError, TribolabError, nearest, shown
@@ -36,7 +37,11 @@ def of_names(campaign: Campaign) -> list[SettingsProblem]:
         for name, medium in campaign.medium.items()
         for quantity in ("viscosity", "work_of_adhesion")
     ]
-    for where, name, table in [*stated, (("contact",), "youngs_modulus", campaign.contact)]:
+    moduli = [
+        (("contact", *([name] if name else [])), "youngs_modulus", contact)
+        for name, contact in campaign.contact.by_name.items()
+    ]
+    for where, name, table in [*stated, *moduli]:
         value, bounds = getattr(table, name), getattr(table, f"{name}_range")
         if bounds and not (value is not None and bounds[0] <= value <= bounds[1]):
             what = f"must go from below to above {name}"
@@ -61,6 +66,13 @@ def of_names(campaign: Campaign) -> list[SettingsProblem]:
                 f"add [medium.{shown(_toml_key(entry.medium))}] (its keys may be left out)",
             )
             problems.append(SettingsProblem(("run", number, "medium"), what))
+        if entry.contact is not None and entry.contact not in campaign.contact.named:
+            what = f"there is no [contact.{shown(entry.contact)}]" + _hint(
+                entry.contact,
+                campaign.contact.named,
+                f"add [contact.{shown(_toml_key(entry.contact))}] with what differs from [contact]",
+            )
+            problems.append(SettingsProblem(("run", number, "contact"), what))
         if entry.instrument is not None and (what := _instrument(campaign, entry.instrument)):
             problems.append(SettingsProblem(("run", number, "instrument"), what))
     return problems
@@ -85,11 +97,14 @@ def _of_liquids(campaign: Campaign) -> list[SettingsProblem]:
 def _of_theory(campaign: Campaign) -> list[SettingsProblem]:
     """Surfaces and media that [joint] and [rubber] name, and a modulus that is stated twice."""
     wrong = []
-    surfaces = [surface.name for surface in campaign.surface]
+    surfaces = [pair.label for pair in contact_pairs(campaign)]
     for name in campaign.joint.together:
         if name not in surfaces:
             what = f"no [[surface]] is called '{shown(name)}'{nearest(name, surfaces)}"
             wrong.append(SettingsProblem(("joint", "together"), what))
+    if len({contact_of_label(campaign, name).geometry for name in campaign.joint.together}) > 1:
+        what = "a ball and a cylinder have no load in common; fit them alone"
+        wrong.append(SettingsProblem(("joint", "together"), what))
     for table, key, medium in (
         ("joint", "dry", campaign.joint.dry),
         ("rubber", "adhesion", campaign.rubber.adhesion),
@@ -101,7 +116,8 @@ def _of_theory(campaign: Campaign) -> list[SettingsProblem]:
             what = f"[medium.{shown(medium)}] wants a work_of_adhesion above zero"
             wrong.append(SettingsProblem((table, key), what))
     rubber = campaign.rubber
-    file = campaign.contact.modulus_file
+    files = [contact.modulus_file for contact in campaign.contact.by_name.values()]
+    file = next(filter(None, files), None)
     if rubber.prony_moduli and file is not None:
         what = "there is [contact] modulus_file as well; state one of them"
         wrong.append(SettingsProblem(("rubber", "prony_moduli"), what))
