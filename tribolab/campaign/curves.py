@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     Parts = dict[str | None, xr.Dataset]  # groups of a data file
 
 SLIP = "stick_slip"  # group of stick-slip over speed
+TRACTION = "traction"  # group of friction over the slide-roll ratio
 _AS_FOUND = "as_found"  # group of the curve without a person's decisions
 Condition = tuple[str, str, float | None, str]
 
@@ -185,15 +186,19 @@ def process_curve(task: CurveTask) -> CurveRecord:
     # imported late for a quick start
     from tribolab.friction.coefficient.repeatability import run_levels
     from tribolab.friction.oscillation.slip_curve import NEEDED, stick_slip_curve
+    from tribolab.friction.traction import stribeck_part, traction_curves
     from tribolab.reading.netcdf.netcdf import read_groups
-    from tribolab.records.frames import curve_table, plain_rows
+    from tribolab.records.frames import curve_table, plain_rows, traction_table
     from tribolab.records.models.budget_rows import budget_rows
 
     files = [task.folder / name for name in task.data_files]
     parts = [read_groups(file, ("friction", SLIP), only={SLIP: NEEDED}) for file in files]
     parts = [_segments_at_load(part, own) for part, own in zip(parts, task.levels, strict=True)]
     frictions = [part["friction"] for part in parts]
+    every = frictions
+    frictions, ratio = stribeck_part(frictions, task.speed_tolerance)
     curve, known = _budget_curve(frictions, task.speed_tolerance)
+    curve = _with_rolling(curve, ratio)
     levels: list[float | None] = []
     if len(frictions) > 1:
         curve = stamp(curve.assign(run_level=("run", run_levels(frictions, task.speed_tolerance))))
@@ -207,6 +212,10 @@ def process_curve(task: CurveTask) -> CurveRecord:
     shaped = [friction.attrs.get("config_sha256", "") for friction in frictions]
     curve.attrs |= _labels(task.curve) | {"config_sha256": sha256_of(shaped)}
     points = plain_rows(curve_table(curve))
+    traction: tuple[Row, ...] = ()
+    if ratio is not None and (measured := traction_curves(every, task.speed_tolerance)).point.size:
+        groups[TRACTION] = measured
+        traction = plain_rows(traction_table(measured))
     points_found: tuple[Row, ...] = ()
     if (undecided := _curve_as_found(task)) is not None:
         points_found = plain_rows(curve_table(undecided))
@@ -226,7 +235,16 @@ def process_curve(task: CurveTask) -> CurveRecord:
         tuple(budget_rows(curve, known)),
         str(curve.attrs["uncertainty_says"]),
         _model_inputs(frictions),
+        traction,
     )
+
+
+def _with_rolling(curve: xr.Dataset, ratio: float | None) -> xr.Dataset:
+    """Return a curve at one slide-roll ratio with its entrainment speeds; without one as it is."""
+    if ratio is None:
+        return curve
+    rolling = curve["sliding_speed"].values / ratio
+    return stamp(curve.assign(rolling_speed=("sliding_speed", rolling)), slide_roll_ratio=ratio)
 
 
 def _budget_curve(
@@ -256,6 +274,7 @@ def _model_inputs(frictions: Sequence[xr.Dataset]) -> dict[str, float]:
 def _curve_as_found(task: CurveTask) -> xr.Dataset | None:
     """Return the curve without a person's decisions; None if nobody decided."""
     # imported late for a quick start
+    from tribolab.friction.traction import stribeck_part
     from tribolab.reading.netcdf.netcdf import read_groups
 
     if not task.found_files:
@@ -265,7 +284,8 @@ def _curve_as_found(task: CurveTask) -> xr.Dataset | None:
     undecided = [part.get(wanted[1], part[wanted[0]]) for part in parts]
     pairs = zip(undecided, task.found_levels, strict=True)
     kept = [friction.isel(segment=own.of(friction)) for friction, own in pairs]
-    return _budget_curve(kept, task.speed_tolerance)[0]
+    kept, ratio = stribeck_part(kept, task.speed_tolerance)
+    return _with_rolling(_budget_curve(kept, task.speed_tolerance)[0], ratio)
 
 
 def _segments_at_load(part: Parts, own: _Levels) -> Parts:

@@ -2,86 +2,71 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
 from tribolab.arrays.threads import one_thread
-from tribolab.contact.area import AreaTheory
 from tribolab.contact.geometry import Contact
 from tribolab.contact.persson import rough_band
 from tribolab.core.errors import AnalysisError
-from tribolab.core.untyped import Arguments
 from tribolab.core.validity import reasons_of, together
 from tribolab.fit import limits
+from tribolab.fit.unknowns import Range, Unknowns, with_old_options
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
 from tribolab.fit.variations import held_fixed, variations
 from tribolab.friction.statistics import NORMAL
-from tribolab.lubrication.factors import RoughBody
-from tribolab.lubrication.parameters import Outlet, parameters_of
+from tribolab.lubrication.parameters import (
+    Interface,
+    Liquid,
+    Parameters,
+    Solver,
+    parameters_of,
+    renamed,
+    warn_of_old,
+)
 from tribolab.lubrication.solved_curve import SolvedCurve, solve_curve
 from tribolab.units.conversion import positive, to_si
 from tribolab.units.stamping import labelled, stamp
 
 _DEFAULT_SPEEDS = tuple(np.geomspace(1e-9, 1e-1, 17).tolist())  # m/s
-_PLACED = ("contact", "psd", "load", "speed", "viscosity", "shear_stress")
 _PARTS = ("friction_coefficient_couette", "friction_coefficient_pressure")
 
 
+@renamed(viscosity="liquid", shear_stress="interface")
 def model_uncertainty(
     contact: Contact,
     psd: xr.Dataset | None,
-    *,
-    viscosity: str | float,
+    liquid: Liquid | str | float,
     load: str | float,
-    shear_stress: str | float,
+    interface: Interface | str | float,
     speed: str | ArrayLike | None = None,
-    rough_body: RoughBody = "stationary",
-    shear_stress_error: str | float | None = None,
-    friction_factors: bool = True,
-    gamma: float = 0.45,
-    measured_to: str | float | None = None,
+    solver: Solver | None = None,
+    unknowns: Unknowns | None = None,
+    *,
     refit: bool = False,
-    viscosity_range: tuple[str | float, str | float] | None = None,
-    youngs_modulus_range: tuple[str | float, str | float] | None = None,
-    inlet_length: str | float = np.inf,
-    cells: int = 160,
-    area: AreaTheory = "persson",
-    work_of_adhesion: str | float | None = None,
-    work_of_adhesion_range: tuple[str | float, str | float] | None = None,
-    load_range: tuple[str | float, str | float] | None = None,
-    radius_range: tuple[str | float, str | float] | None = None,
-    outlet: Outlet | None = None,
+    **options: Any,
 ) -> xr.Dataset:
     """Band on a computed Stribeck curve from what is not known, and what moves it most.
 
     Parameters
     ----------
-    contact, psd, viscosity, load, shear_stress, rough_body, friction_factors, gamma
+    contact, psd, liquid, load, interface, solver
         As for `stribeck_curve`, with one load. Of the spectrum ``psd_2d_low``, ``psd_2d_high`` and
         ``origin`` are used where it has them.
     speed
         Sliding speeds [m/s] (sliding_speed), above zero; by default 17 from 1 nm/s to 0.1 m/s.
-    shear_stress_error
-        Standard error [Pa] of sigma_f; None leaves it out.
-    measured_to
-        Wavenumber [1/m] above which the spectrum is a guess, where ``origin`` does not say.
+        With a slide-roll ratio they are the speeds that `Interface.abscissa` names.
+    unknowns
+        `Unknowns`; None takes what is stated as exact, but not a vented outlet.
     refit
         Give each varied curve the sigma_f that fits the given curve best. So is the band what is
         left to a model whose sigma_f is fitted to a measured curve anyway.
-    viscosity_range, youngs_modulus_range
-        Ends of what `viscosity` [Pa s] and the contact's modulus [Pa] may be, some 95 %; None
-        leaves them out.
-    load_range, radius_range
-        Likewise of `load` [N/m] and the contact's radius [m].
-    inlet_length, cells, area, work_of_adhesion
-        As for `stribeck_curve`.
-    outlet
-        ``"vented"`` or ``"flooded"``; None is vented, with flooded as an unknown.
-    work_of_adhesion_range
-        Ends of what the work of adhesion [J/m2] may be, some 95 %, where it is given.
+    **options
+        Single fields of these objects, as they were arguments in the last release.
 
     Returns
     -------
@@ -133,87 +118,49 @@ def model_uncertainty(
     >>> spread.largest_change.to_series().round(2).to_dict()  # of smooth surfaces
     {'inlet length': 0.05, 'outlet': 0.62}
     """
-    known_to = None if measured_to is None else positive(measured_to, "1/m", "measured_to")
-    error = None if shear_stress_error is None else _error_of_stress(shear_stress_error)
+    warn_of_old("model_uncertainty", options)
+    known, single = with_old_options(unknowns, options)
     if psd is not None:  # where nothing is rough there is nothing to vary
         rough = rough_band(psd)[0]
         psd = psd.sel(wavenumber=slice(rough[0], rough[-1]))
-    eta, force = positive(viscosity, "Pa s", "viscosity"), positive(load, contact.load_unit, "load")
-    begins = to_si(inlet_length, "m", name="inlet_length")
-    extent = None if contact.is_round and np.isinf(begins) else begins
-    work = None
-    if work_of_adhesion is not None:
-        work = to_si(work_of_adhesion, "J/m^2", name="work_of_adhesion")
-    base = Base(
-        psd=psd,
-        rough_body=rough_body,
-        friction_factors=friction_factors,
-        gamma=gamma,
-        measured_to=known_to,
-        contact=contact,
-        load=force,
-        viscosity=eta,
-        viscosity_range=_range(viscosity_range, eta, "Pa s", "viscosity"),
-        youngs_modulus_range=_range(
-            youngs_modulus_range, contact.youngs_modulus, "Pa", "youngs_modulus"
-        ),
-        inlet_length=begins,
-        area=area,
-        work_of_adhesion=work,
-        work_of_adhesion_range=None
-        if work is None
-        else _range(work_of_adhesion_range, work, "J/m2", "work_of_adhesion", least=-np.inf),
-        load_range=_range(load_range, force, contact.load_unit, "load"),
-        radius_range=_range(radius_range, contact.radius, "m", "radius"),
-        outlet=outlet or "unknown",
-    )
-    stress = to_si(shear_stress, "Pa", name="shear_stress")
+    force = positive(load, contact.load_unit, "load")
+    parameters = parameters_of(liquid, interface, solver, **single | {"method": "auto"})
+    base = _base(contact, psd, force, parameters, known)
     speeds = np.atleast_1d(labelled(_DEFAULT_SPEEDS if speed is None else speed, "sliding_speed"))
     if np.any(speeds <= 0):
         raise AnalysisError("speed: a band is made at speeds above zero; leave the others out")
-    given: Arguments = {
-        "viscosity": eta,
-        "load": force,
-        "shear_stress": stress,
-        "speed": speeds,
-        "rough_body": rough_body,
-        "friction_factors": friction_factors,
-        "gamma": gamma,
-        "inlet_length": extent,
-        "area": area,
-        "work_of_adhesion": work,
-        "method": "auto",
-        "outlet": outlet or "vented",
-    }
-    coarse = {**given, "cells": min(cells, limits.MAX_CELLS_OF_CHANGE.value)}
+    cells = parameters.solver.cells
+    given = _Given(contact, psd, force, speeds, parameters)
+    coarse = given.changed({"cells": min(cells, int(limits.MAX_CELLS_OF_CHANGE.value))})
     with one_thread():
-        whole = _solved({"contact": contact, "psd": psd, **given, "cells": cells})
-        start = whole
+        whole = start = given.solved()
         if cells > limits.MAX_CELLS_OF_CHANGE.value and not contact.is_round:
-            start = _solved({"contact": contact, "psd": psd, **coarse})
+            start = coarse.solved()
         curve, reference = whole.curve, start.curve
-        unknowns = variations(base)
-        varied = [unknown for unknown in unknowns if isinstance(unknown, Variation)]
-        mu, fitted, attributes = _all_ends(contact, psd, coarse, varied, start, refit)
-    left = [unknown for unknown in unknowns if isinstance(unknown, Skipped)]
+        all_unknowns = variations(base)
+        varied = [unknown for unknown in all_unknowns if isinstance(unknown, Variation)]
+        mu, fitted, attributes = _all_ends(coarse, varied, start, refit)
+    left = [unknown for unknown in all_unknowns if isinstance(unknown, Skipped)]
     height = reference["friction_coefficient"].values
+    error = known.shear_stress_error
     if error is None:
         left.append(Skipped("shear stress", "no shear_stress_error was given"))
     elif not refit:
-        fitted_stress, ends = _of_stress(error, reference)
+        fitted_stress, ends = _of_stress(float(error), reference)
         varied.append(fitted_stress)
         mu = np.concatenate([mu, ends[None]])
         fitted = np.concatenate([fitted, np.zeros((1, 2))])
     log_ratio = np.log(mu / height)
     top = curve["friction_coefficient"].values
+    over = str(curve["friction_coefficient"].dims[0])
     raised, lowered = (_quadrature(sign * log_ratio) for sign in (1, -1))
     data = xr.Dataset(
         {
-            "friction_coefficient": ("sliding_speed", top),
-            "friction_coefficient_low": ("sliding_speed", top * np.exp(-lowered)),
-            "friction_coefficient_high": ("sliding_speed", top * np.exp(raised)),
+            "friction_coefficient": (over, top),
+            "friction_coefficient_low": (over, top * np.exp(-lowered)),
+            "friction_coefficient_high": (over, top * np.exp(raised)),
             "friction_coefficient_varied": (
-                ("variation", "range_end", "sliding_speed"),
+                ("variation", "range_end", over),
                 top * np.exp(log_ratio),
             ),
             **_table(varied, mu, height, speeds),
@@ -221,7 +168,7 @@ def model_uncertainty(
             "shear_stress_change_high": ("variation", fitted[:, 1]),
         },
         {
-            "sliding_speed": speeds,
+            over: speeds,
             "variation": np.array([variation.name for variation in varied], dtype=str),
             "range_end": ["low", "high"],
         },
@@ -236,20 +183,67 @@ def model_uncertainty(
     )
 
 
+class _Given(NamedTuple):
+    """A model with load and speeds, in SI."""
+
+    contact: Contact
+    psd: xr.Dataset | None
+    load: float
+    speed: np.ndarray
+    parameters: Parameters
+
+    def changed(self, change: Mapping[str, Any]) -> _Given:
+        """Return the model with what one end of a range changes."""
+        own = {name: value for name, value in change.items() if name in self._fields}
+        left = {name: value for name, value in change.items() if name not in own}
+        return self._replace(**own, parameters=parameters_of(*self.parameters, **left))
+
+    def solved(self, near: SolvedCurve | None = None) -> SolvedCurve:
+        """Solve it, from what is near if that is known."""
+        return solve_curve(self.contact, self.psd, self.load, self.speed, self.parameters, near)
+
+
+def _base(
+    contact: Contact, psd: xr.Dataset | None, load: float, parameters: Parameters, known: Unknowns
+) -> Base:
+    """Return the model as the variations take it, with the ranges in SI."""
+    liquid, interface, solver = parameters
+    work = interface.work_of_adhesion
+    return Base(
+        psd=psd,
+        rough_body=interface.rough_body or "stationary",
+        friction_factors=solver.friction_factors,
+        gamma=solver.gamma,
+        measured_to=None if known.measured_to is None else float(known.measured_to),
+        contact=contact,
+        load=load,
+        viscosity=liquid.viscosity,
+        viscosity_range=_range(known.viscosity, liquid.viscosity, "Pa s", "viscosity"),
+        youngs_modulus_range=_range(
+            known.youngs_modulus, contact.youngs_modulus, "Pa", "youngs_modulus"
+        ),
+        inlet_length=np.inf if liquid.extent is None else liquid.extent,
+        area=solver.area,
+        work_of_adhesion=work,
+        work_of_adhesion_range=None
+        if work is None
+        else _range(known.work_of_adhesion, work, "J/m2", "work_of_adhesion", least=-np.inf),
+        load_range=_range(known.load, load, contact.load_unit, "load"),
+        radius_range=_range(known.radius, contact.radius, "m", "radius"),
+        outlet="unknown" if known.outlet and liquid.outlet == "vented" else liquid.outlet,
+    )
+
+
 def _all_ends(
-    contact: Contact,
-    psd: xr.Dataset | None,
-    coarse: Arguments,
-    varied: list[Variation],
-    start: SolvedCurve,
-    refit: bool,
+    coarse: _Given, varied: list[Variation], start: SolvedCurve, refit: bool
 ) -> tuple[np.ndarray, np.ndarray, list[dict[str, str]]]:
     """Friction (variation, end, speed), relative change of the refitted sigma_f, and validity.
 
     The numbers are NaN where a variation has no such end.
     """
     reference = start.curve
-    stress, aim = coarse["shear_stress"], reference["friction_coefficient"].values
+    stress = coarse.parameters.interface.shear_stress
+    aim = reference["friction_coefficient"].values
     mu, attributes = np.full((len(varied), 2, aim.size), np.nan), []
     beyond = {reason.split(" is ")[0] for reason in reasons_of(reference.attrs)}
     fitted = np.full((len(varied), 2), np.nan)
@@ -260,8 +254,7 @@ def _all_ends(
             try:
                 changed = _of_the_same_films(reference, end)
                 if changed is None:
-                    asked = {"contact": contact, "psd": psd, **coarse, **end}
-                    changed = _solved(asked, start).curve
+                    changed = coarse.changed(end).solved(start).curve
             except AnalysisError as error:
                 where = f"varied {variation.name} ({variation.texts[j]})"
                 raise AnalysisError(error, where=where) from error
@@ -279,14 +272,6 @@ def _all_ends(
     return mu, fitted, attributes
 
 
-def _solved(asked: Arguments, near: SolvedCurve | None = None) -> SolvedCurve:
-    """Solve a model that is given by single arguments."""
-    contact, psd, load, speed, viscosity, stress = (asked[name] for name in _PLACED)
-    left = {name: value for name, value in asked.items() if name not in _PLACED}
-    parameters = parameters_of(viscosity, stress, **left)
-    return solve_curve(contact, psd, load, speed, parameters, near)
-
-
 def _of_the_same_films(reference: xr.Dataset, end: Changed) -> xr.Dataset | None:
     """Return the curve of an end that changes no film, as the reference knows it; else None."""
     if end.keys() == {"area"}:
@@ -301,7 +286,7 @@ def _of_the_same_films(reference: xr.Dataset, end: Changed) -> xr.Dataset | None
 
 
 def _range(
-    given: tuple[str | float, str | float] | None,
+    given: Range | None,
     value: float,
     unit: str,
     name: str,
@@ -317,15 +302,6 @@ def _range(
             f"{name}_range: {low:g} to {high:g} {unit} must go from below to above {value:g} {unit}"
         )
     return low, high
-
-
-def _error_of_stress(given: str | float) -> float:
-    error = to_si(given, "Pa", name="shear_stress_error")
-    if not 0 <= error < np.inf:
-        raise AnalysisError(
-            f"finite, not negative is wanted; got {error:g} Pa", function="shear_stress_error"
-        )
-    return error
 
 
 def _of_stress(error: float, reference: xr.Dataset) -> tuple[Variation, np.ndarray]:

@@ -85,7 +85,7 @@ def film_profile(
         system = system_of(contact, psd, parameters)
         system = with_adhesion(system, force, parameters.interface.work_of_adhesion)
         solve = solve_points if contact.is_round else solve_speeds
-        points = solve(system, force, (2 if system.rolls else 1) * magnitudes)
+        points = solve(system, force, parameters.interface.entrained * magnitudes)
     films = [
         _profile(system, force, float(v), points[i]) for v, i in zip(speeds, back, strict=True)
     ]

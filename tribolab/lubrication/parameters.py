@@ -20,6 +20,7 @@ from tribolab.units.conversion import positive, to_si
 P = ParamSpec("P")
 R = TypeVar("R")
 Outlet = Literal["vented", "flooded"]
+Abscissa = Literal["entrainment_speed", "sliding_speed"]
 Method = Literal["auto", "full", "strips"]
 VAPOUR = -1e5  # Pa, a liquid without gas boils at some 1 bar below the pressure outside
 
@@ -101,6 +102,9 @@ class Interface:
     slide_roll
         Slide-roll ratio SRR = (u2 - u1)/U [1] of two moving bodies, U = (u1 + u2)/2; None if one
         body is at rest, which is SRR = 2.
+    abscissa
+        Which speed is given and returned where a slide-roll ratio is stated:
+        ``"entrainment_speed"`` U, or ``"sliding_speed"`` SRR U, as measured curves have it.
 
     Examples
     --------
@@ -114,6 +118,7 @@ class Interface:
     factors: FlowFactors | None = None
     work_of_adhesion: float | None = None
     slide_roll: float | None = None
+    abscissa: Abscissa = "entrainment_speed"
 
     def __post_init__(self) -> None:
         """Convert text to SI values and raise an error for impossible ones."""
@@ -131,6 +136,18 @@ class Interface:
             object.__setattr__(self, name, value)
             if not -end <= value <= end:
                 raise AnalysisError(f"{name}: {-end:g} to {end:g} is possible; got {value:g}")
+        _one_of("abscissa", self.abscissa, Abscissa)
+        if self.slide_roll == 0 and self.abscissa == "sliding_speed":
+            raise AnalysisError(
+                "slide_roll: nothing slides in pure rolling; state another abscissa"
+            )
+
+    @property
+    def entrained(self) -> float:
+        """Twice the entrainment speed over the speed that is given [1]."""
+        if self.slide_roll is None:
+            return 1.0
+        return 2.0 if self.abscissa == "entrainment_speed" else 2 / abs(self.slide_roll)
 
 
 @dataclass(frozen=True)

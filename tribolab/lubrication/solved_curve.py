@@ -77,7 +77,7 @@ def solve_curve(
     if near is not None and not contact.is_round:
         beside = near.points
     # where both bodies move the liquid is moved as by one of twice the entrainment speed
-    times = 2.0 if system.rolls else 1.0
+    times = parameters.interface.entrained
     magnitudes, back = np.unique(times * np.abs(speeds.values), return_inverse=True)
     used: list[np.ndarray] = []
     points: list[list[SolvedSpeed]] = []
@@ -108,7 +108,7 @@ def solve_curve(
         data = data.isel(load=0)
     thinnest = data.minimum_separation.values
     data["load"].attrs["units"] = contact.load_unit
-    if system.rolls:
+    if system.rolls and parameters.interface.abscissa == "entrainment_speed":
         data = data.rename(sliding_speed="entrainment_speed")
     curve = stamp(
         data,

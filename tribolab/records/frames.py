@@ -55,6 +55,7 @@ _CURVE = [
     "friction_coefficient_between",
     "runs",
     "segments",
+    "rolling_speed",
 ]
 
 
@@ -128,6 +129,11 @@ def _but(name: str, columns: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
 def curve_table(curve: xr.Dataset) -> pd.DataFrame:
     """Table of a measured curve, a row per sliding speed."""
     return frame(curve, "sliding_speed", _CURVE)
+
+
+def traction_table(traction: xr.Dataset) -> dict[str, np.ndarray]:
+    """Return friction over the slide-roll ratio as columns, a row per point."""
+    return _but("point", columns_of(traction, "point", ["rolling_speed", "slide_roll_ratio"]))
 
 
 _START = [

@@ -33,6 +33,16 @@ _POINT = Columns(
     open=True,
 )
 Point = Annotated[Row, _POINT]  # of a measured curve
+_TRACTION = Columns(
+    {
+        "rolling_speed_m_s": "entrainment speed, the mean of both bodies",
+        "slide_roll_ratio": "",
+        "friction_coefficient": "",
+    },
+    known=("rolling_speed_m_s", "slide_roll_ratio"),
+    open=True,
+)
+TractionPoint = Annotated[Row, _TRACTION]  # of a traction curve
 _PART = Columns(
     {
         "sliding_speed_m_s": "",
@@ -76,6 +86,9 @@ class CurveRecord:
     model_inputs
         Stated standard uncertainties of the model's inputs, by name: relative, except temperature
         [K] and water content (absolute).
+    traction
+        Of a machine whose two bodies turn, a row for each slide-roll ratio at each entrainment
+        speed that has several.
     """
 
     outcome: CurveOutcome
@@ -88,6 +101,7 @@ class CurveRecord:
     budget: tuple[BudgetRow, ...] = ()
     uncertainty_says: str = ""
     model_inputs: Mapping[str, float] = field(default_factory=dict)
+    traction: tuple[TractionPoint, ...] = ()
 
     @property
     def done(self) -> bool:
@@ -113,6 +127,8 @@ class ModelRows:
         Relative change of the shear stress due to the spectrum's error, downwards and upwards.
     validity
         Limits of the theory that the model exceeds.
+    traction
+        A row for each slide-roll ratio that was measured, with the computed friction.
     """
 
     fit: Row | None
@@ -121,6 +137,7 @@ class ModelRows:
     not_varied: str = ""
     shift: tuple[float, float] | None = None
     validity: str = ""
+    traction: tuple[TractionPoint, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -45,6 +45,7 @@ from tribolab.report.live.loads import over_load_figures
 from tribolab.report.live.points import RunPoint, run_points
 from tribolab.report.live.shown import shown_figures
 from tribolab.report.live.starts import starts_of, static_figures
+from tribolab.report.live.traction import traction_figures
 from tribolab.report.page.page import prepare_page, write_page
 from tribolab.report.page.reviewing import review_data
 from tribolab.report.tables import SEVERITIES
@@ -124,7 +125,7 @@ def write_report(
     names = tuple(surface.name for surface in outcome.surfaces)
     by_curve = {row.model.curve: row for row in rows.values()}
     known = FrictionOverSpeed(shown, points, by_curve, bands, names)
-    curve_specs = [*card_figures(known), *comparisons(known)]
+    curve_specs = [*card_figures(known), *comparisons(known), *traction_figures(known)]
     on_screen = [*curve_specs, *over_load_figures(known), *along, *contribution_figures(shown)]
     live = [*shown_figures(on_screen), *(one for record in records for one in record.figures)]
     tasks = _figures([*curve_specs, *load_figures(known)], subjects, store, figures, pdf)

@@ -5,6 +5,7 @@ from tribolab.rig.campaign import simulate_campaign
 from tribolab.rig.faults import FAULTS, Fault, inject
 from tribolab.rig.files import write_run, write_scans
 from tribolab.rig.laws import DryLaw, StickSlip, StribeckLaw, friction_law, stick_slip
+from tribolab.rig.mini_traction import MiniTraction, simulate_mini_traction
 from tribolab.rig.mixed_law import MixedLaw
 from tribolab.rig.parameters import Clocks, Encoder, ForceCell, Loggers, Protocol, Rig, Scatter
 from tribolab.rig.runs import simulate_run
@@ -22,6 +23,7 @@ __all__ = [
     "Fault",
     "ForceCell",
     "Loggers",
+    "MiniTraction",
     "MixedLaw",
     "Protocol",
     "Rig",
@@ -36,6 +38,7 @@ __all__ = [
     "read_truth",
     "scans",
     "simulate_campaign",
+    "simulate_mini_traction",
     "simulate_run",
     "simulate_trace",
     "stick_slip",

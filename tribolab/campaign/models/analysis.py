@@ -18,9 +18,10 @@ from tribolab.core.wording import explain
 from tribolab.fit.model_inputs import model_inputs, moved_friction
 from tribolab.fit.model_uncertainty import model_uncertainty
 from tribolab.fit.shear_stress import fit_shear_stress
+from tribolab.fit.unknowns import Unknowns
 from tribolab.lubrication.factors import flow_factors
 from tribolab.lubrication.film import film_profile
-from tribolab.lubrication.parameters import Interface, Liquid, Solver, parameters_of
+from tribolab.lubrication.parameters import Parameters, parameters_of
 from tribolab.lubrication.solved_curve import solve_curve
 from tribolab.lubrication.stribeck import with_shear_stress
 from tribolab.records.parts import Finding, limit_findings
@@ -51,18 +52,10 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
     psd = read_data(folder / model.surface_file, "psd")
     contact = make_contact(**model.contact)
     load = contact.load(model.normal_force)
-    settings = model.settings
-    body = {name: settings[name] for name in ("rough_body", "friction_factors")}
-    body["inlet_length"] = _extent(model, contact)
-    if settings["outlet"]:
-        body["outlet"] = settings["outlet"]
-    body["area"] = model.area
-    body["work_of_adhesion"] = model.work_of_adhesion
+    settings, body = model.settings, _body(model, contact, measured)
     grid = np.geomspace(settings["slowest"], settings["fastest"], settings["points"])
     points = measured["sliding_speed"].values
     speeds = np.union1d(grid, points[points > 0])
-    if contact.is_round:
-        body["method"] = "auto"
     parameters = parameters_of(model.viscosity, 0.0, **body)
     computed = solve_curve(contact, psd, load, speeds, parameters).curve
     groups, findings = {"curve": computed.sel(sliding_speed=grid)}, []
@@ -95,24 +88,53 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
             shear_stress_other_area_Pa=again.shear_stress,
         )
     groups["curve"].attrs["abscissa_error"] = model.abscissa_error
+    traction = optional_data(folder / model.curve.data_file, "traction")
+    if fit is not None and traction is not None:
+        stress = max(fit.shear_stress, 0.0)
+        attempt(
+            "traction curve",
+            "traction",
+            lambda: _traction(traction, contact, psd, load, parameters, stress),
+        )
     if fit is not None and inputs is not None:
         groups["curve"] = _with_parts(groups["curve"], inputs, max(fit.shear_stress, 0.0))
     if model.leading:
-        attempt("profiles", "profiles", lambda: _profiles(model, points, contact, psd, load))
+        attempt("profiles", "profiles", lambda: _profiles(points, contact, psd, load, parameters))
         attempt("factors", "factors", lambda: _factors(psd, settings["rough_body"]))
     if model.uncertain and fit is not None and fit.shear_stress > 0:
-        ranges = (
-            *("viscosity", "viscosity_range", "youngs_modulus_range"),
-            "work_of_adhesion_range",
+        unknowns = Unknowns(
+            viscosity=model.viscosity_range,
+            youngs_modulus=model.youngs_modulus_range,
+            load=_range_of(load, model.input_errors.get("load", 0.0)),
+            radius=_range_of(contact.radius, model.input_errors.get("radius", 0.0)),
+            work_of_adhesion=model.work_of_adhesion_range,
+            shear_stress_error=fit.total_error,
+            outlet=not settings["outlet"],
         )
-        body.pop("method", None)
-        given = {name: getattr(model, name) for name in ranges} | {"load": load, **body}
-        for name, value in (("load", load), ("radius", contact.radius)):
-            given[f"{name}_range"] = _range_of(value, model.input_errors.get(name, 0.0))
+        liquid, interface, solver = parameters_of(*parameters, shear_stress=fit.shear_stress)
         attempt(
-            "uncertainty of the model", "uncertainty", lambda: _uncertain(contact, psd, fit, given)
+            "uncertainty of the model",
+            "uncertainty",
+            lambda: model_uncertainty(
+                contact, psd, liquid, load, interface, solver=solver, unknowns=unknowns
+            ),
         )
     return groups, findings + limit_findings(groups)
+
+
+def _body(model: PlannedModel, contact: Contact, measured: xr.Dataset) -> Arguments:
+    """Return what a model is made of besides contact, spectrum, load, viscosity and speed."""
+    settings = model.settings
+    body = {name: settings[name] for name in ("rough_body", "friction_factors")}
+    body["inlet_length"] = _extent(model, contact)
+    if settings["outlet"]:
+        body["outlet"] = settings["outlet"]
+    body |= {"area": model.area, "work_of_adhesion": model.work_of_adhesion}
+    if (slide_roll := measured.attrs.get("slide_roll_ratio")) is not None:
+        body |= {"slide_roll": abs(float(slide_roll)), "abscissa": "sliding_speed"}
+    if contact.is_round:
+        body["method"] = "auto"
+    return body
 
 
 def _fit(
@@ -245,24 +267,41 @@ def beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
 
 
 def _profiles(
-    model: PlannedModel, points: np.ndarray, contact: Contact, psd: xr.Dataset, load: float
+    points: np.ndarray, contact: Contact, psd: xr.Dataset, load: float, parameters: Parameters
 ) -> xr.Dataset:
     """Profiles at a few speeds from the slowest to the fastest that was measured."""
     moving = points[points > 0]
-    body = model.settings["rough_body"]
-    liquid = Liquid(model.viscosity, _extent(model, contact), model.settings["outlet"] or "vented")
     speeds = [
         float(f"{v:.2g}") for v in np.geomspace(moving.min(), moving.max(), _PROFILES).tolist()
     ]
-    return film_profile(
-        contact,
-        psd,
-        liquid,
-        load,
-        speeds,
-        Interface(rough_body=body, work_of_adhesion=model.work_of_adhesion),
-        Solver(area=model.area),
-    )
+    liquid, interface, solver = parameters
+    return film_profile(contact, psd, liquid, load, speeds, interface, solver)
+
+
+def _traction(
+    measured: xr.Dataset,
+    contact: Contact,
+    psd: xr.Dataset,
+    load: float,
+    parameters: Parameters,
+    shear_stress: float,
+) -> xr.Dataset:
+    """Return computed friction at the slide-roll ratios and entrainment speeds of the points."""
+    ratios, speeds = measured["slide_roll_ratio"].values, measured["rolling_speed"].values
+    friction = np.full(ratios.size, np.nan)
+    for ratio in np.unique(np.round(ratios, 3)):
+        own = np.round(ratios, 3) == ratio
+        asked = parameters_of(
+            *parameters,
+            slide_roll=float(ratio),
+            abscissa="entrainment_speed",
+            shear_stress=shear_stress,
+        )
+        friction[own] = solve_curve(contact, psd, load, speeds[own], asked).curve[
+            "friction_coefficient"
+        ]
+    known = measured[["rolling_speed", "slide_roll_ratio"]]
+    return stamp(known.assign(friction_coefficient=("point", friction)))
 
 
 def _extent(model: PlannedModel, contact: Contact) -> float | None:
@@ -273,15 +312,3 @@ def _extent(model: PlannedModel, contact: Contact) -> float | None:
 def _factors(psd: xr.Dataset, rough_body: Any) -> xr.Dataset:
     factors = flow_factors(psd, rough_body)
     return factors.dataset(_SEPARATIONS * factors.rms_roughness)
-
-
-def _uncertain(
-    contact: Contact, psd: xr.Dataset, fit: ShearStressFit, given: Arguments
-) -> xr.Dataset:
-    return model_uncertainty(
-        contact,
-        psd,
-        shear_stress=fit.shear_stress,
-        shear_stress_error=fit.total_error,
-        **given,
-    )

@@ -194,6 +194,8 @@ def _stretch_history(run: xr.Dataset, friction: xr.Dataset) -> History | None:
     speed, direction = friction["sliding_speed"].values, friction["direction"].values
     start, stop = friction["start"].values, friction["stop"].values
     lasted = stop - start
+    if not lasted.sum() > 0:  # rows that are results
+        return None
     usual = float(speed[np.argmax(lasted)])
     alike = np.abs(np.log(np.where(speed > 0, speed, np.nan) / usual)) < np.log1p(
         of_points.SPEED_TOLERANCE.value

@@ -124,7 +124,8 @@ def _uncertain(subject: RunSubject, limits: Mapping[str, float]) -> list[Result]
     white = friction[f"{name}_std"].values / np.sqrt(np.maximum(friction["samples"].values, 1))
     bad = []
     for mean in means:
-        by_noise = NORMAL * float(np.nanmean(white[mean.strokes]))
+        own = white[mean.strokes]
+        by_noise = NORMAL * float(np.nanmean(own)) if np.isfinite(own).any() else 0.0
         least = max(limits["uncertain"] * abs(mean.mean), limits["known_to"], by_noise)
         if mean.u95 > least:
             bad.append(mean)

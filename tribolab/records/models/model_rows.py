@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tribolab.core.wording import is_dry
-from tribolab.records.frames import frame, plain_rows
+from tribolab.records.frames import frame, plain_rows, traction_table
 from tribolab.records.models.model_words import judgement
 from tribolab.records.part_records import ModelRows
 from tribolab.records.parts import Row
@@ -89,6 +89,8 @@ def model_rows(
             not_varied=str(varied.attrs["not_varied"]),
             shift=shear_stress_shift(varied),
         )
+    if "traction" in groups:
+        rows = replace(rows, traction=plain_rows(traction_table(groups["traction"])))
     return rows
 
 

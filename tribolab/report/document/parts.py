@@ -61,6 +61,7 @@ def reported_curve(curve: CurveRecord) -> ReportedCurve:
         curve.budget,
         curve.uncertainty_says,
         outcome.load_from,
+        curve.traction,
     )
 
 

@@ -18,7 +18,7 @@ from tribolab.records.judgement import Limits
 from tribolab.records.models.joint_record import JointRecord
 from tribolab.records.models.mode_record import EvidenceRow
 from tribolab.records.models.model_rows import FITTED
-from tribolab.records.part_records import BudgetRow, FigureRecord, Point
+from tribolab.records.part_records import BudgetRow, FigureRecord, Point, TractionPoint
 from tribolab.records.parts import Row
 from tribolab.records.runs.run_record import RunFacts
 from tribolab.records.surfaces.surface_rows import ADHESION, CONTACT, ROUGHNESS
@@ -141,6 +141,10 @@ class ReportedCurve:
         str, means("contributions missing in the uncertainty of the points; empty if complete")
     ]
     load_from: LoadFrom
+    traction: Annotated[
+        tuple[TractionPoint, ...],
+        means("friction over the slide-roll ratio, of a machine whose bodies both turn"),
+    ]
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,7 +12,7 @@ import xarray as xr
 from tribolab.core.wording import force_text, is_dry, load_text, many, span, speeds
 from tribolab.figures.axes import comparable
 from tribolab.figures.colours import GREY
-from tribolab.figures.spec import FigureSpec, Panel, Series, SeriesLabels
+from tribolab.figures.spec import FigureSpec, Panel, Series, SeriesLabels, axis_of
 from tribolab.figures.subjects.curves import stribeck
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import CurveOutcome, number_of
@@ -25,9 +25,10 @@ from tribolab.report.plain import listed, plain_speed
 if TYPE_CHECKING:
     from tribolab.records.parts import Row
 
+_ONE_RATIO = 1.1  # largest over smallest slide-roll ratio of curves over one entrainment speed
 _MOST_NAMED = 3  # runs that a title names
 _AS_FOUND = "without decisions by hand"
-_SPEED, _MU = "sliding_speed_m_s", "friction_coefficient"  # columns
+_SPEED, _ROLLING, _MU = "sliding_speed_m_s", "rolling_speed_m_s", "friction_coefficient"  # columns
 
 
 @dataclass(frozen=True)
@@ -127,6 +128,7 @@ def _card(
     values, every = ([number_of(row, name) for row in rows] for name in (_MU, _SPEED))
     one_load = bool(surface or medium)  # runs that name neither are of as many systems
     spec = stribeck.spec(measured, models, surfaces=known.surfaces, scale="log")
+    spec = _over_entrainment(spec, measured + models)
     return replace(
         spec,
         id=f"card-{place}",
@@ -139,6 +141,17 @@ def _card(
         width="card",
         height=230,
     )
+
+
+def _over_entrainment(spec: FigureSpec, drawn: Sequence[xr.Dataset]) -> FigureSpec:
+    """Return a card over the entrainment speed if all of it has one slide-roll ratio."""
+    ratios = [float(data.attrs.get("slide_roll_ratio", np.nan)) for data in drawn]
+    ratio = float(np.mean(ratios))
+    if not ratio > 0 or max(ratios) > _ONE_RATIO * min(ratios):
+        return spec
+    axis = axis_of("rolling_speed", f"entrainment speed at SRR {100 * ratio:.3g} %,", log=True)
+    series = [replace(s, x=(np.asarray(s.x, float) / ratio).tolist()) for s in spec.series]
+    return replace(spec, panels=(replace(spec.panels[0], x=axis),), series=tuple(series))
 
 
 def _on_card(series: Series, one_load: bool) -> Series:
@@ -179,10 +192,15 @@ def _dataset(
     known = [row for row in rows if row.get(_MU) is not None]
     names = [_MU, *(f"{_MU}_{end}" for end in ("U95",) if any(f"{_MU}_{end}" in r for r in known))]
     columns = {name: _floats(number_of(row, name) for row in known) for name in names}
-    labels = {"label": label, "surface": outcome.surface, "medium": outcome.medium}
+    named = {"label": label, "surface": outcome.surface, "medium": outcome.medium}
+    labels: dict[str, str | float] = {**named}
+    speed = _floats(number_of(row, _SPEED) for row in known)
+    rolling = [number_of(row, _ROLLING) for row in known if row.get(_ROLLING) is not None]
+    if rolling:
+        labels["slide_roll_ratio"] = float(speed[0] / rolling[0])
     return xr.Dataset(
         {name: ("sliding_speed", values) for name, values in {**columns, **more}.items()},
-        {"sliding_speed": _floats(number_of(row, _SPEED) for row in known)},
+        {"sliding_speed": speed},
         labels | {"normal_force_N": outcome.normal_force, "runs": tuple(outcome.run_names)},
     )
 
@@ -225,6 +243,18 @@ def _has_stress(model: ModelRow) -> bool:
     return model.fit is not None and bool(model.fit["shear_stress_Pa"] > 0)
 
 
+def slide_roll_ratio(curve: CurveRecord) -> float | None:
+    """Return the slide-roll ratio of a measured curve; None where one body was at rest."""
+    for row in curve.points:
+        sliding, rolling = (
+            number_of(row, _SPEED),
+            number_of(row, _ROLLING) if _ROLLING in row else None,
+        )
+        if sliding and rolling:
+            return sliding / rolling
+    return None
+
+
 def _within(rows: Sequence[Row], curve: CurveRecord) -> list[Row]:
     """Return the speeds of a model's curve that matter: those measured, and a decade around."""
     known = [float(row["sliding_speed_m_s"] or 0) for row in curve.points]
@@ -238,6 +268,8 @@ def _modelled(known: FrictionOverSpeed, model: ModelRow, curve: CurveRecord) -> 
     if not rows:
         return []
     data = _dataset(curve.outcome, rows, "model")
+    if ratio := slide_roll_ratio(curve):
+        data.attrs["slide_roll_ratio"] = ratio
     if curve.outcome.name in known.bands:
         speed, low, high = map(_floats, known.bands[curve.outcome.name])
         fine = np.isfinite(speed) & np.isfinite(low) & np.isfinite(high)
