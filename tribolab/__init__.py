@@ -42,6 +42,7 @@ _PUBLIC = {
     "error_from_blocks": "tribolab.friction.blocks",
     "stick_slip_curve": "tribolab.friction.oscillation.slip_curve",
     "measured_stribeck_curve": "tribolab.friction.stribeck",
+    "traction_curves": "tribolab.friction.traction",
     "check": "tribolab.qc.run.checks",
     "RUN_CHECKS": "tribolab.qc.run.checks",
     "objections": "tribolab.qc.objections",
@@ -82,6 +83,8 @@ _PUBLIC = {
     "film_profile": "tribolab.lubrication.film",
     "relative_flow_factors": "tribolab.lubrication.relative_factors",
     "flow_factors": "tribolab.lubrication.factors",
+    "FitSettings": "tribolab.fit.fit_settings",
+    "Unknowns": "tribolab.fit.unknowns",
     "fit_shear_stress": "tribolab.fit.shear_stress",
     "fit_shear_stresses": "tribolab.fit.several",
     "fit_shear_stress_jointly": "tribolab.fit.joint.fit",
@@ -136,6 +139,7 @@ __all__ = [
     "error_from_blocks",
     "stick_slip_curve",
     "measured_stribeck_curve",
+    "traction_curves",
     "check",
     "RUN_CHECKS",
     "objections",
@@ -176,6 +180,8 @@ __all__ = [
     "liquid_viscosity",
     "film_profile",
     "flow_factors",
+    "FitSettings",
+    "Unknowns",
     "fit_shear_stress",
     "fit_shear_stresses",
     "fit_shear_stress_jointly",
@@ -229,6 +235,7 @@ if TYPE_CHECKING:
     from tribolab.contact.separation import separation_table
     from tribolab.contact.work_of_adhesion import SurfaceEnergies, work_of_adhesion_spread
     from tribolab.core.errors import TribolabError
+    from tribolab.fit.fit_settings import FitSettings
     from tribolab.fit.joint.comparison import compare_shear_stress_models
     from tribolab.fit.joint.fit import fit_shear_stress_jointly
     from tribolab.fit.joint.inputs import DryFriction
@@ -238,6 +245,7 @@ if TYPE_CHECKING:
     from tribolab.fit.model_uncertainty import model_uncertainty
     from tribolab.fit.several import fit_shear_stresses
     from tribolab.fit.shear_stress import fit_shear_stress
+    from tribolab.fit.unknowns import Unknowns
     from tribolab.friction.blocks import error_from_blocks
     from tribolab.friction.coefficient.coefficient import friction_coefficient
     from tribolab.friction.coefficient.cycles import friction_per_cycle
@@ -251,6 +259,7 @@ if TYPE_CHECKING:
     from tribolab.friction.running_in.history import running_in
     from tribolab.friction.segments.find import find_segments
     from tribolab.friction.stribeck import measured_stribeck_curve
+    from tribolab.friction.traction import traction_curves
     from tribolab.lubrication.factors import flow_factors
     from tribolab.lubrication.film import film_profile
     from tribolab.lubrication.parameters import Interface, Liquid, Solver

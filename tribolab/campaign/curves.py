@@ -236,7 +236,17 @@ def process_curve(task: CurveTask) -> CurveRecord:
         str(curve.attrs["uncertainty_says"]),
         _model_inputs(frictions),
         traction,
+        *_temperature(frictions),
     )
+
+
+def _temperature(frictions: Sequence[xr.Dataset]) -> tuple[float | None, float]:
+    """Return mean and spread [K] of the temperature of runs that all recorded it."""
+    known = [f.attrs["temperature_K"] for f in frictions if "temperature_K" in f.attrs]
+    if not known or len(known) < len(frictions):
+        return None, 0.0
+    within = [f.attrs["temperature_spread_K"] for f in frictions]
+    return float(np.mean(known)), float(np.hypot(np.std(known), np.mean(within)))
 
 
 def _with_rolling(curve: xr.Dataset, ratio: float | None) -> xr.Dataset:

@@ -12,42 +12,43 @@ from scipy import special
 from scipy.optimize import least_squares
 
 from tribolab.contact.geometry import Contact
-from tribolab.core.errors import AnalysisError, Cure, nearest, shown
+from tribolab.core.errors import AnalysisError, Cure, shown
 from tribolab.fit import limits
+from tribolab.fit.fit_settings import FitSettings, with_old_settings
 from tribolab.fit.model_inputs import moved_friction
 from tribolab.fit.point_covariance import PointErrors, shared_errors
 from tribolab.fit.residual_error import residual_error
 from tribolab.fit.shear_stress_fit import ShearStressFit
 from tribolab.friction.stribeck import measured_stribeck_curve
-from tribolab.lubrication.parameters import parameters_of
+from tribolab.lubrication.parameters import (
+    Interface,
+    Liquid,
+    Solver,
+    parameters_of,
+    renamed,
+    warn_of_old,
+)
 from tribolab.lubrication.solved_curve import solve_curve
 from tribolab.lubrication.stribeck import with_shear_stress
 from tribolab.units.conversion import positive, to_si
 from tribolab.units.stamping import stamp
 
-_FREE = ("viscosity", "youngs_modulus")
 _MIN_CONTACT_AREA = 1e-19  # m2, contact area under which the bodies do not touch
 _LN_STEP = 1e-2  # of ln viscosity and ln modulus, for their derivatives
 _Computed = Callable[[np.ndarray], xr.Dataset]  # the curve for logarithms of the free parameters
 
 
+@renamed(viscosity="liquid")
 def fit_shear_stress(
     measured: xr.Dataset,
     contact: Contact,
     psd: xr.Dataset,
-    viscosity: str | float,
+    liquid: Liquid | str | float,
     load: str | float,
-    speed_range: tuple[str | float, str | float] | None = None,
-    area_enhancement: float = 1.0,
-    area_enhancement_error: float = 0.0,
-    free: Sequence[str] = (),
-    common_error: float = 0.0,
-    common_freedom: float = np.inf,
-    spectrum_error: tuple[float, float] | None = None,
-    curve: xr.Dataset | None = None,
-    abscissa_error: float = 0.0,
-    inputs: xr.Dataset | None = None,
-    **model: Any,
+    interface: Interface | None = None,
+    solver: Solver | None = None,
+    settings: FitSettings | None = None,
+    **options: Any,
 ) -> ShearStressFit:
     """Fit the shear stress sigma_f of the real contact to a measured Stribeck curve.
 
@@ -59,33 +60,12 @@ def fit_shear_stress(
         `friction_coefficient` returns them, are combined by `measured_stribeck_curve` first. Parts
         of the uncertainty that the points share (``uncertainty_part``, from
         `tribolab.uncertainty_budget`) are taken for such.
-    contact, psd, viscosity, load
-        As for `stribeck_curve`, with one load.
-    speed_range
-        Lowest and highest speed [m/s] to fit; None for all.
-    area_enhancement, area_enhancement_error
-        Real contact area with adhesion over that without [1], and its standard error.
-    free
-        More parameters to fit: ``"viscosity"``, ``"youngs_modulus"``; their given values start.
-    common_error, common_freedom
-        Relative standard error [1] that all measured points share, such as the repeatability of
-        a run's level over the square root of the number of runs, and the degrees of freedom
-        behind it.
-    spectrum_error
-        Relative changes [1] of sigma_f, down and up, that an uncertain spectrum may make, from
-        `shear_stress_shift`. A spectrum with ``psd_2d_low`` was measured: without this argument
-        there is no interval but a statistical one.
-    curve
-        The computed curve, if it is at hand: `stribeck_curve` of the same system at the measured
-        speeds (and others), with ``"0 Pa"``.
-    abscissa_error
-        Relative standard uncertainty [1] of viscosity times speed, the same along the curve; not
-        with a free viscosity, which takes it up.
-    inputs
-        What uncertain load, radius and modulus make of the curve, from `model_inputs`; a modulus
-        that is fitted is left out of it.
-    **model
-        Further arguments of `stribeck_curve`, such as ``rough_body``.
+    contact, psd, liquid, load, interface, solver
+        As for `stribeck_curve`, with one load; the shear stress of the interface does not count.
+    settings
+        `FitSettings`; None fits sigma_f alone to all points.
+    **options
+        Single fields of these objects, as they were arguments in the last release.
 
     Returns
     -------
@@ -135,21 +115,14 @@ def fit_shear_stress(
     >>> f"{fit.shear_stress / 1e6:.3f} MPa"
     '0.840 MPa'
     """
-    unknown = [name for name in free if name not in _FREE]
-    if unknown:
-        raise AnalysisError(
-            f"free: '{shown(unknown[0])}' cannot be fitted{nearest(unknown[0], _FREE)}"
-        )
-    eta = positive(viscosity, "Pa s", "viscosity")
-    force = positive(load, contact.load_unit, "load")
-    enhancement = positive(area_enhancement, "1", "area_enhancement")
-    if not 0 <= area_enhancement_error < np.inf:
-        raise AnalysisError(
-            f"a standard error, finite and not negative, is wanted; got {area_enhancement_error:g}",
-            function="area_enhancement_error",
-        )
+    settings, model = with_old_settings(settings, options)
+    warn_of_old("fit_shear_stress", model)
+    free, curve, inputs = settings.free, settings.curve, settings.inputs
+    method = {"method": "auto"} if contact.is_round and solver is None else {}
+    base = parameters_of(liquid, interface or 0.0, solver, **{**method, **model, "shear_stress": 0})
+    eta, force = base.liquid.viscosity, positive(load, contact.load_unit, "load")
     measured = _over_speed(measured)
-    speed, mu, error, used, source = _points(measured, speed_range, 2 + len(free))
+    speed, mu, error, used, source = _points(measured, settings.speed_range, 2 + len(free))
     shared = shared_errors(measured, speed) if source != "scatter" else np.zeros((0, speed.size))
     errors = PointErrors(error, shared)
 
@@ -158,8 +131,7 @@ def fit_shear_stress(
             return curve.sel(sliding_speed=speed)
         given = dict(zip(free, np.exp(extra), strict=True))
         body = replace(contact, youngs_modulus=given.get("youngs_modulus", contact.youngs_modulus))
-        method = {"method": "auto"} if contact.is_round else {}
-        parameters = parameters_of(given.get("viscosity", eta), 0.0, **{**method, **model})
+        parameters = parameters_of(*base, viscosity=given.get("viscosity", eta))
         return solve_curve(body, psd, force, speed, parameters).curve
 
     start = np.log([{"viscosity": eta, "youngs_modulus": contact.youngs_modulus}[n] for n in free])
@@ -177,7 +149,7 @@ def fit_shear_stress(
     area = np.where(area > least, area, 0.0)
     stress = _regression(mu[used], fluid[used], area[used], errors.at(used))
     dense = model_curve if curve is None or free else curve
-    moved = _moved_by_model(dense, stress, speed, abscissa_error, inputs, free)
+    moved = _moved_by_model(dense, stress, speed, settings.abscissa_error, inputs, free)
     if moved.size:
         errors = errors.with_part(moved)
         if free:  # the least squares are those of the whole covariance
@@ -198,7 +170,7 @@ def fit_shear_stress(
     jacobian = known.whitened(_jacobian(computed, best, stress, area, used))
     covariance = _covariance(jacobian, np.exp(best))
     level = known.whitened((fluid + stress * area)[used])
-    common = abs(float(common_error) * float((np.linalg.pinv(jacobian) @ level)[0]))
+    common = abs(float(settings.common_error) * float((np.linalg.pinv(jacobian) @ level)[0]))
     spread = float(np.sqrt(covariance[0, 0]))
     scatter = residual_error(
         off,
@@ -224,12 +196,12 @@ def fit_shear_stress(
         birge_ratio=birge,
         runs_p_value=runs_p_value(residual[used]),
         common_error=common,
-        common_freedom=float(common_freedom),
+        common_freedom=float(settings.common_freedom),
         valid_speed_range=_valid_range(speed[used], mu[used], fluid[used], area[used], known),
-        area_enhancement=enhancement,
-        area_enhancement_error=float(area_enhancement_error),
+        area_enhancement=float(settings.area_enhancement),
+        area_enhancement_error=float(settings.area_enhancement_error),
         error_from=source,
-        spectrum_error=spectrum_error,
+        spectrum_error=settings.spectrum_error,
         spectrum_scanned="psd_2d_low" in (psd if psd is not None else ()),
         curve=stamp(model_curve),
         parameters={"shear_stress": stress, **dict(zip(free, np.exp(best).tolist(), strict=True))},

@@ -13,6 +13,7 @@ from tribolab.campaign.surfaces.scans import spectra_of_scans, usable_scans
 from tribolab.campaign.surfaces.stage import sources_of_surface
 from tribolab.core.errors import AnalysisError
 from tribolab.core.provenance import made, sha256_of, source_attributes
+from tribolab.fit.fit_settings import FitSettings
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.reading.netcdf.netcdf import read_netcdf
 from tribolab.records.frames import rows_of
@@ -131,7 +132,7 @@ def _fit(task: PaperTask, curve: CurveOutcome, force: float, printed: float) -> 
         xu2026.system.viscosity,
         xu2026.contact.load(force),
         # one run per load does not determine the repeatability; the rig's is known
-        common_error=Scatter().repeat,
+        settings=FitSettings(common_error=Scatter().repeat),
     )
     plain, corrected = (
         fit.curve[f"friction_per_shear_stress{other}"].values for other in ("", "_other")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import codecs
 import csv
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -54,8 +54,18 @@ class Table(NamedTuple):
     decimal: str
 
 
-def find_table(path: Path, sheet: str | None, longest: int | None = None) -> Table:
-    """Return the first table that has a frequency and a modulus with its loss.
+class TableKind(NamedTuple):
+    """What a table is of: the meaning of a name, which columns are kept, and what is wanted."""
+
+    concept: Callable[[str], str]
+    needed: Callable[[dict[str, Column]], dict[str, Column]]
+    wanted: str
+
+
+def find_table(
+    path: Path, sheet: str | None, longest: int | None = None, kind: TableKind | None = None
+) -> Table:
+    """Return the first table of a kind, by default of a modulus with its loss over frequency.
 
     Parameters
     ----------
@@ -63,12 +73,15 @@ def find_table(path: Path, sheet: str | None, longest: int | None = None) -> Tab
         As for `read_modulus_table`.
     longest
         How many lines of a text are looked at; all if not given.
+    kind
+        `TableKind`; None is a modulus.
 
     Raises
     ------
     ReadError
         If there is none.
     """
+    kind = kind or _MODULUS
     check_regular(path)
     seen: dict[str, None] = {}
     workbook = path.suffix.lower() in _WORKBOOKS
@@ -76,24 +89,21 @@ def find_table(path: Path, sheet: str | None, longest: int | None = None) -> Tab
         for place, row in enumerate(rows[:HEAD]):
             if len(row) > _MAX_COLUMNS:
                 continue
-            columns = _columns(row)
-            seen |= dict.fromkeys(cell.strip() for cell in row if _concept(_bare(cell)[0]))
-            if needed := _needed(columns):
+            columns = _columns(row, kind)
+            seen |= dict.fromkeys(cell.strip() for cell in row if kind.concept(_bare(cell)[0]))
+            if needed := kind.needed(columns):
                 return _table_below(rows, place, needed, decimal)
     # what a file that is no such table holds is not told: it may be anything
     said = shown(", ".join(seen), 200) or "none of them"
-    raise ReadError(
-        f"{path.name}: columns for frequency, storage and loss modulus are wanted, e.g. f, E', "
-        f"E''; it has {said}"
-    )
+    raise ReadError(f"{path.name}: columns for {kind.wanted}; it has {said}")
 
 
-def _columns(row: Row) -> dict[str, Column]:
+def _columns(row: Row, kind: TableKind) -> dict[str, Column]:
     """Return the first column for each concept that a row names."""
     found: dict[str, Column] = {}
     for place, cell in enumerate(row):
         label, unit = _bare(cell)
-        concept = _concept(label)
+        concept = kind.concept(label)
         if concept == "temperature" and unit and not converts(unit, "K"):
             continue  # "t in s" next to "T in °C" (HAAKE RheoWin)
         if concept and concept not in found:
@@ -147,6 +157,9 @@ def _needed(columns: dict[str, Column]) -> dict[str, Column]:
     return {name: column for name, column in columns.items() if name in wanted}
 
 
+_MODULUS = TableKind(
+    _concept, _needed, "frequency, storage and loss modulus are wanted, e.g. f, E', E''"
+)
 _PAIRS = (
     ("storage_modulus", "loss_modulus"),
     ("storage_modulus", "loss_factor"),

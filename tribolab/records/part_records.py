@@ -89,6 +89,8 @@ class CurveRecord:
     traction
         Of a machine whose two bodies turn, a row for each slide-roll ratio at each entrainment
         speed that has several.
+    temperature_K, temperature_spread_K
+        Mean and standard deviation of the temperature while it slid; None if it was not recorded.
     """
 
     outcome: CurveOutcome
@@ -102,6 +104,8 @@ class CurveRecord:
     uncertainty_says: str = ""
     model_inputs: Mapping[str, float] = field(default_factory=dict)
     traction: tuple[TractionPoint, ...] = ()
+    temperature_K: float | None = None
+    temperature_spread_K: float = 0.0
 
     @property
     def done(self) -> bool:

@@ -12,9 +12,11 @@ from tribolab.campaign.models.plan import PlannedModel
 from tribolab.campaign.store.data_files import optional_data, read_data
 from tribolab.contact.area import other_area
 from tribolab.contact.geometry import Contact, make_contact
+from tribolab.contact.hertz import hertz_half_width
 from tribolab.core.errors import AnalysisError
 from tribolab.core.untyped import Arguments
-from tribolab.core.wording import explain
+from tribolab.core.wording import explain, speed_text
+from tribolab.fit.fit_settings import FitSettings
 from tribolab.fit.model_inputs import model_inputs, moved_friction
 from tribolab.fit.model_uncertainty import model_uncertainty
 from tribolab.fit.shear_stress import fit_shear_stress
@@ -24,6 +26,7 @@ from tribolab.lubrication.film import film_profile
 from tribolab.lubrication.parameters import Parameters, parameters_of
 from tribolab.lubrication.solved_curve import solve_curve
 from tribolab.lubrication.stribeck import with_shear_stress
+from tribolab.lubrication.thinning import HEATING, rheometer_table, viscous_heating
 from tribolab.records.parts import Finding, limit_findings
 from tribolab.units.stamping import stamp
 
@@ -58,7 +61,10 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
     speeds = np.union1d(grid, points[points > 0])
     parameters = parameters_of(model.viscosity, 0.0, **body)
     computed = solve_curve(contact, psd, load, speeds, parameters).curve
-    groups, findings = {"curve": computed.sel(sliding_speed=grid)}, []
+    groups = {"curve": computed.sel(sliding_speed=grid)}
+    findings = _temperature(model)
+    if (points > 0).any():
+        findings += _heating(contact, load, computed, float(points.max()))
 
     def attempt(what: str, name: str, compute: Any) -> None:
         try:
@@ -132,9 +138,39 @@ def _body(model: PlannedModel, contact: Contact, measured: xr.Dataset) -> Argume
     body |= {"area": model.area, "work_of_adhesion": model.work_of_adhesion}
     if (slide_roll := measured.attrs.get("slide_roll_ratio")) is not None:
         body |= {"slide_roll": abs(float(slide_roll)), "abscissa": "sliding_speed"}
+    if model.flow_curve is not None:
+        body["thinning"] = rheometer_table(*model.flow_curve)[1]
     if contact.is_round:
         body["method"] = "auto"
     return body
+
+
+def _heating(contact: Contact, load: float, computed: xr.Dataset, fastest: float) -> list[Finding]:
+    """Return a finding if the liquid heats itself by more than the limit at the highest speed."""
+    at = computed.sel(sliding_speed=fastest)
+    half_width = float(hertz_half_width(load, contact))
+    across = 2 * load / (np.pi * half_width) if contact.is_round else load
+    rise = viscous_heating(float(at["friction_coefficient"]), across, fastest, half_width)
+    if rise <= HEATING.value:
+        return []
+    text = (
+        f"the liquid heats itself by some {rise:.2g} K at {speed_text(fastest)}: its viscosity is "
+        "lower there than the model's. Leave these speeds out (fit_speeds), or cool"
+    )
+    return [Finding("suspect", text)]
+
+
+def _temperature(model: PlannedModel) -> list[Finding]:
+    if model.temperature is None:
+        return []
+    celsius = model.temperature - 273.15
+    text = f"viscosity {model.viscosity:.3g} Pa s, at the recorded {celsius:.1f} °C"
+    if not model.tempered:
+        text = (
+            f"the runs recorded {celsius:.1f} °C; the viscosity is taken as stated. State "
+            f"temperature and viscosity_per_kelvin in [medium.{model.curve.medium}]"
+        )
+    return [Finding("note", text)]
 
 
 def _fit(
@@ -149,12 +185,7 @@ def _fit(
 ) -> ShearStressFit:
     best, low, high = enhancement
     runs = float(np.median(measured["runs"].values))
-    return fit_shear_stress(
-        measured,
-        contact,
-        psd,
-        model.viscosity,
-        load,
+    settings = FitSettings(
         speed_range=model.settings["fit_speeds"],
         area_enhancement=best,
         # the bounds lie unevenly: the error reaches the farther one with 95 %
@@ -165,6 +196,7 @@ def _fit(
         abscissa_error=model.abscissa_error,
         inputs=inputs,
     )
+    return fit_shear_stress(measured, contact, psd, model.viscosity, load, settings=settings)
 
 
 def _inputs(

@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from tribolab.campaign.settings.contacts import contact_of_label, contact_table
+from tribolab.campaign.settings.media import Recorded
 from tribolab.core.provenance import join_sources, sha256_of, source_attributes
 from tribolab.core.untyped import Arguments
 
 if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
     from tribolab.campaign.settings.measured import Contact
+    from tribolab.campaign.settings.media import MediumViscosity
     from tribolab.contact.area import AreaTheory
     from tribolab.records.part_records import CurveRecord, SurfaceRecord
     from tribolab.records.parts import CurveOutcome, SurfaceOutcome
@@ -55,6 +57,10 @@ class PlannedModel:
         Those of load, radius and modulus, as far as they are stated.
     work_of_adhesion, work_of_adhesion_range
         In the medium [J/m2], and its bounds, where [model] adhesion counts it; else None.
+    flow_curve
+        Shear rates [1/s] and viscosities over that at rest [1] of a shear-thinning liquid.
+    temperature, tempered
+        Recorded while it slid [K], None if it was not; and whether the viscosity is that at it.
     missing
         What the campaign knows too little of; "" if a model can be computed.
     source, source_sha256
@@ -79,6 +85,9 @@ class PlannedModel:
     input_errors: Mapping[str, float] = field(default_factory=dict)
     work_of_adhesion: float | None = None
     work_of_adhesion_range: tuple[float, float] | None = None
+    flow_curve: tuple[tuple[float, ...], tuple[float, ...]] | None = None
+    temperature: float | None = None
+    tempered: bool = False
     missing: str = ""
     source: str = ""
     source_sha256: str = ""
@@ -118,8 +127,7 @@ def plan_models(
     wet = [
         (curve, viscosity)
         for curve in done
-        if (viscosity := campaign.viscosity_of(curve.outcome.medium, curve.model_inputs))
-        is not None
+        if (viscosity := _viscosity(campaign, curve)) is not None
     ]
     if not wet:
         return ()
@@ -145,6 +153,9 @@ def plan_models(
             surface_file=surface.outcome.data_file if surface else "",
             contact=contact.bodies(),
             viscosity=viscosity.value,
+            flow_curve=_flow_curve(campaign, curve.medium),
+            temperature=record.temperature_K,
+            tempered=campaign.tempered(curve.medium),
             viscosity_range=viscosity.bounds,
             youngs_modulus_range=modulus_range,
             abscissa_error=float(np.hypot(viscosity.error, stated.get("speed", 0.0))),
@@ -162,6 +173,23 @@ def plan_models(
         planned.append(model if missing or surface is None else _sealed(model, record, surface))
     order = {curve.outcome.name: number for number, curve in enumerate(done)}
     return tuple(sorted(planned, key=lambda model: order[model.curve.name]))
+
+
+def _viscosity(campaign: Campaign, curve: CurveRecord) -> MediumViscosity | None:
+    """Return the viscosity at the temperature that the runs of a curve recorded, if they did."""
+    kelvin = curve.temperature_K
+    recorded = None if kelvin is None else Recorded(kelvin, curve.temperature_spread_K)
+    return campaign.viscosity_of(curve.outcome.medium, curve.model_inputs, recorded)
+
+
+def _flow_curve(
+    campaign: Campaign, medium: str
+) -> tuple[tuple[float, ...], tuple[float, ...]] | None:
+    known = campaign.flow_curve_of(medium)
+    if known is None:
+        return None
+    relative = known.viscosity / known.viscosity[0]
+    return tuple(known.shear_rate.tolist()), tuple(relative.tolist())
 
 
 def _modulus_range(contact: Contact, error: float | None) -> tuple[float, float] | None:

@@ -79,6 +79,7 @@ def analyse_run(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
     # imported late for a quick start
     from tribolab.friction.decisions.decide import decide, remove_decisions
     from tribolab.friction.segments.find import find_segments
+    from tribolab.friction.temperature import sliding_temperature
 
     read = earlier and earlier_signals(earlier)
     read = _read(run) if read is None else read
@@ -95,6 +96,7 @@ def analyse_run(run: PlannedRun, earlier: Earlier | None = None) -> Analysed:
     segments = decide(found, run.decisions, signals)
     segments, whole = _steady_part(run, signals, segments, discard, steady)
     friction, slip, said = _examined(run, signals, segments)
+    friction.attrs.update(sliding_temperature(signals, segments))
     if run.decisions and before[0] is None:  # the numbers are the same
         before = remove_decisions(friction), said.status_as_found
     signals = said.marked

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pydantic import PrivateAttr
 
@@ -18,7 +19,9 @@ from tribolab.campaign.settings.measured import (
     Surface,
 )
 from tribolab.campaign.settings.media import (
+    LiquidStated,
     MediumViscosity,
+    Recorded,
     contradicting_viscosity,
     medium_viscosity,
 )
@@ -26,6 +29,9 @@ from tribolab.campaign.settings.table import Table
 from tribolab.campaign.settings.theory import Joint, Model, Rubber
 from tribolab.core.untyped import Arguments, Json
 from tribolab.reading.dialect.uncertainty import Uncertainty
+
+if TYPE_CHECKING:
+    from tribolab.reading.flow_curves import FlowCurve
 
 CAMPAIGN_SCHEMA_FILE = "campaign.schema.json"
 
@@ -101,9 +107,14 @@ class Campaign(Table):
         return {**of_instruments, **own}
 
     def viscosity_of(
-        self, medium: str, of_instruments: Mapping[str, float] | None = None
+        self,
+        medium: str,
+        of_instruments: Mapping[str, float] | None = None,
+        recorded: Recorded | None = None,
     ) -> MediumViscosity | None:
         """Return the viscosity of a medium, stated or from its temperature; None if not known.
+
+        Of a shear-thinning liquid it is that at rest.
 
         Parameters
         ----------
@@ -111,18 +122,51 @@ class Campaign(Table):
             Name of a [medium.*] table.
         of_instruments
             Standard uncertainties by name, as the files of the instruments state them.
+        recorded
+            Temperature of the runs, which goes before that of the table.
         """
         table = self.medium.get(medium)
         if table is None:
             return None
-        return medium_viscosity(
+        curve = self.flow_curve_of(medium)
+        liquid = LiquidStated(
             table.liquid or medium,
-            table.viscosity,
+            table.viscosity if curve is None else float(curve.viscosity[0]),
             table.viscosity_range,
             table.temperature,
             table.water_content,
-            self.stated_errors(of_instruments or {}),
+            table.viscosity_per_kelvin,
         )
+        return medium_viscosity(liquid, self.stated_errors(of_instruments or {}), recorded)
+
+    def tempered(self, medium: str) -> bool:
+        """Whether it is known how the viscosity of a medium changes with temperature."""
+        # late: starting stays quick
+        from tribolab.lubrication.viscosity import knows_liquid
+
+        table = self.medium.get(medium)
+        if table is None:
+            return False
+        known = knows_liquid(table.liquid or medium)
+        if table.viscosity is None and table.flow_curve is None:
+            return known
+        return table.temperature is not None and (known or table.viscosity_per_kelvin is not None)
+
+    def flow_curve_of(self, medium: str) -> FlowCurve | None:
+        """Return the viscosity of a medium over the shear rate; None of a Newtonian liquid.
+
+        Raises
+        ------
+        ReadError
+            If its file cannot be read.
+        """
+        table = self.medium.get(medium)
+        if table is None or table.flow_curve is None:
+            return None
+        # late: starting stays quick
+        from tribolab.reading.flow_curves import read_flow_curve
+
+        return read_flow_curve(self.raw / table.flow_curve)
 
     def contradicting_viscosities(self) -> dict[str, str]:
         """Return what contradicts the stated viscosity of a medium, by its name."""

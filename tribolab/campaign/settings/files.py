@@ -32,6 +32,12 @@ def modulus_files(campaign: Campaign) -> list[Path]:
     return [campaign.raw / name for name in dict.fromkeys(named) if name is not None]
 
 
+def flow_curve_files(campaign: Campaign) -> list[Path]:
+    """Return the files of the flow curves that the media name, each once."""
+    named = (medium.flow_curve for medium in campaign.medium.values())
+    return [campaign.raw / name for name in dict.fromkeys(named) if name is not None]
+
+
 def scans_of(campaign: Campaign, surface: Surface) -> list[Path]:
     """Return the topography scans of one surface, each once."""
     named = (
@@ -48,6 +54,7 @@ def inputs_of(campaign: Campaign) -> list[tuple[Path, str]]:
         inputs += [(f, "a raw file") for p in entry.files for f in matching_files(campaign.raw, p)]
     inputs += [(file, "a scan") for file in scan_files(campaign)]
     inputs += [(file, "the modulus file") for file in modulus_files(campaign)]
+    inputs += [(file, "a flow curve") for file in flow_curve_files(campaign)]
     for instrument in _instruments(campaign):
         if instrument.endswith(_OWN):
             words = "a reader in Python" if instrument.endswith(".py") else "a dialect"

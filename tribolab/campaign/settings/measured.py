@@ -104,7 +104,13 @@ class Medium(Table):
     """Uncertainty range; gives bounds on the contact areas."""
     temperature: Annotated[float, PositiveSi("K", "20 °C")] | None = None
     """Temperature of the measurement. Gives the viscosity of "glycerol", "water" and "silicone oil
-    1000 cSt" (any grade) if none is stated."""
+    1000 cSt" (any grade) if none is stated. Models use the viscosity at the recorded temperature,
+    if the runs have one."""
+    viscosity_per_kelvin: Annotated[float, Si("1/K", "8.6 %/K")] | None = None
+    """Relative decrease of the viscosity per kelvin, for a liquid that is not known by name."""
+    flow_curve: SomeText | None = None
+    """File of viscosity over shear rate (rheometer), relative to the raw folder, for a
+    shear-thinning liquid. The viscosity at the lowest rate is used as that at rest."""
     water_content: ShareOfMass | None = None
     """Mass fraction of water in glycerol."""
     liquid: SomeText | None = None
@@ -132,7 +138,7 @@ class RunEntry(Table):
     medium: SomeText | None = None
     """Name of a [medium.*] table."""
     contact: SomeText | None = None
-    """Name of a [contact.*] table; by default the contact is [contact]."""
+    """Name of a [contact.*] table; default: [contact]."""
     normal_force: Annotated[float, PositiveSi("N", "31 N")] | None = None
     """Set-point of the normal force; used as the load if the files record none. Default: runs are
     grouped by measured load."""

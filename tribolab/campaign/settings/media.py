@@ -60,50 +60,92 @@ def contradicting_viscosity(
     )
 
 
-def medium_viscosity(
-    name: str,
-    viscosity: float | None,
-    bounds: tuple[float, float] | None,
-    temperature: float | None,
-    water_content: float | None,
-    stated: Mapping[str, float],
-) -> MediumViscosity | None:
-    """Return the viscosity of a medium; None if neither it nor its temperature is stated.
+class LiquidStated(NamedTuple):
+    """What a table [medium.NAME] states of a liquid.
 
     Parameters
     ----------
     name
         What it is called; liquids that are known by name tell how temperature and water act.
     viscosity, bounds
-        As stated [Pa s].
+        [Pa s]; None if not stated.
     temperature, water_content
         [K], mass fraction [1].
+    per_kelvin
+        By how much the viscosity falls with each kelvin [1/K]; None if not stated.
+    """
+
+    name: str
+    viscosity: float | None
+    bounds: tuple[float, float] | None
+    temperature: float | None
+    water_content: float | None
+    per_kelvin: float | None = None
+
+
+class Recorded(NamedTuple):
+    """Temperature [K] that runs recorded, and its standard deviation along a curve [K]."""
+
+    temperature: float
+    spread: float
+
+
+def medium_viscosity(
+    liquid: LiquidStated, stated: Mapping[str, float], recorded: Recorded | None = None
+) -> MediumViscosity | None:
+    """Return the viscosity of a medium; None if neither it nor its temperature is stated.
+
+    Parameters
+    ----------
+    liquid
+        As the campaign file states it.
     stated
         Standard uncertainties by name, of which those of temperature [K] and water content [1]
         count.
+    recorded
+        Temperature of the runs: the viscosity is that at it, if its change is known.
 
     Raises
     ------
     AnalysisError
         If the liquid is not one at this temperature.
+
+    Examples
+    --------
+    >>> oil = LiquidStated("oil", 0.1, None, 293.15, None, 0.03)
+    >>> round(medium_viscosity(oil, {}, Recorded(303.15, 0.0)).value, 4)
+    0.0741
     """
     # late: starting stays quick
     from tribolab.lubrication.viscosity import knows_liquid, liquid_viscosity
 
+    value, bounds, water = liquid.viscosity, liquid.bounds, liquid.water_content or 0.0
+    at = liquid.temperature
     computed = None
-    if temperature is not None and knows_liquid(name):
-        computed = liquid_viscosity(name, temperature, water_content or 0.0)
-    if viscosity is None and computed is None:
+    if knows_liquid(liquid.name) and (at is not None or (recorded and value is None)):
+        at = at if recorded is None else recorded.temperature
+        assert at is not None
+        computed = liquid_viscosity(liquid.name, at, water)
+    if value is None and computed is None:
         return None
-    error = 0.0
+    factor = 1.0
+    if value is not None and recorded is not None and liquid.temperature is not None:
+        if liquid.per_kelvin is not None:
+            factor = math.exp(-liquid.per_kelvin * (recorded.temperature - liquid.temperature))
+        elif computed is not None:
+            factor = computed.value / liquid_viscosity(liquid.name, liquid.temperature, water).value
+    kelvin, of_water = (stated.get(name, 0.0) for name in ("temperature", "water_content"))
+    kelvin = math.hypot(kelvin, recorded.spread if recorded else 0.0)
+    error = (liquid.per_kelvin or 0.0) * kelvin
     if bounds is not None:
         error = math.log(bounds[1] / bounds[0]) / (2 * _95)
     elif computed is not None:
-        kelvin, water = (stated.get(name, 0.0) for name in ("temperature", "water_content"))
-        if viscosity is not None:  # measured, not by the formula
+        if value is not None:  # measured, not by the formula
             computed = computed._replace(formula=0.0)
-        error = computed.uncertainty(kelvin, water)
-    value = viscosity if viscosity is not None else computed.value if computed else math.nan
-    if bounds is None and error > 0:
+        error = computed.uncertainty(kelvin, of_water)
+    value = factor * (value if value is not None else computed.value if computed else math.nan)
+    if bounds is not None:
+        bounds = factor * bounds[0], factor * bounds[1]
+    elif error > 0:
         bounds = value * math.exp(-_95 * error), value * math.exp(_95 * error)
     return MediumViscosity(value, error, bounds)

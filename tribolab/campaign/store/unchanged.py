@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from tribolab.campaign.settings.files import (
+    flow_curve_files,
     instrument_of,
     label_of,
     modulus_files,
@@ -154,7 +155,7 @@ def _inputs(campaign: Campaign, runs: Sequence[PlannedRun]) -> list[tuple[Path, 
     """Return every file that is read, and its label."""
     files = [pair for run in runs for pair in zip(run.files, run.labels, strict=True)]
     others = [scan for surface in campaign.surface for scan in scans_of(campaign, surface)]
-    others += modulus_files(campaign)
+    others += [*modulus_files(campaign), *flow_curve_files(campaign)]
     return files + [(file, label_of(campaign, file)) for file in others]
 
 

@@ -27,11 +27,12 @@ def run_levels(
     -------
     numpy.ndarray
         Level [1] of each run relative to the mean of the repeats; NaN if none of its points has a
-        speed and a positive friction with an error.
+        speed and a positive friction.
 
     Notes
     -----
-    Mean of mu_run/mu over the speeds, weighted by the squared relative errors of the run's points.
+    Mean of mu_run/mu over the speeds, weighted by the squared relative errors of the run's points
+    if they have any.
     """
     together = measured_stribeck_curve(frictions, speed_tolerance)
     speed = np.log(together["sliding_speed"].values)
@@ -44,7 +45,10 @@ def run_levels(
         place = np.abs(np.log(own["sliding_speed"].values)[:, None] - speed).argmin(axis=1)
         whole = together["friction_coefficient"].values[place]
         mu, sem = (own[f"friction_coefficient{end}"].values for end in ("", "_sem"))
-        fine = (mu > 0) & (whole > 0) & np.isfinite(sem) & (sem > 0)
+        known = np.isfinite(sem) & (sem > 0)
+        if not known.any():  # rows that are results, without an error of their own
+            known, sem = np.ones(mu.size, bool), mu
+        fine = (mu > 0) & (whole > 0) & known
         weight = (mu[fine] / sem[fine]) ** 2
         levels.append(weight @ (mu / whole)[fine] / weight.sum() if fine.any() else np.nan)
     return np.array(levels, dtype=float)

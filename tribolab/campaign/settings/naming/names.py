@@ -86,12 +86,30 @@ def _of_liquids(campaign: Campaign) -> list[SettingsProblem]:
             what = f"no liquid '{shown(medium.liquid)}' is known{nearest(medium.liquid, LIQUIDS)}"
             problems.append(SettingsProblem(("medium", name, "liquid"), what))
             continue
+        if medium.flow_curve is not None:
+            problems += _of_flow_curve(campaign, name, medium)
+            continue
         try:
             campaign.viscosity_of(name)
         except TribolabError as error:
             key, _, what = str(error).partition(": ")
             problems.append(SettingsProblem(("medium", name, key), what))
     return problems
+
+
+def _of_flow_curve(campaign: Campaign, name: str, medium: Medium) -> list[SettingsProblem]:
+    """Return what is wrong with the flow curve of a medium."""
+    where, what = ("medium", name, "flow_curve"), ""
+    if medium.viscosity is not None:
+        what = "there is a viscosity as well; state one of them"
+    else:
+        try:
+            campaign.flow_curve_of(name)
+        except TribolabError as error:
+            what = str(error)
+        except OSError:
+            what = f"there is no file {campaign.raw / str(medium.flow_curve)}"
+    return [SettingsProblem(where, what)] if what else []
 
 
 def _of_theory(campaign: Campaign) -> list[SettingsProblem]:

@@ -1,0 +1,98 @@
+"""What a fit of the shear stress is told besides the model, as a frozen object."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from tribolab.core.errors import AnalysisError, nearest, shown
+from tribolab.units.conversion import positive
+
+_FREE = ("viscosity", "youngs_modulus")
+
+
+@dataclass(frozen=True)
+class FitSettings:
+    """Which points are fitted, what else is free, and which errors they share.
+
+    Parameters
+    ----------
+    speed_range
+        Lowest and highest speed [m/s] to fit; None for all.
+    free
+        More parameters to fit: ``"viscosity"``, ``"youngs_modulus"``; their given values start.
+    curve
+        The computed curve, if it is at hand: `stribeck_curve` of the same system at the measured
+        speeds (and others), with ``"0 Pa"``.
+    area_enhancement, area_enhancement_error
+        Real contact area with adhesion over that without [1], and its standard error.
+    common_error, common_freedom
+        Relative standard error [1] that all measured points share, such as the repeatability of
+        a run's level over the square root of the number of runs, and the degrees of freedom
+        behind it.
+    spectrum_error
+        Relative changes [1] of sigma_f, down and up, that an uncertain spectrum may make, from
+        `shear_stress_shift`. A spectrum with ``psd_2d_low`` was measured: without this
+        there is no interval but a statistical one.
+    abscissa_error
+        Relative standard uncertainty [1] of viscosity times speed, the same along the curve; not
+        with a free viscosity, which takes it up.
+    inputs
+        What uncertain load, radius and modulus make of the curve, from `model_inputs`; a modulus
+        that is fitted is left out of it.
+
+    Examples
+    --------
+    >>> FitSettings(speed_range=("1 um/s", "1 mm/s"), common_error=0.02).area_enhancement
+    1.0
+    """
+
+    speed_range: tuple[str | float, str | float] | None = None
+    free: Sequence[str] = ()
+    curve: xr.Dataset | None = None
+    area_enhancement: float = 1.0
+    area_enhancement_error: float = 0.0
+    common_error: float = 0.0
+    common_freedom: float = np.inf
+    spectrum_error: tuple[float, float] | None = None
+    abscissa_error: float = 0.0
+    inputs: xr.Dataset | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what is not possible."""
+        unknown = [name for name in self.free if name not in _FREE]
+        if unknown:
+            raise AnalysisError(
+                f"free: '{shown(unknown[0])}' cannot be fitted{nearest(unknown[0], _FREE)}"
+            )
+        positive(self.area_enhancement, "1", "area_enhancement")
+        if not 0 <= self.area_enhancement_error < np.inf:
+            raise AnalysisError(
+                "a standard error, finite and not negative, is wanted; got "
+                f"{self.area_enhancement_error:g}",
+                function="area_enhancement_error",
+            )
+
+
+_FIELDS = {field.name for field in fields(FitSettings)}
+
+
+def with_old_settings(
+    settings: FitSettings | None, options: Mapping[str, Any]
+) -> tuple[FitSettings, dict[str, Any]]:
+    """Return the settings with what was an argument in the last release, and all other options."""
+    old = {name: value for name, value in options.items() if name in _FIELDS}
+    if old:
+        warnings.warn(
+            f"fit_shear_stress: {', '.join(old)} will no longer be arguments after the next "
+            "release; give them to FitSettings",
+            FutureWarning,
+            stacklevel=4,
+        )
+    left = {name: value for name, value in options.items() if name not in _FIELDS}
+    return replace(settings or FitSettings(), **old), left
