@@ -11,7 +11,7 @@ import numpy as np
 
 from tribolab.campaign.curves import SLIP
 from tribolab.campaign.recorded import Recorded
-from tribolab.campaign.settings.contacts import contact_of_label
+from tribolab.campaign.settings.contact_pairs import contact_of_label
 from tribolab.campaign.store.catalogue import Store
 from tribolab.campaign.store.data_files import optional_data, read_data
 from tribolab.core.provenance import sha256_of

@@ -41,3 +41,8 @@ MIN_WAVE_OVER_SPECTRUM = Limit(
     12.0, "1", "power of a wave over the spectrum next to it: chance e**-12",
     "judgement; checked by tests/benchmarks/bench_run_out.py",
 )  # fmt: skip
+MAX_RATIO_OF_PURE_ROLLING = Limit(
+    0.01, "1", "slide-roll ratio of a pair that rolls: 0.0003 to 0.013 were recorded",
+    "shared/data/pcs_mtm_ehd_MIT/demo_12.txt",
+)  # fmt: skip
+MIN_RATIOS_OF_TRACTION = Count(3, "1", "slide-roll ratios at one speed that make a traction curve")

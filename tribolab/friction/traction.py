@@ -8,17 +8,12 @@ import numpy as np
 import xarray as xr
 
 from tribolab.core.errors import AnalysisError
-from tribolab.core.limit import Limit
+from tribolab.friction import limits
 from tribolab.friction.points.limits import SPEED_TOLERANCE
 from tribolab.friction.points.speed_groups import speed_groups
 from tribolab.friction.stribeck import measured_stribeck_curve
 from tribolab.units.stamping import stamp
 
-PURE_ROLLING = Limit(
-    0.01, "1", "slide-roll ratio below which nothing slides: of films in pure rolling 0.0003 to "
-    "0.013 were recorded", "shared/data/pcs_mtm_ehd_MIT/demo_12.txt",
-)  # fmt: skip
-_FEWEST_RATIOS = 3  # slide-roll ratios at one entrainment speed that make a traction curve
 _RATIO, _ROLLING = "slide_roll_ratio", "rolling_speed"
 
 
@@ -55,7 +50,7 @@ def stribeck_part(
     ratios = [np.abs(friction[_RATIO].values) for friction in frictions]
     every = np.concatenate(ratios)
     rolling = np.concatenate([np.abs(friction[_ROLLING].values) for friction in frictions])
-    slides = (every > PURE_ROLLING.value) & (rolling > 0)
+    slides = (every > limits.MAX_RATIO_OF_PURE_ROLLING.value) & (rolling > 0)
     if not slides.any():
         return list(frictions), None
     level = speed_groups(every[slides], tolerance).group
@@ -116,13 +111,16 @@ def traction_curves(
         np.concatenate([np.abs(friction[name].values) for friction in frictions])
         for name in (_RATIO, _ROLLING)
     )
-    slides = (ratio > PURE_ROLLING.value) & (rolling > 0)
+    slides = (ratio > limits.MAX_RATIO_OF_PURE_ROLLING.value) & (rolling > 0)
     group = np.full(ratio.size, -1)
     group[slides] = speed_groups(rolling[slides], tolerance).group
     curves = []
     for number in range(group.max(initial=-1) + 1):
         members = group == number
-        if np.unique(speed_groups(ratio[members], tolerance).group).size < _FEWEST_RATIOS:
+        if (
+            np.unique(speed_groups(ratio[members], tolerance).group).size
+            < limits.MIN_RATIOS_OF_TRACTION.value
+        ):
             continue
         chosen = np.split(members, np.cumsum(sizes)[:-1])
         parts = [f.isel(segment=own) for f, own in zip(frictions, chosen, strict=True)]

@@ -11,14 +11,9 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
 from tribolab.core.errors import AnalysisError
-from tribolab.core.limit import Limit
 from tribolab.lubrication.factors import Factors, FlowFactors
 from tribolab.units.conversion import positive, to_si
 
-HEATING = Limit(
-    2.0, "K", "rise of a liquid's temperature by its own shear: of glycerol, a sixth of the "
-    "viscosity", "Cheng (2008), doi:10.1021/ie071349z",
-)  # fmt: skip
 _STEP = 1e-4  # of ln(rate), for slopes
 
 

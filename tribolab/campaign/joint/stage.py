@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from tribolab.campaign.joint.plan import JointDry, JointTask, Work
 from tribolab.campaign.recorded import Recorded
-from tribolab.campaign.settings.contacts import contact_of_label
+from tribolab.campaign.settings.contact_pairs import contact_of_label
 from tribolab.campaign.settings.naming.run_names import safe_name
 from tribolab.campaign.store.catalogue import Store, fingerprint_of
 from tribolab.core.provenance import sha256_of

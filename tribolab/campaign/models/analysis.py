@@ -23,10 +23,11 @@ from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.fit.unknowns import Unknowns
 from tribolab.lubrication.factors import flow_factors
 from tribolab.lubrication.film import film_profile
+from tribolab.lubrication.limits import MAX_VISCOUS_HEATING
 from tribolab.lubrication.parameters import Parameters, parameters_of
 from tribolab.lubrication.solved_curve import solve_curve
 from tribolab.lubrication.stribeck import with_shear_stress
-from tribolab.lubrication.thinning import HEATING, rheometer_table, viscous_heating
+from tribolab.lubrication.thinning import rheometer_table, viscous_heating
 from tribolab.records.parts import Finding, limit_findings
 from tribolab.units.stamping import stamp
 
@@ -151,7 +152,7 @@ def _heating(contact: Contact, load: float, computed: xr.Dataset, fastest: float
     half_width = float(hertz_half_width(load, contact))
     across = 2 * load / (np.pi * half_width) if contact.is_round else load
     rise = viscous_heating(float(at["friction_coefficient"]), across, fastest, half_width)
-    if rise <= HEATING.value:
+    if rise <= MAX_VISCOUS_HEATING.value:
         return []
     text = (
         f"the liquid heats itself by some {rise:.2g} K at {speed_text(fastest)}: its viscosity is "

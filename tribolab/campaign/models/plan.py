@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from tribolab.campaign.settings.contacts import contact_of_label, contact_table
+from tribolab.campaign.settings.contact_pairs import contact_of_label, contact_table
 from tribolab.campaign.settings.media import Recorded
 from tribolab.core.provenance import join_sources, sha256_of, source_attributes
 from tribolab.core.untyped import Arguments

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from tribolab.campaign.settings.contacts import pair_label
+from tribolab.campaign.settings.contact_pairs import pair_label
 from tribolab.campaign.settings.files import (
     instrument_of,
     label_of,

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.settings.contacts import contact_pairs
+from tribolab.campaign.settings.contact_pairs import contact_pairs
 from tribolab.campaign.settings.files import instrument_of, label_of, scans_of, sha256_of_dialect
 from tribolab.campaign.settings.naming.run_names import distinct, safe_name
 from tribolab.core.provenance import sha256_of, sha256_of_file

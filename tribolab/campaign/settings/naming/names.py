@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from tribolab.campaign.settings.contacts import contact_of_label, contact_pairs
+from tribolab.campaign.settings.contact_pairs import contact_of_label, contact_pairs
 from tribolab.campaign.settings.files import instrument_of
 from tribolab.campaign.settings.problems import SettingsProblem
 from tribolab.core.errors import ConfigError, TribolabError, nearest, shown
