@@ -31,13 +31,13 @@ MAX_SURE_HURST = Limit(
 MAX_FITTED_HURST = Limit(
     2.0,
     "1",
-    "fits of tips and filters reach 1.5; a steeper one is none, whatever its error",
+    "fits of tips and filters reach 1.5; a steeper one is not believed",
     "judgement",
 )
 MIN_SHARE_OF_HEIGHT = Limit(
     0.9,
     "1",
-    "rms height of the measured waves over Pq: what lacks more than a tenth says what it lacks",
+    "rms height of the measured waves over Pq; if more than a tenth is missing, it is stated",
     "judgement",
 )
 MAX_EXTRAPOLATED_SLOPE = Limit(

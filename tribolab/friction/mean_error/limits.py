@@ -4,11 +4,11 @@ from tribolab.core.limit import Count, Limit
 
 _TABLE = "tests/benchmarks/mean_coverage.py, seeds 0 to 3; reported on seeds from 100 on"
 
-BLOCKS = Limit(384, "1", "equal stretches of time whose means stand for a record", _TABLE)
+BLOCKS = Limit(384, "1", "equal stretches of time whose means represent a record", _TABLE)
 COARSE_BLOCKS = Limit(96, "1", "stretches in which a slow course is looked for", _TABLE)
 MAX_LINES = Limit(3, "1", "oscillations that are fitted to a record", "judgement")
 MIN_CYCLES = Limit(1.2, "1", "cycles from which on an oscillation can be fitted", _TABLE)
-FEW_CYCLES = Limit(4.0, "1", "cycles below which an oscillation looks like a wander", _TABLE)
+FEW_CYCLES = Limit(4.0, "1", "cycles below which an oscillation looks like slow drift", _TABLE)
 LINE_OVER_NOISE = Limit(
     25.0, "1", "power of an oscillation over the spectrum of the rest: by chance e**-25", _TABLE
 )
@@ -25,10 +25,10 @@ COURSE_BY_CHANCE = Limit(5e-4, "1", "chance of a course in a record that has non
 EXPONENTIAL_OVER_LINE = Limit(
     1.04, "1", "squares that an exponential must save, beyond those of a line", _TABLE
 )
-CALM = Limit(0.7, "1", "chance, before the record is seen, that it has no slow wander", _TABLE)
-COSINES = Limit(24, "1", "lowest cosines of a record that tell how it wanders", _TABLE)
+CALM = Limit(0.7, "1", "chance, before the record is seen, that it has no slow drift", _TABLE)
+COSINES = Limit(24, "1", "lowest cosines of a record that give its drift", _TABLE)
 HUMP = Limit(
-    4.0, "1", "peak of the spectrum over its lowest frequencies: the wander below the peak counts",
+    4.0, "1", "peak of the spectrum over its lowest frequencies: the drift below the peak counts",
     _TABLE,
 )  # fmt: skip
 MIN_DRIFT_WIDENING = Limit(

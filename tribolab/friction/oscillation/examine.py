@@ -208,7 +208,7 @@ def _beside_wander(record: EvenRecord, oscillation: Oscillation) -> EvenRecord |
     """
     size = int(round(1 / (oscillation.frequency * record.spacing)))
     n = record.values.size
-    if not 2 <= size <= n / limits.MIN_PERIODS_TO_REMOVE_WANDER.value or not record.even:
+    if not 2 <= size <= n / limits.MIN_PERIODS_TO_REMOVE_DRIFT.value or not record.even:
         return None
     sums = np.concatenate([[0.0], np.cumsum(record.values - record.values[0])])
     mean = (sums[size:] - sums[:-size]) / size

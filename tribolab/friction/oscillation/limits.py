@@ -28,18 +28,18 @@ SWING_OVER_NOISE = Limit(
     50.0, "1", "swing over noise from which samples are not averaged further", _TABLE
 )
 MIN_WANDER_OVER_SWING = Limit(
-    0.15, "1", "standard deviation of a slow wander over the swing, from which it may hide drops",
+    0.15, "1", "standard deviation of a slow drift over the swing, from which it may hide drops",
     _TABLE,
 )  # fmt: skip
-MIN_PERIODS_TO_REMOVE_WANDER = Count(
-    6, "1", "periods in a record whose slow wander is subtracted", _TABLE
+MIN_PERIODS_TO_REMOVE_DRIFT = Count(
+    6, "1", "periods in a record whose slow drift is subtracted", _TABLE
 )
 PERIODS_PER_DEGREE_OF_DRIFT = Limit(
     3.0, "1", "periods in a record for each degree of the polynomial fitted to its drift", _TABLE
 )
 MAX_DEGREE_OF_DRIFT = Count(5, "1", "highest degree of the polynomial fitted to a drift", _TABLE)
 MAX_SCATTER_WITHOUT_WANDER = Limit(
-    0.8, "1", "scatter of the periods without the wander over that with it, if the wander is "
+    0.8, "1", "scatter of the periods without the drift over that with it, if the drift is "
     "subtracted", _TABLE,
 )  # fmt: skip
 MIN_DROP_IN_STEPS = Limit(1.5, "1", "quantisation steps of the smallest drop", _TABLE)
@@ -47,7 +47,7 @@ MIN_FALL_OF_REVERSED_WAVE = Limit(
     0.65, "1", "share of a cycle that falls, above which the rise is the sharper edge", _TABLE
 )
 MIN_VARIANCE_OF_SLOW_WAVE = Limit(
-    0.75, "1", "share of the variance about a straight line that a wave of few periods explains",
+    0.75, "1", "share of the variance about a straight line that a wave of 2 to 4 periods explains",
     _TABLE,
 )  # fmt: skip
 MISFIT_OF_SLOW_WAVE = Limit(
@@ -58,7 +58,7 @@ MIN_VARIANCE_OF_SLOW_SINE = Limit(
     0.1, "1", "share of the variance of a slow sine that may hide a faster oscillation", _TABLE
 )
 MAX_MISFIT_OVER_DRIFT = Limit(
-    0.4, "1", "misfit of a wave of few periods over that of a drift (a polynomial)", _TABLE
+    0.4, "1", "misfit of a wave of 2 to 4 periods over that of a drift (a polynomial)", _TABLE
 )
 MAX_ABRUPT_FALL = Limit(0.3, "1", "share of a period that an abrupt fall lasts", _TABLE)
 HALF_WIDTH_OF_GATHERED_BAND = Limit(
@@ -66,7 +66,7 @@ HALF_WIDTH_OF_GATHERED_BAND = Limit(
     "summed", _TABLE,
 )  # fmt: skip
 MIN_CYCLES_IN_RECORD = Limit(
-    4.0, "1", "cycles in a record; a slower oscillation is not distinct from a slow wander", _TABLE
+    4.0, "1", "cycles in a record; a slower oscillation is not distinct from a slow drift", _TABLE
 )
 BREADTH_OF_IRREGULAR_WAVE = Limit(
     0.4, "1", "standard deviation of ln frequency in the spectrum of an irregular wave", _TABLE
@@ -143,7 +143,7 @@ MIN_QUIET_TIME = Limit(
     0.15, "1", "share of the time that is quiet, above which an oscillation is intermittent", _TABLE
 )
 MIN_TURNS = Limit(
-    3.0, "1", "turns; with fewer a slow wander is not distinct from a wave that repeats"
+    3.0, "1", "turns; with fewer a slow drift is not distinct from a wave that repeats"
 )
 MAX_SOLE_ORDER = Count(
     3, "1", "order up to which a wave may stand alone; a scratch or a dent shows higher orders "

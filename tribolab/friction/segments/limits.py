@@ -8,7 +8,7 @@ MIN_SHARE_OF_SPEED = Limit(
     0.5, "1", "a position that moves at less than half of the recorded speed stands still"
 )
 MIN_STANDSTILL = Limit(
-    0.06, "1", "share of a segment; two of 32 blocks in a row, so that one wild block is none"
+    0.06, "1", "share of a segment; two of 32 blocks in a row: one outlier is not a standstill"
 )
 MAX_SPEED_MISFIT = Limit(
     0.2, "1", "a position that is further off in most blocks is another quantity or unit"
