@@ -32,7 +32,7 @@ def entry(run, action, reason="seen by eye", **times):
 
 def inside(rows, place):
     """The middle of a segment, as an interval."""
-    start, stop = (float(rows[f"trimmed_{end}_s"].iloc[place]) for end in ("start", "stop"))
+    start, stop = (float(rows[f"{end}_s"].iloc[place]) for end in ("start", "stop"))
     return {"start": start + 0.3 * (stop - start), "stop": stop - 0.3 * (stop - start)}
 
 
@@ -66,7 +66,8 @@ def decided_on(original, folder):
     file = copied(original, folder)
     results = file.parent / "results"
     late = rows_of(results, LATE)
-    begin = float(late.trimmed_start_s.iloc[1]) + 20
+    start, stop = (float(late[f"{end}_s"].iloc[1]) for end in ("start", "stop"))
+    begin = start + 0.1 * (stop - start) + 20  # behind what is trimmed
     text = "# What was seen by eye.\n\n"
     text += entry(SLIPPED, "reject", "slipped off", **inside(rows_of(results, SLIPPED), SLIP))
     text += entry(FROZEN, "accept", "the logger's buffer, at rest")

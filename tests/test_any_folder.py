@@ -112,3 +112,30 @@ def test_the_new_campaign_file_is_valid_with_all_its_comments_removed(folder):
     stated = Campaign.model_validate(told, context={"in_file": True})
     assert stated.segments.discard == "50 m" and stated.contact.radius == 0.07
     assert command("new", folder).exit_code == 2
+
+
+def test_scans_of_one_name_in_two_folders_are_two_surfaces_and_the_file_is_valid(tmp_path):
+    for folder in ("new", "worn"):
+        (tmp_path / folder).mkdir()
+        for scan in (1, 2):
+            write_profile(tmp_path / folder / f"disc_{scan}.txt", seed=scan)
+    assert command("new", tmp_path).exit_code == 0
+    campaign, _ = load_and_plan(tmp_path / "campaign.toml")
+    assert [surface.name for surface in campaign.surface] == ["new disc", "worn disc"]
+
+
+def test_a_campaign_file_stands_for_its_raw_files_in_a_check(folder):
+    assert command("new", folder).exit_code == 0
+    for named in (folder / "campaign.toml", folder):
+        done = command("check", named, "-j", "1")
+        assert done.exit_code == 0 and "4 checked" in done.output, done.output
+
+
+@pytest.mark.parametrize("mark", "_- ")
+def test_repeats_are_grouped_whatever_mark_separates_the_labels(tmp_path, mark):
+    for repeat in (1, 2):
+        name = mark.join(("gel", "water", "5N", str(repeat)))
+        write_strokes(tmp_path / f"{name}.csv", seed=repeat)
+    assert command("new", tmp_path).exit_code == 0
+    _, runs = load_and_plan(tmp_path / "campaign.toml")
+    assert {(run.surface, run.medium, run.normal_force) for run in runs} == {("gel", "water", 5.0)}

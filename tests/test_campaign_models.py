@@ -61,9 +61,9 @@ def outcome(campaign):
 
 
 @pytest.mark.slow
-def test_the_readme_names_every_table_and_folder_that_a_run_leaves(outcome):
-    readme = (SCHEMA.parents[1] / "README.md").read_text("utf-8")
-    listed = readme.partition("What the demo leaves behind")[2].partition("\n## ")[0]
+def test_the_docs_name_every_table_and_folder_that_a_run_leaves(outcome):
+    text = (SCHEMA.parents[1] / "docs/results.md").read_text("utf-8")
+    listed = text.partition("What the demo leaves behind")[2].partition("\n## ")[0]
     tables = [path.name for path in (outcome.folder / "tables").glob("*.csv")]
     files = [path.name for path in outcome.folder.iterdir() if path.is_file()]
     folders = [f"{path.name}/" for path in outcome.folder.iterdir() if path.is_dir()]
@@ -107,7 +107,8 @@ def test_the_shear_stress_that_went_in_comes_back(outcome):
 @pytest.mark.slow
 def test_the_shear_stress_stands_for_both_theories_of_the_area(outcome):
     """The corrected area is larger by a fifth to two fifths, the stress lower by as much."""
-    fits = pd.read_csv(outcome.folder / "tables" / "shear_stress.csv")
+    report = json.loads((outcome.folder / "report.json").read_text())
+    fits = pd.DataFrame([model["fit"] for model in report["models"]])
     assert set(fits["area"]) == {"persson"}
     assert set(fits["other_area"]) == {"corrected"}
     ratio = fits["shear_stress_other_area_Pa"] / fits["shear_stress_Pa"]
@@ -249,7 +250,7 @@ def test_a_model_that_fails_or_is_not_wanted_stops_nothing(campaign, outcome, mo
     assert model.reason == "at 1 m/s: no film was found; take more cells"
     assert all(curve.done for curve in made.curves)
     write_report(made, figures="none")
-    (found,) = pd.read_csv(folder / "tables/findings.csv").query("severity == 'fail'").message
+    (found,) = pd.read_csv(folder / "tables/checks.csv").query("status == 'fail'").message
     assert found == f"no model: {model.reason}"
 
 
@@ -417,9 +418,8 @@ def test_the_demo_says_which_curves_the_model_does_not_describe(tmp_path):
         "the model does not describe this curve: off by up to 85 % of the peak friction"
     )
     fits.to_csv(tmp_path / "tables/shear_stress.csv")
-    paper = pd.DataFrame({"status": ["reproduced"]})
     fitted = pd.DataFrame({"relative_difference": [0.01], "within_interval": [1]})
     runs = TruthComparison(pd.DataFrame(), 1, 1, 0, 0, 1.0, 1.0)
-    compared = DemoComparison(tmp_path, runs, pd.DataFrame(), fitted, paper)
+    compared = DemoComparison(tmp_path, runs, pd.DataFrame(), fitted)
     said = "\n".join(truth_lines(compared, SimpleNamespace(folder=tmp_path)))
     assert "1 of 1 within their 95 % intervals (2 curves of Smooth are not described" in said

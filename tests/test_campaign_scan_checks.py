@@ -182,9 +182,9 @@ def test_a_failed_scan_gives_exit_code_1_and_stands_in_every_result(tmp_path, sc
     assert done.exit_code == 1
     assert "checks failed: scans of Sb-R" in done.output
     results = campaign.parent / "results"
-    table = pd.read_csv(results / "tables" / "findings.csv")
-    failed = table[table.severity == "fail"]
-    assert failed["where"].tolist() == ["surface Sb-R"]
+    table = pd.read_csv(results / "tables" / "checks.csv")
+    failed = table[table.status == "fail"]
+    assert failed["check"].tolist() == ["surface Sb-R"]
     assert "dropouts" in failed.message.item()
     for name in ("roughness", "contact"):
         assert set(pd.read_csv(results / "tables" / f"{name}.csv").quality) == {"fail"}

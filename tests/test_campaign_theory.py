@@ -65,9 +65,29 @@ def table(results, name) -> pd.DataFrame:
     return pd.read_csv(results / f"tables/{name}.csv")
 
 
+def report_of(results):
+    return json.loads((results / "report.json").read_text("utf-8"))
+
+
+def joint_parameters(results) -> pd.DataFrame:
+    """Parameters of all joint fits, a row each."""
+    return pd.DataFrame(
+        [
+            row | {"fit": fit["name"], "surface": row["surface"] or fit["surface"]}
+            for fit in report_of(results)["joint_fits"]
+            for row in fit["parameters"]
+        ]
+    )
+
+
+def single_fits(results) -> pd.DataFrame:
+    """Shear stress fitted to each curve, a row each."""
+    return pd.DataFrame([one["fit"] for one in report_of(results)["models"] if one["fit"]])
+
+
 @pytest.mark.slow
 def test_of_one_load_the_exponent_of_load_is_said_to_be_as_assumed(results):
-    fits = table(results, "joint_fit")
+    fits = joint_parameters(results)
     untold = fits[fits["parameter"] == "load_exponent"]
     assert len(untold) == 4 and set(untold["identified"]) == {"not identified"}
     np.testing.assert_allclose(untold["low"], untold["prior_low"], rtol=1e-6)
@@ -80,7 +100,7 @@ def test_of_one_load_the_exponent_of_load_is_said_to_be_as_assumed(results):
 
 @pytest.mark.slow
 def test_surfaces_that_are_stated_to_be_together_share_their_viscosity(results):
-    fits = table(results, "joint_fit").set_index(["fit", "surface", "parameter"]).sort_index()
+    fits = joint_parameters(results).set_index(["fit", "surface", "parameter"]).sort_index()
     both = fits.loc["joint_Sb-S_Sb-R_glycerol"]
     liquid = both.loc["Sb-S and Sb-R", "viscosity"]
     assert liquid["low"] < 1.4 < liquid["high"]
@@ -96,7 +116,7 @@ def test_surfaces_that_are_stated_to_be_together_share_their_viscosity(results):
 @pytest.mark.slow
 def test_dry_friction_is_in_the_fit_with_the_area_that_adhesion_gives_it(results):
     """Of dry points the model is sigma A_dry/F times the ratio of the stresses."""
-    fits = table(results, "joint_fit").set_index(["fit", "parameter"])
+    fits = joint_parameters(results).set_index(["fit", "parameter"])
     points = read_netcdf(results / "data/joint_Sb-S_glycerol.nc", "points").to_dataframe()
     dry = points[points["curve"] == "31 N dry"]
     assert len(dry) == len(SPEEDS)
@@ -123,19 +143,19 @@ def test_the_chosen_theory_of_the_area_is_in_every_table(results):
     assert mine["contact_area_ratio"] == pytest.approx(areas[0], rel=1e-6)
     wet = adhesive[(adhesive["surface"] == "Sb-S") & (adhesive["medium"] == "glycerol")].iloc[0]
     assert wet["contact_area_ratio_no_adhesion"] == pytest.approx(areas[0], rel=1e-3)
-    fits = table(results, "shear_stress")
+    fits = single_fits(results)
     assert set(fits["area"]) == {"corrected"} and set(fits["other_area"]) == {"persson"}
     ratio = fits["shear_stress_Pa"] / fits["shear_stress_other_area_Pa"]
     np.testing.assert_allclose(ratio, areas[1] / areas[0], rtol=0.05)
-    compared = table(results, "model_comparison")
-    assert (compared["model"] == "Persson's area").sum() == 3
+    compared = [row["model"] for fit in report_of(results)["joint_fits"] for row in fit["models"]]
+    assert compared.count("Persson's area") == 3
     page = (results / "report.html").read_text("utf-8")
     assert "corrected for the energy of partial contact" in page
 
 
 @pytest.mark.slow
 def test_the_models_area_is_that_with_adhesion_under_the_liquid(results):
-    fits = table(results, "shear_stress")
+    fits = single_fits(results)
     assert set(fits["adhesion"]) == {"with"} and set(fits["area_enhancement"]) == {1.0}
     curve = read_netcdf(results / "data/model_Sb-S_glycerol_31N.nc", "curve")
     assert curve.attrs["work_of_adhesion_J_m2"] == pytest.approx(51e-3)
@@ -163,7 +183,7 @@ def test_the_rubber_is_the_series_at_its_temperature_and_heat_is_warned_of(resul
     )
     said = "Prony series of 2 relaxations, 1.5 MPa at rest, shifted from 20 to 25 °C"
     assert said in (results / "report.html").read_text("utf-8")
-    messages = table(results, "findings")["message"]
+    messages = table(results, "checks")["message"]
     assert messages.str.contains("temperature rise in K in the contact spots").any()
 
 

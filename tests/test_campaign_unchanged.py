@@ -45,7 +45,7 @@ def test_what_did_not_change_is_told_without_work_and_leaves_the_folder_untouche
             guarded.setattr(f"tribolab.{place}.{name}", refuse)
         guarded.setattr("tribolab.campaign.store.catalogue.sha256_of_file", refuse)
         guarded.setattr("tribolab.reading.netcdf.netcdf.read_netcdf", refuse)
-        again = run(campaign, finish=refuse)
+        again = run(campaign)
     assert fingerprint(first.folder) == before and first.folder.stat() == folder
     assert again.runs == tuple(replace(run, reused=True) for run in first.runs)
     assert (again.curves, again.sources) == (first.curves, first.sources)

@@ -229,7 +229,7 @@ def test_run_names_the_key_of_the_campaign_file_and_no_option_that_it_lacks(tmp_
     assert of_run.endswith('name it with instrument = "..." in its [[run]]')
     assert 'says them with instrument = "..." in its [[surface]]' in of_surface
     page = (tmp_path / "results/report.html").read_text()
-    said = (tmp_path / "results/tables/findings.csv").read_text()
+    said = (tmp_path / "results/tables/checks.csv").read_text()
     assert "drafts a description of it" in page and "drafts a description of it" in said
     assert "instrument=" not in page + said and "read_scans" not in page + said
     assert "--instrument" not in done.stderr

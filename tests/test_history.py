@@ -202,22 +202,16 @@ def archive(original, tmp_path_factory):
         '\n[reference]\nfiles = "friction/*.csv"\ndead_weight = "31 N"\n'
         '[calibration]\ndate = 2026-01-01\ninterval = "1 year"\nserial = "7"\n'
     )
-    table = (results / "tables" / "friction.csv").read_text("utf-8")
-    rows = [line.split(",") for line in table.splitlines()]
-    place = rows[0].index("friction_force_offset_N")
+    zero = "friction_force_offset_N"
+    own = [[row[zero] for row in run["segments"]] for run in report["runs"]]
     rng = np.random.default_rng(5)
     for week in range(24):
         mine = folder / f"week_{week:02}"
         (mine / "tables").mkdir(parents=True)
         off = rng.normal(0, 0.02) + 0.5 * (week >= 20)
-        lines = [rows[0]]
-        for row in rows[1:]:
-            old = row[place]
-            lines.append(
-                [*row[:place], f"{float(old) + off:.9g}" if old else "", *row[place + 1 :]]
-            )
-        text = "\n".join(",".join(line) for line in lines) + "\n"
-        (mine / "tables" / "friction.csv").write_text(text, "utf-8")
+        for run, values in zip(report["runs"], own, strict=True):
+            for row, value in zip(run["segments"], values, strict=True):
+                row[zero] = None if value is None else value + off
         shutil.copy(results / "tables" / "stick_slip.csv", mine / "tables")
         for run in report["runs"]:
             began = dt.datetime(2026, 1, 5) + dt.timedelta(days=7 * week)

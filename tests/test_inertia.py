@@ -107,7 +107,7 @@ def test_a_campaign_states_a_mass_or_finds_it_and_says_so(tmp_path):
     )
     assert load_campaign(tmp_path).run[1].moving_mass == 2.0
     tl.run_campaign(tmp_path / "campaign.toml", jobs=1, figures="none")
-    findings = (tmp_path / "results" / "tables" / "findings.csv").read_text()
+    findings = (tmp_path / "results" / "tables" / "checks.csv").read_text()
     assert "that of 2 kg (stated) is taken out: up to" in findings
     assert "kg (force in phase with the acceleration, 39 pairs of strokes) is taken" in findings
     again = tl.read(tmp_path / "results" / "data" / "found.nc")

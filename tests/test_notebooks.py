@@ -118,5 +118,5 @@ def test_a_notebook_uses_what_is_public_and_ends_with_an_exercise(path):
 
 
 @named
-def test_the_readme_lists_the_notebook(path):
-    assert f"(notebooks/{path.name})" in (PROJECT / "README.md").read_text(encoding="utf-8")
+def test_the_page_on_python_lists_the_notebook(path):
+    assert f"(../notebooks/{path.name})" in (PROJECT / "docs/python.md").read_text(encoding="utf-8")

@@ -150,7 +150,7 @@ def test_nothing_is_read_back_to_be_shown(made, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("form", ["parquet", "xlsx"])
 def test_tables_in_other_formats_have_the_same_values(made, tmp_path, form):
-    names = {"friction", "stribeck", "stick_slip", "static_friction", "checks", "findings"}
+    names = {"friction", "stribeck", "stick_slip", "static_friction", "checks"}
     assert {file.stem for file in (made.folder / "tables").glob("*.csv")} >= names
     assert not list((made.folder / "tables").glob("*.parquet"))
     for name in names:

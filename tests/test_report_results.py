@@ -82,11 +82,11 @@ def test_schema_refuses_what_it_does_not_know(report):
             valid(wrong)
 
 
-def test_every_table_is_described_and_stands_in_the_readme(outcome):
+def test_every_table_is_described_and_stands_in_the_docs(outcome):
     written = {file.stem for file in (outcome.folder / "tables").glob("*.csv")}
-    assert {"friction", "findings", "sources"} <= written <= set(TABLES)
-    readme = (Path(tribolab.__file__).parents[1] / "README.md").read_text("utf-8")
-    assert [name for name in TABLES if f"{name}.csv" not in readme] == []
+    assert {"friction", "checks", "sources"} <= written <= set(TABLES)
+    told = (Path(tribolab.__file__).parents[1] / "docs/results.md").read_text("utf-8")
+    assert [name for name in TABLES if f"{name}.csv" not in told] == []
 
 
 def test_friction_table_is_the_data_files_to_the_last_digit(outcome):
@@ -99,11 +99,10 @@ def test_friction_table_is_the_data_files_to_the_last_digit(outcome):
             "friction_coefficient_std": "friction_coefficient_std",
             "friction_coefficient_sem": "friction_coefficient_sem",
             "sliding_speed_m_s": "sliding_speed",
-            "trimmed_start_s": "trimmed_start",
-            "trimmed_stop_s": "trimmed_stop",
+            "start_s": "start",
+            "stop_s": "stop",
             "normal_force_N": "normal_force",
             "trend_change": "trend_change",
-            "friction_force_offset_N": "friction_force_offset",
             "direction": "direction",
         }.items():
             np.testing.assert_array_equal(rows[column].to_numpy(), data[name].values)
@@ -137,23 +136,27 @@ def test_stribeck_table_has_every_point_of_every_curve(outcome):
 
 def test_sources_stand_with_their_checksums(outcome, report):
     sources = table(outcome, "sources")
-    assert list(sources.itertuples(index=False, name=None)) == list(outcome.sources)
+    known = sources[["file", "sha256", "bytes"]].itertuples(index=False, name=None)
+    assert list(known) == list(outcome.sources)
+    assert sources.left_out.str.startswith("at rest: ").any()
     assert report["sources"][0] == {"file": "raw/made.csv", "sha256": "ab" * 32, "bytes": 9}
 
 
 def test_failed_run_leads_the_findings_with_its_reason(outcome, report):
-    first = table(outcome, "findings").iloc[0]
-    assert (first.severity, first.run, first.message) == ("fail", "broken", REASON)
+    first = table(outcome, "checks").iloc[0]
+    assert (first.status, first.run, first.message) == ("fail", "broken", REASON)
     assert report["findings"][0]["message"] == REASON
     assert report["verdict"]["status"] == "incomplete"
     assert "5 of 6 runs usable; 1 failed; 30 segments" in report["verdict"]["text"]
 
 
-def test_what_was_left_out_is_a_finding_with_reason_and_time(outcome):
-    findings = table(outcome, "findings")
+def test_what_was_left_out_is_said_with_reason_and_time(outcome, report):
+    findings = table(outcome, "checks")
     mine = findings[findings.run == "sb-r_1"]
-    assert "at rest: 7 intervals, 14 s" in mine[mine["where"] == "left out"].message.tolist()
-    assert "not used: Temp [C]; Aux" in mine[mine["where"] == "columns"].message.tolist()
+    assert not (mine.check == "left out").any()
+    assert "not used: Temp [C]; Aux" in mine[mine.check == "columns"].message.tolist()
+    said = [(one["run"], one["message"]) for one in report["findings"]]
+    assert ("sb-r_1", "at rest: 7 intervals, 14 s") in said
 
 
 def test_highlights_are_means_over_the_strokes_at_a_speed(outcome, report):
@@ -227,7 +230,7 @@ def test_empty_campaign_still_has_a_report(tmp_path):
     valid(report)
     assert report["verdict"]["status"] == "nothing"
     assert list(table(made, "friction").columns)[0] == "run"
-    assert table(made, "findings").message.tolist() == ["no such file", "ReadError"]
+    assert table(made, "checks").message.tolist()[:2] == ["no such file", "ReadError"]
 
 
 def _one(tmp_path, change):
@@ -300,6 +303,7 @@ def test_every_check_of_every_run_stands_in_a_table(tmp_path, outcome):
         made = with_run(made, index, (run, segments, friction))
     write_report(made, figures="none")
     checks = table(made, "checks")
+    checks = checks[checks.check.isin([row["check"] for row in rows])]
     assert checks["run"].tolist() == ["one", "one", "two"]
     assert checks["status"].tolist() == ["pass", "skipped", "pass"]
     names = ["run", "check", "variable", "status", "value", "unit", "message"]
@@ -367,7 +371,7 @@ def test_drifting_and_backward_friction_is_said(tmp_path):
         return run, segments, friction
 
     write_report(made := _one(tmp_path, odd), figures="none")
-    messages = " | ".join(table(made, "findings").message)
+    messages = " | ".join(table(made, "checks").message)
     assert "2 segments of 6 with a significant trend, at most 10 % of the" in messages
     assert "1 segment of 6 with friction along the motion" in messages
     assert "none: strokes in one direction only" in messages
@@ -386,7 +390,7 @@ def test_the_campaign_s_note_stands_at_the_top_of_the_page(tmp_path, note):
     valid(json.loads((made.folder / "report.json").read_text()))
     top = (made.folder / "report.html").read_text(encoding="utf-8").split("</header>")[0]
     assert ("Simulated &lt;by&gt; a rig.</li>" in top) == bool(note)
-    assert ("campaign" in table(made, "findings")["where"].tolist()) == bool(note)
+    assert ("campaign" in table(made, "checks")["check"].tolist()) == bool(note)
 
 
 @pytest.mark.slow
@@ -427,9 +431,9 @@ def test_a_curve_that_failed_is_a_finding(tmp_path):
     failed = replace(made.curves[0], status="failed", data_file="", reason="no speed is known")
     made.store.put("curve", failed.name, 0, "", CurveRecord(failed))
     write_report(replace(made, curves=(failed,)), figures="none")
-    findings = table(made, "findings")
+    findings = table(made, "checks")
     assert findings.message.iloc[0] == "no measured curve: no speed is known"
-    assert findings.severity.iloc[0] == "suspect"
+    assert findings.status.iloc[0] == "suspect"
 
 
 def unpacked(signal, clock):

@@ -42,9 +42,8 @@ def test_rows_have_the_columns_of_their_tables():
     for name, columns in (("contact", CONTACT), ("adhesion", ADHESION)):
         assert list(surface[name]["items"]["properties"]) == columns
     [fit] = objects(DEFS["ReportedModel"]["properties"]["fit"])
-    assert set(fit["properties"]) == set(SHEAR_STRESS) - {
-        *("curve", "surface", "medium", "normal_force_N")
-    }
+    assert set(fit["properties"]) > set(SHEAR_STRESS[4:])
+    assert len(SHEAR_STRESS) == 14
 
 
 def test_every_error_says_what_it_holds():

@@ -1,5 +1,6 @@
 """Tables of results, as rheometers write them: each row a point of the curve, from file to page."""
 
+import json
 import shutil
 
 import numpy as np
@@ -44,8 +45,8 @@ def test_repeats_make_the_error_of_the_curve(folder):
 
 
 def test_nothing_fails_for_want_of_samples_and_the_notes_say_what_the_rows_are(folder):
-    told = pd.read_csv(folder / "results" / "tables" / "findings.csv")
-    assert not (told.severity == "error").any()
+    told = pd.read_csv(folder / "results" / "tables" / "checks.csv")
+    assert not (told.status == "error").any()
     assert told.message.str.contains("each row is a result").sum() == 3
 
 
@@ -58,7 +59,8 @@ def test_of_a_single_run_no_error_is_known_and_none_is_invented(folder, tmp_path
     assert len(curve) == SPEED.size
     for end in ("sem", "u", "U95"):
         assert curve[f"friction_coefficient_{end}"].isna().all()
-    assert not curve.uncertainty_says.str.contains("no normal force").any()
+    said = json.loads((tmp_path / "results" / "report.json").read_text("utf-8"))["curves"]
+    assert said and not any("no normal force" in each["uncertainty_says"] for each in said)
     budget = pd.read_csv(tmp_path / "results" / "tables" / "uncertainty_budget.csv")
     assert budget.share.isna().all()
 

@@ -203,4 +203,4 @@ def test_of_strokes_it_is_said_which_part_counts(tmp_path, monkeypatch):
     friction = pd.read_csv(tmp_path / "results" / "tables" / "friction.csv")
     assert len(friction) > 30 and len(along["x"]) >= len(friction) // 2 - 1  # strokes or cycles
     assert np.mean(along["y"]) == pytest.approx(friction.friction_coefficient.mean(), rel=0.01)
-    assert friction.trimmed_start_s.min() <= min(along["x"]) < max(along["x"]) <= 20.0
+    assert friction.start_s.min() <= min(along["x"]) < max(along["x"]) <= 20.0

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import xarray as xr
 from scipy.signal import lfilter
 
 import tribolab as tl
+from tribolab.app.running_in_table import running_in_table
 from tribolab.campaign.runs.running_in import running_in_of
 from tribolab.friction.coefficient.coefficient import friction_coefficient
 from tribolab.friction.mean_error.level import levels_of
@@ -177,3 +180,24 @@ def test_cycles_are_discarded_and_the_steady_part_is_taken():
     part = steady_segments(pin, whole, friction_coefficient(pin, whole))
     mu = friction_coefficient(pin, part).friction_coefficient.item()
     assert part.trimmed_start.item() > 1500 and abs(mu - 0.31) < 0.001
+
+
+def test_the_terminal_shows_where_runs_settle_their_steady_and_their_mean_friction():
+    run = pin_on_disc()
+    records, _ = running_in_of(run, friction_coefficient(run, find_segments(run)))
+    entry = SimpleNamespace(record=SimpleNamespace(facts=SimpleNamespace(running_in=records)))
+    outcome = SimpleNamespace(
+        runs=[SimpleNamespace(name="pin")], store=SimpleNamespace(get=lambda *_: entry)
+    )
+    table = running_in_table(outcome)
+    name, over, steady, mean = (next(iter(column.cells)) for column in table.columns)
+    assert name == "pin" and over.endswith(" of 540 m")
+    settled, whole = (float(text.split(" ±")[0]) for text in (steady, mean))
+    assert settled == pytest.approx(0.31, abs=0.002)
+    assert whole == pytest.approx(0.31 + 0.3 * 45 / 540, abs=0.002)
+    assert running_in_table(replace_runs(outcome, 13)) is None
+
+
+def replace_runs(outcome, count):
+    """The same, of so many runs."""
+    return SimpleNamespace(runs=outcome.runs * count, store=outcome.store)

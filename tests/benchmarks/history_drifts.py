@@ -84,7 +84,7 @@ def main():
             for number in range(chosen.folders):
                 mine = Path(folder) / f"{number:04}"
                 (mine / "tables").mkdir(parents=True)
-                for name in ("report.json", "tables/friction.csv", "tables/stick_slip.csv"):
+                for name in ("report.json", "tables/stick_slip.csv"):
                     shutil.copy(chosen.results / name, mine / name)
             begun, since = time.process_time(), time.perf_counter()
             tl.history(sorted(Path(folder).iterdir()))

@@ -24,6 +24,7 @@ It exits with 1 if intervals hold the truth in fewer cases than happens to one c
 
 from __future__ import annotations
 
+import json
 import sys
 import tempfile
 import time
@@ -275,7 +276,8 @@ def compared(folder: Path, world: World, true: Truth) -> list[Held]:
     def table(name: str) -> pd.DataFrame:
         return pd.read_csv(folder / "tables" / f"{name}.csv")
 
-    joint = table("joint_fit")
+    report = json.loads((folder / "report.json").read_text("utf-8"))
+    joint = pd.DataFrame([row for fit in report["joint_fits"] for row in fit["parameters"]])
     for row in joint[joint.parameter.isin(list(true.values))].itertuples():
         note = str(row.identified)
         rows.append(

@@ -13,9 +13,13 @@ from typing import TYPE_CHECKING, Any
 from rich.markup import escape
 from rich.table import Table
 
+from tribolab.app.first_campaign import NAME
 from tribolab.app.info.file_info import read_scan
+from tribolab.app.raw_folder import files_in
 from tribolab.app.streams import say
 from tribolab.campaign.engine.stage import Progress, Stage, perform
+from tribolab.campaign.settings.files import instrument_of, own_python, scans_of
+from tribolab.campaign.settings.load import load_and_plan
 from tribolab.core.errors import ConfigError, TribolabError, told
 from tribolab.core.untyped import Json
 from tribolab.core.wording import explain
@@ -89,6 +93,40 @@ class CheckTask:
     files: tuple[Path, ...]
     results: tuple[Path, ...] = ()
     instrument: str | Path | None = None
+
+
+def raw_files_of(paths: Sequence[Path]) -> list[tuple[list[Path], str | None]]:
+    """Return the raw files that are meant, with the instrument that a campaign file names for them.
+
+    Parameters
+    ----------
+    paths
+        Raw files, folders of them, and campaign files, which stand for their runs and scans.
+
+    Examples
+    --------
+    >>> raw_files_of([Path("a.csv"), Path("b.csv")])
+    [([PosixPath('a.csv'), PosixPath('b.csv')], None)]
+    """
+    found: dict[str | None, list[Path]] = {}
+    for path in paths:
+        if path.is_dir() and not (path / NAME).exists():
+            found.setdefault(None, []).extend(files_in(path))
+        elif path.is_dir() or path.suffix == ".toml":
+            campaign, runs = load_and_plan(path)
+            for run in runs:
+                found.setdefault(run.instrument, []).extend(run.files)
+            for surface in campaign.surface:
+                named = surface.instrument and instrument_of(campaign, surface.instrument)
+                found.setdefault(named, []).extend(scans_of(campaign, surface))
+            if own_python(campaign):
+                raise ConfigError(
+                    f"{path}: it names readers in Python, which are not run for a check",
+                    cure="check the raw files themselves: tribolab check FILES -i READER.py",
+                )
+        else:
+            found.setdefault(None, []).append(path)
+    return [(files, instrument) for instrument, files in found.items()]
 
 
 class Checks(Stage[CheckTask, "list[Checked]", "list[Checked]"]):

@@ -1,4 +1,4 @@
-"""What the demo adds to a report: its results beside the truth and beside the paper."""
+"""The demo: a simulated campaign, its results, and how far they are from the truth."""
 
 from __future__ import annotations
 
@@ -38,31 +38,15 @@ def run_demo(
             # late: the workers have been sent off
             from tribolab.app import plain  # noqa: F401
             from tribolab.app.run import run_campaign
-            from tribolab.app.truth.known import compare_with_known, paper_of, write_comparison
+            from tribolab.app.truth.known import compare_with_known, write_comparison
             from tribolab.campaign import pipeline  # noqa: F401
             from tribolab.report import results  # noqa: F401
             from tribolab.rig.campaign import simulate_campaign
-            from tribolab.studies.comparison import compare_with_paper
 
         campaign = folder / "campaign.toml"
         if not (campaign.is_file() and (folder / "truth" / "truth.json").is_file()):
             simulate_campaign(folder, executor=pool, progress=progress)
-        # begun early: it fills what the stages of the campaign leave idle
-        paper = pool.submit(compare_with_paper) if pool else None
-        compared: list[DemoComparison] = []
-
-        def finish(outcome: Outcome) -> None:
-            known = paper.result() if paper else compare_with_paper()
-            compared.append(compare_with_known(outcome, folder, known, pool))
-            write_comparison(outcome, compared[0])
-
-        outcome = run_campaign(
-            campaign,
-            executor=pool,
-            jobs=None if pool else 1,
-            progress=progress,
-            finish=finish,
-        )
-    if not compared:  # nothing has changed: the paper's table is taken as it lies there
-        compared.append(compare_with_known(outcome, folder, paper_of(outcome)))
-    return outcome, compared[0]
+        outcome = run_campaign(campaign, executor=pool, jobs=None if pool else 1, progress=progress)
+        compared = compare_with_known(outcome, folder, pool)
+    write_comparison(compared)
+    return outcome, compared

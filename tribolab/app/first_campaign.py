@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import tomllib
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -19,7 +20,7 @@ from tribolab.app.raw_folder import (
 from tribolab.campaign.settings.files import scan_files
 from tribolab.campaign.settings.load import load_and_plan
 from tribolab.campaign.settings.naming.files_named import pattern_of_names
-from tribolab.campaign.settings.naming.run_names import common_name, safe_name
+from tribolab.campaign.settings.naming.run_names import common_name, distinct, safe_name
 from tribolab.campaign.store.ledger import Ledger
 from tribolab.core.errors import ConfigError, TribolabError
 from tribolab.reading.kinds import repeats_by_name
@@ -191,6 +192,7 @@ def why_unread(paths: Sequence[Path], instrument: str | None = None) -> list[str
     from tribolab.app.info.file_info import file_lines
 
     said = []
+    paths = [file for path in paths for file in (files_in(path) if path.is_dir() else [path])]
     for path in paths:
         try:
             file_lines(path, instrument)
@@ -258,22 +260,34 @@ def campaign_text(
         files = ",\n    ".join(map(quoted, named))
         lines += ["", "[[run]]", f"files = [\n    {files},\n]", *stated]
         lines += _said(instrument, folder)
-    for group in repeats_by_name(kinds.scans):
+    groups = repeats_by_name(kinds.scans)
+    for group, title in zip(groups, surface_names(groups), strict=True):
         scans = [quoted(path.relative_to(raw).as_posix()) for path in group]
         shown = scans[0] if len(scans) == 1 else f"[{', '.join(scans)}]"
-        title = surface_name(group)
         lines += ["", "[[surface]]", f"name = {quoted(title)}", f"scans = {shown}"]
         lines += _said(instrument, folder)
     return "\n".join(lines) + "\n"
 
 
-def surface_name(scans: Sequence[Path]) -> str:
-    """Return the name of a surface after its scans: without the number of the scan.
+def surface_names(groups: Sequence[Sequence[Path]]) -> list[str]:
+    """Return the names of surfaces after their scans: without the number of the scan.
 
-    >>> surface_name([Path("sb-r_1.csv"), Path("sb-r_2.csv")]), surface_name([Path("roller.txt")])
-    ('sb-r', 'roller')
+    Names that occur twice get that of their folder, else of their ending, else a number.
+
+    >>> surface_names([[Path("sb-r_1.csv"), Path("sb-r_2.csv")], [Path("roller.txt")]])
+    ['sb-r', 'roller']
+    >>> surface_names([[Path("new/a_1.csv")], [Path("worn/a_1.csv")]])
+    ['new a_1', 'worn a_1']
     """
-    return common_name(scans) if len(scans) > 1 else scans[0].stem
+    names = [common_name(scans) if len(scans) > 1 else scans[0].stem for scans in groups]
+    firsts = [scans[0] for scans in groups]
+    for more in ([file.parent.name for file in firsts], [file.suffix[1:] for file in firsts]):
+        taken = Counter(name.casefold() for name in names)
+        names = [
+            f"{word} {name}".strip() if taken[name.casefold()] > 1 else name
+            for word, name in zip(more, names, strict=True)
+        ]
+    return distinct(names)
 
 
 def _said(instrument: str | None, folder: Path) -> list[str]:

@@ -36,7 +36,6 @@ def run_campaign(
     jobs: int | None = None,
     scheduler: str | None = None,
     progress: Progress | None = None,
-    finish: Callable[[Outcome], None] | None = None,
     figures: str = "curves",
     pdf: bool = False,
     tables: str = "csv",
@@ -63,10 +62,6 @@ def run_campaign(
         Address of a Dask scheduler, instead of `jobs`.
     progress
         Called as ``progress(stage, done, total)``.
-    finish
-        Called with the outcome when everything else is written, before the results appear;
-        what it writes to ``outcome.folder`` appears with them. Not called if nothing at all
-        has changed since the last time: then the results that are there stay.
     figures
         Which are drawn for publication: ``"curves"`` (measured curves), ``"all"`` or ``"none"``.
     pdf
@@ -149,8 +144,6 @@ def run_campaign(
             )
             write_report(outcome, executor=pool, progress=progress, figures=which, pdf=pdf)
             write_other_tables(Path(outcome.folder) / "tables", form)
-        if finish is not None:
-            finish(outcome)
         note(outcome, runs, options)
         outcome.store.close()
     foreign = tuple(Ledger.read(place).foreign())

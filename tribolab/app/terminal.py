@@ -184,7 +184,7 @@ def outcome_lines(outcome: Outcome) -> list[str]:
                 names.append(f"scans of {surface.name}{_because(surface.checks, quality)}")
         lines += [f"checks {what}: {name}" for name in names[:_HANDFUL]]
         if len(names) > _HANDFUL:
-            file = from_here(outcome.folder / "tables" / "findings.csv")
+            file = from_here(outcome.folder / "tables" / "checks.csv")
             lines.append(f"checks {what}: and {len(names) - _HANDFUL} more: see {file}")
     said = outcome.campaign.contradicting_viscosities()
     lines += [f"medium {name}: {text}" for name, text in said.items()]
@@ -356,10 +356,7 @@ def failure_lines(outcome: Outcome) -> list[str]:
 
 
 def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
-    """Say how well truth and paper were found, where to look and what to do next."""
-    # late: starting stays quick
-    from tribolab.studies.tally import tell_statuses
-
+    """Say how well the truth was found, where to look and what to do next."""
     c, folder, results = compared.runs, compared.folder, outcome.folder
     rows = compared.surfaces
     lines = [
@@ -383,15 +380,10 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
             f"{100 * fits.relative_difference.abs().max():.1f} % from the truth; "
             f"{fits.within_interval.sum()} of {len(fits)} within their 95 % intervals{lost}"
         )
-    lines.append(f"against the paper: {tell_statuses(compared.paper)}")
-    tables = from_here(results / "tables")
     return [
         *lines,
         "",
-        f"look at   {from_here(results / 'report.html')}        the page: open it in a browser",
-        f"          {tables}/friction.csv  every segment, a row each",
-        f"          {tables}/truth.csv     every segment with its true value",
-        f"          {tables}/paper.csv     the paper's numbers next to the computed ones",
+        f"look at   {from_here(results / 'report.html')}  the page: open it in a browser",
         f"then try  tribolab info {from_here(folder)}/raw/friction/*_force.csv",
         f"          tribolab run {from_here(folder)}/campaign.toml  after changing something in it",
     ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import inspect
 from collections.abc import Callable, Hashable, Mapping, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, ParamSpec, Protocol, TypeVar, overload
 
 import numpy as np
@@ -45,10 +46,18 @@ def of_runs(function: Callable[P, R]) -> OfRuns[P, R]:
     >>> runs = [xr.Dataset(coords={"time": [0.0, end]}) for end in (1, 2)]
     >>> length(runs[0]), length(runs, unit="sec")
     ('1.0 s', ['1.0 sec', '2.0 sec'])
+    >>> length("run.csv")
+    Traceback (most recent call last):
+    tribolab.core.errors.AnalysisError: length was given the text 'run.csv' as run; read the file \
+first: tl.read('run.csv')
     """
+    of_a_run = next(iter(inspect.signature(function).parameters)) == "run"
 
     @functools.wraps(function)
     def with_lists(*args: Any, **kwargs: Any) -> Any:
+        for run in args[:1] if of_a_run else ():
+            for each in run if isinstance(run, list) else [run]:
+                _require_run(function.__name__, each)
         if not args or not isinstance(args[0], list):
             return function(*args, **kwargs)
         count = len(args[0])
@@ -63,6 +72,26 @@ def of_runs(function: Callable[P, R]) -> OfRuns[P, R]:
         return [_call_each(function, given, own, len(args), number) for number in range(count)]
 
     return with_lists
+
+
+def _require_run(function: str, given: Any) -> None:
+    """Raise if something else than a run is given as the run."""
+    if isinstance(given, str | Path):
+        raise AnalysisError(
+            f"{function} was given the text '{given}' as run",
+            cure=Cure(notebook=f"read the file first: tl.read('{given}')"),
+        )
+    sizes = getattr(given, "sizes", None)
+    if type(given).__name__ != "Dataset" or sizes is None:
+        raise AnalysisError(
+            f"{function} was given an object of type {type(given).__name__} as run",
+            cure=Cure(notebook="give what tl.read returns, an xarray.Dataset over time"),
+        )
+    if "time" not in sizes and "segment" in sizes:
+        raise AnalysisError(
+            f"{function} was given segments as run",
+            cure=Cure(notebook=f"give the run first: tl.{function}(run, segments)"),
+        )
 
 
 class OfLists(Protocol[P, R_co]):

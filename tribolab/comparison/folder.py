@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tribolab.campaign.settings.config import Campaign
-from tribolab.core.errors import ReadError, brief
+from tribolab.core.errors import AnalysisError, ReadError, brief
 from tribolab.core.untyped import Json
 
 if TYPE_CHECKING:
@@ -73,6 +73,31 @@ class Folder:
             run["name"]: tuple(sorted(known.get(file, "") for file in run["files"]))
             for run in self.report["runs"]
         }
+
+    @property
+    def segments(self) -> list[Json]:
+        """Segments of all runs that have results, with run, surface, medium and nominal load."""
+        labels = ("surface", "medium", "nominal_normal_force_N")
+        return [
+            {"run": run["name"], **{label: run[label] for label in labels}, **row}
+            for run in self.done
+            for row in run["segments"]
+        ]
+
+    def friction(self) -> pd.DataFrame:
+        """Return the segments of all runs as a table.
+
+        Raises
+        ------
+        AnalysisError
+            If there is none.
+        """
+        # late: starting stays quick
+        import pandas as pd
+
+        if not (rows := self.segments):
+            raise AnalysisError(f"{self.path}: there is no friction: it has no segments of runs")
+        return pd.DataFrame(rows)
 
     def table(self, name: str) -> pd.DataFrame | None:
         """Return a table by name; None if the results lack it."""

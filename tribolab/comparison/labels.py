@@ -17,7 +17,6 @@ from tribolab.campaign.settings.measured import RunEntry
 from tribolab.campaign.settings.name_pattern import NamePattern
 from tribolab.campaign.settings.naming.named import is_named
 from tribolab.comparison.folder import Folder, open_folder
-from tribolab.core.errors import AnalysisError
 
 _KEYS = ("operator", "mount", "day", "specimen")
 
@@ -49,9 +48,7 @@ def labelled_segments(place: str | Path) -> pd.DataFrame:
     else:
         folder = open_folder(path)
         campaign = folder.campaign
-    table = folder.table("friction")
-    if table is None:
-        raise AnalysisError(f"{folder.path}: there is no table of friction: it has no runs")
+    table = folder.friction()
     labels = labels_of_runs(folder, campaign)
     new = labels.columns.difference(table.columns)
     return table.join(labels[new], on="run")

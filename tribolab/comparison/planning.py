@@ -161,10 +161,7 @@ def _pilots(
         table, where = pilot, "table"
     else:
         folder = open_folder(pilot.folder if isinstance(pilot, Results) else pilot)
-        read = folder.table("friction")
-        if read is None:
-            raise AnalysisError(f"{folder.path}: there is no table of friction: it has no runs")
-        table, where = read, str(folder.path)
+        table, where = folder.friction(), str(folder.path)
         if counting := folder.counting:
             table = table[table["run"].astype(str).isin(counting)]
     segments = segments_of(table, where)

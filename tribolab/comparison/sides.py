@@ -94,9 +94,7 @@ def _side(given: Compared, name: str) -> Side:
     if isinstance(given, pd.DataFrame):
         return Side(name, segments_of(given, name))
     folder = open_folder(given.folder if isinstance(given, Results) else given)
-    table = folder.table("friction")
-    if table is None:
-        raise AnalysisError(f"{folder.path}: there is no table of friction: it has no runs")
+    table = folder.friction()
     if counting := folder.counting:
         table = table[table["run"].astype(str).isin(counting)]
     known = {name: folder.table(name) for name in ("shear_stress", "roughness")}

@@ -87,8 +87,8 @@ def observations_of(path: str | Path) -> tuple[list[Observation], Folder]:
         If it is not a results folder.
     """
     folder = open_folder(path)
-    friction = _table(folder, "friction", _FRICTION)
-    if friction is None:
+    friction = _segments(folder)
+    if not friction["run"].size:
         return [], folder
     slip = _table(folder, "stick_slip", _SLIP)
     made: list[Observation] = []
@@ -104,6 +104,16 @@ def observations_of(path: str | Path) -> tuple[list[Observation], Folder]:
         for value, speed in _reference_friction(folder.campaign, runs, mine):
             made.append(Observation(name, REFERENCE, "1", when, str(folder.path), value, speed))
     return made, folder
+
+
+def _segments(folder: Folder) -> SeriesColumns:
+    """Return what is watched of the segments of all runs."""
+    rows = folder.segments
+    known = {name: [row.get(name) for row in rows] for name in _FRICTION}
+    return {
+        name: np.array(values, dtype=object if name == "run" else float)
+        for name, values in known.items()
+    }
 
 
 def _table(folder: Folder, name: str, columns: Sequence[str]) -> SeriesColumns | None:

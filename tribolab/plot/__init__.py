@@ -32,6 +32,7 @@ if TYPE_CHECKING:
         shear_stress_over_speed,
     )
     from tribolab.figures.subjects.precision import precision, runs_needed, uncertainty_budget
+    from tribolab.figures.subjects.signals_over_time import run
     from tribolab.figures.subjects.slip import Trace, slip_events, slip_traces, waveform_map
     from tribolab.figures.subjects.slip_spectra import slip_spectra, slip_spectrogram
     from tribolab.figures.subjects.spread import friction_spread, half_loop
@@ -71,6 +72,7 @@ _HOMES = {
     "precision": "tribolab.figures.subjects.precision",
     "runs_needed": "tribolab.figures.subjects.precision",
     "uncertainty_budget": "tribolab.figures.subjects.precision",
+    "run": "tribolab.figures.subjects.signals_over_time",
     "Trace": "tribolab.figures.subjects.slip",
     "slip_events": "tribolab.figures.subjects.slip",
     "slip_traces": "tribolab.figures.subjects.slip",
@@ -118,6 +120,7 @@ __all__ = [
     "paper_style",
     "precision",
     "profiles",
+    "run",
     "runs_needed",
     "save",
     "shear_stress",

@@ -54,7 +54,8 @@ def read(
     Parameters
     ----------
     path
-        A raw file (text, MAT, TDMS, or a run that tribolab wrote as netCDF); a pattern such as
+        A raw file: text (csv, txt, dat, asc, with any separator), Excel (xlsx, xls, ods), HDF5,
+        MAT, TDMS, Parquet, Feather, JSON, NumPy (npz), or netCDF; a pattern such as
         ``"raw/*.csv"`` (``**`` stands for folders, too); or a list: the two logs of a run, or the
         files of consecutive cycles, in any order if they say when they start.
     instrument

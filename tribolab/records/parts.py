@@ -91,6 +91,8 @@ class RunOutcome(PartOutcome):
         Number of found segments that a person rejected.
     quality_as_found
         `quality` without decisions; "" if nobody decided.
+    ramp
+        Whether it has no segment, because its speed rises or falls for most of the record.
     """
 
     files: tuple[str, ...]
@@ -105,6 +107,7 @@ class RunOutcome(PartOutcome):
     measured_load: float | None = None
     measured_levels: tuple[float, ...] = ()
     load_levels: tuple[float, ...] = ()
+    ramp: bool = False
 
     @property
     def in_curves(self) -> bool:

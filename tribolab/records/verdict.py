@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+from tribolab.core.limit import Limit
 from tribolab.core.wording import many
 
 if TYPE_CHECKING:
@@ -12,6 +13,9 @@ if TYPE_CHECKING:
 
 OK, SUSPECT, CHECK, FAIL = "OK", "SUSPECT", "CHECK", "FAIL"
 _BAD = ("fail", "error", "rejected")
+RAMP_SHARE = Limit(
+    0.8, "1", "share of a record with rising or falling speed: it is a test by ramps", "judgement"
+)
 
 
 class Verdict(NamedTuple):
@@ -22,8 +26,22 @@ class Verdict(NamedTuple):
 
 
 def is_usable(run: RunOutcome) -> bool:
-    """Whether a run is used in the curves: readable, sliding, and not rejected."""
-    return run.done and bool(run.segments) and run.quality not in _BAD
+    """Whether a run counts: it was read, slides, and no check or person rejects it."""
+    return run.done and (bool(run.segments) or run.ramp) and run.quality not in _BAD
+
+
+def is_ramp(run: Mapping[str, Any]) -> bool:
+    """Return whether the speed of a run rises or falls for most of it, so that it has no segment.
+
+    Examples
+    --------
+    >>> ramp = {"reason": "ramp", "duration_s": 9.0}
+    >>> is_ramp({"segments_found": 0, "omitted": [ramp], "duration_s": 10.0})
+    True
+    """
+    parts = [part for part in run.get("omitted", ()) if part["reason"] == "ramp"]
+    ramp = sum(part["duration_s"] or 0.0 for part in parts)
+    return not run["segments_found"] and ramp > RAMP_SHARE.value * (run.get("duration_s") or 0.0)
 
 
 def verdict_of(runs: Sequence[RunOutcome], surfaces: Sequence[SurfaceOutcome]) -> Verdict:

@@ -8,25 +8,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import pandas as pd
 
-from tribolab.records.models.joint_record import (
-    JointRecord,
-    comparison_table_rows,
-    parameter_table_rows,
-)
+from tribolab.core.wording import duration, many
 from tribolab.records.part_records import CurveRecord, SurfaceRecord, SurfaceRows
 from tribolab.records.parts import Notice, Row
+from tribolab.records.runs.notice_words import LEFT_OUT
 from tribolab.records.runs.run_record import RunRecord
-from tribolab.records.surfaces.surface_rows import ADHESION, CONTACT, ROUGHNESS
-from tribolab.records.wording import plain_value
+from tribolab.records.surfaces.surface_rows import ADHESION, CONTACT
 from tribolab.report import tables
-from tribolab.report.document.decisions import CURVES_AS_FOUND
 from tribolab.report.document.document import labels
-from tribolab.report.document.models import (
-    ModelRow,
-    model_curve_table,
-    sensitivity_table,
-    shear_stress_table,
-)
+from tribolab.report.document.models import ModelRow, model_curve_table, shear_stress_table
 
 if TYPE_CHECKING:
     from tribolab.campaign.store.outcome import Outcome
@@ -49,7 +39,6 @@ _SEGMENT = (*tables.CURVE_LABELS, "segment", "sliding_speed_m_s", "friction_coef
 TABLES = {
     "friction": "friction coefficient of every segment, with its errors",
     "stribeck": "measured friction over sliding speed",
-    "stribeck_as_found": "measured friction over sliding speed, without a person's decisions",
     "uncertainty_budget": "parts of the uncertainty of every measured friction coefficient",
     "stick_slip": "stick-slip of every segment",
     "running_in": "running-in, steady and mean friction of every run at one speed",
@@ -59,12 +48,8 @@ TABLES = {
     "adhesion": "contact area with adhesion",
     "shear_stress": "shear stresses fitted to the measured curves",
     "stribeck_model": "computed friction over sliding speed",
-    "model_sensitivity": "how far what is not known moves the computed friction",
-    "joint_fit": "parameters fitted to all loads of a surface in one liquid at once",
-    "model_comparison": "models that were fitted to all loads at once, compared",
-    "sources": "raw files with their SHA-256",
-    "checks": "what every check said of every run",
-    "findings": "what a reader should know",
+    "sources": "raw files with their SHA-256, and what was left out of their runs",
+    "checks": "findings, the gravest first, and the result of every check of every run",
     "decisions": "what a person decided on runs",
 }
 
@@ -77,13 +62,23 @@ _NOT_IN_FRICTION = frozenset(
         *("friction_coefficient_beyond_sem", "friction_coefficient_level", "pair", "samples"),
         *("friction_force_std_N", "friction_force_sem_N", "normal_force_std_N"),
         *("normal_force_sem_N", "sliding_distance_m"),
-        *("trend_p_value", "trend_1_s"),
+        *("trend_p_value", "trend_1_s", "autocorrelation_time_s", "set_speed_m_s"),
+        *("friction_coefficient_beyond_U95", "friction_coefficient_shared_sem"),
+        *("friction_force_offset_N", "normal_force_offset_N", "tilt_found_rad"),
+        *("trimmed_start_s", "trimmed_stop_s"),
     )
+)
+_NOT_IN_CURVE = frozenset(("friction_coefficient_within",))
+_ROUGHNESS = (
+    *("scans", "Ra_m", "Rq_m", "Rz_m", "Rsk", "Rku", "Rdq", "Ra_sem_m", "Rq_sem_m"),
+    *("rms_roughness_m", "rms_roughness_low_m", "rms_roughness_high_m"),
+    *("rms_slope", "rms_slope_low", "rms_slope_high", "hurst_exponent"),
+    *("wavenumber_low_1_m", "wavenumber_high_1_m", "form_removed", "lambda_c_m"),
 )
 _SLIP = (
     *("segment", "sliding_speed_m_s", "waveform", "class_probability", "dominant_frequency_Hz"),
     *("dominant_wavelength_m", "drop", "stick_duration_s", "slip_duration_s"),
-    *("recurrence_distance_m", "events", "mains_frequency_Hz", "mains_amplitude"),
+    *("recurrence_distance_m", "events", "mains_amplitude"),
     *("loading_stiffness_N_m", "sample_noise", "remark"),
 )
 
@@ -125,9 +120,8 @@ def write_tables(
     curves: Sequence[CurveRecord],
     surfaces: Sequence[SurfaceRecord],
     models: Mapping[str, ModelRow],
-    joints: Sequence[JointRecord],
 ) -> None:
-    """Write all tables of a campaign but that of its findings.
+    """Write all tables of a campaign but that of its findings and checks.
 
     Without runs there are none of friction, without scans none of surfaces, and
     where no contact is asked about none of contact and adhesion.
@@ -138,17 +132,16 @@ def write_tables(
         Its store has the runs.
     curves
         Those that are shown.
-    surfaces, models, joints
-        What is recorded of them; of joint fits those that were done.
+    surfaces, models
+        What is recorded of them.
     """
     folder = Path(outcome.folder) / "tables"
     for long in _long_tables(outcome, curves):
         tables.write_rows(long.rows, folder / long.file, long.columns)
-    columns = ["file", "sha256", "bytes"]
-    short = {"sources": pd.DataFrame(list(outcome.sources), columns=columns)}
+    short = {"sources": _sources(outcome)}
     rows = [surface.rows for surface in surfaces if surface.rows is not None]
     of_surfaces: dict[str, tuple[Iterable[str], Callable[[SurfaceRows], Iterable[Row]]]] = {
-        "roughness": (ROUGHNESS, lambda surface: [surface.roughness]),
+        "roughness": (_ROUGHNESS, lambda surface: [surface.roughness]),
         "contact": (CONTACT, lambda surface: surface.contact),
         "adhesion": (ADHESION, lambda surface: surface.adhesion),
     }
@@ -163,22 +156,67 @@ def write_tables(
         every = list(models.values())
         short["shear_stress"] = shear_stress_table(every)
         short["stribeck_model"] = model_curve_table(every)
-        short["model_sensitivity"] = sensitivity_table(every)
-    if joints:
-        short["joint_fit"] = pd.DataFrame(parameter_table_rows(joints))
-        short["model_comparison"] = pd.DataFrame(comparison_table_rows(joints))
     for name, made in short.items():
         tables.write_csv(made, folder / f"{name}.csv")
 
 
-def write_findings(findings: Iterable[Notice], folder: Path) -> None:
-    """Write the table of findings of a results folder, the gravest first."""
-    tables.write_csv(tables.findings_table(findings), folder / "tables" / "findings.csv")
+def _sources(outcome: Outcome) -> pd.DataFrame:
+    """Return the raw files with their checksums, run, and the time that was left out of it."""
+    said: dict[str, tuple[str, str]] = {}
+    for entry in outcome.store.all("run", RunRecord):
+        run = entry.record.outcome
+        parts = (
+            f"{part.reason}: {many(part.intervals, 'interval')}, {duration(part.duration_s)}"
+            for part in entry.record.facts.omitted
+            if part.duration_s is not None
+        )
+        said |= dict.fromkeys(run.files, (run.name, "; ".join(parts)))
+    rows = [(*source, *said.get(source[0], ("", ""))) for source in outcome.sources]
+    return pd.DataFrame(rows, columns=["file", "sha256", "bytes", "run", "left_out"])
 
 
-def _saying(says: str, rows: Iterable[Row]) -> Iterator[Row]:
-    """Give rows with what their uncertainties do not hold."""
-    return (row | {"uncertainty_says": says} for row in rows)
+def write_checks(outcome: Outcome, findings: Sequence[Notice], folder: Path) -> None:
+    """Write the table of findings, the gravest first, and of all checks of all runs.
+
+    A finding that a check made is the row of the check; what was left out of runs is in the table
+    of sources.
+
+    Parameters
+    ----------
+    outcome
+        Its store has the runs.
+    findings
+        In the order in which they are written.
+    folder
+        Of the results.
+    """
+    checked = {
+        (entry.record.outcome.name, f"{row.check} {row.variable}".strip())
+        for entry in outcome.store.all("run", RunRecord)
+        for row in entry.record.facts.checks
+    }
+    cures: dict[tuple[str, str], list[str]] = {}
+    own: list[Notice] = []
+    for finding in findings:
+        place = finding.run, finding.where
+        if place in checked:
+            cures.setdefault(place, []).append(finding.message)
+        elif finding.where != LEFT_OUT:
+            own.append(finding)
+
+    def every() -> Iterator[Row]:
+        for each in own:
+            values = (each.run, each.where, "", each.severity, None, "", each.message)
+            yield dict(zip(("run", *_CHECK), values, strict=True))
+        for entry in outcome.store.all("run", RunRecord):
+            name = entry.record.outcome.name
+            for row in entry.record.facts.checks:
+                said = cures.get((name, f"{row.check} {row.variable}".strip()), ())
+                full = [text for text in said if row.message in text]
+                made: Row = {"run": name} | {key: getattr(row, key) for key in _CHECK}
+                yield made | {"message": full[0] if full else row.message}
+
+    tables.write_rows(every, folder / "tables" / "checks.csv", ("run", *_CHECK))
 
 
 def _long_tables(outcome: Outcome, curves: Sequence[CurveRecord]) -> Iterator[_Long]:
@@ -201,35 +239,28 @@ def _long_tables(outcome: Outcome, curves: Sequence[CurveRecord]) -> Iterator[_L
 
         return every
 
-    def checks() -> Iterator[Row]:
+    def slip() -> Iterator[Row]:
         for entry in outcome.store.all("run", RunRecord):
-            for row in entry.record.facts.checks:
-                yield {"run": entry.record.outcome.name} | {k: getattr(row, k) for k in _CHECK}
-
-    def slip(record: RunRecord) -> Iterable[Row]:
-        shown = record.slip if record.outcome.name in in_curves else ()
-        return ({name: row[name] for name in _SLIP if name in row} for row in shown)
+            name = entry.record.outcome.name
+            for row in entry.record.slip if name in in_curves else ():
+                kept: Row = {"run": name}
+                yield kept | {key: row[key] for key in _SLIP if key in row}
 
     def segments(record: RunRecord) -> Iterable[Row]:
         return (friction_row(row) for row in record.facts.segments)
 
     def points(record: CurveRecord) -> Iterable[Row]:
-        return _saying(record.uncertainty_says, record.points)
+        for row in record.points:
+            yield {name: value for name, value in row.items() if name not in _NOT_IN_CURVE}
 
     if outcome.campaign.run:
         yield _Long("friction.csv", of_runs(segments), ("run", *_SEGMENT))
-        yield _Long("stick_slip.csv", of_runs(slip), ("run", "segment"))
+        yield _Long("stick_slip.csv", slip, ("run", "segment"))
         yield _Long("static_friction.csv", of_runs(lambda run: run.starts), ("run", "segment"))
         settled = of_runs(lambda run: (each.row() for each in run.facts.running_in))
         yield _Long("running_in.csv", settled)
         yield _Long("stribeck.csv", of_curves(points), ("curve", *_POINT))
         parts = of_curves(lambda curve: curve.budget)
         yield _Long("uncertainty_budget.csv", parts, ("curve", *_PART))
-        yield _Long("checks.csv", checks, ("run", *_CHECK))
     decided = of_runs(lambda run: (decision.row() for decision in run.facts.decisions))
     yield _Long("decisions.csv", decided)
-
-    def as_found(record: CurveRecord) -> Iterable[Row]:
-        return _saying(record.uncertainty_says, map(plain_value, record.points_as_found))
-
-    yield _Long(CURVES_AS_FOUND, of_curves(as_found))

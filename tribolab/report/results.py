@@ -16,7 +16,7 @@ from tribolab.figures.spec import FigureSpec
 from tribolab.records.part_records import CurveRecord, FigureRecord, ModelRecord, SurfaceRecord
 from tribolab.records.parts import Notice
 from tribolab.records.runs.run_record import RunRecord
-from tribolab.report.campaign_tables import write_findings, write_tables
+from tribolab.report.campaign_tables import write_checks, write_tables
 from tribolab.report.document.decisions import curve_notices
 from tribolab.report.document.document import brief_run, report_document, report_head, write_json
 from tribolab.report.document.models import model_rows_of
@@ -117,7 +117,7 @@ def write_report(
     subjects = figure_subjects(outcome, shown, list(rows.values()), modes, fitted)
     making = begun_live_figures(subjects, store, executor)
     # while workers draw
-    write_tables(outcome, shown, surfaces, rows, fitted)
+    write_tables(outcome, shown, surfaces, rows)
     prepare_page()
     records, undrawn = making()
     findings += undrawn
@@ -138,7 +138,7 @@ def write_report(
             drawn[key_of(figure)].append(figure)
 
     ordered = sorted(findings, key=lambda finding: SEVERITIES.index(finding.severity))
-    write_findings(ordered, folder)
+    write_checks(outcome, ordered, folder)
     named = {surface.outcome.name: surface.rows for surface in surfaces}
     head = report_head(
         outcome,

@@ -13,18 +13,12 @@ import pandas as pd
 
 from tribolab.core.errors import ReadError, brief
 from tribolab.core.provenance import escape_controls
-from tribolab.records.parts import Notice, Row
+from tribolab.records.parts import Row
 
 _CHUNK = 4_000  # rows that are in memory at once
 SEVERITIES = ("fail", "error", "suspect", "note")
 
 CURVE_LABELS = ["surface", "medium", "nominal_normal_force_N"]
-
-
-def findings_table(findings: Iterable[Notice]) -> pd.DataFrame:
-    """Return the findings, the gravest first, otherwise in their order."""
-    ordered = sorted(findings, key=lambda finding: SEVERITIES.index(finding.severity))
-    return pd.DataFrame(ordered, columns=list(Notice._fields))
 
 
 # What a spreadsheet takes for a formula at the beginning of a cell; and our own sign, so that

@@ -310,16 +310,18 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
     """Show what a campaign came to, with the tracebacks of crashes if `debug`; return exit code."""
     # late: starting stays quick
     from tribolab.app import terminal
+    from tribolab.app.running_in_table import running_in_table
     from tribolab.qc.findings import exit_code
 
     say(terminal.verdict_line(outcome))
     table = terminal.outcome_table(outcome)
     if table.row_count:
         terminal.console().print(table)
-    points = terminal.points_table(outcome)
-    if points is not None:
-        terminal.console().print()
-        terminal.console().print(points)
+    for more in (running_in_table(outcome), terminal.points_table(outcome)):
+        if more is not None:
+            terminal.console().print()
+            terminal.console().print(more)
+            break
     for line in terminal.outcome_lines(outcome):
         say(line)
     for line in terminal.where_to_look(outcome):
@@ -332,6 +334,7 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
     for crash in crashes if debug else ():
         say(crash, to_stderr=True)
     nothing = bool(outcome.campaign.run) and not outcome.segments
+    nothing = nothing and not any(run.ramp for run in outcome.runs)
     if nothing and len(outcome.failed) < len(outcome.runs):  # else it is told why none was read
         say(
             "tribolab: no run contains a segment of constant speed; in [segments], `drift` and "

@@ -38,7 +38,8 @@ _MANY = 12  # files, from which on it pays to start other processes
 
 def check(
     files: Annotated[
-        list[Path], typer.Argument(help="Runs (the two logs of one are one run) and scans.")
+        list[Path],
+        typer.Argument(help="Runs (the two logs of one are one run), scans, folders, campaigns."),
     ],
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout.")] = False,
     fail_on: Annotated[
@@ -66,7 +67,8 @@ def check(
 ) -> None:
     """Say whether runs and scans are usable, while the sample is still mounted.
 
-    What is wrong, where, how badly, and what to do. Nothing is written.
+    What is wrong, where, how badly, and what to do. Nothing is written. A folder or a campaign file
+    stands for its raw files; limits and segments of a campaign count in `tribolab run`.
 
         tribolab check raw/friction/sb-r_dry_31N_01_*.csv
 
@@ -82,12 +84,18 @@ def check(
             from tribolab.app import checks
 
         stated = Stated.of(load, radius, speed, rate)
+        parts = checks.raw_files_of(files)
+        files = [file for part, _ in parts for file in part]
         instrument = instrument or describe_with(stated, files)
         code = checks.code_of([], fail_on)  # a wrong level is told before the work
         with progress_bars(quiet) as progress, _pool(jobs, files) as pool:
-            checked = checks.check_files(
-                files, instrument, repeats=repeats, executor=pool, progress=progress
-            )
+            checked = [
+                one
+                for part, named in parts
+                for one in checks.check_files(
+                    part, instrument or named, repeats=repeats, executor=pool, progress=progress
+                )
+            ]
         code = checks.code_of(checked, fail_on)
         if as_json:
             say(checks.as_json(checked, fail_on))

@@ -1,4 +1,4 @@
-"""Results of a simulated campaign beside all that is known of it: its truth, and the paper."""
+"""Results of a simulated campaign next to its truth."""
 
 from __future__ import annotations
 
@@ -7,45 +7,43 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import pandas as pd
+
 from tribolab.app.truth.friction import TruthComparison, compare_with_truth
 from tribolab.app.truth.shear_stress import compare_shear_stress
 from tribolab.app.truth.surfaces import compare_surfaces
 from tribolab.report import tables
-from tribolab.studies.comparison import compare_with_paper
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from tribolab.campaign.store.outcome import Outcome
+
+TRUTH = "truth.csv"  # next to truth/
 
 
 @dataclass(frozen=True)
 class DemoComparison:
-    """Results of a simulated campaign beside what is known.
+    """Results of a simulated campaign next to its truth.
 
     Parameters
     ----------
     folder
         The campaign's folder.
     runs
-        Segments beside the true ones.
+        Segments next to the true ones.
     surfaces
-        Roughness and contact beside the true ones.
+        Roughness and contact next to the true ones.
     shear_stress
-        Fitted shear stresses beside the true ones.
-    paper
-        The paper's numbers beside computed ones.
+        Fitted shear stresses next to the true ones.
     """
 
     folder: Path
     runs: TruthComparison
     surfaces: pd.DataFrame
     shear_stress: pd.DataFrame
-    paper: pd.DataFrame
 
 
 def compare_with_known(
-    outcome: Outcome, folder: Path, paper: pd.DataFrame, executor: Executor | None = None
+    outcome: Outcome, folder: Path, executor: Executor | None = None
 ) -> DemoComparison:
     """Compare a simulated campaign's results with its truth.
 
@@ -55,32 +53,34 @@ def compare_with_known(
         Results whose data files lie in ``outcome.folder``.
     folder
         The simulated campaign's folder.
-    paper
-        From `compare_with_paper`.
     executor
         Where the runs are compared; without one it is done here.
     """
     runs = compare_with_truth(outcome, folder, executor)
     surfaces, stresses = compare_surfaces(outcome, folder), compare_shear_stress(outcome, folder)
-    return DemoComparison(folder, runs, surfaces, stresses, paper)
+    return DemoComparison(folder, runs, surfaces, stresses)
 
 
-def write_comparison(outcome: Outcome, compared: DemoComparison) -> None:
-    """Write ``truth*.csv`` and ``paper.csv``."""
-    for name, table in (
-        ("truth", compared.runs.table),
-        ("truth_surfaces", compared.surfaces),
-        ("truth_shear_stress", compared.shear_stress),
-    ):
-        tables.write_csv(table, Path(outcome.folder) / "tables" / f"{name}.csv", digits=9)
-    tables.write_csv(compared.paper, _paper_file(outcome), digits=6)
-
-
-def paper_of(outcome: Outcome) -> pd.DataFrame:
-    """Return the paper's table as it lies in the results; computed if it does not."""
-    there = _paper_file(outcome)
-    return tables.read_csv(there) if there.is_file() else compare_with_paper()
-
-
-def _paper_file(outcome: Outcome) -> Path:
-    return Path(outcome.folder) / "tables" / "paper.csv"
+def write_comparison(compared: DemoComparison) -> None:
+    """Write ``truth.csv`` next to ``truth/``: a row per segment, roughness and shear stress."""
+    segments = pd.DataFrame(
+        {
+            "part": compared.runs.table["run"],
+            "quantity": "friction_coefficient",
+            "speed_m_s": compared.runs.table["true_sliding_speed_m_s"],
+            "start_s": compared.runs.table["true_start_s"],
+            "true": compared.runs.table["true_friction_coefficient"],
+            "found": compared.runs.table["friction_coefficient"],
+            "found_sem": compared.runs.table["friction_coefficient_sem"],
+            "says": compared.runs.table["status"],
+        }
+    )
+    surfaces = compared.surfaces.rename(columns={"surface": "part", "within_bounds": "says"})
+    stresses = compared.shear_stress.rename(columns=lambda name: name.removesuffix("_Pa")).rename(
+        columns={"curve": "part", "within_interval": "says"}
+    )
+    stresses = stresses.drop(columns=["surface", "medium"]).assign(quantity="shear_stress_Pa")
+    bounded = pd.concat([surfaces, stresses]).drop(columns="relative_difference")
+    bounded["says"] = bounded["says"].map({1: "within the bounds", 0: "outside of the bounds"})
+    every = pd.concat([segments, bounded], ignore_index=True)
+    tables.write_csv(every, compared.folder / TRUTH, digits=9)

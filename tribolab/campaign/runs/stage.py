@@ -28,6 +28,7 @@ from tribolab.friction.decisions.rejected import rejected
 from tribolab.records.parts import Notice, PageTrace, Row, RunOutcome, RunZero, Source
 from tribolab.records.runs.run_record import RunFacts, RunRecord
 from tribolab.records.runs.traces import page_trace, trace_size
+from tribolab.records.verdict import is_ramp
 
 _KIND = "run"
 
@@ -255,11 +256,19 @@ def process_run(task: RunTask) -> RunAnswer:
         quality=analysed.quality,
         segments_rejected=int(rejected(segments).sum()),
         quality_as_found=analysed.quality_as_found,
+        ramp=_is_ramp(facts, segments.sizes["segment"]),
     )
     zero = zero_of(friction.attrs, signals.attrs, run.instrument)
     sources = sources_of_run(run, signals.attrs)
     record = RunRecord(outcome, sources, zero, facts, (*notices, *why), rows, starts, course)
     return RunAnswer(record, trace)
+
+
+def _is_ramp(facts: RunFacts, segments: int) -> bool:
+    """Whether the speed rises or falls for most of a run."""
+    omitted = [vars(part) for part in facts.omitted]
+    found = {"segments_found": segments, "omitted": omitted, "duration_s": facts.duration_s}
+    return is_ramp(found)
 
 
 def _add_dead_weight_gain(facts: RunFacts, run: PlannedRun, signals: xr.Dataset) -> RunFacts:

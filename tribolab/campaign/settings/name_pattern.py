@@ -8,6 +8,7 @@ import regex
 
 _FIELD = re.compile(r"\{([^{}]*)\}|(\*)")
 _LABEL = r"[^\W_]+(?:[+#][^\W_]*)*"  # letters and digits: _ - . and spaces part the labels
+_MARKS = "_- "  # that separate whole words
 _SECONDS = 0.5
 _MOST_STARS = 6
 
@@ -20,7 +21,8 @@ class NamePattern:
     text
         ``{label}`` stands for letters and digits, ``*`` for anything, all else for itself.
     whole_words
-        Whether labels reach to the next ``_``, and the first one over it if need be.
+        Whether labels reach to the mark that follows them in the pattern (``_``, ``-`` or a
+        space), and the first one over it if need be.
 
     Raises
     ------
@@ -33,6 +35,8 @@ class NamePattern:
     {'mount': 'm2', 'operator': 'ann'}
     >>> NamePattern("*_{mount}_{operator}").labels("other")
     {}
+    >>> NamePattern("{surface}-{repeat}", whole_words=True).labels("sb_r-2")
+    {'surface': 'sb_r', 'repeat': '2'}
     """
 
     def __init__(self, text: str, *, whole_words: bool = False) -> None:
@@ -49,7 +53,8 @@ class NamePattern:
         if text.count("*") > _MOST_STARS:
             raise ValueError(f"more than {_MOST_STARS} * are too many")
         parts, end = [], 0
-        first, other = (".+", "[^_]+") if whole_words else (_LABEL, _LABEL)
+        mark = next((each for each in _MARKS if f"}}{each}{{" in text), _MARKS[0])
+        first, other = (".+", f"[^{re.escape(mark)}]+") if whole_words else (_LABEL, _LABEL)
         for gap in _FIELD.finditer(text):
             parts.append(re.escape(text[end : gap.start()]))
             label = first if gap[1] == names[0] else other

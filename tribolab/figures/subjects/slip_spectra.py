@@ -115,8 +115,9 @@ def slip_spectrogram(slips: Mapping[str, xr.Dataset]) -> FigureSpec:
     >>> import tribolab as tl
     >>> run = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
     >>> slip = tl.stick_slip(run, tl.find_segments(run))
-    >>> tl.plot.figure_data(slip_spectrogram({"dry": slip})).panel.unique().tolist()
-    ['dry']
+    >>> drawn = tl.plot.figure_data(slip_spectrogram({"dry": slip}))
+    >>> drawn.panel.unique().tolist(), "log10_power_over_noise" in drawn
+    (['dry'], True)
     """
     levels = {label: power_levels(slip) for label, slip in slips.items()}
     shown = {label: level for label, level in levels.items() if level is not None}
@@ -125,7 +126,10 @@ def slip_spectrogram(slips: Mapping[str, xr.Dataset]) -> FigureSpec:
     y = Axis("frequency f", "Hz", log=True, column="frequency_Hz")
     series = []
     for panel, (label, (speed, frequency, level)) in enumerate(shown.items()):
-        series.append(Series(label, speed, frequency, "heat", BLACK, panel, high=level))
+        columns = {"sliding_speed_m_s": speed, "frequency_Hz": frequency}
+        columns["log10_power_over_noise"] = level
+        heat = Series(label, speed, frequency, "heat", BLACK, panel, high=level, columns=columns)
+        series.append(heat)
         slip = slips[label]
         dominant = slip["dominant_frequency"].values
         if np.isfinite(dominant).any():

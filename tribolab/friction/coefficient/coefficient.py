@@ -189,7 +189,13 @@ def _name(run: xr.Dataset) -> str:
 
 
 def belong(run: xr.Dataset, segments: xr.Dataset) -> None:
-    """Raise an error if the segments belong to another run."""
+    """Raise an error if these are no segments, or those of another run."""
+    if "segment" not in getattr(segments, "sizes", ()):
+        raise AnalysisError(
+            f"a {type(segments).__name__} without segments was given as segments",
+            where=_name(run),
+            cure=Cure(notebook="give what tl.find_segments(run) returns"),
+        )
     mine, theirs = (d.attrs.get("source_sha256") for d in (run, segments))
     outside = False
     if segments.sizes["segment"]:

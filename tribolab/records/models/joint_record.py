@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated
 
 from tribolab.records.annotations import means, one_of
-from tribolab.records.parts import HasStatus, Row
+from tribolab.records.parts import HasStatus
 
 if TYPE_CHECKING:
     from tribolab.fit.joint.comparison import ModelComparison
@@ -155,31 +154,6 @@ def model_rows_of_comparison(comparison: ModelComparison) -> tuple[JointModelRow
         )
         for model in comparison.models
     )
-
-
-def parameter_table_rows(records: Sequence[JointRecord]) -> list[Row]:
-    """Rows of the table of joint fits."""
-    return [
-        {
-            "fit": record.name,
-            "surface": row.surface or record.surface,
-            "medium": record.medium,
-            "reference_speed_m_s": record.reference_speed_m_s,
-            "reference_load_N_m": record.reference_load_N_m,
-            **{key: value for key, value in vars(row).items() if key != "surface"},
-        }
-        for record in records
-        for row in record.parameters
-    ]
-
-
-def comparison_table_rows(records: Sequence[JointRecord]) -> list[Row]:
-    """Rows of the table of compared models."""
-    return [
-        {"fit": record.name, "surface": record.surface, "medium": record.medium, **vars(row)}
-        for record in records
-        for row in record.models
-    ]
 
 
 def _known(value: float) -> float | None:

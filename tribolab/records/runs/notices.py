@@ -19,6 +19,7 @@ from tribolab.records.parts import Notice
 from tribolab.records.runs.decision_rows import decision_notices
 from tribolab.records.runs.notice_words import (
     DOUBTFUL_COLUMNS,
+    LEFT_OUT,
     RUNNING_IN,
     STEPS,
     STICK_SLIP,
@@ -115,7 +116,7 @@ def notices_of(
         say("note", STROKE_ENDS, f"{text}: {duration(whole - used)} of {duration(whole)}{slow}")
     for entry in left_out(segments):
         text = f"{many(entry.intervals, 'interval')}, {duration(entry.duration_s)}"
-        say("note", "left out", f"{entry.reason}: {text}")
+        say("note", LEFT_OUT, f"{entry.reason}: {text}")
     if inertia := inertia_said(run.attrs):
         say("note", "inertia", inertia)
     if slip is not None and (distance := distance_to_critical(slip)):

@@ -115,7 +115,9 @@ class RunningIn:
             )
         mean = number(self.mean_friction_coefficient or 0.0)
         cure = 'State steady = "auto" in [segments] to leave the rest out'
-        return f"{' '.join(parts)}; the mean over all is {mean}. {cure}"
+        return (
+            f"{' '.join(parts)}; the mean over the whole run, its ends included, is {mean}. {cure}"
+        )
 
     def row(self) -> Row:
         """Return the running-in as a row of a table."""

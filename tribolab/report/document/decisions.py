@@ -9,7 +9,6 @@ from tribolab.friction.points.limits import SPEED_TOLERANCE
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import Notice, number_of
 
-CURVES_AS_FOUND = "stribeck_as_found.csv"  # table of the curves without decisions
 _SPEED, _MU = "sliding_speed_m_s", "friction_coefficient"
 
 
@@ -29,7 +28,7 @@ def curve_notices(curve: CurveRecord) -> list[Notice]:
         parts.append(f"leave {many(lost, 'speed')} without µ")
     what = f"decisions {' and '.join(parts)}" if parts else "decisions change what it depends on"
     members = "; ".join(curve.outcome.run_names)
-    text = f"{what}; the curve without them: tables/{CURVES_AS_FOUND}"
+    text = f"{what}; report.json has the curve without them (points_as_found)"
     return [Notice("note", members, curve.outcome.name, text)]
 
 

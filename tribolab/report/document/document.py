@@ -16,8 +16,10 @@ from pydantic import TypeAdapter
 from tribolab.core.provenance import sha256_of_file
 from tribolab.core.untyped import Json
 from tribolab.core.wording import load_label, many, span
+from tribolab.friction.running_in.kinds import NONE
 from tribolab.records.judgement import THRESHOLDS, is_bad, status_word
 from tribolab.records.parts import Row
+from tribolab.records.verdict import is_ramp
 from tribolab.records.wording import SYMBOLS, UNITS, plain_value
 from tribolab.report.document.schema import (
     CampaignFile,
@@ -149,7 +151,7 @@ def verdict(
     segments_rejected = sum(run["segments_rejected"] for run in done)
     quantities = {run["quantity"] for run in sound if run["value_min"] is not None}
     kept = sum(bool(run.get("kept")) for run in done)
-    empty = sum(run["value_min"] is None for run in sound)
+    empty = sum(run["value_min"] is None and not is_ramp(run) for run in sound)
     status = "incomplete" if done else "nothing"
     if done and not (failed or rejected or empty or rejected_scans or kept or lost_decisions):
         status = "complete"
@@ -179,8 +181,10 @@ def verdict(
             mine = [run for run in sound if run["quantity"] == name]
             known = _bounds(mine)
             ranges[name] = Extent(min(known), max(known))
-            told = _ranges(mine, UNITS[name])
-            parts.append(f"{SYMBOLS[name]} {'from ' if ' to ' in told else ''}{told}")
+            steady = _steady(mine) if name == "friction_coefficient" else []
+            told = span(steady, "") if steady else _ranges(mine, UNITS[name])
+            of = f"steady {SYMBOLS[name]}" if steady else SYMBOLS[name]
+            parts.append(f"{of} {'from ' if ' to ' in told else ''}{told}")
     return CampaignVerdict(
         status=status,
         text="; ".join(parts),
@@ -219,6 +223,15 @@ _BAD = ("fail", "error")
 def _bounds(runs: Iterable[Mapping[str, Any]]) -> list[float]:
     bounds = [run[key] for run in runs for key in ("value_min", "value_max")]
     return [bound for bound in bounds if bound is not None]
+
+
+def _steady(runs: Iterable[Mapping[str, Any]]) -> list[float]:
+    """Return the steady friction of runs that all run in; none if one does not."""
+    settled = [run.get("running_in", ()) for run in runs]
+    if not all(len(rows) == 1 and rows[0]["verdict"] != NONE for rows in settled):
+        return []
+    steady = [rows[0]["steady_friction_coefficient"] for rows in settled]
+    return [] if None in steady else steady
 
 
 def _ranges(runs: Sequence[Mapping[str, Any]], unit: str) -> str:

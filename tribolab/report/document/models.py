@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from tribolab.core.untyped import Json
-from tribolab.records.models.model_rows import FITTED, MODEL_LABELS
+from tribolab.records.models.model_rows import MODEL_LABELS
 from tribolab.records.part_records import ModelRows
 
 if TYPE_CHECKING:
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 _95 = 1.959963984540054
 _STATISTICAL = "statistical only: the spectrum's error is not in it"
-_FITTED = tuple(FITTED)
 BESIDE_FIT = {  # what only several models or the surface tell, and what it means
     "area_dry_over_wet": "real contact area, dry divided by in the medium",
     "judgement": "where measurement and model differ, in words",
@@ -34,13 +33,10 @@ BESIDE_FIT = {  # what only several models or the surface tell, and what it mean
     "ratio_error": "",
 }
 SHEAR_STRESS = [
-    "curve",
-    *MODEL_LABELS,
-    *_FITTED[:5],
-    *("spectrum_error_low", "spectrum_error_high", "spectrum_error_from"),
-    *("shear_stress_low_Pa", "shear_stress_high_Pa"),
-    *_FITTED[5:],
-    *("area_dry_over_wet", "ratio_to", "ratio", "ratio_error", "judgement"),
+    *("curve", *MODEL_LABELS),
+    *("shear_stress_Pa", "shear_stress_error_Pa", "shear_stress_low_Pa", "shear_stress_high_Pa"),
+    *("corrected_shear_stress_Pa", "corrected_shear_stress_error_Pa", "area"),
+    *("valid_speed_low_m_s", "valid_speed_high_m_s", "judgement"),
 ]
 _CURVE = [
     "curve",
@@ -62,7 +58,6 @@ SENSITIVE = {  # columns of a variation, and what they mean
     "shear_stress_change_high": "",
     "reason": "",
 }
-_SENSITIVITY = ["curve", *MODEL_LABELS, *SENSITIVE]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -161,7 +156,7 @@ def _kind(model: ModelOutcome) -> tuple[str, str]:
 
 
 def shear_stress_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
-    """Return all fits, a row each."""
+    """Return the fitted shear stress of each curve; report.json has all of the fits."""
     fits = [row.labels | row.fit for row in rows if row.fit is not None]
     return pd.DataFrame(fits, columns=SHEAR_STRESS)
 
@@ -170,9 +165,3 @@ def model_curve_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
     """Return all model curves, a row per speed."""
     points = [model.labels | row for model in rows for row in model.curve]
     return pd.DataFrame(points, columns=_CURVE)
-
-
-def sensitivity_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
-    """Return what moves the curves, a row per variation."""
-    varied = [model.labels | row for model in rows for row in model.sensitivity]
-    return pd.DataFrame(varied, columns=_SENSITIVITY)

@@ -109,8 +109,16 @@ def pattern_of_names(names: Sequence[str]) -> str | None:
     '{surface}_{medium}_{normal_force}_{repeat}'
     >>> pattern_of_names(["POD_PTFE_steel_1", "POD_PTFE_steel_2"]), pattern_of_names(["a", "b7"])
     ('{surface}_{repeat}', None)
+    >>> pattern_of_names(["gel-water-1", "gel-water-2"]), pattern_of_names(["gel 1", "gel 2"])
+    ('{surface}-{medium}-{repeat}', '{surface} {repeat}')
     """
-    rows = [name.split("_") for name in names]
+    patterns = (_pattern_parted_by(mark, names) for mark in "_- ")
+    return next(filter(None, patterns), None)
+
+
+def _pattern_parted_by(mark: str, names: Sequence[str]) -> str | None:
+    """Return the pattern of names whose labels a mark separates; None if they follow none."""
+    rows = [name.split(mark) for name in names]
     found: list[str] = []
     while rows and min(map(len, rows)) > 1:
         label = _label_of([row[-1] for row in rows])
@@ -120,7 +128,7 @@ def pattern_of_names(names: Sequence[str]) -> str | None:
         rows = [row[:-1] for row in rows]
     if not found:
         return None
-    return "_".join(f"{{{label}}}" for label in ("surface", *found))
+    return mark.join(f"{{{label}}}" for label in ("surface", *found))
 
 
 def _label_of(words: Sequence[str]) -> str:
