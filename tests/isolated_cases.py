@@ -37,6 +37,11 @@ def never_end(path: Path):
 
 
 @isolated()
+def leave_a_trace(path: Path):
+    path.with_name("trace").write_text("was called")
+
+
+@isolated()
 def complain(path: Path):
     raise ReadError("no table", where=path, cure="describe it")
 

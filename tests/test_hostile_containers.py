@@ -1,12 +1,13 @@
 """Files that reach for other files, or for all of the machine, cost one message each."""
 
+import os
 import zipfile
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
-from hostile.outside import SECRET, WAYS, foreign_filter, secret, write
+from hostile.outside import SECRET, WAYS, external, foreign_filter, reference, secret, write
 
 import tribolab as tl
 from tribolab.core.errors import ReadError
@@ -31,6 +32,44 @@ def test_data_from_another_file_are_refused_by_name_by_every_reader(way, ending,
             reader(path)
         assert "tribolab reads no data from outside a file" in str(caught.value)
         assert SECRET[:10] not in str(caught.value)
+
+
+@pytest.mark.parametrize("user_block", [1024, 65536])
+def test_hdf5_behind_a_long_user_block_is_looked_at(user_block, away, tmp_path):
+    """The library looks for it at 512, 1024, 2048 ... bytes."""
+    path = tmp_path / "a.mat"
+    write(path, external, away, user_block)
+    for reader in (tl.read, tl.read_scans, read_netcdf):
+        with pytest.raises(ReadError, match="is stored in another file"):
+            reader(path)
+
+
+def test_a_zip_archive_that_is_hdf5_too_is_refused(away, tmp_path):
+    write(tmp_path / "a.mat", external, away)
+    content = (tmp_path / "a.mat").read_bytes()
+    with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
+        archive.writestr(zipfile.ZipInfo("a" * (512 - 30)), content[512:])
+    with pytest.raises(ReadError, match="is stored in another file"):
+        check_self_contained(tmp_path / "a.zip")
+
+
+def test_a_dataset_to_which_a_reference_alone_leads_is_refused(away, tmp_path):
+    write(tmp_path / "a.mat", reference, away)
+    with pytest.raises(ReadError, match=r"'run/Fx_N\(1\)' is stored in another file"):
+        tl.read(tmp_path / "a.mat")
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="children are copies on POSIX only")
+def test_what_cannot_be_checked_is_not_read(tmp_path, monkeypatch):
+    """A function that would read it is not called."""
+    import isolated_cases as cases
+
+    monkeypatch.syspath_prepend(str(Path(cases.__file__).parent))
+    for name, head in (("a.h5", b"\x89HDF\r\n\x1a\n"), ("a.zip", b"PK\x03\x04")):
+        (tmp_path / name).write_bytes(head + b"damaged" * 9)
+        with pytest.raises(ReadError, match=f"{name}: this .* cannot be read"):
+            cases.leave_a_trace(tmp_path / name)
+    assert len(list(tmp_path.iterdir())) == 2
 
 
 def test_a_filter_that_is_not_the_librarys_is_refused(tmp_path):

@@ -66,6 +66,23 @@ def virtual(file: Any, away: Path) -> None:
     file.create_virtual_dataset("Fx [N]", layout)
 
 
+def reference(file: Any, away: Path) -> None:
+    """Refer to forces in the text, as MATLAB does to fields; no link leads to them."""
+    import ctypes
+
+    import h5py
+
+    library = ctypes.CDLL(h5py.h5o.__file__)
+    library.H5Oincr_refcount.argtypes = [ctypes.c_int64]
+    away_size = away.stat().st_size // 8
+    stored = {"external": [(str(away), 0, 8 * away_size)]}
+    for name, more in (("time_s", {}), ("Fx_N", stored)):
+        hidden = file.create_dataset(None, (away_size, 1), "f8", **more)
+        assert library.H5Oincr_refcount(hidden.id.id) >= 0  # else it goes when the file is closed
+        field = file.create_dataset(f"run/{name}", (1,), dtype=h5py.ref_dtype)
+        field[0] = hidden.ref
+
+
 def foreign_filter(file: Any, away: Path) -> None:
     """Pack the forces with a filter that HDF5 would load from a plugin."""
     import h5py
@@ -82,12 +99,12 @@ WAYS: list[Way] = [
 ]
 
 
-def write(path: Path, way: Way, away: Path) -> None:
+def write(path: Path, way: Way, away: Path, user_block: int = 512) -> None:
     """Write a file of the kind that its ending says, with data from elsewhere."""
     import h5py
 
     is_mat = path.suffix == ".mat"
-    with h5py.File(path, "w", userblock_size=512 if is_mat else 0) as file:
+    with h5py.File(path, "w", userblock_size=user_block if is_mat else 0) as file:
         file["Time [s]"] = np.arange(100) / 10
         way(file, away)
     if is_mat:
@@ -95,7 +112,7 @@ def write(path: Path, way: Way, away: Path) -> None:
             raw.write(b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM")
 
 
-for _way in (*WAYS, foreign_filter):
+for _way in (*WAYS, foreign_filter, reference):
     for _ending in ("h5", "nc", "mat"):
         for _command in ("info", "check", "run"):
 

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
+import math
 import tempfile
 from collections.abc import Iterator
 from itertools import zip_longest
 from pathlib import Path
-
-import xarray as xr
 
 from tribolab.app.run import run_campaign
 from tribolab.archive.contents import campaign_of
@@ -19,6 +18,7 @@ from tribolab.campaign.store.data_files import digest
 from tribolab.campaign.store.ledger import Ledger, repair
 from tribolab.comparison.folder import open_folder
 from tribolab.core.errors import ConfigError, OutputError, ReadError, brief
+from tribolab.reading.netcdf.netcdf import read_short
 from tribolab.version import __version__
 
 # what says when and where it was made, not what came out
@@ -118,7 +118,7 @@ def _differing(there: Path, made: Path, name: str) -> list[str]:
             at = _unlike_data(there, made)
         else:
             at = "" if there.read_bytes() == made.read_bytes() else "its numbers"
-    except (OSError, ValueError, LookupError) as error:
+    except (OSError, ValueError, LookupError, ReadError) as error:
         return [f"{name}: cannot be read ({brief(error)})"]
     return [f"{name}: not what the raw files give, first at {at}"] if at else []
 
@@ -136,12 +136,8 @@ def _unlike(one: object, other: object, at: str = "") -> Iterator[str]:
 
 
 def _unlike_data(there: Path, made: Path) -> str:
-    one, other = (xr.open_groups(path) for path in (there, made))
-    try:
-        if set(one) != set(other):
-            return "its groups"
-        unlike = (group for group in sorted(one) if digest(one[group]) != digest(other[group]))
-        return next((f"group {group}" for group in unlike), "")
-    finally:
-        for data in (*one.values(), *other.values()):
-            data.close()
+    one, other = (read_short(path, math.inf) for path in (there, made))
+    if set(one) != set(other):
+        return "its groups"
+    unlike = (group for group in one if digest(one[group]) != digest(other[group]))
+    return next((f"group {group or '/'}" for group in unlike), "")

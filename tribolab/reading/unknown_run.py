@@ -16,6 +16,7 @@ from tribolab.core.errors import LacksError, ReadError, shown
 from tribolab.reading import cures
 from tribolab.reading.dialect.find import Dialect, Instrument, UnknownFileError
 from tribolab.reading.interpret.unit_texts import converts, measures_something
+from tribolab.reading.raw.opening import CrashedError, RefusedError
 from tribolab.reading.raw.source import read_unchanged
 from tribolab.reading.runs import read_run as runs
 from tribolab.reading.signals import Signals
@@ -131,6 +132,8 @@ def _drafted(path: Path, error: UnknownFileError) -> Dialect:
 
     try:
         draft = _drafted_once(path)
+    except (RefusedError, CrashedError):
+        raise
     except (ReadError, OSError, ImportError) as reason:
         if peek(path).format != "text" or not isinstance(reason, ReadError):
             raise error from reason

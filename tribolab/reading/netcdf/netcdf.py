@@ -230,7 +230,7 @@ def _read_groups(
     return datasets
 
 
-def read_short(path: str | Path, most: int) -> dict[str | None, xr.Dataset]:
+def read_short(path: str | Path, most: float) -> dict[str | None, xr.Dataset]:
     """Read all groups of a file that are short, and its root if that is.
 
     Parameters
@@ -238,7 +238,7 @@ def read_short(path: str | Path, most: int) -> dict[str | None, xr.Dataset]:
     path
         The file.
     most
-        Values that a group may have in all its variables.
+        Values that a group may have in all its variables; infinity for all groups.
 
     Raises
     ------
@@ -249,7 +249,7 @@ def read_short(path: str | Path, most: int) -> dict[str | None, xr.Dataset]:
 
 
 @isolated("netCDF4", "h5py", "xarray")
-def _read_short(path: Path, most: int) -> dict[str | None, xr.Dataset]:
+def _read_short(path: Path, most: float) -> dict[str | None, xr.Dataset]:
     with _whole(path) as file:
         short: list[str | None] = [None] if _values(file) <= most else []
         short += [name for name, group in file.groups.items() if _values(group) <= most]

@@ -19,9 +19,10 @@ from tribolab.core.errors import TribolabError
 from tribolab.reading.raw import limits, opening
 from tribolab.reading.raw.child_results import LENGTH, packed_error, write_result
 from tribolab.reading.raw.hdf5_safety import refuse_outside
-from tribolab.reading.raw.opening import MissingLibraryError, RefusedError, damage_told
+from tribolab.reading.raw.opening import damage_told
 from tribolab.reading.raw.scratch import remove_scratch
 from tribolab.reading.raw.server import Ended, Job
+from tribolab.reading.raw.unpacked import ZIP
 from tribolab.reading.raw.zip_safety import refuse_bomb
 
 _DONE, _ERROR, _NO_MEMORY, _TOO_LARGE = 0, 3, 4, 5
@@ -142,21 +143,16 @@ def _work(job: Job) -> int:
 
 
 def _called(function: Callable[..., Any], job: Job) -> Any:
-    """Call a function that reads; what it returns of a file that cannot be checked is not used."""
-    path, unchecked = Path(job.arguments[0]), None
-    try:
-        with path.open("rb") as file:
-            is_zip = file.read(4) == b"PK\x03\x04"
-        refuse_bomb(path) if is_zip else refuse_outside(path)
-    except (RefusedError, MissingLibraryError, MemoryError):
-        raise
-    except Exception as error:  # damaged: its reader says more
-        unchecked = error
-    result = function(*job.arguments, **job.keywords)
-    if unchecked is not None:
-        with damage_told(path, "file"):
-            raise unchecked
-    return result
+    """Call a function that reads, on a file that is checked: one that cannot be is not read."""
+    path, is_zip = Path(job.arguments[0]), False
+    with damage_told(path, "file"), path.open("rb") as file:
+        is_zip = file.read(len(ZIP)) == ZIP
+    if is_zip:
+        with damage_told(path, "zip archive"):
+            refuse_bomb(path)
+    with damage_told(path, "HDF5 or netCDF file"):  # a zip archive can be one, too
+        refuse_outside(path)
+    return function(*job.arguments, **job.keywords)
 
 
 def _waited(pid: int, seconds: float) -> int | None:

@@ -14,6 +14,7 @@ from tribolab.reading.raw import limits
 from tribolab.reading.raw.opening import RefusedError, isolated, missing
 
 _HDF5 = b"\x89HDF\r\n\x1a\n"
+_USER_BLOCK = 512  # bytes, the shortest
 _CLASSIC = b"CDF"
 _BYTES = {3: 2, 4: 4, 5: 4, 6: 8, 8: 2, 9: 4, 10: 8, 11: 8}  # of a number, by its type; else 1
 # registered numbers of the filters in the library (deflate, shuffle, fletcher32, szip, nbit,
@@ -57,7 +58,7 @@ def refuse_outside(path: Path) -> None:
             raise RefusedError(
                 f"{path}: more than {limits.COLUMNS.value:.0f} variables are no measurement"
             )
-    if head != _HDF5 and not _has_user_block(path):
+    if not is_hdf5(path):
         return
     try:
         # late: h5py takes long to load
@@ -76,11 +77,7 @@ def refuse_outside(path: Path) -> None:
             "their own"
         )
     if look.found:
-        name, what = look.found
-        raise RefusedError(
-            f"{path}: '{shown(name, 80)}' is {what}; tribolab reads no data from outside a file. "
-            "Save a copy that holds its own data (h5repack, or read it and write it again)"
-        )
+        raise refused(path, *look.found)
 
 
 def _variables_of_classic(file: BinaryIO, version: int) -> int:
@@ -119,11 +116,54 @@ def _variables_of_classic(file: BinaryIO, version: int) -> int:
         return 0
 
 
-def _has_user_block(path: Path) -> bool:
-    """Whether HDF5 begins at 512 bytes, as in MAT 7.3."""
+def is_hdf5(path: Path) -> bool:
+    """Whether HDF5 begins at 0, 512, 1024, 2048 ... bytes: the library looks at all of them.
+
+    References
+    ----------
+    HDF5 File Format Specification 3.0, section II.A: the superblock follows a user block.
+    """
     with path.open("rb") as file:
-        file.seek(512)
-        return file.read(len(_HDF5)) == _HDF5
+        size, place = file.seek(0, 2), 0
+        while place < size:
+            file.seek(place)
+            if file.read(len(_HDF5)) == _HDF5:
+                return True
+            place = max(2 * place, _USER_BLOCK)
+    return False
+
+
+def foreign_storage(h5: Any, item: Any) -> str:
+    """Say how a dataset takes its data from elsewhere; "" if it does not.
+
+    Parameters
+    ----------
+    h5
+        The library h5py.
+    item
+        Identifier of a dataset; one of anything else has no storage.
+    """
+    if not isinstance(item, h5.h5d.DatasetID):
+        return ""
+    made = item.get_create_plist()
+    if made.get_external_count():
+        name = made.get_external(0)[0].decode(errors="replace")
+        return f"stored in another file ({shown(name, 60)})"
+    if made.get_layout() == h5.h5d.VIRTUAL:
+        return "a virtual dataset, which shows parts of other files"
+    for number in range(made.get_nfilters()):
+        code = made.get_filter(number)[0]
+        if code not in _OWN_FILTERS:
+            return f"packed with filter {code}, which is not part of the HDF5 library"
+    return ""
+
+
+def refused(path: Path, name: str, what: str) -> RefusedError:
+    """Return the error about a dataset or link that leads out of a file."""
+    return RefusedError(
+        f"{path}: '{shown(name, 80)}' is {what}; tribolab reads no data from outside a file. "
+        "Save a copy that holds its own data (h5repack, or read it and write it again)"
+    )
 
 
 class _Look:
@@ -162,15 +202,4 @@ class _Look:
         h5 = self._h5py
         item = h5.h5o.open(self._file.id, name)
         self.count_attributes(item)
-        if not isinstance(item, h5.h5d.DatasetID):
-            return ""
-        made = item.get_create_plist()
-        if made.get_external_count():
-            return f"stored in another file ({shown(made.get_external(0)[0], 60)})"
-        if made.get_layout() == h5.h5d.VIRTUAL:
-            return "a virtual dataset, which shows parts of other files"
-        for number in range(made.get_nfilters()):
-            code = made.get_filter(number)[0]
-            if code not in _OWN_FILTERS:
-                return f"packed with filter {code}, which is not part of the HDF5 library"
-        return ""
+        return foreign_storage(h5, item)

@@ -15,6 +15,7 @@ import numpy as np
 from tribolab.reading.lexicon.lexicon import keys_of
 from tribolab.reading.raw.containers.groups import Groups
 from tribolab.reading.raw.containers.settings import plain, settings_of
+from tribolab.reading.raw.hdf5_safety import foreign_storage, refused
 from tribolab.reading.raw.model import RawColumn, RawFile
 from tribolab.reading.raw.opening import damage_told, isolated
 
@@ -131,6 +132,8 @@ class _Found:
             target = item.file[reference] if reference else None
             if not isinstance(target, self._h5py.Dataset):
                 continue
+            if what := foreign_storage(self._h5py, target.id):  # no link need lead to it
+                raise refused(Path(item.file.filename), f"{name}({number})", what)
             element = f"{group}({number})" if group else f"({number})"
             if _is_char(target):
                 self._say(element, field, _matlab_text(target))
