@@ -1,11 +1,14 @@
 """Arrangements of text that other labs write: read with their names, units and settings."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import tribolab as tl
+from tribolab.core.errors import ReadError
+from tribolab.reading.text.endless import refuse_endless
 from tribolab.reading.unknown.proposal.draft import draft_dialect, save_draft
 from tribolab.reading.unknown.proposal.questions import missing_words
 
@@ -204,3 +207,41 @@ def test_settings_may_stand_below_a_table_that_begins_the_file(tmp_path):
     )
     run = tl.read(file)
     assert run.attrs["track_radius_m"] == 0.03 and run.attrs["set_normal_force_N"] == 5
+
+
+@pytest.mark.parametrize("head", ["", "Time [s],Fx [N]\n"])
+def test_rows_of_more_cells_than_a_map_are_refused_before_a_table_is_looked_for(head, tmp_path):
+    row = ",".join(["1.5"] * 10_001) + "\n"
+    (tmp_path / "a.txt").write_text(head + 3 * row)
+    for reader in (tl.read, tl.read_scans):
+        with pytest.raises(ReadError, match=r"a\.txt: some 10001 columns are more than a"):
+            reader(tmp_path / "a.txt")
+
+
+@pytest.mark.parametrize("line", ["Load: 31 N\n", "Load of the ball on the plate\n"])
+def test_a_megabyte_of_words_above_a_table_is_refused(line, tmp_path):
+    table = "Time [s],Fx [N],Fz [N]\n" + "".join(f"{n / 10},0.5,31.0\n" for n in range(100))
+    (tmp_path / "a.txt").write_text(line * (1_100_000 // len(line)) + table)
+    with pytest.raises(ReadError, match="no line of the first megabyte is a row of numbers"):
+        tl.read(tmp_path / "a.txt")
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "2026-11-27 12:00:00;0.5;31.0",
+        '"A";0,5;31',
+        "run 7;0.5;31.0;ok",
+        "(0.5 31.0)",
+        "Fx; 0.5",
+        "-.5e-3",
+        "\x00".join("0.5 31.0\x00"),
+    ],
+)
+def test_a_megabyte_of_rows_of_numbers_is_looked_at(line):
+    head = (line + "\n").encode() * 60_000
+    refuse_endless(Path("a.txt"), head, 2 * len(head))
+
+
+def test_one_line_of_a_whole_profile_is_looked_at():
+    refuse_endless(Path("a.txt"), b"# heights\n" + b"0.5 " * 50_000 + b"\n", 200_011)

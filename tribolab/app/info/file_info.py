@@ -19,6 +19,7 @@ from tribolab.reading.dialect.find import known_dialects, load_dialect
 from tribolab.reading.interpret.missing import missing_inputs
 from tribolab.reading.kinds import kind_of
 from tribolab.reading.moduli import holds_modulus, read_modulus_table
+from tribolab.reading.raw.opening import RefusedError
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.runs.companion import CompanionFacts, describe_companion
 from tribolab.reading.runs.file_facts import FileFacts, file_facts
@@ -158,6 +159,8 @@ def _is_told(path: Path, error: ReadError) -> bool:
     from tribolab.reading.scans.formats.undescribed import is_own_text
     from tribolab.reading.unknown.proposal.questions import GuessedError, questions
 
+    if isinstance(error, RefusedError):
+        return True
     if isinstance(error, GuessedError | RefusedScanError):
         return isinstance(error, RefusedScanError)  # the other is told again
     try:

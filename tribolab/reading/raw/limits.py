@@ -48,6 +48,10 @@ COLUMNS = Limit(
     5000.0, "1", "columns of a file: a run has tens, a spectrum of time some thousand; the draft "
     "of 10 000 takes more than 10 s", "measured on text and Parquet",
 )  # fmt: skip
+COLUMNS_OF_TEXT = Limit(
+    10_000.0, "1", "cells in a line of text: a map has up to 8192; to look at rows of 20 000 takes "
+    "more than 10 s", "measured on text",
+)  # fmt: skip
 HDF5_DEPTH = Limit(100.0, "1", "groups in one another: 3000 take half a minute to look at")
 XML_DEPTH = Limit(500.0, "1", "elements of XML in one another; office files have a dozen")
 LETTERS_OF_ENTITY = Limit(

@@ -21,7 +21,7 @@ from typing import Any, ParamSpec, TypeVar
 
 from tribolab.core.errors import ReadError, TribolabError
 from tribolab.reading.raw import limits
-from tribolab.reading.raw.child_results import read_result, unpacked_error
+from tribolab.reading.raw.child_results import packed_error, read_result, unpacked_error
 from tribolab.reading.raw.scratch import scratch_errors, scratch_place
 from tribolab.reading.raw.server import ONLY, Ended, Job
 from tribolab.reading.raw.source import check_regular
@@ -41,8 +41,8 @@ _HANDLED = (
 
 NO_ROOM = 6  # exit code of a child that cannot write its result
 inside = False  # whether this is the child
-# What was refused, and what a function did not survive, and when [s], by path, size, time, inode
-# and function: a dozen readers may look at a file, each for some seconds.
+# What was refused, and what a function did not read, and when [s], by path, size, time, inode and
+# call: a dozen readers may look at a file, each for some seconds.
 _REFUSED: dict[tuple[Path, int, int, int, str], tuple[ReadError, float]] = {}
 
 
@@ -127,10 +127,11 @@ def _in_child(
     except OSError as error:
         raise ReadError(f"{path}: the file cannot be read: {error}") from error
     size, asked = state.st_size, (path, state.st_size, state.st_mtime_ns, state.st_ino)
-    for name in ("", function.__qualname__):
+    call = f"{function.__qualname__} {args[1:]} {kwargs}"
+    for name in ("", function.__qualname__, call):
         before, when = _REFUSED.get((*asked, name), (None, 0.0))
         if before is not None and time.monotonic() < when + limits.PATIENCE.value:
-            raise type(before)(str(before))
+            raise unpacked_error(packed_error(before))
     with scratch_errors():
         handle, target = tempfile.mkstemp(prefix=f"tribolab-{os.getpid()}-", dir=scratch_place())
     try:
@@ -156,8 +157,9 @@ def _in_child(
                 raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         if ended.code == 3:
             raised = unpacked_error(read_result(handle))
-            if isinstance(raised, RefusedError):
-                _REFUSED[*asked, ""] = raised, time.monotonic()
+            if isinstance(raised, ReadError):
+                scope = "" if isinstance(raised, RefusedError) else call
+                _REFUSED[*asked, scope] = raised, time.monotonic()
             if isinstance(raised, _HANDLED):
                 raise raised
             with damage_told(path, "file"):

@@ -26,6 +26,7 @@ from tribolab.reading.dialect.find import (
 )
 from tribolab.reading.dialect.python_reader import PythonReader, with_columns
 from tribolab.reading.file_patterns import is_pattern, matching
+from tribolab.reading.raw.opening import RefusedError
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.scans.extent import measured_part, refuse_impossible
 from tribolab.reading.scans.formats.undescribed import read_undescribed
@@ -164,6 +165,8 @@ def _recognised(path: Path) -> Dialect | None:
 
     try:
         file: File = peek(path)
+    except RefusedError:
+        raise
     except ReadError:
         if path.stat().st_size == 0:
             raise

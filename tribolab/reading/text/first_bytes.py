@@ -19,6 +19,7 @@ from tribolab.reading.raw.readers import answers, installed_readers
 from tribolab.reading.raw.source import Identity, check_regular, identity_of
 from tribolab.reading.raw.unpacked import ZIP, holds_arrays, is_workbook, unpacked
 from tribolab.reading.results_table import find_other_test, find_results_table
+from tribolab.reading.text.endless import refuse_endless
 
 HEAD = 1 << 20  # bytes looked at for preamble and header
 
@@ -105,6 +106,8 @@ def _seen(path: Path, binary: bool, _: Identity | None) -> File:
     if not head.strip(b"\xef\xbb\xbf \t\r\n" + b"\xff\xfe\0" * wide):
         raise ReadError(f"{path}: the file is empty")
     found = File(path, _format(path, head, binary=binary), size, head)
+    if found.format == "text" and not found.container:
+        refuse_endless(path, head, size)
     if found.format in ("hdf5", "netcdf"):
         try:
             check_self_contained(path)

@@ -1,0 +1,54 @@
+"""Text with rows or a header of no end, refused before any reader looks for a table in it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from tribolab.reading.raw import limits
+from tribolab.reading.raw.opening import RefusedError
+
+_BETWEEN = np.isin(np.arange(256), np.frombuffer(b" \t,;\r\n\0", dtype=np.uint8))
+# a line that begins or ends with a number, or has two of them
+_ROW = re.compile(
+    rb"^[ \t\"'({\[]*[-+.,]?\d|\d[.,]?[ \t\"',;\r]*$|\d[ \t,;:|][^\n]*\d", re.MULTILINE
+)
+
+
+def refuse_endless(path: Path, head: bytes, size: int) -> None:
+    """Refuse text whose rows have too many cells, or of which a megabyte stands above any row.
+
+    Parameters
+    ----------
+    path, head, size
+        The file, its first bytes (a megabyte of a long one) and how many it has.
+
+    Raises
+    ------
+    RefusedError
+        If two lines, or one that is longer than the head, have more cells than a map, or if none
+        of the lines in the head of a longer file is a row of numbers.
+    """
+    letters = np.frombuffer(head, dtype=np.uint8)
+    between = _BETWEEN[letters]
+    before = np.concatenate(([True], between[:-1]))
+    starts = np.flatnonzero(before & ~between)  # of cells
+    ends = np.flatnonzero(letters == ord("\n"))
+    ends = ends if ends.size else np.flatnonzero(letters == ord("\r"))
+    cells = np.bincount(np.searchsorted(ends, starts), minlength=1)
+    wide = cells[cells > limits.COLUMNS_OF_TEXT.value]
+    if wide.size > 1 or (wide.size and not ends.size and len(head) < size):
+        raise RefusedError(
+            f"some {wide[0]} columns are more than a measurement or a map has "
+            f"({limits.COLUMNS_OF_TEXT.value:.0f})",
+            where=path,
+            cure="save those of the run in a file of their own; is each row on a line of its own?",
+        )
+    if len(head) < size and not _ROW.search(head.replace(b"\0", b"")):
+        raise RefusedError(
+            "no line of the first megabyte is a row of numbers",
+            where=path,
+            cure="remove what stands above the table",
+        )
