@@ -20,6 +20,7 @@ from tribolab.reading.netcdf.seal import check_seal, seal, unseal
 from tribolab.reading.netcdf.storage import write_into
 from tribolab.reading.netcdf.stored import read_plain
 from tribolab.reading.raw.opening import damage_told, isolated
+from tribolab.reading.raw.source import check_regular
 
 if TYPE_CHECKING:
     import netCDF4
@@ -204,7 +205,7 @@ def read_groups(
         As `read_netcdf`.
     """
     wanted = {name: tuple(names) for name, names in (only or {}).items()}
-    return _read_groups(Path(path), list(groups), optional=optional, only=wanted)
+    return _read_groups(_unchanged(Path(path)), list(groups), optional=optional, only=wanted)
 
 
 @isolated("netCDF4", "h5py", "xarray")
@@ -245,7 +246,7 @@ def read_short(path: str | Path, most: float) -> dict[str | None, xr.Dataset]:
     ReadError
         As `read_netcdf`.
     """
-    return _read_short(Path(path), most)
+    return _read_short(_unchanged(Path(path)), most)
 
 
 @isolated("netCDF4", "h5py", "xarray")
@@ -260,14 +261,21 @@ def _values(group: netCDF4.Dataset) -> int:
     return sum(variable.size for variable in group.variables.values())
 
 
+def _unchanged(path: Path) -> Path:
+    """Return the path of a file whose seal, if it carries one, matches its content."""
+    check_regular(path)
+    with contextlib.suppress(OSError):  # of a file that cannot be opened, its reader says why
+        check_seal(path)
+    return path
+
+
 @contextlib.contextmanager
 def _whole(path: Path) -> Iterator[netCDF4.Dataset]:
-    """Open a file that is what it was when it was written, and holds its own data."""
+    """Open a file in which no data are from elsewhere."""
     # late: netCDF4 takes long to load
     import netCDF4
 
     with damage_told(path, "netCDF file"):
-        check_seal(path)
         with _plain_name(path) as plain, netCDF4.Dataset(plain) as opened:
             yield opened
 
