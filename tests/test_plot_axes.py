@@ -182,6 +182,7 @@ def drawings():
         "model_sensitivity": (lambda **k: plot.model_sensitivity(spread, **k), 2, "model"),
         "trace": (lambda **k: plot.trace(run, segments, friction, **k), 3, "mean"),
         "strokes": (lambda **k: plot.strokes(run, segments, friction, **k), 2, "forward"),
+        "run": (lambda **k: plot.run(run, **k), len(run.data_vars), ""),
     }  # fmt: skip
 
 

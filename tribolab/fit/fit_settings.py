@@ -89,7 +89,7 @@ def with_old_settings(
     old = {name: value for name, value in options.items() if name in _FIELDS}
     if old:
         warnings.warn(
-            f"fit_shear_stress: {', '.join(old)} will no longer be arguments after the next "
+            f"fits of the shear stress: {', '.join(old)} will no longer be arguments after the next "
             "release; give them to FitSettings",
             FutureWarning,
             stacklevel=4,

@@ -45,6 +45,14 @@ class MiniTraction:
         By how much the viscosity falls with each kelvin [1/K].
     noise, level
         Relative standard deviation [1] of a row, and of what all rows of a run share.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> machine = MiniTraction()
+    >>> slow, fast = machine.friction(np.array([1e-3, 0.3]), 0.5, machine.viscosity)
+    >>> bool(slow > fast)
+    True
     """
 
     surface: str = "Sb-S"

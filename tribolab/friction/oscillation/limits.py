@@ -73,7 +73,7 @@ BREADTH_OF_IRREGULAR_WAVE = Limit(
 )
 MAX_DISTANCE_FROM_DROPS = Limit(
     0.2, "1", "relative difference between a spectral line and the frequency of the drops that it "
-    "is sought near", _TABLE,
+    "is looked for near", _TABLE,
 )  # fmt: skip
 MAX_SCATTER_OF_SURE_PERIODS = Limit(
     0.12, "1", "scatter of periods above which cycles may have been missed or split", _TABLE
