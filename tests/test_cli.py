@@ -122,7 +122,7 @@ def test_another_title_makes_another_report_of_the_same_data(campaign):
     assert "2 unchanged since the last time" in done.stdout
     assert "Plexiglas" in (campaign.parent / "results/report.html").read_text(encoding="utf-8")
     assert sorted(path.name for path in campaign.parent.iterdir()) == [
-        *("campaign.toml", "raw", "results", "truth", "truth.csv")
+        *("campaign.toml", "raw", "results", "truth")
     ]
 
 

@@ -89,8 +89,8 @@ def with_old_settings(
     old = {name: value for name, value in options.items() if name in _FIELDS}
     if old:
         warnings.warn(
-            f"fits of the shear stress: {', '.join(old)} will no longer be arguments after the next "
-            "release; give them to FitSettings",
+            f"fits of the shear stress: {', '.join(old)} will no longer be arguments after the "
+            "next release; give them to FitSettings",
             FutureWarning,
             stacklevel=4,
         )
