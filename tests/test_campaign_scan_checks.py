@@ -50,6 +50,7 @@ def planned(files, **quality):
     return PlannedSurface(
         name="Sb-R",
         data_file="data/surface_Sb-R.nc",
+        patterns=(),
         files=tuple(files),
         labels=tuple(file.name for file in files),
         instrument=None,

@@ -71,6 +71,7 @@ def planned(files, **changes):
     surface = PlannedSurface(
         name="Sb-R",
         data_file="data/surface_Sb-R.nc",
+        patterns=(),
         files=tuple(files),
         labels=tuple(f"raw/{file.name}" for file in files),
         instrument=None,

@@ -80,7 +80,7 @@ def test_the_first_screen_is_the_answer(browser, results):
         assert 0 < box["top"] < 700 and box["right"] < 1000, "next to the list"
         page.click("[data-run-act=close]")
         page.wait(
-            "document.getElementById('beside').hidden && !document.querySelector('.view').hidden"
+            "document.getElementById('alongside').hidden && !document.querySelector('.view').hidden"
         )
 
 

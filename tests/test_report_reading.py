@@ -74,7 +74,7 @@ def test_figures_switch_axes_hand_themselves_out_and_lead_to_runs(page):
         act(page, "#runs-table tr[data-run=a1] a")
         page.wait("document.querySelector('#run-1').open && location.hash === '#run-1'")
         page.run("saved.length = 0; history.back(); 0")
-        page.wait("location.hash === '' && document.getElementById('beside').hidden")
+        page.wait("location.hash === '' && document.getElementById('alongside').hidden")
 
 
 @pytest.mark.slow
