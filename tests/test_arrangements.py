@@ -59,5 +59,5 @@ def test_samples_that_move_the_mean_are_no_matter_of_peaks(tmp_path):
         if row["check"] == "spikes" and row["variable"] == "friction_force"
     )
     assert found["status"] == "suspect"
-    assert "with them the mean of its size is 26.6%" in found["message"]
+    assert "they change the mean magnitude by 26.6%" in found["message"]
     assert "[text] missing" in found["cure"]

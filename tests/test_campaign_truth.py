@@ -98,7 +98,7 @@ def test_the_demo_leaves_the_truth_beside_its_results(demo):
     tables = Path(outcome.folder) / "tables"
     written = pd.read_csv(compared.folder / "truth.csv").groupby("quantity").true.count()
     assert written["friction_coefficient"] == len(compared.runs.table) == 12
-    assert written["rms_slope"] > 0 and written["shear_stress_Pa"] == len(compared.shear_stress)
+    assert list(written.index) == ["friction_coefficient"]  # no scans and no model
     assert not list(tables.glob("truth*")) and not list(tables.glob("paper*"))
     starts = pd.read_csv(tables / "static_friction.csv")
     first = starts.groupby("run")["segment"].min()

@@ -237,7 +237,7 @@ def test_a_load_of_either_sign_has_to_be_clear(tmp_path):
     file = tmp_path / "umt.txt"
     head = "UMT Data File\nEB4\nrun 1\nTime Fx Fz\nsec N N\n"
     file.write_text(head + lines([T, 1, 10 * np.sin(T)], " "))
-    with pytest.raises(tl.TribolabError, match="its sign cannot be told"):
+    with pytest.raises(tl.TribolabError, match="its sign is unknown"):
         tl.read(file)
 
 

@@ -288,5 +288,5 @@ def test_the_rough_body_holds_for_given_factors_too():
     assert float(still.minimum_separation[0]) > 1.01 * float(moving.minimum_separation[0])
     np.testing.assert_array_equal(moving.minimum_separation, left.minimum_separation)
     np.testing.assert_array_equal(still.minimum_separation, turned.minimum_separation)
-    with pytest.raises(AnalysisError, match="rough_body: 'movin' is none.*moving"):
+    with pytest.raises(AnalysisError, match="rough_body: 'movin' is not one.*moving"):
         film_profile(CONTACT, psd, 1.4, 310.0, 1e-3, "movin", factors=patir_cheng(h))

@@ -88,7 +88,7 @@ def observations_of(path: str | Path) -> tuple[list[Observation], Folder]:
     """
     folder = open_folder(path)
     friction = _segments(folder)
-    if not friction["run"].size:
+    if not folder.done:
         return [], folder
     slip = _table(folder, "stick_slip", _SLIP)
     made: list[Observation] = []

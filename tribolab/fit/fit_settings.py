@@ -79,14 +79,14 @@ class FitSettings:
             )
 
 
-_FIELDS = {field.name for field in fields(FitSettings)}
+SETTINGS = {field.name for field in fields(FitSettings)}
 
 
 def with_old_settings(
     settings: FitSettings | None, options: Mapping[str, Any]
 ) -> tuple[FitSettings, dict[str, Any]]:
     """Return the settings with what was an argument in the last release, and all other options."""
-    old = {name: value for name, value in options.items() if name in _FIELDS}
+    old = {name: value for name, value in options.items() if name in SETTINGS}
     if old:
         warnings.warn(
             f"fits of the shear stress: {', '.join(old)} will no longer be arguments after the "
@@ -94,5 +94,5 @@ def with_old_settings(
             FutureWarning,
             stacklevel=4,
         )
-    left = {name: value for name, value in options.items() if name not in _FIELDS}
+    left = {name: value for name, value in options.items() if name not in SETTINGS}
     return replace(settings or FitSettings(), **old), left

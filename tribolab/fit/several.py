@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import xarray as xr
 from tribolab.arrays.conditions import ConditionLabels, Conditions, labels_along, labels_text
 from tribolab.contact.geometry import Contact
 from tribolab.core.errors import AnalysisError, Cure, shown
+from tribolab.fit.fit_settings import SETTINGS, FitSettings
 from tribolab.fit.shear_stress import fit_shear_stress
 from tribolab.fit.shear_stress_fit import ShearStressFit
 
@@ -99,7 +101,7 @@ def fit_shear_stresses(
     contact
         As for `fit_shear_stress`.
     psd, viscosity, load, **options
-        As for `fit_shear_stress`; what is another for each condition has that dim, e.g. spectra
+        As for `fit_shear_stress`, and the fields of `FitSettings`; what is another for each condition has that dim, e.g. spectra
         over ``surface``, or a load [N/m] over ``normal_force``.
 
     Returns
@@ -140,6 +142,8 @@ def fit_shear_stresses(
         mine = {name: _cut(value, labels) for name, value in given.items()}
         if not bool(np.isfinite(mine["measured"]["friction_coefficient"]).any()):
             return None
+        if fields := {name: mine.pop(name) for name in SETTINGS if name in mine}:
+            mine["settings"] = replace(mine.get("settings") or FitSettings(), **fields)
         try:
             return fit_shear_stress(contact=contact, **mine)
         except AnalysisError as error:
