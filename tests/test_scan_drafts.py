@@ -169,7 +169,7 @@ def test_a_pitch_that_the_file_does_not_say_is_missed(tmp_path):
     own = dialect(tmp_path, 'pitch_value = "step"', "[header]\nskip = 1", value=VALUE)
     good = read_scans(written(tmp_path, f"dx = 0.5\n{COLUMN}\n"), own)
     assert good.attrs["pitch_m"] == pytest.approx(0.5e-6) and good.attrs["step_m"] == 0.5e-6
-    with pytest.raises(ReadError, match="distance of its points does not stand in the file"):
+    with pytest.raises(ReadError, match="distance of its points is not in the file"):
         read_scans(written(tmp_path, f"none\n{COLUMN}\n"), own)
 
 
@@ -408,7 +408,7 @@ def test_heights_as_large_as_the_scan_do_not_pass_without_objection(tmp_path):
 def test_a_file_that_states_more_points_than_it_holds_is_objected_to(tmp_path):
     path = written(tmp_path, f"# spacing: 0.25 um\n# vertical: nm\n# points: 400\n{COLUMN}\n")
     found = check_scans(read_scans(path))
-    assert any("states 400 points, 200 stand in it" in row["message"] for row in found.rows)
+    assert any("states 400 points but contains 200" in row["message"] for row in found.rows)
 
 
 def test_rounding_of_positions_is_not_told(tmp_path):

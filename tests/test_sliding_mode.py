@@ -256,8 +256,8 @@ def test_a_spectrogram_shows_the_oscillation_above_its_background():
     assert len(figure.axes) == 2
     data = plot.figure_data(figure)
     near = np.abs(np.log(data["frequency_Hz"] / slip["dominant_frequency"].item())) < 0.1
-    assert data["frequency_Hz_level"][near].max() > 2  # decades above the background
-    assert data["frequency_Hz_level"].median() < 1
+    assert data["log10_power_over_noise"][near].max() > 2  # decades above the background
+    assert data["log10_power_over_noise"].median() < 1
     nothing = slip.assign(psd=slip["psd"] * np.nan)
     with pytest.raises(AnalysisError, match="no segment has a spectrum"):
         plot.slip_spectrogram({"dry": nothing})

@@ -54,7 +54,7 @@ def test_a_stage_that_stops_for_half_a_stroke_is_found_and_does_not_slide(
     assert found["sliding_speed"].values == pytest.approx(SPEED, rel=0.01)
     results = [r for rule, r in tl.check(run, found).results if rule.name == "velocity_position"]
     assert results[0].status == "suspect"
-    assert "stands still" in results[0].message
+    assert "the position does not change" in results[0].message
 
 
 @pytest.mark.parametrize("noise", [0.0, 2e-6, 5e-5])

@@ -106,7 +106,7 @@ def test_a_speed_that_is_unknown_is_suspect_for_what_may_be_inside(said):
         row = checks["segment_speed"]
         assert row["status"] == "suspect"
         assert row["message"].startswith("the speed of 2 of 2 segments is unknown: start, stop and")
-        assert "strokes figure" in row["cure"] and "`trim`" in row["cure"]
+        assert "figure of the strokes" in row["cure"] and "`trim`" in row["cure"]
 
 
 def check_of(force, **attrs):

@@ -101,7 +101,8 @@ def fit_shear_stresses(
     contact
         As for `fit_shear_stress`.
     psd, viscosity, load, **options
-        As for `fit_shear_stress`, and the fields of `FitSettings`; what is another for each condition has that dim, e.g. spectra
+        As for `fit_shear_stress`, and the fields of `FitSettings`; what is another for each
+        condition has that dim, e.g. spectra
         over ``surface``, or a load [N/m] over ``normal_force``.
 
     Returns

@@ -49,7 +49,7 @@ def read_flow_curve(path: str | Path) -> FlowCurve:
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = Path(folder) / "xanthan.csv"
     ...     _ = file.write_text("Shear rate [1/s],Viscosity [mPa s]\n0.1,900\n10,80\n1000,5\n")
-    ...     read_flow_curve(file).viscosity.tolist()
+    ...     read_flow_curve(file).viscosity.round(6).tolist()
     [0.9, 0.08, 0.005]
     """
     path = Path(path)

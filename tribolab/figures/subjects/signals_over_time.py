@@ -37,7 +37,7 @@ def run(run: xr.Dataset) -> FigureSpec:
     >>> import tribolab as tl
     >>> made = tl.rig.simulate_trace("sawtooth", samples=1000, speed=1e-5)
     >>> tl.plot.figure_data(tl.plot.run(made)).panel.unique().tolist()[0]
-    'friction_force'
+    'friction_coefficient'
     """
     numbers = [
         str(name)
