@@ -65,7 +65,7 @@ def check_area(area: str) -> None:
         raise AnalysisError(f"area: '{shown(area)}' is not one{nearest(area, known)}")
 
 
-def other_area(area: AreaTheory) -> AreaTheory:
+def alternative_area_theory(area: AreaTheory) -> AreaTheory:
     """Theory for comparison: the corrected one, or Persson's for any other."""
     return "corrected" if area == "persson" else "persson"
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from tribolab.contact.area import other_area
+from tribolab.contact.area import alternative_area_theory
 from tribolab.contact.separation import separation_table
 from tribolab.fit.left_out import left_out
 from tribolab.fit.stated_ranges import (
@@ -83,7 +83,7 @@ def energy_factor(base: Base) -> Variation | Skipped:
 
 def area_theory(base: Base) -> Variation:
     """Take the other theory of the contact area: Persson's, or the corrected one."""
-    plain, other = base.area == "persson", other_area(base.area)
+    plain, other = base.area == "persson", alternative_area_theory(base.area)
     return Variation(
         "theory of the contact area",
         "Persson's lies 14 to 31 % under boundary elements where contact is light, the corrected "

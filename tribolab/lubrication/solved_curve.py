@@ -10,7 +10,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from tribolab.arrays.threads import one_thread
-from tribolab.contact.area import other_area
+from tribolab.contact.area import alternative_area_theory
 from tribolab.contact.geometry import Contact
 from tribolab.contact.hertz import hertz_half_width
 from tribolab.contact.limits import line_limits
@@ -138,7 +138,7 @@ def _curve(system: System, force: float, points: list[SolvedSpeed]) -> dict[str,
     areas = np.stack(
         [
             real_area(system, solid, whole, theory)
-            for theory in (system.solver.area, other_area(system.solver.area))
+            for theory in (system.solver.area, alternative_area_theory(system.solver.area))
         ],
         axis=1,
     )

@@ -10,7 +10,7 @@ import xarray as xr
 
 from tribolab.campaign.models.plan import PlannedModel
 from tribolab.campaign.store.data_files import optional_data, read_data
-from tribolab.contact.area import other_area
+from tribolab.contact.area import alternative_area_theory
 from tribolab.contact.geometry import Contact, make_contact
 from tribolab.contact.hertz import hertz_half_width
 from tribolab.core.errors import AnalysisError
@@ -91,7 +91,7 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
             **bounds,
             area=model.area,
             adhesion="without" if model.work_of_adhesion is None else "with",
-            other_area=other_area(model.area),
+            other_area=alternative_area_theory(model.area),
             shear_stress_other_area_Pa=again.shear_stress,
         )
     groups["curve"].attrs["abscissa_error"] = model.abscissa_error

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.contact.area import other_area
+from tribolab.contact.area import alternative_area_theory
 from tribolab.contact.hertz import hertz_half_width
 from tribolab.lubrication.friction import friction_parts
 from tribolab.lubrication.parameters import Method
@@ -52,7 +52,7 @@ def point_row(system: System, force: float, hertz: float, point: SolvedPoint) ->
     _, problem, solution = point
     mesh, film = problem.mesh, solution.film
     solid, whole = areas_of(problem.pressure, solution.contact, solution.fluid)
-    theories = (system.solver.area, other_area(system.solver.area))
+    theories = (system.solver.area, alternative_area_theory(system.solver.area))
     unit = 2 * problem.radius**2  # both halves of the plane
     real, otherwise = (
         float(real_area(system, solid, whole, theory) @ mesh.area) * unit for theory in theories

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tribolab.contact.area import other_area
+from tribolab.contact.area import alternative_area_theory
 from tribolab.contact.geometry import LineContact, PointContact
 from tribolab.contact.hertz import hertz_half_width
 from tribolab.core.limit import Limit
@@ -77,7 +77,7 @@ def strip_rows(system: System, force: float, speeds: np.ndarray) -> list[dict[st
                 @ mesh.weight
                 * problem.half_width
                 / load
-                for theory in (solver.area, other_area(solver.area))
+                for theory in (solver.area, alternative_area_theory(solver.area))
             ]
             values = {
                 **{name: value / slower for name, value in fluid.items()},
