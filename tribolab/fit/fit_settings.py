@@ -1,4 +1,4 @@
-"""What a fit of the shear stress is told besides the model, as a frozen object."""
+"""Settings of a fit of the shear stress, as a frozen object."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class FitSettings:
 SETTINGS = {field.name for field in fields(FitSettings)}
 
 
-def with_old_settings(
+def merge_old_settings(
     settings: FitSettings | None, options: Mapping[str, Any]
 ) -> tuple[FitSettings, dict[str, Any]]:
     """Return the settings with what was an argument in the last release, and all other options."""

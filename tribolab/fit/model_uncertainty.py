@@ -15,7 +15,7 @@ from tribolab.contact.persson import rough_band
 from tribolab.core.errors import AnalysisError
 from tribolab.core.validity import reasons_of, together
 from tribolab.fit import limits
-from tribolab.fit.unknowns import Range, Unknowns, with_old_options
+from tribolab.fit.unknowns import Range, Unknowns, merge_old_options
 from tribolab.fit.variation import Base, Changed, Skipped, Variation
 from tribolab.fit.variations import held_fixed, variations
 from tribolab.friction.statistics import NORMAL
@@ -119,7 +119,7 @@ def model_uncertainty(
     {'inlet length': 0.05, 'outlet': 0.62}
     """
     warn_of_old("model_uncertainty", options)
-    known, single = with_old_options(unknowns, options)
+    known, single = merge_old_options(unknowns, options)
     if psd is not None:  # where nothing is rough there is nothing to vary
         rough = rough_band(psd)[0]
         psd = psd.sel(wavenumber=slice(rough[0], rough[-1]))

@@ -14,7 +14,7 @@ from scipy.optimize import least_squares
 from tribolab.contact.geometry import Contact
 from tribolab.core.errors import AnalysisError, Cure, shown
 from tribolab.fit import limits
-from tribolab.fit.fit_settings import FitSettings, with_old_settings
+from tribolab.fit.fit_settings import FitSettings, merge_old_settings
 from tribolab.fit.model_inputs import moved_friction
 from tribolab.fit.point_covariance import PointErrors, shared_errors
 from tribolab.fit.residual_error import residual_error
@@ -115,7 +115,7 @@ def fit_shear_stress(
     >>> f"{fit.shear_stress / 1e6:.3f} MPa"
     '0.840 MPa'
     """
-    settings, model = with_old_settings(settings, options)
+    settings, model = merge_old_settings(settings, options)
     warn_of_old("fit_shear_stress", model)
     free, curve, inputs = settings.free, settings.curve, settings.inputs
     method = {"method": "auto"} if contact.is_round and solver is None else {}

@@ -64,14 +64,14 @@ class Unknowns:
 _NAMES = {field.name for field in fields(Unknowns)}
 
 
-def with_old_options(
+def merge_old_options(
     unknowns: Unknowns | None, options: Mapping[str, Any]
 ) -> tuple[Unknowns, dict[str, Any]]:
     """Return the unknowns with what was an argument in the last release, and all other options.
 
     Examples
     --------
-    >>> with_old_options(None, {"load_range": (300.0, 320.0), "cells": 100})[1]
+    >>> merge_old_options(None, {"load_range": (300.0, 320.0), "cells": 100})[1]
     {'cells': 100}
     """
     found, left = {}, dict(options)
