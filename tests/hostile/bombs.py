@@ -219,11 +219,12 @@ def _tdms(channels: int, repeats: int = 1) -> Maker:
     return make
 
 
-def _text(head: str, piece: str, megabytes: int) -> Maker:
+def _text(head: str, piece: str, megabytes: int, tail: str = "") -> Maker:
     def make(path: Path) -> None:
         with path.open("wb") as file:
             file.write(head.encode())
             _repeated(file.write, piece.encode(), megabytes)
+            file.write(tail.encode())
 
     return make
 
@@ -292,7 +293,7 @@ BOMBS: dict[str, Maker] = {
     "b.xls: 40 MB of rows": _text(
         '<?xml version="1.0"?><?mso-application progid="Excel.Sheet"?><Workbook xmlns='
         '"urn:schemas-microsoft-com:office:spreadsheet"><Worksheet><Table>',
-        *("<Row><Cell><Data>1</Data></Cell></Row>", 40),
+        *("<Row><Cell><Data>1</Data></Cell></Row>", 40, "</Table></Worksheet></Workbook>"),
     ),
     "a.tdms: 6000 channels": _tdms(6000),
     "b.tdms: 5000 segments": _tdms(2, 5000),

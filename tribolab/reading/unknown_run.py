@@ -221,15 +221,21 @@ def draft_of(path: Path) -> Draft | None:
 
 def _drafted_once(path: Path) -> Draft:
     status = path.stat()
-    return _draft_as_it_was(path, status.st_size, status.st_mtime_ns)
+    drafted = _draft_as_it_was(path, status.st_size, status.st_mtime_ns)
+    if isinstance(drafted, ReadError):
+        raise drafted.with_traceback(None)
+    return drafted
 
 
 @functools.lru_cache(maxsize=1)  # whether it is a run is asked just before it is read
-def _draft_as_it_was(path: Path, size: int, changed: int) -> Draft:
+def _draft_as_it_was(path: Path, size: int, changed: int) -> Draft | ReadError:
     # late: starting stays quick
     from tribolab.reading.unknown.proposal.draft import draft_dialect
 
-    return draft_dialect(path)
+    try:
+        return draft_dialect(path)
+    except ReadError as error:  # to find it out once more would take as long
+        return error
 
 
 def _told(path: Path) -> dict[str, str]:

@@ -307,6 +307,7 @@ class _Fit:
         normal, right = np.stack(normals), np.stack(told)[:, :, None]
         own = np.einsum("sii->si", normal)
         ridge = _RIDGE_PENALTY * own + 1e-12 * own.sum(axis=1, keepdims=True)
+        ridge = np.maximum(ridge, np.finfo(float).tiny)  # of a motion that explains nothing
         ridged = normal + ridge[:, :, None] * np.eye(own.shape[1])
         amplitudes = np.linalg.solve(ridged, right)
         explained = amplitudes * (2.0 * right - normal @ amplitudes)

@@ -12,7 +12,7 @@ import zlib
 from pathlib import Path
 from typing import Protocol
 
-from tribolab.core.errors import Cure, ReadError, TribolabError, shown
+from tribolab.core.errors import Cure, ReadError, TribolabError, brief, shown
 from tribolab.reading.raw.opening import largest_unpacked
 from tribolab.reading.raw.scratch import scratch_errors, scratch_folder
 
@@ -170,7 +170,7 @@ def _unpacked(path: Path, size: int, modified: int, kind: str) -> Path:
             _copy(_Chained(above + first, source), target, size, path)
         return target
     except (OSError, EOFError, zlib.error, zipfile.BadZipFile, RuntimeError) as error:
-        raise ReadError(f"this compressed file is damaged: {error}", where=path) from error
+        raise ReadError(f"this compressed file is damaged: {brief(error)}", where=path) from error
 
 
 def _text_beside(archive: zipfile.ZipFile, names: list[str], first: bytes) -> bytes:

@@ -129,7 +129,8 @@ def _walk(part: Json | list[object], key: str, tables: list[_Table], depth: int)
         return []
     said: list[Setting] = []
     for inner in part:
-        if isinstance(inner, dict | list):
+        plain = isinstance(inner, list) and not isinstance(next(iter(inner), 0), dict | list)
+        if isinstance(inner, dict | list) and not plain:  # a matrix has millions of plain rows
             said += _walk(inner, key, tables, depth + 1)
     return said
 

@@ -10,6 +10,8 @@ from xml.parsers import expat
 from tribolab.core.errors import ReadError
 
 _MARK = b"urn:schemas-microsoft-com:office:spreadsheet"
+_END = b"Workbook>"
+_HEAD = 4096  # bytes at either end that name it
 _MOST_CELLS = 5_000_000  # all are held at once
 _BLOCK = 1 << 20
 Cell = str | float
@@ -17,7 +19,21 @@ Cell = str | float
 
 def is_xml_workbook(head: bytes) -> bool:
     """Whether a file begins as a workbook in XML does."""
-    return _MARK in head[:4096] and b"<" in head[:64]
+    return _MARK in head[:_HEAD] and b"<" in head[:64]
+
+
+def refuse_cut_short(path: Path) -> None:
+    """Refuse a workbook in XML that lacks its end, before all of it is read.
+
+    Raises
+    ------
+    ReadError
+        If its last bytes close no workbook.
+    """
+    with path.open("rb") as file:
+        file.seek(max(path.stat().st_size - _HEAD, 0))
+        if _END not in file.read():
+            raise ReadError("the workbook is cut short: its end is missing", where=path)
 
 
 class XmlSheet:
@@ -43,6 +59,7 @@ class XmlWorkbook:
     """
 
     def __init__(self, path: Path) -> None:
+        refuse_cut_short(path)
         self._path = path
         self._sheets: dict[str, list[list[Cell]]] = {}
         self._rows: list[list[Cell]] = []

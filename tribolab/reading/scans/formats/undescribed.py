@@ -7,6 +7,7 @@ from pathlib import Path
 import xarray as xr
 
 from tribolab.core.errors import ReadError
+from tribolab.reading.raw.containers.xml_workbook import is_xml_workbook, refuse_cut_short
 from tribolab.reading.raw.unpacked import ZIP, of_the_file, unpacked
 from tribolab.reading.scans.formats.arrays import read_scan_arrays
 from tribolab.reading.scans.formats.column_map import read_column_map
@@ -94,6 +95,9 @@ def _read(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset
         return scan
     if is_iso_xml(head):
         return read_iso_xml(path)
+    if is_xml_workbook(head):
+        refuse_cut_short(path)
+        raise ReadError("no sheet of this workbook can be read as a profile", where=path)
     if is_xml(head):
         return read_xml_values(path, x_unit, height_unit)
     if is_gauge(head):

@@ -13,6 +13,7 @@ import xarray as xr
 
 from tribolab.core.errors import ReadError, UnitError, shown
 from tribolab.reading import cures
+from tribolab.reading.raw.containers.xml_workbook import is_xml_workbook
 from tribolab.reading.raw.missing_marks import measurable
 from tribolab.reading.raw.xml_safety import parsed
 from tribolab.reading.scans.formats.array_units import stated_unit
@@ -37,7 +38,9 @@ class _List(NamedTuple):
 
 
 def is_xml(head: bytes) -> bool:
-    """Whether a file's first bytes are those of XML."""
+    """Whether a file's first bytes are those of XML, but not those of a workbook."""
+    if is_xml_workbook(head):
+        return False
     return head.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(b"<?xml")
 
 

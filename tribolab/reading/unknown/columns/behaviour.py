@@ -84,7 +84,8 @@ def _is_clock(x: np.ndarray) -> bool:
 
 def _scan_units(part: np.ndarray, height: int) -> tuple[str, str]:
     """Heights as large as the length, number for number, are in a smaller unit than it."""
-    reach, length = np.ptp(part[:, height][np.isfinite(part[:, height])]), np.ptp(part[:, 0])
+    heights = part[np.isfinite(part[:, height]), height]
+    reach, length = np.ptp(heights) if heights.size else 0.0, np.ptp(part[:, 0])
     if length > _LONGEST_SCAN:  # metres, in millimetres
         return "um", "um" if reach < 0.1 * length else "nm"
     return "mm", "um" if reach > 0.1 * length or reach > _HIGHEST else "mm"

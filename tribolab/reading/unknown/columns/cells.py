@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import warnings
 from typing import NamedTuple
 
 import numpy as np
@@ -49,19 +50,21 @@ def read_cells(layout: Layout) -> Cells:
 
     blank = layout.delimiter == "whitespace"
     try:
-        frame = pd.read_csv(
-            io.StringIO("\n".join(layout.rows())),
-            sep=r"\s+" if blank else layout.delimiter,
-            header=None,
-            names=range(layout.width),
-            decimal=layout.decimal,
-            index_col=False,
-            keep_default_na=False,
-            na_values=[""],
-            skipinitialspace=True,
-            on_bad_lines="skip",
-            low_memory=False,
-        )
+        with warnings.catch_warnings():  # the layout counts cells beyond the table's width
+            warnings.simplefilter("ignore", pd.errors.ParserWarning)
+            frame = pd.read_csv(
+                io.StringIO("\n".join(layout.rows())),
+                sep=r"\s+" if blank else layout.delimiter,
+                header=None,
+                names=range(layout.width),
+                decimal=layout.decimal,
+                index_col=False,
+                keep_default_na=False,
+                na_values=[""],
+                skipinitialspace=True,
+                on_bad_lines="skip",
+                low_memory=False,
+            )
     except (pd.errors.ParserError, pd.errors.EmptyDataError) as error:
         raise ReadError(
             f"{layout.file.path}: the table cannot be read: {brief(error, 100)}; is a quotation "

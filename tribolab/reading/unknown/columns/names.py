@@ -90,7 +90,7 @@ def _timed(bare: list[Bare], run: list[list[Match]], numbers: np.ndarray) -> lis
     rising = [
         place
         for place, (_, unit, _) in enumerate(bare)
-        if unit is not None and not run[place] and converts(unit, "s")
+        if len(numbers) > 1 and unit is not None and not run[place] and converts(unit, "s")
         if (np.diff(numbers[:, place]) >= 0).mean() > _RISES
     ]
     clocks = {p for p in rising if _FIRST_WORD.split(bare[p][0].lower())[0] == "t"}
