@@ -165,7 +165,7 @@ def zeros_of_derived(
         if len(used) != 1 or name not in columns or f"{used[0]}_zero" not in attrs:
             continue
         signal, unit = signals[used[0]], quantity(name).unit
-        large = np.abs(signal) > 0.5 * np.nanmax(np.abs(signal))
+        large = np.abs(signal) > 0.5 * np.nanmax(np.abs(signal), initial=0.0)
         factor = float(np.median(columns[name][large] / signal[large]))  # times a constant
         for key in ("zero", "zero_sem", "zero_uncertainty"):
             if (value := attrs.pop(f"{used[0]}_{key}", None)) is not None:
@@ -207,7 +207,7 @@ def free_while_zeroed(columns: dict[str, np.ndarray], time: np.ndarray, attrs: J
     if motion is None or not 0 < rows < load.size or np.ptp(load[np.isfinite(load)]) > 0:
         return {}
     size = np.abs(motion)
-    if not np.mean(size[:rows] > _MOVES * np.nanmax(size)) > _MOSTLY:
+    if not np.mean(size[:rows] > _MOVES * np.nanmax(size, initial=0.0)) > _MOSTLY:
         return {}
     rows += _until_it_rubs(np.abs(columns["friction_force"]), rows)
     free = load.copy()

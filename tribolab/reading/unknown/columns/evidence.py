@@ -184,9 +184,10 @@ def rectified_evidence(facts: Facts) -> Iterator[Evidence]:
     for place in places:
         signed = facts.numbers[:, place]
         for other in places if (signed < 0).any() else ():
-            size = facts.numbers[:, other]
-            near = _DIFFERENT * np.nanmax(np.abs(signed))
-            if other != place and np.nanmax(np.abs(np.abs(signed) - size)) <= near:
+            gap = np.abs(np.abs(signed) - facts.numbers[:, other])
+            gap = gap[np.isfinite(gap)]
+            near = _DIFFERENT * np.nanmax(np.abs(signed), initial=0.0)
+            if other != place and gap.size and gap.max() <= near:
                 yield Evidence(place, "friction_force", 0.3, "the other is its magnitude")
 
 
@@ -202,7 +203,7 @@ def direction_evidence(facts: Facts) -> Iterator[Evidence]:
             if facts.options[place] or unit is None or not converts(unit, "m"):
                 continue
             rate = np.gradient(facts.numbers[:, place])
-            moving = np.abs(rate) > _MOVING * np.nanmax(np.abs(rate))
+            moving = np.abs(rate) > _MOVING * np.nanmax(np.abs(rate), initial=0.0)
             way, drag = np.sign(rate[moving]), np.sign(facts.numbers[moving, force])
             turns = np.count_nonzero(np.diff(way))
             if turns >= _MIN_TURNS and abs(np.mean(way * drag)) > _AGREES:

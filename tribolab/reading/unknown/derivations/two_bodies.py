@@ -54,7 +54,8 @@ def find_surface_speeds(
             pairs = [(a, b) for a in mine for b in mine if a is not b and _are(bodies, a, b)]
             if len(pairs) == 1:
                 first, second = (numbers[:, c.place - 1] for c in pairs[0])
-                opposed = bool(np.nanmedian(np.sign(first * second)) < 0)
+                both = first * second
+                opposed = np.count_nonzero(both < 0) > 0.5 * np.count_nonzero(np.isfinite(both))
                 return Pair(pairs[0], quantity == "rotation_speed", opposed, bodies)
     return None
 
@@ -128,7 +129,8 @@ def second_is_faster(
     sizes = [value.number * value.scale for value in radii]
     one, other = sizes if len(sizes) == 2 else (1.0, 1.0)
     signal = numbers[:, friction.place - 1]
-    slip = (one * first - other * second) * (signal - np.nanmedian(signal[:1]))
+    start = next(iter(signal[np.isfinite(signal)]), 0.0)
+    slip = (one * first - other * second) * (signal - start)
     return bool(np.nansum(slip) < 0)
 
 
