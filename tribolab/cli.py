@@ -24,8 +24,8 @@ app = typer.Typer(
         "honest error bars and a report out.\n\n"
         "New here? `tribolab demo` simulates a campaign, analyses it and shows where to look.\n\n"
         "Exit codes: 0 fine; 1 a finding at or above the campaign's fail_on; 2 wrong use or a "
-        "mistake in the campaign or review file; 3 an input that cannot be read, a decision that "
-        "finds nothing to decide on, or nothing found."
+        "mistake in the campaign or review file; 3 an input that cannot be read, a check that "
+        "crashed, a decision that finds nothing to decide on, or nothing found."
     ),
 )
 

@@ -24,6 +24,7 @@ from tribolab.comparison.folder import open_folder
 from tribolab.core.errors import OutputError, ReadError, brief
 from tribolab.core.untyped import Json
 from tribolab.reading.raw.opening import largest_unpacked
+from tribolab.reading.raw.zip_safety import ZIP_DAMAGE
 from tribolab.report import tables
 from tribolab.report.read_results import Results
 
@@ -142,7 +143,7 @@ def problems_of(path: str | Path) -> list[str]:
                 if name in files and not _is_as_described(archive, name, files[name]):
                     wrong.append(f"{name} is not as it was packed")
             return wrong + _dangling(graph)
-    except (OSError, zipfile.BadZipFile, ValueError, LookupError, TypeError) as error:
+    except (*ZIP_DAMAGE, LookupError, TypeError) as error:
         raise ReadError(f"{path}: cannot be read as a packed file ({brief(error)})") from error
 
 
@@ -153,7 +154,7 @@ def _is_as_described(archive: zipfile.ZipFile, name: str, part: Json) -> bool:
             while block := file.read(_BLOCK):
                 digest.update(block)
                 size += len(block)
-    except zipfile.BadZipFile:  # checksum of the checksums themselves
+    except ZIP_DAMAGE:  # checksum of the checksums themselves
         return False
     return digest.hexdigest() == part["sha256"] and str(size) == part["contentSize"]
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import functools
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
-from scipy.optimize import brentq
-from scipy.special import j0
+
+if TYPE_CHECKING:
+    from scipy.interpolate import CubicSpline
 
 _HIGHEST = 24.0  # q d, from where on the layer yields as a half-space to 1e-18
 _FAR = 12.0  # thicknesses, from where on a line sees the base as rigid
@@ -53,6 +53,9 @@ def _nodes(poisson_ratio: float, share: float) -> tuple[np.ndarray, np.ndarray]:
 @functools.lru_cache(maxsize=8)
 def _line_layer(poisson_ratio: float, share: float) -> tuple[CubicSpline, CubicSpline, float]:
     """I(s) = int (1 - W)(1 - cos ks)/k dk, its integral, and I - share ln s far away."""
+    # late: starting stays quick
+    from scipy.interpolate import CubicSpline
+
     k, weight = _nodes(poisson_ratio, share)
     s = np.linspace(0, _FAR, 1201)
     values = (1 - np.cos(np.outer(s, k))) @ (weight / k)
@@ -83,6 +86,10 @@ def line_layer_kernel(x: np.ndarray, width: np.ndarray, layer: Layer) -> np.ndar
 @functools.lru_cache(maxsize=8)
 def _round_layer(poisson_ratio: float, share: float) -> CubicSpline:
     """G(s) = int (1 - W) J0(ks) dk; share/s far away."""
+    # late: starting stays quick
+    from scipy.interpolate import CubicSpline
+    from scipy.special import j0
+
     k, weight = _nodes(poisson_ratio, share)
     s = np.linspace(0, _FAR, 1201)
     far = np.array(-share / _FAR**2)
@@ -183,6 +190,9 @@ def layer_contact(
     widest
         Half-width on a half-space, over R.
     """
+    # late: starting stays quick
+    from scipy.optimize import brentq
+
     of = round_layer_load if round_contact else line_layer_load
     order = int(np.clip(8 * widest / layer.thickness, 24, 120))
 

@@ -177,15 +177,18 @@ def run(
             why_unread,
             withdraw,
         )
-        from tribolab.app.info.describing import describe_by_questions
         from tribolab.app.run import run_campaign, run_here_if_lost
 
         run_it = partial(run_here_if_lost, say=partial(say, to_stderr=True))
         campaign = campaign or [Path()]
         stated = Stated.of(load, radius, speed, rate)
-        asks = instrument is None and not any(stated)
-        if asks and (described := describe_by_questions(campaign, keep=True)):
-            instrument = str(described)
+        raw = all(path.is_file() and path.suffix != ".toml" for path in campaign)
+        if raw and instrument is None and not any(stated):
+            # late: a campaign file or a folder leaves no question
+            from tribolab.app.info.describing import describe_by_questions
+
+            if described := describe_by_questions(campaign, keep=True):
+                instrument = str(described)
         file, written = campaign_file(campaign, Path(), instrument, stated)
         place = output or file.parent / results_of(file)
         new_folder = written and not place.exists()

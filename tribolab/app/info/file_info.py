@@ -19,7 +19,7 @@ from tribolab.reading.dialect.find import known_dialects, load_dialect
 from tribolab.reading.interpret.missing import missing_inputs
 from tribolab.reading.kinds import kind_of
 from tribolab.reading.moduli import holds_modulus, read_modulus_table
-from tribolab.reading.raw.opening import RefusedError
+from tribolab.reading.raw.opening import MissingLibraryError, RefusedError
 from tribolab.reading.raw.source import check_regular
 from tribolab.reading.runs.companion import CompanionFacts, describe_companion
 from tribolab.reading.runs.file_facts import FileFacts, file_facts
@@ -38,6 +38,7 @@ _PROVENANCE |= {"drafted_layout"}
 _MAX_TEXT = 300  # letters of what a file says of itself
 _TOLD_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
 _TOLD_OF_SCAN = {"tip_radius_m", "stated_length_m", "stated_pitch_m", "stated_points", "doubtful"}
+_INSTALL = "install it: pip install 'tribolab[formats]'"
 _ROUNDING = 1e-6  # of a step: positions that deviate by less are even
 
 
@@ -129,6 +130,7 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
     # late: starting stays quick
     from tribolab.reading.scan_files import read_traces
     from tribolab.reading.scans.formats.profilometers import NotSaidError
+    from tribolab.reading.unknown.proposal.questions import GuessedError
 
     try:
         return read_traces(path, instrument)
@@ -148,6 +150,10 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
                     general = error.cure in ("", cures.MEND_UNITS, cures.SIZE)
                     cure = as_run.cure if general else error.cure
                     raise ReadError(what, where=as_run.where, cure=cure) from error
+                asks = isinstance(as_run, GuessedError)
+                if isinstance(error, MissingLibraryError) and not asks:
+                    what = f"{as_run.what}; profiles in such formats need SurfaceTopography"
+                    raise ReadError(what, where=as_run.where, cure=_INSTALL) from error
                 raise
         raise
 

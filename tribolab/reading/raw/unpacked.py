@@ -15,6 +15,7 @@ from typing import Protocol
 from tribolab.core.errors import Cure, ReadError, TribolabError, brief, shown
 from tribolab.reading.raw.opening import largest_unpacked
 from tribolab.reading.raw.scratch import scratch_errors, scratch_folder
+from tribolab.reading.raw.zip_safety import ZIP_DAMAGE
 
 _GZIP, ZIP = b"\x1f\x8b", b"PK\x03\x04"
 _OFFICE = ("[Content_Types].xml", "main.xml")  # Office files and x3p are archives, too
@@ -103,7 +104,7 @@ def _names(path: Path) -> list[str]:
     try:
         with zipfile.ZipFile(path) as archive:
             return archive.namelist()
-    except (zipfile.BadZipFile, OSError, ValueError):
+    except ZIP_DAMAGE:
         return []
 
 
@@ -113,7 +114,7 @@ def _members(path: Path) -> list[str] | None:
         with zipfile.ZipFile(path) as archive:
             parts = [info for info in archive.infolist() if not info.is_dir()]
             names = [info.filename for info in parts]
-    except (zipfile.BadZipFile, OSError, ValueError):
+    except ZIP_DAMAGE:
         return None
     if any(name.split("/")[-1] in _OFFICE for name in names):
         return None
@@ -169,7 +170,7 @@ def _unpacked(path: Path, size: int, modified: int, kind: str) -> Path:
             above = _text_beside(archive, [name for name in every if name != names[0]], first)
             _copy(_Chained(above + first, source), target, size, path)
         return target
-    except (OSError, EOFError, zlib.error, zipfile.BadZipFile, RuntimeError) as error:
+    except ZIP_DAMAGE as error:
         raise ReadError(f"this compressed file is damaged: {brief(error)}", where=path) from error
 
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import struct
 import zipfile
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
@@ -11,6 +13,12 @@ from tribolab.reading.raw.opening import RefusedError, largest_unpacked
 from tribolab.reading.raw.xml_safety import refuse_deep
 
 _BLOCK = 1 << 20
+
+
+# what zipfile raises on archives that are damaged, encrypted or packed in a way it does not know
+ZIP_DAMAGE = (
+    *(zipfile.BadZipFile, zlib.error, struct.error, OSError, EOFError, RuntimeError, ValueError),
+)
 
 
 def refuse_bomb(path: Path) -> None:

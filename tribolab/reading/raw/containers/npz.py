@@ -7,7 +7,6 @@ the same they are one column, ``time``.
 from __future__ import annotations
 
 import re
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +16,7 @@ from tribolab.reading.raw.containers.groups import Groups
 from tribolab.reading.raw.containers.settings import plain, settings_of
 from tribolab.reading.raw.model import RawColumn, RawFile, Setting
 from tribolab.reading.raw.opening import isolated
+from tribolab.reading.raw.zip_safety import ZIP_DAMAGE
 
 _NAMES = re.compile(r"(?:columns?|names?|labels?|channels?|fields?|headers?|keys)$", re.IGNORECASE)
 _STEP = re.compile(  # step2_force, force_s03, run1/load
@@ -44,7 +44,7 @@ def read_npz(path: Path) -> RawFile:
     try:
         with np.load(path, allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
-    except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile) as error:
+    except (*ZIP_DAMAGE, KeyError) as error:
         what = f"this archive of arrays cannot be read: {shown(str(error), 120)}"
         raise ReadError(what, where=path) from error
     columns, settings = _columns_of(arrays)

@@ -13,7 +13,7 @@ from tribolab.core.untyped import Json
 from tribolab.reading.raw.containers.mat import read_variables
 from tribolab.reading.raw.containers.settings import plain
 from tribolab.reading.raw.opening import isolated
-from tribolab.reading.scans.formats.profilometer_safety import DAMAGE
+from tribolab.reading.raw.zip_safety import ZIP_DAMAGE
 
 NPY = b"\x93NUMPY"
 _HDF5 = b"\x89HDF\r\n\x1a\n"
@@ -43,7 +43,7 @@ def is_npz(path: Path) -> bool:
     try:
         with zipfile.ZipFile(path) as archive:
             names = archive.namelist()
-    except (zipfile.BadZipFile, OSError, ValueError):
+    except ZIP_DAMAGE:
         return False
     return bool(names) and all(name.endswith(".npy") for name in names)
 
@@ -73,7 +73,7 @@ def read_arrays(path: Path) -> HeldArrays:
         reader = _of_hdf5
     try:
         return reader(path)
-    except (KeyError, TypeError, MemoryError, *DAMAGE) as error:
+    except (KeyError, TypeError, MemoryError, *ZIP_DAMAGE) as error:
         if isinstance(error, ReadError):
             raise
         raise ReadError(f"{path}: the file is damaged: {brief(error)}; save it again") from error

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import zipfile
-import zlib
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +12,6 @@ from tribolab.core.errors import ReadError
 
 _MEGABYTE = 1 << 20
 _BINARY = (b"PK\x03\x04", b"\x89HDF\r\n\x1a\n", b"CDF\x01", b"CDF\x02", b"CDF\x05")
-DAMAGE = (
-    *(zipfile.BadZipFile, zlib.error, OSError, EOFError, NotImplementedError, RuntimeError),
-    ValueError,
-)
 _MOST_LINES, _LONGEST_ROW = 2_000_000, 1 << 20  # of text that no dialect describes
 _HEADER_LINES = 200  # as many as SurfaceTopography's reader of columns passes over
 _LONG = 4096  # bytes of a line of words: its patterns take a time that grows with the square

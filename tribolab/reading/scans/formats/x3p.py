@@ -21,7 +21,7 @@ from tribolab.core.errors import ReadError, brief, shown
 from tribolab.reading.raw.missing_marks import measurable
 from tribolab.reading.raw.opening import isolated
 from tribolab.reading.raw.xml_safety import parsed
-from tribolab.reading.scans.formats.profilometer_safety import DAMAGE
+from tribolab.reading.raw.zip_safety import ZIP_DAMAGE
 from tribolab.reading.scans.grid import even, gridded
 
 _MAIN = "main.xml"
@@ -60,7 +60,7 @@ def main_of(path: Path) -> str | None:
     try:
         with zipfile.ZipFile(path) as archive:
             names = [name for name in archive.namelist() if posixpath.basename(name) == _MAIN]
-    except (*DAMAGE, OSError):
+    except ZIP_DAMAGE:
         return None
     return min(names, key=len, default=None)
 
@@ -105,7 +105,7 @@ def read_x3p(path: Path, main: str) -> xr.Dataset:
                 return archive.read(inside)
 
             return _dataset(path, archive.read(main), member)
-    except (KeyError, *DAMAGE) as error:
+    except (KeyError, *ZIP_DAMAGE) as error:
         if isinstance(error, ReadError):
             raise
         raise ReadError(

@@ -55,7 +55,7 @@ def find_surface_speeds(
             if len(pairs) == 1:
                 first, second = (numbers[:, c.place - 1] for c in pairs[0])
                 both = first * second
-                opposed = np.count_nonzero(both < 0) > 0.5 * np.count_nonzero(np.isfinite(both))
+                opposed = bool((both < 0).sum() > 0.5 * np.isfinite(both).sum())
                 return Pair(pairs[0], quantity == "rotation_speed", opposed, bodies)
     return None
 

@@ -8,6 +8,8 @@ import warnings
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from tribolab.core.aliases import PathLike
 from tribolab.core.errors import ConfigError, OutputError, ReadError, TribolabError, shown
 from tribolab.reading.dialect.find import recognise
@@ -75,6 +77,11 @@ def draft_dialect(path: PathLike, name: str | None = None) -> Draft:
     """
     file = peek(path)
     name = dialect_name(file.path if name is None else name)
+    with np.errstate(all="ignore"):  # an unknown file may hold any number
+        return _drafted(file, name)
+
+
+def _drafted(file: File, name: str) -> Draft:
     if is_results(file.head):
         return _results(file, name)
     layout, understood = _understood(file)
