@@ -72,6 +72,11 @@ def joined(first: Cure, second: Cure) -> Cure:
     )
 
 
+MODULUS = Cure(
+    notebook="tribolab.rubber.read_modulus() reads it",
+    terminal="name it as modulus_file in [contact] of a campaign file",
+    campaign="name it as modulus_file in [contact]",
+)
 MEND_SIGNALS = Cure(
     notebook="read it with read()",
     terminal="a campaign takes it as a [[run]]",

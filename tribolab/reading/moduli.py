@@ -132,8 +132,9 @@ def _scale(column: Column, si_unit: str, stated: str | None, name: str) -> float
             "from brackets, or from the row below the names",
             cure=Cure(
                 notebook="say it with unit='MPa'",
-                terminal="write it behind the name in brackets, e.g. 'Storage modulus [MPa]'",
-                campaign='say it: modulus_unit = "MPa" in [contact]',
+                terminal=f'state it in a campaign file: modulus_file = "{name}", '
+                'modulus_unit = "MPa" in [contact]',
+                campaign='state it: modulus_unit = "MPa" in [contact]',
             ),
         )
     try:
@@ -196,7 +197,8 @@ def _one_sweep(data: np.ndarray, sweep: int | str | None, name: str) -> np.ndarr
             where=name,
             cure=Cure(
                 notebook=f"name one with sweep=0 to {last}, or give a master curve",
-                terminal="give a master curve",
+                terminal=f'name one in a campaign file: modulus_file = "{name}", sweep = 0 to {last} '
+                "in [contact], or give a master curve",
                 campaign=f"name one with sweep = 0 to {last} in [contact], or give a master curve",
             ),
         )

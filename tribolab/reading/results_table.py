@@ -110,6 +110,10 @@ _OF_FRICTION = {"friction_force", "friction_coefficient", "normal_stress"}
 _QUANTITIES = {*_OF_FRICTION, *(name for needed in _TESTS.values() for name in needed)}
 
 
+_STATIC = re.compile(r"static|haft", re.IGNORECASE)
+_KINETIC = re.compile(r"kinetic|dynamic|gleit", re.IGNORECASE)
+
+
 def _results(labels: list[str]) -> list[str]:
     """Return the names of results among the names of columns; none of a row of numbers."""
     parameters = [label for label in labels if _PARAMETER.fullmatch(label)]
@@ -119,6 +123,9 @@ def _results(labels: list[str]) -> list[str]:
         label for label in labels if role_of(label) == "extreme" and _is(label, "shear_stress")
     ]
     loads = [label for label in labels if _is(label, "normal_stress")]
+    ratios = [label for label in labels if _is(label, "friction_coefficient")]
+    if any(map(_STATIC.search, ratios)) and any(map(_KINETIC.search, ratios)):
+        return ratios  # ASTM D1894 reports both of each specimen
     times = any(_is(label, "time") for label in labels)
     return [*loads, *peaks] if peaks and loads and not times else []
 

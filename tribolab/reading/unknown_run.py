@@ -128,8 +128,12 @@ def _holds_signals(path: Path) -> bool:
 def _drafted(path: Path, error: UnknownFileError) -> Dialect:
     """Return the dialect that a file's own header makes; else say what it leaves open."""
     # late: starting stays quick
+    from tribolab.reading.moduli import holds_modulus
     from tribolab.reading.unknown.proposal.optional_columns import leave_out_doubtful
 
+    if holds_modulus(path):
+        what = "a table of a modulus over frequency: no friction is in it"
+        raise ReadError(what, where=path, cure=cures.MODULUS) from error
     try:
         draft = _drafted_once(path)
     except (RefusedError, CrashedError):

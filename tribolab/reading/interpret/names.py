@@ -313,10 +313,11 @@ def _kinds(unit: str) -> int:
 
 
 def _score(text: str, word: Word) -> float:
+    term = _TERM if text in names(word.quantity) else 0.0
     if text in word.symbols:
-        return 1.0 - min(0.01 * word.symbols.index(text), _LATE)
-    if text in names(word.quantity):
-        return _TERM
+        return max(term, 1.0 - min(0.01 * word.symbols.index(text), _LATE))
+    if term:
+        return term
     return max(_share(text, word.stems), _VAGUE * _share(text, word.vague))
 
 

@@ -16,7 +16,13 @@ from tribolab.reading.interpret.phrases import (
     phrases,
     weight_on_lever,
 )
-from tribolab.reading.interpret.unit_texts import DIMENSIONS, converts, is_unit, measures_something
+from tribolab.reading.interpret.unit_texts import (
+    DIMENSIONS,
+    converts,
+    is_per_minute,
+    is_unit,
+    measures_something,
+)
 from tribolab.reading.lexicon.lexicon import (
     alternatives,
     key_pattern,
@@ -49,6 +55,9 @@ _SAYS, _IN_CELLS = (  # the latter: "Dead weight,500,g"
 # (liampond/EgbertsTribometer)
 _PAIR = re.compile(
     r"(?:(?<=[;,\t])|^)\s*([^\W\d][^;,\t]{0,60}[\])]:?\s*[;,\t]\s*[-+\d.]+)(?=[;,\t\s]|$)"
+)
+_TURNS_FIRST = re.compile(  # "rpm 200"
+    rf"(?P<before>\W*(?P<key>rpm)(?P<ahead>)\s+)(?P<number>{NUMBER})(?P<unit>)\s*$", re.IGNORECASE
 )
 _TEXT = re.compile(
     r"\W*(?P<key>[^\W\d][^:：=\t;]*?)(?:\"?\s*[:：=\t;]\s*|\s{2,80})[\"\[(]?(?P<text>[^\W\d].*)$"
@@ -163,7 +172,7 @@ def _is_of_unit(alone: re.Match[str]) -> bool:
 
 
 def _entry(line: str) -> re.Match[str] | None:
-    entry = _SAYS.match(line) or _IN_CELLS.match(line)
+    entry = _SAYS.match(line) or _IN_CELLS.match(line) or _TURNS_FIRST.match(line)
     # "Scan length 1.5 mm, 3000 points": a sentence; "Load (steps 1 a 4);40 N": none
     return None if entry and phrases(_BRACKETS.sub("", entry["key"])) else entry
 
@@ -215,6 +224,8 @@ def _key_and_unit(entry: re.Match[str], units: Mapping[str, str]) -> tuple[str, 
     if unit is None and bracket and measures_something(bracket[1]):
         unit, key = bracket[1], key[: bracket.start()]
     unit = unit or units.get(normalise_label(key))
+    if unit is None and is_per_minute(key.strip()):
+        return "rotation speed", key.strip()
     name, comma, behind = key.rpartition(",")
     if unit is None and comma and is_unit(behind.strip()):  # "Step, um: 0.5"
         return name, behind.strip()

@@ -164,6 +164,19 @@ def number_evidence(facts: Facts) -> Iterator[Evidence]:
             yield Evidence(place, "time", -_PREFERRED - NEAR, "it does not rise")
 
 
+def clock_evidence(facts: Facts) -> Iterator[Evidence]:
+    """Rule out a time that never changes if another one rises in every row: a step's duration.
+
+    File: a Phoenix TE 67, "Step Time" next to "Test Time" (kyembot/pin-on-disk-data-analysis).
+    """
+    clocks = facts.places("time")
+    steps = {place: np.diff(facts.numbers[:, place]) for place in clocks}
+    if any(moved.size and (moved > 0).all() for moved in steps.values()):
+        for place in clocks:
+            if not steps[place].any():
+                yield Evidence(place, "", RULED_OUT, "it is the same in all rows")
+
+
 def size_evidence(facts: Facts) -> Iterator[Evidence]:
     """Favour the larger of two forces: a sensor across the motion shows only cross-talk.
 
@@ -348,6 +361,7 @@ RULES: tuple[Rule, ...] = (
     role_evidence,
     repeated_name_evidence,
     number_evidence,
+    clock_evidence,
     size_evidence,
     rectified_evidence,
     direction_evidence,

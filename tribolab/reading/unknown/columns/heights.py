@@ -38,6 +38,18 @@ def side_by_side(columns: list[DraftColumn]) -> bool:
     return len(set(names)) == len(names) > 1 and len(alike) == 1 and lengths
 
 
+def are_traces(columns: list[DraftColumn]) -> bool:
+    """Whether columns in units of length are named as numbered traces: "Profile 1 [um]"."""
+    bare = [bare_name(column) for column in columns]
+    named = (_trace_name(name) for name, _, _ in bare)
+    return all(named) and all(unit is not None and converts(unit, "m") for _, unit, _ in bare)
+
+
+def _trace_name(name: str) -> bool:
+    bare = re.sub(r"[\W_]*\d+$", "", name)
+    return key_pattern("trace_name").search(normalise_label(bare)) is not None
+
+
 def beside_x(columns: list[DraftColumn]) -> list[DraftColumn] | None:
     """Return positions and the profiles side by side behind them: x [mm], z1 [um], z2 [um]."""
     if len(columns) < 3 or not side_by_side(columns[1:]):
@@ -51,7 +63,7 @@ def beside_x(columns: list[DraftColumn]) -> list[DraftColumn] | None:
     ]
     if not along or along[0].quantity != "x" or unit is None:
         return None
-    traces = all(key_pattern("trace_name").search(normalise_label(name)) for name in numberless)
+    traces = all(_trace_name(name) for name, _, _ in bare)
     if not traces and not all(options and options[0].quantity == "height" for options in heights):
         return None
     if any(unit is None for _, unit, _ in bare):

@@ -6,15 +6,24 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tribolab.reading.interpret.names import Match, is_count, is_track_radius, matches
+from tribolab.reading.interpret.amounts import Amount
+from tribolab.reading.interpret.names import (
+    KNOWN_WORD,
+    Match,
+    is_count,
+    is_track_radius,
+    matches,
+)
 from tribolab.reading.interpret.physics import Candidate, Proof, known_quantities, prove
 from tribolab.reading.interpret.unit_texts import converts
 from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
+from tribolab.reading.unknown.columns.evidence import BOTH_FORCES
 from tribolab.reading.unknown.columns.labels import bare_name
 from tribolab.reading.unknown.model import DraftColumn
 from tribolab.units.quantities import QUANTITIES
 
 _NEAR = 0.1  # of the best score: names that suit a quantity about as well
+_READS_LOAD = 0.1  # of a stated load: controllers keep it so well
 _MOST = 100  # columns: of more, too many may be members of a rule
 _NAMED = ("mass", "turns", "distance", "torque")
 
@@ -44,6 +53,45 @@ def add_proven_units(columns: Sequence[DraftColumn], proofs: dict[int, Proof]) -
         else column
         for place, column in enumerate(columns)
     ]
+
+
+def add_unit_of_load(
+    columns: Sequence[DraftColumn], numbers: np.ndarray, load: Amount | None
+) -> list[DraftColumn]:
+    """Return forces without units in the unit of the stated load, if a load cell reads it.
+
+    File: Fx, Fy and Fz = -20.3 of "PAO4+OA-10_20N_100mms" (liampond/EgbertsTribometer).
+
+    Parameters
+    ----------
+    columns, numbers
+        As for `proven`.
+    load
+        What the file or its name states of the load.
+    """
+    forces = {place: _force_of(column) for place, column in enumerate(columns)}
+    forces = {place: force for place, force in forces.items() if force}
+    unit = load.own_unit if load is not None else None
+    if load is None or unit is None or set(forces.values()) != set(BOTH_FORCES):
+        return list(columns)
+    read = [np.abs(numbers[:, p]) for p, force in forces.items() if force == "normal_force"]
+    sizes = [float(np.nanmedian(values)) for values in read if np.isfinite(values).any()]
+    if not any(abs(size - load.number) <= _READS_LOAD * load.number for size in sizes):
+        return list(columns)
+    return [
+        column._replace(unit=unit, name=column.name or bare_name(column)[0])
+        if place in forces
+        else column
+        for place, column in enumerate(columns)
+    ]
+
+
+def _force_of(column: DraftColumn) -> str:
+    """Return the force that a column without a unit is surely named for; "" if none."""
+    name, unit, _ = bare_name(column)
+    options = matches(name, unit) if unit is None else []
+    sure = bool(options) and options[0].score >= KNOWN_WORD
+    return options[0].quantity if sure and options[0].quantity in BOTH_FORCES else ""
 
 
 def _candidate(name: str, unit: str | None, say: bool, values: np.ndarray) -> Candidate:

@@ -23,7 +23,11 @@ from tribolab.reading.unknown.columns.heights import (
 )
 from tribolab.reading.unknown.columns.labels import bare_name, labelled
 from tribolab.reading.unknown.columns.names import decide_by_name, says_something
-from tribolab.reading.unknown.columns.proven import add_proven_units, proven
+from tribolab.reading.unknown.columns.proven import (
+    add_proven_units,
+    add_unit_of_load,
+    proven,
+)
 from tribolab.reading.unknown.columns.results_table import are_points
 from tribolab.reading.unknown.columns.rotating_parts import angle_of, torque_of
 from tribolab.reading.unknown.columns.sign_against_motion import against_motion
@@ -38,6 +42,7 @@ from tribolab.reading.unknown.derivations.two_bodies import (
 )
 from tribolab.reading.unknown.header.factors import unapplied_factors, unapplied_height_factors
 from tribolab.reading.unknown.header.lengths import confirm_lever_arm_force
+from tribolab.reading.unknown.header.load import find_load
 from tribolab.reading.unknown.header.profiles import (
     find_height_unit,
     find_pitch,
@@ -45,6 +50,7 @@ from tribolab.reading.unknown.header.profiles import (
     find_unit_along,
 )
 from tribolab.reading.unknown.header.sampling import find_pace, find_sampling
+from tribolab.reading.unknown.header.settings import numeric_settings
 from tribolab.reading.unknown.header.slip import as_entrainment_speed
 from tribolab.reading.unknown.header.zero import load_zeros_in_doubt, unloaded_start_in_doubt
 from tribolab.reading.unknown.layout.text_layout import Layout
@@ -103,6 +109,7 @@ def _interpret(layout: Layout, cells: Cells, spacing: _Spacing) -> _Interpretati
     columns = in_stated_unit(labelled(layout), unit, along)
     proofs = proven(columns, numbers)
     columns = add_proven_units(columns, proofs)
+    columns = add_unit_of_load(columns, numbers, find_load(numeric_settings(layout)))
     profile = _profile_of(layout, columns, numbers, spacing, stated=bool(unit))
     if profile is not None:
         return profile

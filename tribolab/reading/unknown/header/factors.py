@@ -7,7 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from tribolab.core.errors import shown
-from tribolab.reading.interpret.phrases import phrases, ratios_in, single_number, weight_on_lever
+from tribolab.reading.interpret.phrases import (
+    label_of,
+    phrases,
+    ratios_in,
+    single_number,
+    weight_on_lever,
+)
 from tribolab.reading.lexicon.lexicon import (
     key_pattern,
     plain_text,
@@ -32,8 +38,20 @@ def unapplied_factors(layout: Layout) -> list[str]:
     list of str
         A sentence for each line that states one. Factors of one and single contacts are left out.
     """
-    said = (_unapplied(line[:_MAX_LINE].strip()) for line in layout.text_above())
-    return [sentence for sentence in said if sentence]
+    lines = [line[:_MAX_LINE].strip() for line in layout.text_above()]
+    if any(key_pattern("per_contact").search(label_of(line)) for line in lines):
+        lines = [line for line in lines if not contacts_in(line)]  # the load is times their number
+    return [sentence for line in lines if (sentence := _unapplied(line))]
+
+
+def contacts_in(line: str) -> int:
+    """Return the number of contacts that a line states, if there are several; else 0.
+
+    >>> contacts_in("Number of pins: 3"), contacts_in("Pin 3")
+    (3, 0)
+    """
+    counted = (n for n in numbers_in(line[:_MAX_LINE]) if _counts_contacts(line, n))
+    return next((int(number.value) for number in counted), 0)
 
 
 def unapplied_height_factors(
@@ -83,7 +101,7 @@ def _unapplied(line: str) -> str:
     "friction and load are both of all contacts, or both of one: 'Number of contacts: 2'"
     """
     numbers = numbers_in(line)
-    if any(_counts_contacts(line, number) for number in numbers):
+    if contacts_in(line):
         return f"friction and load are both of all contacts, or both of one: '{shown(line, 40)}'"
     if weight_on_lever(line):
         return ""  # the load is the weight times the lever

@@ -38,7 +38,12 @@ def find_radius(values: Sequence[Amount], *, rim: bool = False) -> Amount | None
     lengths = _lengths(values).of(but=("other_radius",))
     across = _scaled(lengths.of("diameter"), "track_radius", 0.5)
     radii = lengths.of("track_radius")
-    sure = radii.of("on_track") or radii.of(but=("turning",)) or across.of("track_diameter")
+    sure = (
+        radii.of("on_track")
+        or radii.of(but=("turning",))
+        or radii.of("of_mean")  # of a ring, the radius at which it rubs
+        or across.of("track_diameter")
+    )
     if sure:
         return sure.only()
     if rim and (outer := Amounts((*radii, *across)).only("outer")):

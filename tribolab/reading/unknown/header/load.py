@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from tribolab.reading.interpret.amounts import Amount, Amounts
 from tribolab.reading.lexicon.lexicon import plain_text, says, text_pattern
+from tribolab.reading.unknown.header.factors import contacts_in
 from tribolab.reading.unknown.layout.text_layout import Layout
 from tribolab.units.spellings import WEIGHTS
 
@@ -19,8 +20,9 @@ def find_load(values: Sequence[Amount]) -> Amount | None:
 
     If the text states none, that of the file's name. A load of zero is none.
     """
+    contacts = next(filter(None, (contacts_in(v.text) for v in values if not v.own_unit)), 1)
     fitting = Amounts(
-        value._replace(name="set_normal_force", unit=_force_unit(value), to=None)
+        (value._replace(scale=contacts) if value.means("per_contact") else value)._replace(name="set_normal_force", unit=_force_unit(value), to=None)
         for value in Amounts(values).of("load", unit="N")
         # "step 0: no contact (load 0 N)": nothing that friction is divided by
         if value.source != "file name" and (value.source == "step" or stated_number(value) != 0)

@@ -12,7 +12,12 @@ from tribolab.core.errors import shown
 from tribolab.reading.interpret.patterns import escaped
 from tribolab.reading.interpret.phrases import single_number
 from tribolab.reading.interpret.unit_texts import converts
-from tribolab.reading.lexicon.lexicon import alternatives, key_pattern, normalise_label
+from tribolab.reading.lexicon.lexicon import (
+    alternatives,
+    key_pattern,
+    normalise_label,
+    part_pattern,
+)
 from tribolab.reading.unknown.header.settings import numeric_settings
 from tribolab.reading.unknown.layout.lvm import interval_above
 from tribolab.reading.unknown.layout.text_layout import Layout
@@ -143,7 +148,9 @@ def _in_amounts(layout: Layout) -> Sampling | None:
         if value.own_unit is None:
             interval = value.means("sampling_interval")
             return _without_unit(value.pattern, value.text, interval=interval)
-    return None
+    taken = part_pattern("taken")  # "Sampling fequency [Hz]" (liampond/EgbertsTribometer)
+    rates = [v for v in numeric_settings(layout) if v.is_in("Hz") and taken.match(v.key)]
+    return Sampling(rates[0].pattern, rates[0].unit or "Hz") if len(rates) == 1 else None
 
 
 def _without_unit(pattern: str, text: str, *, interval: bool) -> Sampling:

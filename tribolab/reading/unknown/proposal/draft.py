@@ -23,9 +23,10 @@ from tribolab.reading.text.first_bytes import (
     peek,
     results_error,
 )
+from tribolab.reading.unknown.columns.heights import are_traces, side_by_side
 from tribolab.reading.unknown.derivations.interpret_columns import first_cells_of, understand
 from tribolab.reading.unknown.layout.text_layout import Layout, find_layout
-from tribolab.reading.unknown.model import Understood
+from tribolab.reading.unknown.model import DraftColumn, Understood
 from tribolab.reading.unknown.proposal.model import SHOWN, Drafted
 from tribolab.reading.unknown.proposal.questions import unsaid_of_heights
 from tribolab.reading.unknown.proposal.show import draft_html
@@ -190,6 +191,8 @@ def _known(file: File) -> str:
 def _is_heights(draft: Drafted) -> bool:
     """Whether a table is one column that is named as heights are, without positions."""
     columns = draft.understood.columns if draft.understood else ()
+    if side_by_side(list(columns)) and are_traces(list(columns)):
+        return True
     if len(columns) != 1 or not columns[0].label:
         return False
     name, unit = split_name(columns[0].label)
@@ -214,15 +217,22 @@ def as_profile(draft: Draft, pitch: str = "", unit: str | None = None) -> Draft:
     understood = draft.understood
     if understood is None:
         return draft
-    heights = understood.columns[0]._replace(quantity="height", used=True, note="", options=())
-    said = unit or heights.read_unit
-    heights = heights._replace(
-        unit=heights.unit if said and said == heights.file_unit else said or "um",
+    heights = tuple(_as_height(column, unit) for column in understood.columns)
+    whole = understood._replace(kind="scan", columns=heights, pitch=pitch)
+    return replace(draft.with_understood(whole), answer="", unsaid="")
+
+
+def _as_height(column: DraftColumn, unit: str | None) -> DraftColumn:
+    said = unit or column.read_unit
+    return column._replace(
+        quantity="height",
+        used=True,
+        note="",
+        options=(),
+        unit=column.unit if said and said == column.file_unit else said or "um",
         guessed=() if said else ("height is in um",),
         fill_in="",
     )
-    whole = understood._replace(kind="scan", columns=(heights,), pitch=pitch)
-    return replace(draft.with_understood(whole), answer="", unsaid="")
 
 
 def _answer(file: File, understood: Understood) -> str:
