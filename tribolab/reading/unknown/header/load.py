@@ -22,7 +22,12 @@ def find_load(values: Sequence[Amount]) -> Amount | None:
     """
     contacts = next(filter(None, (contacts_in(v.text) for v in values if not v.own_unit)), 1)
     fitting = Amounts(
-        (value._replace(scale=contacts) if value.means("per_contact") else value)._replace(name="set_normal_force", unit=_force_unit(value), to=None)
+        value._replace(
+            name="set_normal_force",
+            unit=_force_unit(value),
+            to=None,
+            scale=value.scale * (contacts if value.means("per_contact") else 1),
+        )
         for value in Amounts(values).of("load", unit="N")
         # "step 0: no contact (load 0 N)": nothing that friction is divided by
         if value.source != "file name" and (value.source == "step" or stated_number(value) != 0)
