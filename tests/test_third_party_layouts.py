@@ -1,4 +1,4 @@
-"""Layouts of third-party files, in few rows: their numbers come from the layout named above each."""
+"""Layouts of third-party files in a few rows; the source is named above each."""
 
 from __future__ import annotations
 

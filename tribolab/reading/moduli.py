@@ -197,8 +197,8 @@ def _one_sweep(data: np.ndarray, sweep: int | str | None, name: str) -> np.ndarr
             where=name,
             cure=Cure(
                 notebook=f"name one with sweep=0 to {last}, or give a master curve",
-                terminal=f'name one in a campaign file: modulus_file = "{name}", sweep = 0 to {last} '
-                "in [contact], or give a master curve",
+                terminal=f'name one in a campaign file: modulus_file = "{name}", '
+                f"sweep = 0 to {last} in [contact], or give a master curve",
                 campaign=f"name one with sweep = 0 to {last} in [contact], or give a master curve",
             ),
         )
