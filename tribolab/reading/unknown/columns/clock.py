@@ -59,6 +59,7 @@ def find_clock(
     if len(layout.blocks) == 1 and is_newest_first(time):
         return "", False, _replaced(columns, _reversed(column))
     edges = np.cumsum([0, *(len(block.rows) for block in layout.blocks)])
+    edges = np.unique(np.minimum(edges, len(time)))  # damaged rows are not among the numbers
     restart = any(not time[b] > time[b - 1] for b in edges[1:-1])
     bad, wraps = np.zeros(len(time), dtype=bool), []
     for first, last in itertools.pairwise(edges):
