@@ -297,7 +297,9 @@ def _starts(signals: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset) -> 
 
 
 def failed_run(run: PlannedRun, reason: str, error: str, seconds: float = 0.0) -> RunOutcome:
-    """Return the outcome of a run without results."""
+    """Return the outcome of a run without results; its files are named as reports name them."""
+    for file, label in zip(run.files, run.labels, strict=True):
+        reason = reason.replace(str(file), label)
     return RunOutcome(
         name=run.name,
         files=run.labels,

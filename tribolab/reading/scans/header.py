@@ -311,7 +311,7 @@ def _counts(entries: Iterable[_Entry]) -> tuple[int | None, int | None]:
     rows: set[float] = set()
     columns: set[float] = set()
     for entry in entries:
-        whole = all(n > 0 and n == round(n) for n in entry.numbers) and not any(entry.units)
+        whole = all(n > 0 and n.is_integer() for n in entry.numbers) and not any(entry.units)
         of_row = entry.means("per_line")
         if not whole or not (of_row or entry.means("map_points")):
             continue

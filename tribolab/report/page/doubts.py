@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -66,7 +67,7 @@ def _left_out(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
     for run in bad if len(bad) <= _MAX_NAMED else ():
         yield Doubt("fail", run["name"], f"left out, {why(run)}", "", f"run {run['name']}")
     if len(bad) > _MAX_NAMED:
-        named = [f"{run['name']} ({why(run).partition(':')[0]})" for run in bad[:_MAX_LISTED]]
+        named = [f"{r['name']} ({re.split('[:;]', why(r))[0]})" for r in bad[:_MAX_LISTED]]
         more = f" and {len(bad) - _MAX_LISTED} more" if len(bad) > _MAX_LISTED else ""
         yield Doubt(
             "fail", many(len(bad), "run"), f"left out: {', '.join(named)}{more}", "", "#runs"

@@ -76,7 +76,7 @@ def find_stated(layout: Layout, *, placed: bool) -> list[Amount]:
         "tip_radius": tips,
     }
     found = [v[0]._replace(name=name, to="m") for name, v in named.items() if len(v) == 1]
-    counts = [v for v in values.of("points", unit="") if v.number == round(v.number)]
+    counts = [v for v in values.of("points", unit="") if v.number % 1 == 0]
     if len(counts) == 1:
         found.append(counts[0]._replace(name="stated_points", unit="1", to="1"))
     return found

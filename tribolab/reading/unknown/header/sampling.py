@@ -134,7 +134,7 @@ def _fewer_rows(layout: Layout) -> str:
             return shown(line.strip(), 40)
         said = single_number(line.strip()[:_MAX_LINE])
         averaged = said and key_pattern("averaging").search(normalise_label(said[0]))
-        if said and averaged and said[1] > 1 and said[1] == round(said[1]):
+        if said and averaged and said[1] > 1 and said[1] % 1 == 0:
             return shown(line.strip(), 40)
     return ""
 
