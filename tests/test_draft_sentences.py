@@ -148,14 +148,10 @@ def test_a_sentence_states_strokes_a_speed_and_a_load(tmp_path):
     assert run.attrs["set_speed_m_s"] == pytest.approx(5e-3)
 
 
-def test_rows_that_stand_twice_are_taken_once_and_a_factor_of_a_unit_is_read(tmp_path):
+def test_a_factor_of_a_unit_is_read(tmp_path):
     head = "Time [s]\tFriction (1e-4 N)\tLoad [N]\tSpeed [mm/s]"
-    columns = (np.repeat(x, 2) for x in (T, 1e4 * FORCE, LOAD))
-    run = tl.read(table(tmp_path / "a.txt", head, *columns, 5.0))
-    assert run.attrs["rows_repeated"] == "each row stands twice, and is taken once"
+    run = tl.read(table(tmp_path / "a.txt", head, T, 1e4 * FORCE, LOAD, 5.0))
     np.testing.assert_allclose(run.friction_force, FORCE, rtol=1e-4)
-    told = tl.check(run).table.query("check == 'rows_left_out'")
-    assert set(told.status) == {"pass"}
 
 
 def test_forces_whose_ratio_can_be_no_friction_are_asked_about(tmp_path):

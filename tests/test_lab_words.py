@@ -129,27 +129,3 @@ def test_every_term_of_a_column_is_known_and_none_means_two_forces():
         for term in TERMS[name]:
             options = matches(term, "N")
             assert options[0].quantity == name and options[0].score > 0.85, term
-
-
-def test_a_programme_that_says_two_things_of_a_step_is_refused(tmp_path):
-    dialect = tmp_path / "rig.toml"
-    dialect.write_text(
-        'name = "rig"\ntitle = "rig"\n[header]\npattern = "^Time"\n'
-        '[[column]]\nquantity = "time"\nname = "Time"\nunit = "s"\n'
-        '[[column]]\nquantity = "step"\nname = "Step"\nunit = "1"\n'
-        '[[column]]\nquantity = "friction_force"\nname = "F"\nunit = "N"\n'
-        '[[value]]\nname = "set_speed"\nsource = "programme"\nunit = "mm/s"\n'
-        "pattern = '^(\\d),(\\d+)$'\n",
-        "utf-8",
-    )
-    rows = "".join(f"{n},{1 + n // 50},4\n" for n in range(100))
-    (tmp_path / "a.csv").write_text(f"1,5\n2,10\nTime,Step,F\n{rows}", "utf-8")
-    speeds = tl.read(tmp_path / "a.csv", dialect).set_speed
-    np.testing.assert_allclose(np.unique(speeds), [0.005, 0.01])
-    (tmp_path / "b.csv").write_text(f"1,5\n1,6\nTime,Step,F\n{rows}", "utf-8")
-    with pytest.raises(tl.TribolabError, match="two values of set_speed of step 1"):
-        tl.read(tmp_path / "b.csv", dialect)
-    one_group = dialect.read_text("utf-8").replace("^(\\d),(\\d+)$", "^\\d,(\\d+)$")
-    dialect.write_text(one_group, "utf-8")
-    with pytest.raises(tl.TribolabError, match="two groups"):
-        tl.read(tmp_path / "a.csv", dialect)

@@ -20,7 +20,6 @@ from mutations import mat_inside, mutate
 
 import tribolab as tl
 from tribolab.core.errors import ReadError, TribolabError
-from tribolab.reading.content.repeated_rows import times_over
 from tribolab.reading.dialect.delimited.tables import find_tables
 from tribolab.reading.dialect.model import Dialect
 from tribolab.reading.netcdf import seal
@@ -419,11 +418,6 @@ def test_a_file_that_is_endless_in_one_way_is_drafted_or_refused(tmp_path, text)
         assert "endless.csv" in str(error)
     else:
         assert [column.quantity for column in columns][::2] == ["time", "normal_force"]
-
-
-def test_times_without_end_are_no_rows_written_twice():
-    time = np.repeat([0.0, 1.0, np.inf, np.inf, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0], 2)
-    assert times_over({"time": time, "force": np.ones(20)}) == 1
 
 
 def changed(shared_data, tmp_path, case):

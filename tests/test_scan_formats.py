@@ -221,44 +221,6 @@ def test_a_map_longer_than_any_instrument_is_refused(tmp_path):
 VALUES = np.round(np.sin(np.arange(40) / 5.0), 6)
 
 
-@pytest.mark.parametrize(
-    "body",
-    [
-        '<spacing unit="mm">0.00025</spacing><z unit="um">{joined}</z>',
-        "<DX>0.25</DX><Unit>um</Unit><Heights>{each}</Heights>",
-        "<Header><Pitch>0.25 um</Pitch><ZUnit>µm</ZUnit></Header><Profile>{each}</Profile>",
-        '<x unit="um">{positions}</x><z unit="um">{joined}</z>',
-    ],
-)
-def test_lists_of_values_in_xml_of_any_maker(tmp_path, body):
-    path = tmp_path / "gauge.xml"
-    joined = " ".join(map(str, VALUES))
-    each = "".join(f"<V>{v}</V>" for v in VALUES)
-    positions = " ".join(str(0.25 * n) for n in range(VALUES.size))
-    told = body.format(joined=joined, each=each, positions=positions)
-    path.write_text(f'<?xml version="1.0" encoding="utf-8"?><Gauge>{told}</Gauge>', "utf-8")
-    scan = read_scans(path)
-    np.testing.assert_allclose(scan.height[0], 1e-6 * VALUES, atol=1e-18)
-    assert scan.attrs["pitch_m"] == pytest.approx(0.25e-6)
-
-
-def test_xml_that_says_too_little_is_refused(tmp_path):
-    path = tmp_path / "gauge.xml"
-    text = '<?xml version="1.0"?><a><z>' + " ".join(map(str, VALUES)) + "</z>{}</a>"
-    path.write_text(text.format(""))
-    with pytest.raises(ReadError, match="states no units"):
-        read_scans(path)
-    with pytest.raises(ReadError, match="neither positions nor the distance"):
-        read_scans(path, x_unit="um", height_unit="um")
-    path.write_text(text.format("<pitch>0.5</pitch>"))
-    scan = read_scans(path, x_unit="um", height_unit="nm")
-    assert scan.attrs["pitch_m"] == pytest.approx(5e-7)
-    assert float(scan.height.max()) == pytest.approx(1e-9 * VALUES.max())
-    path.write_text('<?xml version="1.0"?><a><b>1 2 3</b></a>')
-    with pytest.raises(ReadError, match="no list of numbers"):
-        read_scans(path)
-
-
 SMD = (
     "ISO 5436 - 2000 ground01\r\nPRF 1 ISO5436\r\nCX I 40 mm 1.0e0 D 2.5e-4\r\n"
     "CZ A 40 um 1.0e0 D\r\n\x03\r\nDATE 25-Nov-2004\r\nPROFILE_FILTER Gaussian LS 0.0 LC 0.8\r\n"
@@ -354,41 +316,6 @@ def test_an_sdf_draft_that_is_cut_short_is_told_by_its_own_name(tmp_path):
     with pytest.raises(ReadError) as told:
         read_scans(path)
     assert str(path) in str(told.value)
-
-
-WAVE = np.round(np.sin(np.arange(60) / 5.0), 4)
-
-
-def comma(values):
-    return [f"{value:.4f}".replace(".", ",") for value in values]
-
-
-COMMA_XML = {
-    "a list": "<P><Einheit>µm</Einheit><Punktabstand Unit='µm'>0,5</Punktabstand><Werte>"
-    + " ".join(comma(WAVE))
-    + "</Werte></P>",
-    "units of both": "<M><Profil dx='0,0005' dxUnit='mm' zUnit='um'>"
-    + "".join(f"<z>{z}</z>" for z in comma(WAVE))
-    + "</Profil></M>",
-    "points": "<M><Punkte xUnit='mm' zUnit='um'>"
-    + "".join(
-        f"<P><x>{x}</x><z>{z}</z></P>"
-        for x, z in zip(comma(0.0005 * np.arange(60)), comma(WAVE), strict=True)
-    )
-    + "</Punkte></M>",
-    "points in attributes": "<M xUnit='mm' zUnit='um'>"
-    + "".join(f"<P x='{0.0005 * n:.4f}' z='{z}'/>" for n, z in enumerate(WAVE))
-    + "</M>",
-}
-
-
-@pytest.mark.parametrize("kind", COMMA_XML)
-def test_xml_has_decimal_commas_and_units_of_its_own(tmp_path, kind):
-    path = tmp_path / "line.xml"
-    path.write_text(f'<?xml version="1.0" encoding="utf-8"?>\n{COMMA_XML[kind]}\n', "utf-8")
-    scan = read_scans(path)
-    np.testing.assert_allclose(scan.height[0], 1e-6 * WAVE, atol=1e-12)
-    assert scan.attrs["pitch_m"] == pytest.approx(0.5e-6)
 
 
 def test_a_mark_for_lost_points_in_a_foreign_format_is_no_height(tmp_path):

@@ -3,7 +3,6 @@
 import numpy as np
 
 from tribolab.reading.scan_files import read_scans
-from tribolab.reading.scans.passes import find_passes
 from tribolab.reading.unknown_run import holds_run
 
 N = 400
@@ -29,13 +28,6 @@ def test_wear_over_time_is_no_profile(tmp_path):
     assert holds_run(path)
 
 
-def to_and_fro():
-    """Rests, a pass there, a rest, a pass back, with an encoder that jitters at rest."""
-    there = np.arange(4 * N)
-    rest = np.tile([0, 1], 300)
-    return np.concatenate([rest, there, 4 * N - 1 - rest, there[::-1], rest])
-
-
 def test_a_sensors_map_with_x_y_and_z_is_a_map(tmp_path):
     x, y = (axis.ravel() for axis in np.meshgrid(np.arange(8), np.arange(6)))
     places = [[f"{2.0 * n:.1f}" for n in axis] for axis in (x, y)]
@@ -44,9 +36,3 @@ def test_a_sensors_map_with_x_y_and_z_is_a_map(tmp_path):
     scan = read_scans(path)
     assert dict(scan.sizes) == {"y": 6, "x": 8}
     np.testing.assert_allclose(scan.height[2], 1e-6 * np.sin(np.arange(8) + 6), atol=1e-10)
-
-
-def test_a_way_that_jumps_back_is_no_pass():
-    x = np.tile(np.arange(100.0), 2)
-    assert find_passes(x, x) is None
-    assert find_passes(np.arange(100.0), np.arange(100.0)) is None

@@ -91,9 +91,6 @@ def texts() -> Iterable[Kind]:
     )
     counts = "".join(f"{round(1e10 * z)}\n" for z in LINE)
     yield Kind("PRF text (soft gauges)", "a.prf", (head + counts + "EOR\n").encode(), LINE, 1e-10)
-    values = " ".join(f"{1e6 * z:.4f}" for z in LINE)
-    xml = f'<?xml version="1.0"?><g><dx unit="um">0.25</dx><z unit="um">{values}</z></g>'
-    yield Kind("XML with a list of values", "a.xml", xml.encode(), LINE, 1e-10)
 
 
 def matrices() -> Iterable[Kind]:
@@ -392,13 +389,13 @@ missing. Reference heights and pitch of the measured profiles are parsed by inde
 SurfaceTopography (tested: 1.27.1) reads the formats of some forty profilometers. tribolab itself
 reads what that library does not, or only in part: x3p with `main.xml` in a folder, of other
 revisions, of profiles, with positions for each point, or with heights as a list; Surf files that
-are packed or contain a UTF-8 micro sign; XML, SMD and PRF text; matrices of heights as text.
+are packed or contain a UTF-8 micro sign; SMD and PRF text; matrices of heights as text.
 Neither this library nor surfalize ships sample files. Files written by surfalize 0.19 were read
 back: AL3D, SDF (text and binary) and x3p agree to the last digit; Surf files agree except for a
 constant that surfalize adds; TMD files differ by a factor of 1000, because surfalize writes
 micrometres where the format requires millimetres.
 
-Not seen: SMD, PRF and XML files of national laboratories (their layouts are from published
+Not seen: SMD and PRF files of national laboratories (their layouts are from published
 descriptions and examples), and x3p files from manufacturers, except through these two libraries.
 """
 

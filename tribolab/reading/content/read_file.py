@@ -12,7 +12,6 @@ from tribolab.arrays.chunks import anywhere
 from tribolab.core.errors import ReadError, shown
 from tribolab.core.provenance import sha256_of_file
 from tribolab.reading.content.model import Content, Piece
-from tribolab.reading.content.programme import programmed_steps
 from tribolab.reading.content.steps import last_match, started
 from tribolab.reading.dialect.columns import AGAIN, first_filled, resolve, scales_of, symbols
 from tribolab.reading.dialect.model import Dialect
@@ -110,7 +109,6 @@ def _read_text(file: File, dialect: Dialect, size: int) -> Content:
         )
     sha256 = hasher.hexdigest() if hasher else sha256_of_file(file.path)
     outside = rows_outside(raw, dialect.text.delimiter)
-    outside = max(0, outside - programmed_steps(pieces[0].before, dialect))
     left_out = {"cut short at the end": cut, "outside of the table that is read": outside}
     left_out = {reason: count for reason, count in left_out.items() if count}
     begins = len(pieces) == 1 and pieces[0].before.strip().count("\n") < _OF_NAMES

@@ -32,7 +32,7 @@ def single_values(content: Content, dialect: Dialect) -> dict[str, str | float]:
     """
     attrs: dict[str, str | float] = {}
     for value in dialect.value:
-        if value.source in ("step", "programme") or value.pattern is None:
+        if value.source == "step" or value.pattern is None:
             continue
         text = content.path.name if value.source == "file name" else content.pieces[0].before
         text_found = _first_match(value.pattern, text)

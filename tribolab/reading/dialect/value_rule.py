@@ -23,16 +23,11 @@ class Value(Strict):
     """
 
     name: str = Field(description="a quantity, or your own name")
-    source: Literal["preamble", "file name", "step", "programme"] = Field(
+    source: Literal["preamble", "file name", "step"] = Field(
         "preamble",
-        description="'step': the text before each of several tables; 'programme': a table of all "
-        "steps above the signals, whose column 'step' counts them",
+        description="'step': the text before each of several tables",
     )
-    pattern: Pattern | None = Field(
-        None,
-        description="group 1 is the value; for a programme, group 1 is the step number and group 2 "
-        "the value",
-    )
+    pattern: Pattern | None = Field(None, description="group 1 is the value")
     default: str | None = Field(
         None,
         description="value if the file does not state it, e.g. '1 mm', because the method or the "
@@ -51,17 +46,10 @@ class Value(Strict):
             raise ValueError(
                 f"value '{shown(self.name)}': the pattern needs a group ( ) for the value"
             )
-        if self.source == "programme" and (
-            self.unit is None or self.pattern is None or guarded(self.pattern).groups != 2
-        ):
-            raise ValueError(
-                f"value '{shown(self.name)}': of a programme it needs a unit, and a pattern with "
-                "two groups, for the number of the step and for the value"
-            )
         if self.unit is not None:
             check_unit(self.unit, self.si_unit, self.bare)
         if self.default is not None:
-            if self.unit is None or self.source in ("step", "programme"):
+            if self.unit is None or self.source == "step":
                 raise ValueError(
                     f"value '{shown(self.name)}': a default is for a number with a unit that "
                     "holds for the whole file"

@@ -25,7 +25,7 @@ class Amount(NamedTuple):
     unit, to
         Its unit, and the SI unit of its dimension, if it has one that is known.
     source
-        ``preamble``, ``step``, ``programme`` or ``file name``.
+        ``preamble``, ``step`` or ``file name``.
     own_unit
         The unit as the file writes it: a weight's, too.
     scale

@@ -15,9 +15,7 @@ from tribolab.core.untyped import Json
 from tribolab.reading.clocks.clock import join_clocks, mended_time, recorded_at, set_time
 from tribolab.reading.content.model import Content
 from tribolab.reading.content.newest_first import oldest_first
-from tribolab.reading.content.programme import programme_values
 from tribolab.reading.content.read_file import read_content
-from tribolab.reading.content.repeated_rows import each_row_once
 from tribolab.reading.content.values import add_assumed, single_values, step_values, tell_assumed
 from tribolab.reading.dialect.column_rule import FRICTION_SIGNALS
 from tribolab.reading.dialect.find import Dialect
@@ -62,7 +60,7 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     contents = [read_content(path, dialect, size) for path, _ in logs]
     for content in contents:
         set_time(content, dialect)
-    contents = [each_row_once(oldest_first(content)) for content in contents]
+    contents = [oldest_first(content) for content in contents]
     starts = [content.pieces[0].started for content in contents]
     dated = [(start, content) for start, content in zip(starts, contents, strict=True) if start]
     if len(dated) == len(contents):
@@ -72,7 +70,7 @@ def gather(logs: LogDialects, zero: str | None = None) -> Signals:
     if "part" in joined and "step" not in columns:
         columns["step"] = np.asarray(joined["part"])
     more, step_attrs = step_values(contents, dialect)
-    columns |= more | programme_values(contents, columns, dialect)
+    columns |= more
     attrs: Json = {**single_values(contents[0], dialect), **step_attrs}
     where = "; ".join(str(content.path) for content in contents)
     mended = mended_time(columns.pop("time"), where, dialect)
@@ -151,7 +149,7 @@ def _symbols(contents: list[Content], dialect: Dialect) -> dict[str, str]:
     of_steps = {
         value.name: value.si_unit
         for value in dialect.value
-        if value.source in ("step", "programme")
+        if value.source == "step"
         if value.unit is not None and value.name not in QUANTITIES
     }
     return of_steps | {k: v for content in contents for k, v in content.symbols.items()}

@@ -89,7 +89,7 @@ def keep_settings(
         If such a column goes neither in steps nor holds the same all along, or a step does not
         state what others do.
     """
-    before_steps = {v.name: v.si_unit for v in dialect.value if v.source in _OF_STEPS and v.unit}
+    before_steps = {v.name: v.si_unit for v in dialect.value if v.source == "step" and v.unit}
     of_steps: dict[str, np.ndarray] = {}
     for key, name in dialect.speed.values_named.items():
         if name not in {*symbols, *before_steps} or name not in columns:
@@ -275,7 +275,6 @@ def level_of_each(values: np.ndarray) -> np.ndarray | None:
     return result
 
 
-_OF_STEPS = ("step", "programme")  # where a value that each step has is said
 _VARIES = 0.1  # relative; the stroke of a magnetic drive is controlled to some per cent
 _SIGNALS = ("friction_force", "friction_coefficient", "shear_stress")
 

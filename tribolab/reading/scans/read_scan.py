@@ -32,7 +32,6 @@ from tribolab.reading.scans.extent import measured_part, refuse_impossible
 from tribolab.reading.scans.formats.undescribed import read_undescribed
 from tribolab.reading.scans.grid import even, gridded
 from tribolab.reading.scans.isolated import take_isolated
-from tribolab.reading.scans.passes import find_passes
 from tribolab.reading.text.first_bytes import File, peek, results_error
 from tribolab.units.conversion import positive
 from tribolab.units.stamping import stamp
@@ -224,26 +223,17 @@ def _of_columns(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
         attrs["taken_for_missing"] = content.notes["taken_for_missing"]
     if len(pieces) > 1:
         attrs["traces"] = str(len(pieces))
-    scans = [scan for piece in pieces for scan in _scans_of(path, piece.columns, attrs, dialect)]
+    scans = [_scan_of(path, piece.columns, attrs, dialect) for piece in pieces]
     return scans, content.sha256
 
 
-def _scans_of(
+def _scan_of(
     path: Path, columns: Mapping[str, np.ndarray], attrs: Json, dialect: Dialect
-) -> list[xr.Dataset]:
-    """Return the scan that one table is; of a way to and fro one for each pass."""
+) -> xr.Dataset:
+    """Return the scan that one table is, without isolated heights that are no data."""
     bare = _without_isolated(xr.Dataset({"height": ("row", columns["height"])}, attrs=dict(attrs)))
     columns, attrs = {**columns, "height": bare.height.values}, dict(bare.attrs)
-    passes = None
-    if "x" in columns and "y" not in columns:
-        passes = find_passes(columns["x"], columns["height"])
-    if passes is None:
-        return [_scan(path, columns, attrs, dialect)]
-    x = passes.pitch * np.arange(passes.heights.shape[1], dtype=float)
-    said = {**attrs, "x_origin_m": passes.start, "resampled": passes.told}
-    if len(passes.heights) > 1:
-        said["traces"] = str(len(passes.heights))
-    return [xr.Dataset({"height": ("x", row)}, {"x": x}, said) for row in passes.heights]
+    return _scan(path, columns, attrs, dialect)
 
 
 def _scan(

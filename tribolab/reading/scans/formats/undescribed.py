@@ -21,7 +21,6 @@ from tribolab.reading.scans.formats.sdf import as_standard, is_sdf_draft
 from tribolab.reading.scans.formats.sur import is_sur, plain_sur
 from tribolab.reading.scans.formats.surfer import is_surfer, read_surfer
 from tribolab.reading.scans.formats.x3p import is_iso_xml, main_of, read_iso_xml, read_x3p
-from tribolab.reading.scans.formats.xml_values import is_xml, read_xml_values
 from tribolab.reading.scans.formats.zygo_xyz import is_zygo_xyz, read_zygo_xyz
 
 _HEAD = 1 << 14  # bytes that tell a format
@@ -32,7 +31,7 @@ def is_own_text(path: Path) -> bool:
     with path.open("rb") as file:
         head = file.read(_HEAD)
     named = is_surfer(head) or is_zygo_xyz(head)
-    return named or is_xml(head) or is_iso_xml(head) or is_gauge(head)
+    return named or is_iso_xml(head) or is_gauge(head)
 
 
 def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset:
@@ -58,7 +57,7 @@ def read_undescribed(path: Path, x_unit: str | None, height_unit: str | None) ->
     Notes
     -----
     Ours are those that SurfaceTopography 1.27 reads in part or not at all: x3p and its bare XML,
-    lists of values in XML, SMD and PRF text of soft gauges, packed Surf files, SDF of the
+    SMD and PRF text of soft gauges, packed Surf files, SDF of the
     standard's draft, matrices of heights below lines that say their size or between positions
     along two sides, and arrays by name.
     """
@@ -98,8 +97,6 @@ def _read(path: Path, x_unit: str | None, height_unit: str | None) -> xr.Dataset
     if is_xml_workbook(head):
         refuse_cut_short(path)
         raise ReadError("no sheet of this workbook can be read as a profile", where=path)
-    if is_xml(head):
-        return read_xml_values(path, x_unit, height_unit)
     if is_gauge(head):
         return read_gauge(path)
     if b"\0" not in head or head.startswith((b"\xff\xfe", b"\xfe\xff")):

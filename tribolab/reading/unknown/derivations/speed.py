@@ -83,7 +83,7 @@ def _by_rotation(result: Follows, sliding: Derivation[Source]) -> Follows:
     if radius is not None and radius.source is None:
         return result._replace(speed=SpeedBy("rotation", (("radius", radius.symbol.strip("'")),)))
     if radius is not None and isinstance(radius.source, Amount):
-        if radius.source.source not in ("step", "programme"):
+        if radius.source.source != "step":
             speed = SpeedBy("rotation", (("radius_value", radius.symbol),))
             return result.with_values(radius.source)._replace(speed=speed)
     return result.with_derivation(sliding)._replace(speed=SpeedBy("none"))
@@ -101,7 +101,7 @@ def _by_set_speed(result: Follows, sliding: Derivation[Source]) -> Follows:
 def _asked(speed: SpeedBy, value: Amount, about: str) -> SpeedBy:
     """Ask whether a speed of some name holds all along; what each step states holds in it."""
     its = key_pattern("own_speed").search(value.key) and not _ANOTHER_SPEED.search(value.text)
-    if value.source in ("step", "programme") or its:
+    if value.source == "step" or its:
         return speed
     return speed._replace(guess=f"'{value.text}' {about}", options=("not known",))
 

@@ -60,5 +60,4 @@ def stated_rotation(values: Sequence[Amount]) -> Amount | None:
 def _is_rotation(value: Amount) -> bool:
     step = value.source == "step" and _STEP.search(value.key) is not None
     named = key_pattern("rotation_speed").search(value.key) is not None
-    named = named or step or value.source == "programme"
-    return named and is_per_minute(value.own_unit or "")
+    return (named or step) and is_per_minute(value.own_unit or "")

@@ -112,7 +112,7 @@ def stated_strokes(values: Sequence[Amount]) -> tuple[Amount, ...]:
     strokes = find_strokes_above(values)
     if strokes is None or strokes.guess:
         return ()
-    if any(value.source in ("step", "programme") for value in strokes.values):
+    if any(value.source == "step" for value in strokes.values):
         return ()
     length, frequency = strokes.values
     cycles = Amounts(values).only("number_of_cycles", unit="")
