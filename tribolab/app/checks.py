@@ -222,7 +222,7 @@ def check_files(
     ConfigError
         If there is no such instrument.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.scan_files import file_of
 
     stage = Checks(paths, instrument, repeats)
@@ -242,7 +242,7 @@ def _check_run(task: CheckTask) -> list[Checked]:
 
 
 def _check_scans(task: CheckTask) -> list[Checked]:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.qc.scan.sets import check_scan_set
 
     scans: dict[Path, xr.Dataset] = {}
@@ -266,7 +266,7 @@ def _check_scans(task: CheckTask) -> list[Checked]:
 
 
 def _check_results(task: CheckTask) -> list[Checked]:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.qc.scan.sets import check_results
 
     return [Checked.of(task.files, check_results(read_tester_results(task.files[0])), "results")]
@@ -305,7 +305,7 @@ def show(checked: Sequence[Checked], *, notes: bool = False, everything: bool = 
 
     Of several files the last lines count them, and name those that need a look.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.app import terminal
 
     for checked_file in checked:
@@ -347,7 +347,7 @@ def as_json(checked: Sequence[Checked], fail_on: str) -> str:
 
 def document(checked: Sequence[Checked], fail_on: str) -> Json:
     """Return everything as one JSON document; what is not known is null."""
-    # late: looks the installed package up
+    # imported late: looks up the installed package
     from tribolab.version import __version__
 
     return {

@@ -188,7 +188,7 @@ def why_unread(paths: Sequence[Path], instrument: str | None = None) -> list[str
     paths, instrument
         As for `campaign_file`.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.app.info.file_info import file_lines
 
     said = []
@@ -235,7 +235,7 @@ def campaign_text(
     instrument, stated
         What the raw files are from, and further lines of their [[run]].
     """
-    from tribolab.reading.dialect.write import quoted  # late: starting stays quick
+    from tribolab.reading.dialect.write import quoted  # imported late for a quick start
 
     raw = Path(os.path.commonpath([path.parent for path in paths]))
     where = os.path.relpath(raw, folder) if raw.is_relative_to(folder) else str(raw)
@@ -294,7 +294,7 @@ def _said(instrument: str | None, folder: Path) -> list[str]:
     """Return the line that names an instrument; the file of a dialect relative to the campaign."""
     if instrument is None:
         return []
-    from tribolab.reading.dialect.write import quoted  # late: starting stays quick
+    from tribolab.reading.dialect.write import quoted  # imported late for a quick start
 
     file = Path(instrument)
     if file.suffix == ".toml":

@@ -13,7 +13,7 @@ def progress_bars(quiet: bool) -> Iterator[Callable[[str, int, int], None] | Non
     if quiet or not sys.stderr.isatty():
         yield None
         return
-    # late: rich takes long to load
+    # imported late: rich loads slowly
     from rich.console import Console
     from rich.progress import (
         BarColumn,

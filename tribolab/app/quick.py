@@ -25,7 +25,7 @@ def plain_arrays_only() -> None:
     nothing: Arguments = dict.fromkeys(_OTHER_ARRAYS)  # None: an import of it fails
     sys.modules.update(nothing)
     try:
-        # late: xarray takes long to load
+        # imported late: xarray loads slowly
         import xarray as xr
 
         xr.Dataset({"value": ("x", [0.0])}, {"x": [0.0]}).value.to_numpy()

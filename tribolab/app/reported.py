@@ -87,7 +87,7 @@ def reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
     except typer.Abort:
         fail("stopped at a question without an answer: nothing is written", _INTERRUPTED, debug)
     except Exception as error:  # a mistake of ours: said in one line, shown in full on demand
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.core.wording import explain
 
         fail(f"{explain(error)[0]} (--debug shows where)", UNREADABLE, debug)

@@ -229,7 +229,7 @@ def _told_of_runs(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
 
 def _undecided(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
     """Return in a line how many segments may have a large trend or none."""
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.records.runs.trends import undecided_trends
 
     entries = [(run.name, outcome.store.get("run", run.name, RunRecord)) for run in done]
@@ -340,7 +340,7 @@ def _handful(names: Sequence[str]) -> str:
 
 def failure_lines(outcome: Outcome) -> list[str]:
     """Say which runs, surfaces, scans and models failed and why, and what the file may say."""
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.records.models.mode_record import condition
 
     failed = list(outcome.lost_decisions)
@@ -391,7 +391,7 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
 
 def _not_described(results: Path) -> str:
     """Say in brackets how many curves of which surface the model does not describe."""
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.records.models.model_words import is_described
     from tribolab.report import tables
 
@@ -415,7 +415,7 @@ def paper_lines(folder: Path, table: pd.DataFrame) -> list[str]:
     table
         Published numbers beside computed ones.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.studies.tally import tell_statuses
     from tribolab.studies.verdict import DIFFERS
 

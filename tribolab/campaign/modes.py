@@ -1,4 +1,4 @@
-"""How each measured contact of a campaign slides: judged from its curve, its model, its traces."""
+"""Sliding mode of each measured contact, judged from its curve, model and traces."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ _CURVE = (
     "dominant_frequency",
 )
 _ENDING = {"dominant_wavelength": "_m", "recurrence_distance": "_m", "dominant_frequency": "_Hz"}
-SPEED_COLUMNS = tuple(name + _ENDING.get(name, "") for name in _CURVE)  # those that are known
+SPEED_COLUMNS = tuple(name + _ENDING.get(name, "") for name in _CURVE)  # columns available
 
 
 @dataclass(frozen=True)
 class ModeTask:
-    """A measured curve to judge, the data file of its model ("": none), and what else is known."""
+    """Measured curve to judge, the data file of its model ("": none), and known properties."""
 
     curve: CurveOutcome
     model_file: str
@@ -55,21 +55,21 @@ class ModeTask:
 
     @property
     def name(self) -> str:
-        """Of the curve, and of the verdict on it."""
+        """Name of the curve and of its verdict."""
         return self.curve.name
 
 
 class Modes(Recorded[ModeTask, ModeRecord, Notice]):
-    """The stage of the sliding modes.
+    """Stage of the sliding modes.
 
     Parameters
     ----------
     campaign
-        It knows media and contact.
+        Campaign with media and contacts.
     curves, surfaces, models
-        What is recorded of them.
+        Their records.
     store
-        What is known, and where it is written down.
+        Known results, and storage of new ones.
     """
 
     name = "modes"
@@ -118,20 +118,20 @@ class Modes(Recorded[ModeTask, ModeRecord, Notice]):
         return judge_mode(task)
 
     def failed(self, task: ModeTask, error: BaseException) -> Notice:
-        """Return why a curve could not be judged."""
+        """Return the reason why a curve could not be judged."""
         members = "; ".join(task.curve.run_names)
         return Notice("error", members, f"stick-slip {task.name}", explain(error)[0])
 
 
 def judge_mode(task: ModeTask) -> ModeRecord:
-    """Weigh what speaks for and against an adhesion-controlled sliding mode.
+    """Collect the evidence for and against an adhesion-controlled sliding mode.
 
     Raises
     ------
     TribolabError
         If a data file cannot be read.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.friction.oscillation.waveform import oscillating
     from tribolab.regime.verdict import sliding_mode
 
@@ -185,7 +185,7 @@ def _all_known(
     surfaces: Iterable[SurfaceRecord],
     models: Iterable[ModelRecord],
 ) -> dict[str, Mode]:
-    """Return what is known beside each curve, by its name; others' shear stresses included."""
+    """Return the known properties of each curve, with the shear stress of rough surfaces."""
     rows = {surface.outcome.name: surface for surface in surfaces}
     fits = {m.outcome.curve: m.rows.fit for m in models if m.rows is not None and m.rows.fit}
     known = {c.outcome.name: _known(campaign, c, rows.get(c.outcome.surface)) for c in curves}
@@ -236,7 +236,7 @@ def _known(campaign: Campaign, record: CurveRecord, surface: SurfaceRecord | Non
 
 
 def _stress(record: CurveRecord, fit: Row | None, known: Mode) -> float | None:
-    """Shear stress in the real contact area with adhesion: fitted, else from mu p = sigma A/A0."""
+    """Return the shear stress in the contact area with adhesion: fitted, or µ p / (A/A0) if dry."""
     fitted = None if fit is None else number_of(fit, "corrected_shear_stress_Pa")
     if fitted is not None and fitted > 0:
         return float(fitted)

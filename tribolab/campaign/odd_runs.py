@@ -1,4 +1,4 @@
-"""Runs that contradict their repeats, found once all curves of a campaign are known."""
+"""Detect runs that contradict their repeats, once all curves of a campaign are known."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _BY_HAND = ("accepted", "rejected")
 
 
 class _Condition(NamedTuple):
-    """Names of the repeats of one condition, and their levels over that of all [1]."""
+    """Names of the repeats of one condition, and their friction levels over the mean of all [1]."""
 
     runs: tuple[str, ...]
     levels: np.ndarray
@@ -34,17 +34,17 @@ def with_odd_repeats(
     Parameters
     ----------
     store
-        Has the records of the runs, in which the answer is written down.
+        Store with the records of the runs, which are updated.
     came
-        What the runs came to.
+        Outcomes of the runs.
     curves
-        The records of the measured curves.
+        Records of the measured curves.
     skip
         Whether the check is switched off.
     """
     conditions = [] if skip else [c for c in map(_condition, curves) if c is not None]
     said = _verdicts(conditions)
-    return [_judged(store, run, place, said) for place, run in enumerate(came)]
+    return [_update_run(store, run, place, said) for place, run in enumerate(came)]
 
 
 def _condition(curve: CurveRecord) -> _Condition | None:
@@ -57,8 +57,8 @@ def _condition(curve: CurveRecord) -> _Condition | None:
 
 
 def _verdicts(conditions: Sequence[_Condition]) -> dict[str, CheckRow]:
-    """Return what is said of each run that has repeats."""
-    # late: starting stays quick
+    """Return the result of the check by name of each repeated run."""
+    # imported late for a quick start
     from tribolab.friction.points.odd_repeats import odd_repeats
 
     said: dict[str, CheckRow] = {}
@@ -95,8 +95,8 @@ def _row(status: str, message: str, value: float | None = None) -> CheckRow:
     return CheckRow(REPEATS, status, _VARIABLE, message, value, "1")
 
 
-def _judged(store: Store, run: RunCame, place: int, said: dict[str, CheckRow]) -> RunCame:
-    """Write down what is said of a run, instead of what was said of it before."""
+def _update_run(store: Store, run: RunCame, place: int, said: dict[str, CheckRow]) -> RunCame:
+    """Store a run with the new result of the check instead of its earlier one."""
     name, quality = run.outcome.name, run.outcome.quality
     entry = store.get("run", name, RunRecord)
     if entry is None:

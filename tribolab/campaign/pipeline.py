@@ -1,4 +1,4 @@
-"""A whole campaign: runs, curves, surfaces and models, stage by stage, on one engine."""
+"""Process a whole campaign in stages on one executor: runs, curves, surfaces and models."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ def process(
     verify: bool = False,
     intact: Container[str] | None = None,
 ) -> OpenOutcome:
-    """Process every run and surface, combine the repeats, and compute models beside them.
+    """Process every run and surface, combine the repeats, and compute models for the curves.
 
-    What fails is recorded with the reason; the rest is done. Parts of `previous` are taken over
-    where files, settings and version are the same.
+    Failures are recorded with their reason; the rest is completed. Parts of `previous` are reused
+    if files, settings and version are the same.
 
     Parameters
     ----------
@@ -53,20 +53,20 @@ def process(
     runs
         From `load_and_plan`; without them the patterns are resolved here.
     executor
-        Any `concurrent.futures.Executor`; without one everything is done here, run by run.
+        Any `concurrent.futures.Executor`; None does the work here, task by task.
     previous
-        Folder of earlier results, if there is one.
+        Folder of earlier results, if any.
     progress
         Called as ``progress(stage, done, total)``.
     verify
-        Whether files are recognised by their checksums only, each read anew.
+        Whether to read every file again and compare checksums.
     intact
-        Which files of `previous` are as they were written; by default all are trusted.
+        Unchanged files of `previous`; by default all are trusted.
 
     Returns
     -------
     OpenOutcome
-        With one small record per run, curve, surface and model; all else is in its store.
+        One small record per run, curve, surface and model; everything else is in its store.
 
     Raises
     ------
@@ -94,7 +94,7 @@ def process(
     came = with_odd_repeats(store, came, curves, skip=REPEATS in campaign.qc.skip)
     outcomes = tuple(run.outcome for run in came)
     models = perform(Models(campaign, curves, surfaces, store), executor, progress)
-    for part in (staging / "data").glob(f"*{UNFINISHED}"):  # of a worker that died while writing
+    for part in (staging / "data").glob(f"*{UNFINISHED}"):  # left by a worker that died
         part.unlink()
     sources = [source for run in came for source in run.sources]
     sources += [source for surface in surfaces for source in surface.sources]
@@ -118,7 +118,7 @@ def _with_lent_zeros(
     store: Store,
     executor: Executor | None,
 ) -> list[RunCame]:
-    """Do runs again whose zero only other runs of the instrument tell."""
+    """Repeat runs without their own zero with the zeros of other runs of the instrument."""
     zeros = {run.name: before.zero for run, before in zip(runs, came, strict=True)}
     again = lent_zeros(zeros)
     if not again:
@@ -134,7 +134,7 @@ def _with_lent_zeros(
 
 
 def _refuse_if_all_died(came: Iterable[RunCame]) -> None:
-    """Do not let results in which nothing could be done replace good ones."""
+    """Raise if every worker died, so that empty results do not replace good ones."""
     done = [run.outcome for run in came if not run.outcome.reused]
     if done and all(outcome.error == WorkerDied.__name__ for outcome in done):
         raise WorkerDied(f"no run could be done: of {done[0].name}, {done[0].reason}")

@@ -1,4 +1,4 @@
-"""Stages whose records stand in the catalogue as they are, under the name of their task."""
+"""Stages whose records are stored unchanged in the catalogue, under the name of their task."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from tribolab.records.parts import Notice
 
 
 class Named(Protocol):
-    """A task with the name of its record and the checksum of all that shapes it."""
+    """Task with the name of its record and a checksum of everything that affects it."""
 
     @property
     def name(self) -> str:
-        """Of its record in the catalogue."""
+        """Name of its record in the catalogue."""
 
     @property
     def fingerprint(self) -> str:
-        """Another one when anything is that the record follows from."""
+        """Checksum of everything that affects the record."""
 
 
 Mine = TypeVar("Mine", bound=Named)
@@ -28,21 +28,21 @@ Failure = TypeVar("Failure")
 
 
 class Recorded(Stage[Mine, Settled | Failure, Settled | Failure], Generic[Mine, Settled, Failure]):
-    """A stage whose records are taken over where the fingerprint is the same.
+    """Stage whose records are reused if the fingerprint is the same.
 
     Parameters
     ----------
     store
-        What is known, and where it is written down.
+        Known results, and storage of new ones.
     tasks
-        What is to be done, unless the stage finds it out itself.
+        Tasks, unless the stage plans them itself.
 
     Attributes
     ----------
     kind
-        Of its records in the catalogue.
+        Kind of its records in the catalogue.
     record
-        What they are. What came of a task instead is handed on, and written down nowhere.
+        Type of the records. Other results of a task are returned but not stored.
     """
 
     kind: ClassVar[str]
@@ -52,11 +52,11 @@ class Recorded(Stage[Mine, Settled | Failure, Settled | Failure], Generic[Mine, 
         self._store, self._tasks = store, tasks
 
     def plan(self) -> Sequence[Mine]:
-        """Return what is to be done."""
+        """Return the tasks."""
         return self._tasks
 
     def known(self, task: Mine, place: int) -> Settled | None:
-        """Take over the record of a task that is made of the same, if its files are there."""
+        """Reuse the record of a task with the same fingerprint, if its files are intact."""
         earlier: Settled | None = self._store.same(
             self.kind, task.name, task.fingerprint, self.record
         )
@@ -66,15 +66,15 @@ class Recorded(Stage[Mine, Settled | Failure, Settled | Failure], Generic[Mine, 
         return record
 
     def taken(self, task: Mine, record: Settled) -> Settled | None:
-        """Return an earlier record as it is now, its files among the new; None: done anew."""
+        """Return an earlier record updated for the task; None to compute it again."""
         return record
 
     def linked(self, task: Mine, old: str, new: str) -> bool:
-        """Have the data file of an earlier record among the new ones; False if it is not whole."""
+        """Link the data file of an earlier record into the new results; False if not intact."""
         return self._store.link(self.kind, task.name, old, new)
 
     def keep(self, task: Mine, place: int, record: Settled | Failure) -> Settled | Failure:
-        """Write a record down; one that says of itself that it failed is done anew next time."""
+        """Store a record; a failed one is computed again next time."""
         if isinstance(record, self.record):
             mark = task.fingerprint if getattr(record, "done", True) else ""
             self._store.put(self.kind, task.name, place, mark, record)
@@ -82,7 +82,7 @@ class Recorded(Stage[Mine, Settled | Failure, Settled | Failure], Generic[Mine, 
 
 
 def done_and_failed(came: Iterable[Settled | Notice]) -> tuple[list[Settled], list[Notice]]:
-    """Return what was done, and why the rest was not."""
+    """Split outcomes into records and notices of failures."""
     done: list[Settled] = []
     why: list[Notice] = []
     for record in came:

@@ -92,7 +92,7 @@ class Folder:
         AnalysisError
             If there is none.
         """
-        # late: starting stays quick
+        # imported late for a quick start
         import pandas as pd
 
         if not (rows := self.segments):

@@ -98,7 +98,7 @@ def column(name: str) -> str:
 
 @functools.lru_cache(maxsize=1)
 def _known_characters() -> frozenset[int]:
-    # late: matplotlib takes long to load
+    # imported late: matplotlib loads slowly
     from matplotlib.font_manager import findfont, get_font
 
     return frozenset(get_font(findfont("DejaVu Sans")).get_charmap())

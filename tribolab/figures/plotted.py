@@ -64,7 +64,7 @@ def plotted(*, panels: int = 1) -> Callable[[Callable[P, FigureSpec]], Plot[P]]:
             *args: Any, title: str = "", width: float = 0.0, ax: Any = None, axes: Any = None,
             **kwargs: Any,
         ) -> Figure:  # fmt: skip
-            # late: who wants a description waits for no matplotlib
+            # imported late: a description needs no matplotlib
             from tribolab.figures.look.draw import draw
 
             spec = describe(*args, **kwargs)

@@ -1,4 +1,4 @@
-"""All tables of a campaign: what is in them, in which file, with which columns first."""
+"""All tables of a campaign: their content, files and leading columns."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _PART = (
 _SEGMENT = (*tables.CURVE_LABELS, "segment", "sliding_speed_m_s", "friction_coefficient")
 
 
-# All that may be written, with what they say.
+# all tables that may be written, with descriptions
 TABLES = {
     "friction": "friction coefficient of every segment, with its errors",
     "stribeck": "measured friction over sliding speed",
@@ -54,8 +54,8 @@ TABLES = {
 }
 
 
-# Of a segment, what the run's data file has and no reader of tables needs: parts of the error that
-# U95 includes, and numbers that follow from others.
+# columns of a segment that friction.csv omits: parts of the error included in U95, and numbers that
+# follow from others
 _NOT_IN_FRICTION = frozenset(
     (
         *("friction_coefficient_u", "friction_coefficient_dof", "friction_coefficient_beyond_dof"),
@@ -84,12 +84,12 @@ _SLIP = (
 
 
 def friction_row(row: Row) -> Row:
-    """Return what `friction.csv` has of a segment; the half loop only if there is no coefficient.
+    """Return the row of a segment in `friction.csv`; with half loop only without a coefficient.
 
     Parameters
     ----------
     row
-        Of report.json.
+        Row of the segment in report.json.
     """
     left = _NOT_IN_FRICTION
     if row.get("friction_coefficient") is not None:
@@ -98,16 +98,16 @@ def friction_row(row: Row) -> Row:
 
 
 class _Long(NamedTuple):
-    """A table that is never in memory as a whole.
+    """Table that is never in memory as a whole.
 
     Parameters
     ----------
     file
-        Its name.
+        Name of the table.
     rows
-        Gives its rows, as often as it is called.
+        Function that yields the rows each time it is called.
     columns
-        What it has without rows; with none of either it is not written.
+        Columns of a table without rows; without rows and columns it is not written.
     """
 
     file: str
@@ -121,19 +121,19 @@ def write_tables(
     surfaces: Sequence[SurfaceRecord],
     models: Mapping[str, ModelRow],
 ) -> None:
-    """Write all tables of a campaign but that of its findings and checks.
+    """Write all tables of a campaign except those of findings and checks.
 
-    Without runs there are none of friction, without scans none of surfaces, and
-    where no contact is asked about none of contact and adhesion.
+    Tables of friction require runs, those of surfaces scans, and those of contact and adhesion a
+    defined contact.
 
     Parameters
     ----------
     outcome
-        Its store has the runs.
+        Outcome of the campaign; its store has the runs.
     curves
-        Those that are shown.
+        Curves to show.
     surfaces, models
-        What is recorded of them.
+        Their records.
     """
     folder = Path(outcome.folder) / "tables"
     for long in _long_tables(outcome, curves):
@@ -150,7 +150,7 @@ def write_tables(
             break
         named = [{"surface": s.name, "quality": s.quality, **row} for s in rows for row in of(s)]
         if not named and all(surface.done for surface in outcome.surfaces):
-            continue  # no contact was asked about
+            continue  # no contact is defined
         short[name] = pd.DataFrame(named, columns=["surface", "quality", *wanted])
     if outcome.models:
         every = list(models.values())
@@ -161,7 +161,7 @@ def write_tables(
 
 
 def _sources(outcome: Outcome) -> pd.DataFrame:
-    """Return the raw files with their checksums, run, and the time that was left out of it."""
+    """Return the raw files with their checksums, run, and duration left out."""
     said: dict[str, tuple[str, str]] = {}
     for entry in outcome.store.all("run", RunRecord):
         run = entry.record.outcome
@@ -176,19 +176,19 @@ def _sources(outcome: Outcome) -> pd.DataFrame:
 
 
 def write_checks(outcome: Outcome, findings: Sequence[Notice], folder: Path) -> None:
-    """Write the table of findings, the gravest first, and of all checks of all runs.
+    """Write the table of findings, most severe first, and that of all checks of all runs.
 
-    A finding that a check made is the row of the check; what was left out of runs is in the table
-    of sources.
+    A finding of a check appears as the row of that check; omitted parts of runs are in the table of
+    sources.
 
     Parameters
     ----------
     outcome
-        Its store has the runs.
+        Outcome of the campaign; its store has the runs.
     findings
-        In the order in which they are written.
+        Findings in the order of writing.
     folder
-        Of the results.
+        Results folder.
     """
     checked = {
         (entry.record.outcome.name, f"{row.check} {row.variable}".strip())

@@ -1,4 +1,4 @@
-"""Which code makes the report, as a checksum: another page wants to be made when it changed."""
+"""Checksums of the code that makes the report, to detect that it must be made again."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ _WHOLE = (*_PYTHON, ".j2", ".js", ".css", ".LICENSE")
 
 @cache
 def code_of_figures() -> str:
-    """Return the checksum of the version and the code that shape figures: they are drawn anew."""
+    """Return the checksum of version and code that affect figures."""
     return _checksum(_PYTHON)
 
 
 @cache
 def code_of_page() -> str:
-    """Return the checksum of all that shapes the report: code, templates, scripts, styles."""
+    """Return the checksum of everything that affects the report, e.g. code and templates."""
     return _checksum(_WHOLE)
 
 
 def _checksum(kinds: tuple[str, ...]) -> str:
-    """Return what changes with the content of our files, wherever they are installed."""
+    """Return the checksum of our files of these kinds, independent of the installation folder."""
     files = (file for room in _ROOMS for file in (_PACKAGE / room).rglob("*"))
     chosen = sorted((str(f.relative_to(_PACKAGE)), f) for f in files if f.suffix in kinds)
     return sha256_of([__version__, [[name, sha256_of_file(file)] for name, file in chosen]])

@@ -1,4 +1,4 @@
-"""All runs of a results folder in one dataset, to be compared."""
+"""Segments of all runs of a results folder in one dataset, for comparison."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ import xarray as xr
 
 
 def joined_runs(results: Mapping[str, xr.Dataset], facts: Mapping[str, Any]) -> xr.Dataset:
-    """Put the segments of runs side by side.
+    """Join the segments of several runs in one dataset.
 
     Parameters
     ----------
     results
-        Results over (segment), by the run's name; what is over other dims is left out.
+        Results over (segment), by name of the run; variables over other dims are left out.
     facts
         ``surface``, ``medium``, ``quality`` and ``normal_force`` [N] of each run, by name.
 
     Returns
     -------
     xarray.Dataset
-        Everything over (run, segment). Where a run has fewer segments, or lacks a variable,
-        numbers are NaN and texts empty.
+        Variables over (run, segment). If a run has fewer segments or lacks a variable, numbers are
+        NaN and texts empty.
 
     Examples
     --------
@@ -64,7 +64,7 @@ def joined_runs(results: Mapping[str, xr.Dataset], facts: Mapping[str, Any]) -> 
 
 
 def _rows(given: Sequence[xr.DataArray | None], longest: int, first: xr.DataArray) -> np.ndarray:
-    """Values of a variable (run, segment), filled where a run has none."""
+    """Return values of a variable (run, segment), padded for runs without them."""
     text = first.dtype.kind in "OUS"
     whole = all(values is not None and values.size == longest for values in given)
     dtype = object if text else first.dtype if whole else float

@@ -1,4 +1,4 @@
-"""The tables of a results folder in other formats, on request: one workbook, or Parquet."""
+"""Optional formats for the tables of a results folder: one workbook, or Parquet."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tribolab.report.tables import read_csv
 from tribolab.units.quantities import QUANTITIES
 
 WORKBOOK = "tables.xlsx"
-_MOST_ROWS = 1_048_574  # of a sheet, below names and units
+_MOST_ROWS = 1_048_574  # most rows of a sheet, without names and units
 _ENDINGS = {column(name)[len(name) + 1 :]: known.unit for name, known in QUANTITIES.items()}
 _ENDINGS = {ending: unit for ending, unit in _ENDINGS.items() if ending}
 
@@ -36,15 +36,15 @@ def write_other_tables(folder: Path, form: str) -> None:
     Parameters
     ----------
     folder
-        With the CSV tables.
+        Folder with the CSV tables.
     form
-        ``"xlsx"`` (``tables.xlsx``: a sheet per table, the second row are units), ``"parquet"``
-        (a file per table), or ``"csv"``: nothing is written.
+        ``"xlsx"`` (``tables.xlsx``: a sheet per table, units in the second row), ``"parquet"`` (a
+        file per table), or ``"csv"`` (nothing is written).
 
     Raises
     ------
     OutputError
-        If what writes such files is not installed.
+        If the required package is not installed.
     """
     if form == "csv":
         return
@@ -59,7 +59,7 @@ def write_other_tables(folder: Path, form: str) -> None:
     with pd.ExcelWriter(folder / WORKBOOK, engine="openpyxl") as book:
         for name, table in made.items():
             row = [unit_of(str(each)) for each in table]
-            row[0] = row[0] or "unit"  # no sheet begins with an empty row
+            row[0] = row[0] or "unit"  # no sheet starts with an empty cell
             units = pd.DataFrame([row], columns=table.columns)
             sheet = pd.concat([units, table.head(_MOST_ROWS).astype(object)], ignore_index=True)
             sheet.to_excel(book, sheet_name=name[:31], index=False)

@@ -1,4 +1,4 @@
-"""Numbers as people write them: rounded as they were meant."""
+"""Numbers in plain notation, rounded to the intended values."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ _PREFIXES = ((1e-9, "nm/s"), (1e-6, "µm/s"), (1e-3, "mm/s"), (1.0, "m/s"))
 
 
 def plain_speed(speed: float | None) -> str:
-    """Return a sliding speed [m/s] to two digits, with the prefix a reader would choose.
+    """Return a sliding speed [m/s] to two digits with a suitable unit prefix.
 
     Examples
     --------
     >>> plain_speed(0.999e-6), plain_speed(9.994e-5), plain_speed(4.64e-6), plain_speed(9.996e-4)
     ('1 µm/s', '100 µm/s', '4.6 µm/s', '1 mm/s')
 
-    Strokes that were meant to have one speed are told by one:
+    Strokes with the same set-point give the same text:
 
     >>> plain_speed(2.14998e-3), plain_speed(2.15e-3), plain_speed(2.15104e-3)
     ('2.2 mm/s', '2.2 mm/s', '2.2 mm/s')
@@ -37,10 +37,10 @@ def plain_speed(speed: float | None) -> str:
 
 
 def _two_digits(speed: float) -> float:
-    """Return a speed to two digits, of which the third is rounded first: 2.1499 is meant as 2.15.
+    """Round a speed to two digits, after rounding to three: 2.1499 counts as 2.15.
 
-    Speeds are often set in steps of a third of a decade (1, 2.15, 4.64), and 2.15 lies on the
-    edge of two digits.
+    Speeds are often set in steps of a third of a decade (1, 2.15, 4.64), and 2.15 is at the edge
+    of rounding to two digits.
     """
     three = Decimal(f"{speed:.3g}")
     return float(three.quantize(Decimal((0, (1,), three.adjusted() - 1)), ROUND_HALF_UP))
@@ -50,7 +50,7 @@ _SPEED = re.compile(r"(?<![\d.])(\d+(?:\.\d+)?) (nm/s|µm/s|mm/s|m/s)\b")
 
 
 def plain_speeds(text: str) -> str:
-    """Return a text in which sliding speeds are written as people write them.
+    """Return a text with its sliding speeds in plain notation.
 
     Examples
     --------
@@ -66,7 +66,7 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def without_exponents(text: str) -> str:
-    """Return a text in which no number is written as a computer writes it.
+    """Return a text with its numbers in plain instead of exponential notation.
 
     Examples
     --------
@@ -87,7 +87,7 @@ def without_exponents(text: str) -> str:
 
 
 def listed(words: Sequence[str]) -> str:
-    """Return words as a sentence lists them.
+    """Return words as a list with "and".
 
     Examples
     --------

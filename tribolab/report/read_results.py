@@ -1,4 +1,4 @@
-"""Results of earlier runs, back in a notebook: tables as they were written, data when asked for."""
+"""Access to results of earlier runs from a notebook: tables and data, read on demand."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ _OVER_SEGMENTS = ("friction", "segments", "stick_slip")
 
 
 class Results(Mapping[str, "pd.DataFrame"]):
-    """The tables of a results folder by name, read when asked for, and its data.
+    """Tables of a results folder by name, and its data, read on demand.
 
-    `data` gives a part of one run, curve, surface or model, `runs` and `curves` all of them at
+    `data` returns a group of one run, curve, surface or model; `runs` and `curves` return all at
     once.
 
     Parameters
@@ -36,7 +36,7 @@ class Results(Mapping[str, "pd.DataFrame"]):
         self._files = {path.stem: path for path in sorted((folder / "tables").glob("*.csv"))}
 
     def __getitem__(self, name: str) -> pd.DataFrame:
-        """Return a table, text as it was before it was made harmless for spreadsheets."""
+        """Return a table, with the original text of cells escaped for spreadsheets."""
         if name not in self._files:
             raise ReadError(
                 f"{self.folder}: there is no table '{shown(name)}'{nearest(name, self._files)}"
@@ -44,26 +44,26 @@ class Results(Mapping[str, "pd.DataFrame"]):
         return tables.read_csv(self._files[name])
 
     def __contains__(self, name: object) -> bool:
-        """Say whether there is such a table."""
+        """Whether a table exists."""
         return name in self._files
 
     def __iter__(self) -> Iterator[str]:
-        """Go through the tables' names."""
+        """Iterate over the names of the tables."""
         return iter(self._files)
 
     def __len__(self) -> int:
-        """Return how many tables there are."""
+        """Return the number of tables."""
         return len(self._files)
 
     def data(self, name: str, group: str | None = None) -> xr.Dataset:
-        """Return a part of a run, curve, surface or model, e.g. ``data("x_01", "friction")``.
+        """Return a group of a run, curve, surface or model, e.g. ``data("x_01", "friction")``.
 
         Raises
         ------
         ReadError
-            If there is no such data file.
+            If the data file does not exist.
         """
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.reading.netcdf.netcdf import read_netcdf
 
         known = {path.stem: path for path in sorted((self.folder / "data").glob("*.nc"))}
@@ -83,7 +83,7 @@ class Results(Mapping[str, "pd.DataFrame"]):
         return report
 
     def runs(self, group: str = "friction") -> xr.Dataset:
-        """Return the segments of all runs side by side, read when asked for.
+        """Return the segments of all runs in one dataset.
 
         Parameters
         ----------
@@ -95,17 +95,17 @@ class Results(Mapping[str, "pd.DataFrame"]):
         xarray.Dataset
             Over (run, segment), with the coordinates ``surface``, ``medium``, ``quality`` and
             ``nominal_normal_force`` [N] over (run), e.g. ``runs.groupby("surface").mean("run")`` or
-            ``runs.where(runs.medium == "dry", drop=True)``. Where a run has fewer segments there
-            is NaN. Runs that failed are not in it; segments that a person rejected are, and
-            ``runs.where(runs.rejected != 1)`` leaves them out. Signals over time have no segments
-            in common: `data` has those of one run.
+            ``runs.where(runs.medium == "dry", drop=True)``. Missing segments are NaN. Failed runs
+            are left out; segments rejected by a person are included, and ``runs.where(runs.rejected
+            != 1)`` removes them. Signals over time are not included: use `data` for those of one
+            run.
 
         Raises
         ------
         ReadError
-            If there is no such group, or a file cannot be read.
+            If the group does not exist, or a file cannot be read.
         """
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.report.compared import joined_runs
 
         if group not in _OVER_SEGMENTS:
@@ -123,24 +123,24 @@ class Results(Mapping[str, "pd.DataFrame"]):
         return joined_runs(parts, facts)
 
     def curves(self) -> xr.Dataset:
-        """Return all measured Stribeck curves on common axes, read when asked for.
+        """Return all measured Stribeck curves on common axes.
 
         Returns
         -------
         xarray.Dataset
-            ``friction_coefficient`` and the rest of `measured_stribeck_curve` over (surface,
-            medium, normal_force, sliding_speed), so that
-            ``curves.sel(surface="Sb-R", medium="dry")`` is what it says; NaN where nothing was
-            measured. Speeds that differ by no more than a tenth stand together at their geometric
-            mean, and ``measured_speed`` is each curve's own. A run of which neither surface nor
-            medium is stated stands under its own name. `tribolab.plot.stribeck` draws them all.
+            ``friction_coefficient`` and the other variables of `measured_stribeck_curve` over
+            (surface, medium, normal_force, sliding_speed), e.g. ``curves.sel(surface="Sb-R",
+            medium="dry")``; NaN where nothing was measured. Speeds that differ by at most a tenth
+            are joined at their geometric mean, and ``measured_speed`` contains the original ones. A
+            run without surface and medium appears under its own name. `tribolab.plot.stribeck`
+            draws all curves.
 
         Raises
         ------
         ReadError
             If a file cannot be read.
         """
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.friction.joined import joined_curves
 
         files = {path.stem: path for path in (self.folder / "data").glob("*.nc")}
@@ -161,7 +161,7 @@ class Results(Mapping[str, "pd.DataFrame"]):
         )
 
     def _part(self, file: str, group: str | None) -> xr.Dataset:
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.reading.netcdf.netcdf import read_netcdf
 
         return read_netcdf(self.folder / file, group=group)
@@ -172,24 +172,24 @@ def _number(value: float | None) -> float:
 
 
 def read_results(path: str | Path) -> Results | xr.Dataset:
-    r"""Read a results folder; or the file of results that a roughness tester wrote.
+    r"""Read a results folder, or the results file of a roughness tester.
 
     Parameters
     ----------
     path
-        A folder that `tribolab run` wrote, or a tester's file.
+        A folder written by `tribolab run`, or a tester's file.
 
     Returns
     -------
     Results or xarray.Dataset
-        Of a folder its tables by name, its data, and all its runs or curves at once
-        (``results.runs()``, ``results.curves()``); of a file what
-        `tribolab.reading.scans.results.read_tester_results` says.
+        For a folder its tables by name, its data, and all its runs or curves at once
+        (``results.runs()``, ``results.curves()``); for a file the result of
+        `tribolab.reading.scans.results.read_tester_results`.
 
     Raises
     ------
     ReadError
-        If it is neither.
+        If the path is neither.
 
     Examples
     --------
@@ -202,7 +202,7 @@ def read_results(path: str | Path) -> Results | xr.Dataset:
     """
     path = Path(path)
     if not path.is_dir():
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.reading.scans.results import read_tester_results
 
         return read_tester_results(path)

@@ -64,28 +64,28 @@ def write_report(
     figures: Wanted = "all",
     pdf: bool = False,
 ) -> None:
-    """Write everything that the results folder has beside the data.
+    """Write all results except the data files.
 
-    Writes ``report.html`` (one page that opens offline), ``report.json`` (the same numbers),
-    ``figures/*.svg`` and ``tables/*``, all from the records in the outcome's store.
+    Write ``report.html`` (one page that opens offline), ``report.json`` (the same numbers),
+    ``figures/*.svg`` and ``tables/*`` from the records in the outcome's store.
 
     Parameters
     ----------
     outcome
         From `tribolab.campaign.pipeline.process`; its folder has the data files.
     executor
-        Any `concurrent.futures.Executor` for the drawing; without one it is done here.
+        Any `concurrent.futures.Executor` for drawing; without one figures are drawn here.
     progress
         Called as ``progress(stage, done, total)``.
     figures
-        Which are drawn: ``"all"``, ``"curves"`` (measured curves only) or ``"none"``. Traces of
-        runs are drawn by the page itself.
+        Figures to draw: ``"all"``, ``"curves"`` (measured curves only) or ``"none"``. The page
+        itself draws traces of runs.
     pdf
-        Whether figures are written as PDF, too.
+        Whether to write figures also as PDF.
 
     Notes
     -----
-    A figure that cannot be drawn is a finding of severity "error" and does not stop the rest.
+    A figure that cannot be drawn gives a finding of severity "error"; the others are drawn.
     """
     folder, store = Path(outcome.folder), outcome.store
     for name in ("figures", "tables"):
@@ -166,7 +166,7 @@ def _figures(
     wanted: Wanted,
     pdf: bool,
 ) -> list[FigureTask]:
-    """Return the figures that are to be drawn into files."""
+    """Return the tasks of the figures to be drawn into files."""
     if wanted == "none":
         return []
     tasks = described_tasks([spec for spec in curves if spec.series], store, pdf=pdf)
@@ -178,7 +178,7 @@ def _figures(
 
 
 def _documents(outcome: Outcome) -> Iterator[Json]:
-    """Give the runs as report.json has them, one after the other."""
+    """Yield the runs as in report.json."""
     for entry in outcome.store.all("run", RunRecord):
         yield run_document(entry.record)
 
@@ -186,7 +186,7 @@ def _documents(outcome: Outcome) -> Iterator[Json]:
 def _runs(
     outcome: Outcome,
 ) -> tuple[list[Json], list[Notice], dict[str, list[RunPoint]], list[FigureSpec]]:
-    """Return what is brief of every run and said of it, and its friction over speed and time."""
+    """Return short entries and notices of all runs, their points, and figures along runs."""
     briefs: list[Json] = []
     said: list[Notice] = []
     points: dict[str, list[RunPoint]] = {}
@@ -211,7 +211,7 @@ def _runs(
 def _of_parts(
     outcome: Outcome, surfaces: Sequence[SurfaceRecord], models: Sequence[ModelRecord]
 ) -> list[Notice]:
-    """Return what is said of the campaign, and of its parts as a whole."""
+    """Return the notices on the campaign and its parts."""
     note = outcome.campaign.campaign.note
     findings = [Notice("note", "", "campaign", note)] if note else []
     findings += [
@@ -243,7 +243,7 @@ def _failure(run: RunOutcome) -> Notice:
 def shown_curves(
     curves: Sequence[CurveRecord], quantities: Mapping[str, str | None]
 ) -> tuple[list[CurveRecord], list[Notice]]:
-    """Return the curves that can be shown, and what the others, or parts of them, lack."""
+    """Return the curves that can be shown, and notices on missing curves or parts."""
     shown, missing = [], []
     for curve in curves:
         outcome, reason = curve.outcome, curve.outcome.reason
@@ -256,7 +256,7 @@ def shown_curves(
                 shown.append(curve)
                 continue
             reason = "no segment has both a speed and a friction coefficient"
-        # without a recorded load there is no friction coefficient, so nothing is amiss
+        # without a load no friction coefficient is expected
         known = [quantities.get(name) for name in outcome.run_names]
         severity = "suspect" if "friction_coefficient" in known else "note"
         severity = "error" if outcome.crash else severity

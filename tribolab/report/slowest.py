@@ -1,4 +1,4 @@
-"""What of stick-slip is looked at closely: the lowest load of each contact, its slowest strokes."""
+"""Segments for a close look at stick-slip: lowest load of each contact, slowest strokes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tribolab.records.parts import CurveOutcome, number_of
 from tribolab.records.runs.run_record import RunRecord
 
 _SLOWEST = 2  # speeds of each condition
-_APART = 1.2  # ratio of two speeds that are not one
+_APART = 1.2  # smallest ratio of distinct speeds
 
 
 class Slow(NamedTuple):
@@ -22,7 +22,7 @@ class Slow(NamedTuple):
 
 
 def lowest_loads(curves: Iterable[CurveOutcome]) -> list[CurveOutcome]:
-    """Return the lowest load of each surface and medium: the others slide alike or more evenly."""
+    """Return the curve at the lowest load of each surface and medium, with most stick-slip."""
     best: dict[tuple[str, str], CurveOutcome] = {}
     for curve in curves:
         key = curve.surface, curve.medium
@@ -35,7 +35,7 @@ def lowest_loads(curves: Iterable[CurveOutcome]) -> list[CurveOutcome]:
 def slow_segments(curve: CurveOutcome, outcome: Outcome) -> Slow | None:
     """Return the first run of a curve, and its forward segments at the slowest speeds.
 
-    What a person rejected is not among them; None if nothing is left.
+    Segments rejected by a person are left out; None if no segment is left.
     """
     for name in curve.run_names:
         entry = outcome.store.get("run", name, RunRecord)
@@ -45,7 +45,7 @@ def slow_segments(curve: CurveOutcome, outcome: Outcome) -> Slow | None:
             (float(number_of(row, "sliding_speed_m_s") or 0.0), number)
             for number, row in enumerate(entry.record.slip)
             if (number_of(row, "direction") or 0) >= 0
-            and number_of(row, "sliding_distance_m") != 0  # of a result nothing is drawn
+            and number_of(row, "sliding_distance_m") != 0  # else no trace to draw
             and not row.get("rejected")
         ]
         apart: list[tuple[int, float]] = []

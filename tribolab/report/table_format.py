@@ -1,4 +1,4 @@
-"""The formats of tables that may be asked for."""
+"""Formats of tables."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ FORMATS = ("csv", "xlsx", "parquet")
 
 
 def table_format(name: str) -> str:
-    """Return the name of a format; an error names those that exist."""
+    """Return the name of a format; raise an error that lists the formats if it is unknown."""
     if name not in FORMATS:
         raise ConfigError(
             f"--tables {shown(name)}: there is no such format{nearest(name, FORMATS)}",

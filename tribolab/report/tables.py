@@ -1,4 +1,4 @@
-"""The tables beside the page: a row per segment, point, source or finding; units in the names."""
+"""Tables of the results: a row per segment, point, source or finding; units in the names."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from tribolab.core.errors import ReadError, brief
 from tribolab.core.provenance import escape_controls
 from tribolab.records.parts import Row
 
-_CHUNK = 4_000  # rows that are in memory at once
+_CHUNK = 4_000  # rows in memory at once
 SEVERITIES = ("fail", "error", "suspect", "note")
 
 CURVE_LABELS = ["surface", "medium", "nominal_normal_force_N"]
 
 
-# What a spreadsheet takes for a formula at the beginning of a cell; and our own sign, so that
-# reading undoes exactly what writing did.
+# characters that start a formula in spreadsheets, and our own escape sign, so that reading exactly
+# reverses writing
 _ACTIVE = tuple("=+-@\t\r\n'＝＋－＠")
 _SIGN = "'"
 
 
 def uncomputed(cell: Any) -> Any:
-    r"""Return a cell that no spreadsheet computes: text that begins like a formula gets a sign.
+    r"""Escape text that a spreadsheet would compute as a formula with a leading sign.
 
-    Numbers stay as they are, also those written as text. Control characters are escaped.
+    Numbers, also those written as text, remain unchanged. Control characters are escaped.
 
     Examples
     --------
@@ -55,26 +55,25 @@ def as_it_was(cell: Any) -> Any:
 
 
 def write_csv(table: pd.DataFrame, path: Path, digits: int | None = None) -> None:
-    """Write a table as CSV: UTF-8, LF, every float with all its digits or with so many.
+    """Write a table as CSV: UTF-8, LF, floats with all or the given number of digits.
 
-    Text that a spreadsheet would compute is kept from it, see `uncomputed`; `read_csv` gives it
-    back.
+    Text that a spreadsheet would compute is escaped (`uncomputed`); `read_csv` restores it.
     """
     with path.open("w", encoding="utf-8", newline="") as file:
         _append(table, file, header=True, digits=digits)
 
 
 def write_rows(rows: Callable[[], Iterable[Row]], path: Path, columns: Sequence[str]) -> None:
-    """Write a long table, which is never in memory as a whole, as CSV.
+    """Write a long table as CSV without loading it into memory.
 
     Parameters
     ----------
     rows
-        Gives the rows, as often as it is called. Those that lack a column have nothing there.
+        Function that yields the rows each time it is called. Missing columns are left empty.
     path
         The CSV file.
     columns
-        What a table without rows has; with none of either, nothing is written.
+        Columns of a table without rows; without rows and columns nothing is written.
     """
     types = _types(rows()) or dict.fromkeys(columns, "object")
     if not types:
@@ -89,7 +88,7 @@ def write_rows(rows: Callable[[], Iterable[Row]], path: Path, columns: Sequence[
 
 
 def _texts(values: Sequence[Any], dtype: str) -> list[Any]:
-    """Return the cells of a column as they stand in CSV; a missing one is empty."""
+    """Return the cells of a column as text for CSV; missing ones are empty."""
     if dtype == "float64":
         return ["" if v is None or v != v else repr(float(v)) for v in values]
     if dtype == "object":
@@ -98,7 +97,7 @@ def _texts(values: Sequence[Any], dtype: str) -> list[Any]:
 
 
 def _types(rows: Iterable[Row]) -> dict[str, str]:
-    """Return the type of each column, in the order in which they appear."""
+    """Return the type of each column, in order of first appearance."""
     kinds: dict[str, set[type]] = {}
     seen: Counter[str] = Counter()
     count = 0
@@ -137,12 +136,12 @@ def _append(
 
 
 def read_csv(path: Path) -> pd.DataFrame:
-    """Read a table that `write_csv` or `write_rows` wrote.
+    """Read a table written by `write_csv` or `write_rows`.
 
     Raises
     ------
     ReadError
-        If it is no table.
+        If the file is not a table.
     """
     try:
         table = pd.read_csv(path, encoding="utf-8", keep_default_na=False, na_values=[""])

@@ -284,7 +284,7 @@ def _generator(seed: int, name: str) -> np.random.Generator:
 def _write_facts(
     folder: Path, seed: int, rig: Rig, names: Sequence[str], facts: dict[str, Json]
 ) -> None:
-    # late: it looks up the installed package
+    # imported late: looks up the installed package
     from tribolab.version import __version__
 
     text = json.dumps(

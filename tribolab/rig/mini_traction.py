@@ -87,7 +87,7 @@ def _parts(
     surface: str, radius: float, youngs_modulus: float, normal_force: float, slide_roll: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return ln of viscosity times speed [N/m], of the liquid's friction, and of the real area."""
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.contact.geometry import PointContact
     from tribolab.lubrication.parameters import Interface, Solver
     from tribolab.lubrication.stribeck import stribeck_curve

@@ -46,7 +46,7 @@ def compare(
         tribolab compare results --by surface --margin "5 %"
     """
     with reported(debug):
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.comparison.compare import compare as compared_with
         from tribolab.comparison.compare_page import comparison_verdict, write_comparisons
 
@@ -96,7 +96,7 @@ def repeatability(
         tribolab lab repeatability campaign.toml --by mount,day,operator
     """
     with reported(debug, audience="campaign"):
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.comparison.repeatability import repeatability as repeated
         from tribolab.comparison.repeatability import repeatability_verdict
         from tribolab.comparison.repeatability_page import write_repeatability
@@ -128,7 +128,7 @@ def history(
         tribolab lab history campaigns/*/results
     """
     with reported(debug):
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.comparison.history import history as followed
         from tribolab.comparison.history_page import history_verdict, write_history
         from tribolab.comparison.watched import results_below
@@ -179,7 +179,7 @@ def plan(
         tribolab lab plan results --half-interval 0.005 --assurance 0.95 --setup-time "20 min"
     """
     with reported(debug):
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.comparison.planning import measuring_plan, plan_text
         from tribolab.comparison.planning_page import write_plan
         from tribolab.units.conversion import to_si

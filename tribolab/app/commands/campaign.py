@@ -44,7 +44,7 @@ def demo(
         tribolab demo /tmp/look
     """
     with reported(debug):
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.app.demo import run_demo
 
         with progress_bars(quiet) as progress:
@@ -76,7 +76,7 @@ def reproduce(
         tribolab reproduce --output /tmp/paper
     """
     with reported(debug):
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.app.terminal import paper_lines
         from tribolab.paper.reproduce import reproduce as reproduce_paper
 
@@ -170,7 +170,7 @@ def run(
         tribolab run campaign.toml --output /tmp/results --jobs 4
     """
     with reported(debug, audience="campaign"):
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.app.first_campaign import (
             campaign_file,
             results_of,
@@ -236,7 +236,7 @@ def new(
     tribolab new my_folder/
     """
     with reported(debug):
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.app.new_campaign import write_new_campaign
 
         say(f"{write_new_campaign(folder)} is written: complete it, then tribolab run {folder}")
@@ -258,7 +258,7 @@ def figures(
         tribolab figures campaign.toml --pdf
     """
     with reported(debug, audience="campaign"):
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.app.run import run_campaign
 
         with progress_bars(quiet) as progress:
@@ -290,7 +290,7 @@ def simulate(
         tribolab run practice/campaign.toml
     """
     with reported(debug):
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.app.needed import SIMULATION
         from tribolab.campaign.engine.executor import workers
         from tribolab.rig import simulate_campaign
@@ -311,7 +311,7 @@ def simulate(
 
 def show_outcome(outcome: Outcome, debug: bool) -> int:
     """Show what a campaign came to, with the tracebacks of crashes if `debug`; return exit code."""
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.app import terminal
     from tribolab.app.running_in_table import running_in_table
     from tribolab.qc.findings import exit_code

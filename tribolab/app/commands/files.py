@@ -75,12 +75,12 @@ def check(
         tribolab check raw/profiles/*.csv --json --fail-on suspect
     """
     with reported(debug):
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.app.quick import importing, plain_arrays_only
 
         with importing():
             plain_arrays_only()
-            # late: starting stays quick
+            # imported late for a quick start
             from tribolab.app import checks
 
         stated = Stated.of(load, radius, speed, rate)
@@ -147,17 +147,17 @@ def info(
     """
     with reported(debug):
         if write is not None:
-            from tribolab.app.info.describing import describe  # late: starting stays quick
+            from tribolab.app.info.describing import describe  # imported late for a quick start
 
             describe(files, write, write.stem, force=force, ask=ask)
             return
         stated = Stated.of(load, radius, speed, rate)
         instrument = instrument or describe_with(stated, files)
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.app.quick import importing
 
         with importing():
-            # late: starting stays quick
+            # imported late for a quick start
             from tribolab.app.info.file_info import Descriptions
             from tribolab.campaign.engine.stage import perform
             from tribolab.reading.moduli import holds_modulus
@@ -170,7 +170,7 @@ def info(
             else:
                 say("\n".join(description.lines))
         if instrument is None and all(description.error for description in described):
-            from tribolab.app.info.describing import describe_by_questions  # late: quick starts
+            from tribolab.app.info.describing import describe_by_questions  # imported late
 
             if describe_by_questions(files, keep=False) is not None:
                 raise typer.Exit
@@ -192,7 +192,7 @@ def dialect(
 ) -> None:
     """Describe an unknown instrument: as `tribolab info FILE --write NAME.toml`."""
     with reported(debug):
-        from tribolab.app.info.describing import describe  # late: starting stays quick
+        from tribolab.app.info.describing import describe  # imported late for a quick start
 
         describe(files, output, name, force=force, ask=ask)
 
@@ -201,7 +201,7 @@ def _pool(
     jobs: int | None, files: Sequence[Path]
 ) -> contextlib.AbstractContextManager[Executor | None]:
     """Return processes to look at files in; a few files are looked at here, which is sooner."""
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.app.needed import FILES
     from tribolab.campaign.engine.executor import workers
 

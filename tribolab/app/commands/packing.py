@@ -43,7 +43,7 @@ def pack(
         tribolab pack results --raw --author "A. Person" --licence CC-BY-4.0
     """
     with reported(debug):
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.archive import pack as packing
 
         if results.is_file():
@@ -101,7 +101,7 @@ def verify(
         tribolab verify deposit.zip
     """
     with reported(debug):
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.app.verifying import mend, problems, recomputed
 
         if results.is_file() and (recompute or repair):

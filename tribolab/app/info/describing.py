@@ -97,7 +97,7 @@ def is_terminal() -> bool:
 
 
 def _leaves_open(path: Path) -> bool:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.kinds import kind_of
     from tribolab.reading.moduli import holds_modulus
     from tribolab.reading.unknown_run import draft_of, left_open

@@ -127,7 +127,7 @@ class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]
 
 def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, Any]:
     """Read the traces of a scan; what turns out to be none is told about as a run would be."""
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.scan_files import read_traces
     from tribolab.reading.scans.formats.profilometers import NotSaidError
     from tribolab.reading.unknown.proposal.questions import GuessedError
@@ -160,7 +160,7 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
 
 def _is_told(path: Path, error: ReadError) -> bool:
     """Whether an error says of a scan, and of nothing else, what is wrong with it."""
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.scans.extent import RefusedScanError
     from tribolab.reading.scans.formats.undescribed import is_own_text
     from tribolab.reading.unknown.proposal.questions import GuessedError, questions
@@ -189,7 +189,7 @@ def _is_text(path: Path) -> bool:
 
 
 def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.scans.extent import doubt_about_heights
 
     traces = list(read_scan(path, instrument).values())
@@ -222,7 +222,7 @@ def _scan_lines(path: Path, instrument: str | Path | None) -> list[str]:
 
 
 def _results_lines(path: Path) -> list[str]:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.scans.results import read_tester_results
 
     results = read_tester_results(path)
@@ -238,7 +238,7 @@ def _attribute_lines(attrs: Mapping[str, Any], path: str | Path) -> list[str]:
     if float(told.get("x_unevenness", 1.0)) < _ROUNDING:
         del told["x_unevenness"]
     if "to_keep_it" in told:  # to be typed where `info` was
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.reading.unknown.proposal.questions import how_to_keep
 
         told["to_keep_it"] = how_to_keep(str(path))
@@ -308,7 +308,7 @@ def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[s
     if "set_speed_m_s" in facts["metadata"]:
         names.add("set_speed")
     if facts["not_used"] and not names & {"sliding_velocity", "position", "set_speed"}:
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.reading.interpret.names import is_stroke_frequency
 
         if any(is_stroke_frequency(*split_name(label)) for label in facts["not_used"]):

@@ -34,7 +34,7 @@ def stated_lines(attrs: Mapping[str, Any]) -> list[str]:
 
 def areal_lines(scan: xr.Dataset) -> list[str]:
     """Say how rough a map is as a whole."""
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.surface.areal_roughness import areal_roughness
     from tribolab.surface.form import remove_form
 
@@ -59,7 +59,7 @@ def areal_lines(scan: xr.Dataset) -> list[str]:
 
 def roughness_lines(scan: xr.Dataset) -> list[str]:
     """Say how rough it is: with the cut-off that instruments apply, and with none."""
-    # late: starting stays quick
+    # imported late for a quick start
     import numpy as np
 
     from tribolab.records.surfaces.roughness_words import hardly_bends, roughness_u95
@@ -122,7 +122,7 @@ def roughness_lines(scan: xr.Dataset) -> list[str]:
 
 def _mean_deviation(flat: xr.Dataset) -> float:
     """Return Pa [um]: the mean distance of a profile's heights from their mean, of all profiles."""
-    # late: starting stays quick
+    # imported late for a quick start
     import numpy as np
 
     profile = flat["height"] - flat["height"].mean("x")

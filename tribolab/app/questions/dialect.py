@@ -38,7 +38,7 @@ def try_on(files: Sequence[Path], dialect: Path, kind: str) -> list[str]:
 
 
 def _run_said(file: Path, dialect: Path) -> str:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.arrays.reversals import reversals
     from tribolab.friction.coefficient.coefficient import friction_coefficient, friction_signal
     from tribolab.friction.segments.find import find_segments, why_no_segment
@@ -75,7 +75,7 @@ def _run_said(file: Path, dialect: Path) -> str:
 
 def _coefficients(friction: xr.Dataset) -> str:
     """Say the friction coefficient: of segments at one speed their mean, else that of each."""
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.records.wording import error_text
 
@@ -109,7 +109,7 @@ def _undirected(run: xr.Dataset, segments: xr.Dataset) -> bool:
 
 
 def _scan_said(file: Path, dialect: Path) -> str:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.scan_files import read_scans
     from tribolab.reading.scans.extent import doubt_about_heights
 

@@ -115,7 +115,7 @@ def describe_with(stated: Stated, files: Sequence[Path], folder: Path | None = N
     """
     if stated.is_empty:
         return None
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.campaign.settings.naming.run_names import safe_name
     from tribolab.reading.kinds import kind_of
     from tribolab.reading.unknown.proposal.draft import save_draft

@@ -1,1 +1,1 @@
-"""The joint fits of a campaign: all loads of a surface in one liquid, or of several surfaces."""
+"""Joint fits of a campaign: all loads of a surface in one liquid, or of several surfaces."""

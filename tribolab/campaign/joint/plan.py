@@ -1,4 +1,4 @@
-"""Which measured curves are fitted together, and what else the fits want to know."""
+"""Tasks of the joint fits: the curves fitted together, their models and prior knowledge."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Work:
-    """A work of adhesion [J/m2] and what it may be; bounds that are not stated are equal to it."""
+    """Work of adhesion [J/m2] with its bounds; missing bounds are equal to the value."""
 
     value: float
     low: float
@@ -30,13 +30,13 @@ class JointDry:
     Parameters
     ----------
     surface
-        Whose.
+        Name of the surface.
     surface_file
-        Data file with its spectrum.
+        Data file with the spectrum of the surface.
     normal_forces, measured
         Loads [N], and the data files of the curves.
     dry, wet
-        Works of adhesion without the liquid and in it.
+        Works of adhesion without and with the liquid.
     """
 
     surface: str
@@ -49,31 +49,31 @@ class JointDry:
 
 @dataclass(frozen=True)
 class JointTask:
-    """Measured curves in one liquid, their models, and what else the fit wants to know.
+    """Measured curves in one liquid, their models, and other inputs of the fit.
 
     Parameters
     ----------
     name, surfaces, medium
-        What it is of.
+        Name of the fit, its surfaces and the liquid.
     models
-        The models, by surface and load.
+        Models, sorted by surface and load.
     measured
-        Data files of the measured curves, as the models.
+        Data files of the measured curves, in the order of the models.
     enhancement
-        Real contact area with adhesion over that of the model [1], as the models; None if not
-        known.
+        Ratio of the real contact area with adhesion to that of the model [1], by model; None if
+        unknown.
     dry
-        Friction measured without the liquid, by surface; none if it is not to be used.
+        Friction measured without the liquid, by surface; empty if not used.
     contacts
-        The table of the contact, by surface.
+        Contact table of each surface.
     area, adhesion
-        Theory of the contact area, and whether the models' area is that with adhesion.
+        Theory of the contact area, and whether the models include adhesion in it.
     viscosity, viscosity_range
-        Of the liquid as stated [Pa s].
+        Stated viscosity of the liquid and its range [Pa s].
     speed_error
-        Relative standard uncertainty of the sliding speed, the same at all loads.
+        Relative standard uncertainty of the sliding speed, equal at all loads.
     folder, fingerprint
-        Where, and what shapes it.
+        Results folder, and checksum of everything that affects the fit.
     """
 
     name: str
@@ -99,6 +99,6 @@ class JointTask:
 
     @property
     def surface(self) -> str:
-        """The surfaces as they are said."""
+        """Names of the surfaces as a list in words."""
         *before, last = self.surfaces
         return f"{', '.join(before)} and {last}" if before else last

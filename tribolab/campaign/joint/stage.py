@@ -1,4 +1,4 @@
-"""All loads of a surface in one liquid in one fit, and surfaces that are stated to be together."""
+"""Stage of the joint fits: all loads of a surface in one liquid, or of several surfaces."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ _FEWEST_LOADS = {"always": 1, "two loads": 2}
 
 
 class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
-    """The stage of the joint fits.
+    """Stage of the joint fits.
 
     Parameters
     ----------
     campaign
-        It knows the liquids and the contact.
+        Campaign with liquids and contacts.
     curves, models, surfaces
-        What is recorded of them.
+        Their records.
     store
-        What is known, and where it is written down.
+        Known results, and storage of new ones.
     """
 
     name = "joint fits"
@@ -62,7 +62,7 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
         ]
 
     def plan(self) -> list[JointTask]:
-        """Return a task for each surface and liquid, and for surfaces that belong together."""
+        """Return a task for each surface and liquid, and for each group of surfaces."""
         settings = self._campaign.joint
         if settings.compute == "never":
             return []
@@ -97,7 +97,7 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
         outcomes = tuple(replace(model.outcome, seconds=0.0) for model in ordered)
         stated = self._stated_of(outcomes)
         liquid = self._campaign.viscosity_of(medium, stated)
-        assert liquid is not None  # else there were no models
+        assert liquid is not None  # without a liquid there are no models
         contacts = {surface: contact_of_label(self._campaign, surface) for surface in surfaces}
         task = JointTask(
             name=f"joint_{safe_name('_'.join(filter(None, (*surfaces, medium))))}",
@@ -126,13 +126,13 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
         return replace(task, fingerprint=fingerprint_of(sha256_of(shaping)))
 
     def _stated_of(self, models: Sequence[ModelOutcome]) -> dict[str, float]:
-        """Return what the instruments of all curves state of a model's inputs, the largest each."""
+        """Return the largest stated uncertainty of each model input over all curves."""
         each = [self._stated[model.curve] for model in models]
         names = dict.fromkeys(name for stated in each for name in stated)
         return {name: max(stated.get(name, 0.0) for stated in each) for name in names}
 
     def _dry(self, surfaces: Sequence[str], medium: str) -> tuple[JointDry, ...]:
-        """Return the friction without liquid of each surface, where it is to be used."""
+        """Return the friction of each surface without liquid, if the campaign uses it."""
         name = self._campaign.joint.dry
         without, within = self._work(name), self._work(medium)
         if name is None or without is None or within is None:
@@ -159,19 +159,19 @@ class JointFits(Recorded[JointTask, JointRecord, JointRecord]):
         return Work(value, *(table.work_of_adhesion_range or (value, value)))
 
     def taken(self, task: JointTask, record: JointRecord) -> JointRecord | None:
-        """Take over a fit whose data file is there."""
+        """Reuse a fit whose data file is intact."""
         return record if self.linked(task, record.file, record.file) else None
 
     @staticmethod
     def work(task: JointTask) -> JointRecord:
-        """Fit what belongs together in one liquid."""
-        # late: starting stays quick
+        """Fit the curves of one task."""
+        # imported late for a quick start
         from tribolab.campaign.joint.work import fitted
 
         return fitted(task)
 
     def failed(self, task: JointTask, error: BaseException) -> JointRecord:
-        """Return the record of a fit that failed: the single fits stand without it."""
+        """Return the record of a failed fit; the single fits do not depend on it."""
         names = tuple(model.curve for model in task.models)
         reason = explain(error)[0]
         return JointRecord(task.name, task.surface, task.medium, names, "failed", reason)

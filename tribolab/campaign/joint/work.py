@@ -1,4 +1,4 @@
-"""Fit the curves of one joint fit under several models, and write what came of it."""
+"""Fit the curves of one joint task under several models, and write the results."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from tribolab.records.parts import ModelOutcome
 
 _NORMAL = 1.959963984540054
-_SAME_LOAD = 0.02  # relative: of forces that are one load
+_SAME_LOAD = 0.02  # largest relative difference of forces that count as one load
 _ADHESIVE = "adhesive area"
-_OTHER_AREA = {"persson": "corrected area"}  # by the theory of the fit; else Persson's
+_OTHER_AREA = {"persson": "corrected area"}  # by the theory of the fit; default: Persson's
 _CURVE = (
     "friction_coefficient_couette",
     "friction_coefficient_pressure",
@@ -48,9 +48,9 @@ def fitted(task: JointTask) -> JointRecord:
     Raises
     ------
     TribolabError
-        If the curves cannot be fitted, or the file not be written.
+        If the curves cannot be fitted or the file cannot be written.
     """
-    # late: xarray takes long to load
+    # imported late: xarray loads slowly
     import xarray as xr
 
     from tribolab.fit.joint.comparison import compared
@@ -90,20 +90,20 @@ def fitted(task: JointTask) -> JointRecord:
 
 
 class DryContact(NamedTuple):
-    """What multiplies the shear stress of one load where there is no liquid.
+    """Curve measured without liquid, with the contact areas that scale its shear stress.
 
     Parameters
     ----------
     name, load
-        What the curve is called, and F_N/L [N/m].
+        Name of the curve, and its load F_N/L [N/m].
     measured
-        What was measured of it.
+        Measured curve.
     area, other_area
-        Real contact area over the load [1/Pa], by the theory of the fit and by the other one.
+        Real contact area per load [1/Pa], by the theory of the fit and by the other theory.
     growth
-        Area with adhesion in the liquid over that of the model [1].
+        Ratio of the area with adhesion in the liquid to that of the model [1].
     error
-        Standard error of ln of the ratio of areas, by the ranges of the works of adhesion.
+        Standard error of ln(ratio of areas), from the ranges of the works of adhesion.
     """
 
     name: str
@@ -116,8 +116,8 @@ class DryContact(NamedTuple):
 
 
 def _dry_contacts(task: JointTask, dry: JointDry) -> list[DryContact]:
-    """Return the dry contacts of a surface at the loads that were measured in the liquid, too."""
-    # late: starting stays quick
+    """Return the dry contacts of a surface at the loads that were also measured in the liquid."""
+    # imported late for a quick start
     from tribolab.contact.geometry import make_contact
     from tribolab.contact.hertz import hertz_mean_pressure
     from tribolab.lubrication.parameters import Solver
@@ -156,7 +156,7 @@ def _dry_contacts(task: JointTask, dry: JointDry) -> list[DryContact]:
 
 
 class _Growth(NamedTuple):
-    """Area with adhesion over that without (load), and the standard error of its logarithm."""
+    """Ratio of the area with to that without adhesion (load), and standard error of its ln."""
 
     value: np.ndarray
     error: np.ndarray
@@ -165,7 +165,7 @@ class _Growth(NamedTuple):
 def _growth(
     pressure: np.ndarray, psd: xr.Dataset, contact: Contact, area: AreaTheory, work: Work
 ) -> _Growth:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.contact.adhesion import adhesion_by_works
 
     works = [max(w, 0.0) for w in (work.value, work.low, work.high)]
@@ -175,14 +175,14 @@ def _growth(
 
 
 def _curve_name(task: JointTask, surface: str, force: float) -> str:
-    """Call a curve by its load, and by its surface where there are several."""
+    """Name a curve by its load, and also by its surface if the task has several."""
     text = force_text(force)
     return f"{surface} at {text}" if len(task.surfaces) > 1 else text
 
 
 def _priors(task: JointTask) -> JointPriors:
-    """Return the usual priors, the viscosity's from its range where that is stated."""
-    # late: starting stays quick
+    """Return the default priors; that of the viscosity follows its range, if stated."""
+    # imported late for a quick start
     from tribolab.fit.joint.priors import JointPriors
 
     if task.viscosity_range is None:
@@ -192,8 +192,8 @@ def _priors(task: JointTask) -> JointPriors:
     return JointPriors(viscosity_spread=float(spread))
 
 
-class _Beside(NamedTuple):
-    """A curve measured in the liquid, and what is computed beside it."""
+class _WetCurve(NamedTuple):
+    """Curve measured in the liquid, with the curve computed for it."""
 
     name: str
     surface: str
@@ -202,8 +202,8 @@ class _Beside(NamedTuple):
     computed: xr.Dataset
 
     def with_response(self, other_area: bool, friction_factors: bool) -> LoadCurve:
-        """Return it as a joint fit takes it, under one of the models that are compared."""
-        # late: starting stays quick
+        """Return the input of a joint fit under one of the compared models."""
+        # imported late for a quick start
         from tribolab.fit.joint.load_curve import LoadCurve
         from tribolab.fit.joint.response import response_of
 
@@ -215,17 +215,17 @@ class _Beside(NamedTuple):
         return LoadCurve(self.name, self.surface, self.load, self.measured, response)
 
 
-def _wet(task: JointTask) -> list[_Beside]:
-    """Read the curves measured in the liquid, and what is computed beside them."""
-    # late: starting stays quick
+def _wet(task: JointTask) -> list[_WetCurve]:
+    """Read the curves measured in the liquid, and the curves computed for them."""
+    # imported late for a quick start
     from tribolab.contact.geometry import make_contact
 
     contacts = {surface: make_contact(**known) for surface, known in task.contacts.items()}
     curves = []
     for model, file in zip(task.models, task.measured, strict=True):
-        assert model.normal_force is not None  # else it were not in the plan
+        assert model.normal_force is not None  # else it would not be in the plan
         curves.append(
-            _Beside(
+            _WetCurve(
                 name=_curve_name(task, model.surface, model.normal_force),
                 surface=model.surface,
                 load=contacts[model.surface].load(model.normal_force),
@@ -237,13 +237,13 @@ def _wet(task: JointTask) -> list[_Beside]:
 
 
 def other_area_name(task: JointTask) -> str:
-    """Return what the model with the other theory of the contact area is called."""
+    """Return the name of the model with the other theory of the contact area."""
     return _OTHER_AREA.get(task.area, "Persson's area")
 
 
 def _computed(task: JointTask, model: ModelOutcome) -> xr.Dataset:
-    """Return the computed curve over the campaign's speeds and those that were measured."""
-    # late: xarray takes long to load
+    """Return the computed curve over the campaign's speeds and the measured speeds."""
+    # imported late: xarray loads slowly
     import xarray as xr
 
     path = task.folder / model.data_file
@@ -256,7 +256,7 @@ def _computed(task: JointTask, model: ModelOutcome) -> xr.Dataset:
 
 
 def _bands(task: JointTask) -> dict[str, xr.Dataset]:
-    """Return what is not known of the models, by surface, at one load for which it is computed."""
+    """Return the model uncertainty of each surface, at one load for which it is computed."""
     bands: dict[str, xr.Dataset] = {}
     for model in task.models:
         if "uncertainty" in model.parts and model.surface not in bands:
@@ -270,8 +270,8 @@ CurvesAndPriors = tuple[Sequence["LoadCurve"], "JointPriors"]
 def _variants(
     task: JointTask, dry: Mapping[str, Sequence[DryContact]]
 ) -> dict[str, CurvesAndPriors]:
-    """Return the models that are compared: for each its curves and priors, the usual one first."""
-    # late: starting stays quick
+    """Return the curves and priors of each compared model, the default model first."""
+    # imported late for a quick start
     from tribolab.fit.joint.comparison import CONSTANT, POWER_LAW, WITHOUT_FACTORS
 
     priors = _priors(task)
@@ -304,8 +304,8 @@ def _dry(
     other: bool = False,
     enlarged: bool = False,
 ) -> list[LoadCurve]:
-    """Return the curves measured without the liquid."""
-    # late: starting stays quick
+    """Return the joint fit's inputs for the curves measured without the liquid."""
+    # imported late for a quick start
     from tribolab.fit.joint.load_curve import LoadCurve
     from tribolab.fit.joint.response import constant_response
 

@@ -1,1 +1,1 @@
-"""The models of a campaign, one beside each measured curve in a fluid."""
+"""Models of a campaign, one for each measured curve in a fluid."""

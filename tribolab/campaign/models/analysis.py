@@ -1,4 +1,4 @@
-"""What is computed of the model of one measured curve."""
+"""Analysis of the model of one measured curve: curve, fit, profiles and uncertainty."""
 
 from __future__ import annotations
 
@@ -35,17 +35,17 @@ if TYPE_CHECKING:
     from tribolab.fit.shear_stress_fit import ShearStressFit
 
 _PROFILES = 5
-_A_DECADE = 2  # speeds at which it is looked what moves the curve, between them it is smooth
-_SEPARATIONS = np.geomspace(0.1, 6.0, 120)  # over h_rms, where factors are shown
+_A_DECADE = 2  # speeds per decade at which sensitivities are computed
+_SEPARATIONS = np.geomspace(0.1, 6.0, 120)  # separation / h_rms at which the factors are shown
 _95 = 1.959963984540054
 
 
 def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Dataset], list[Finding]]:
     """Return the groups of a model's data file, and the findings.
 
-    ``curve``: the model over the campaign's speeds; ``fit``: at the measured speeds, beside the
-    points, with the fitted shear stress among the attributes; ``profiles`` and ``factors`` of the
-    leading model of a surface; ``uncertainty`` where it is asked for.
+    ``curve``: the model over the campaign's speeds; ``fit``: model and points at the measured
+    speeds, with the fitted shear stress as attribute; ``profiles`` and ``factors`` of the leading
+    model of a surface; ``uncertainty`` if requested.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
     psd = read_data(folder / model.surface_file, "psd")
     contact = make_contact(**model.contact)
     load = contact.load(model.normal_force)
-    settings, body = model.settings, _body(model, contact, measured)
+    settings, body = model.settings, _model_settings(model, contact, measured)
     grid = np.geomspace(settings["slowest"], settings["fastest"], settings["points"])
     points = measured["sliding_speed"].values
     speeds = np.union1d(grid, points[points > 0])
@@ -70,18 +70,18 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
     def attempt(what: str, name: str, compute: Any) -> None:
         try:
             groups[name] = compute()
-        except AnalysisError as error:  # recorded: the curve stands without it
+        except AnalysisError as error:  # recorded: the curve is kept without it
             findings.append(Finding("suspect", f"{what}: {explain(error)[0]}"))
 
     fit = inputs = None
     try:
-        inputs = _inputs(model, points[points > 0], contact, psd, load, body)
+        inputs = _input_sensitivities(model, points[points > 0], contact, psd, load, body)
         enhancement = _enhancement(model, folder)
         fit = _fit(model, measured, contact, psd, load, computed, enhancement, inputs)
     except AnalysisError as error:  # recorded, as above
         findings.append(Finding("suspect", f"shear stress: {explain(error)[0]}"))
     if fit is not None:
-        # friction that helps the motion is no model: the best that is one has no shear stress
+        # negative shear stress is unphysical: the curve is shown with zero instead
         groups["curve"] = with_shear_stress(groups["curve"], max(fit.shear_stress, 0.0))
         _, low, high = enhancement
         bounds = {"area_enhancement_low": low, "area_enhancement_high": high}
@@ -104,7 +104,7 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
             lambda: _traction(traction, contact, psd, load, parameters, stress),
         )
     if fit is not None and inputs is not None:
-        groups["curve"] = _with_parts(groups["curve"], inputs, max(fit.shear_stress, 0.0))
+        groups["curve"] = _add_sensitivities(groups["curve"], inputs, max(fit.shear_stress, 0.0))
     if model.leading:
         attempt("profiles", "profiles", lambda: _profiles(points, contact, psd, load, parameters))
         attempt("factors", "factors", lambda: _factors(psd, settings["rough_body"]))
@@ -129,8 +129,8 @@ def analyse_model(model: PlannedModel, folder: Path) -> tuple[dict[str, xr.Datas
     return groups, findings + limit_findings(groups)
 
 
-def _body(model: PlannedModel, contact: Contact, measured: xr.Dataset) -> Arguments:
-    """Return what a model is made of besides contact, spectrum, load, viscosity and speed."""
+def _model_settings(model: PlannedModel, contact: Contact, measured: xr.Dataset) -> Arguments:
+    """Return the settings of a model besides contact, spectrum, load, viscosity and speed."""
     settings = model.settings
     body = {name: settings[name] for name in ("rough_body", "friction_factors")}
     body["inlet_length"] = _extent(model, contact)
@@ -147,7 +147,7 @@ def _body(model: PlannedModel, contact: Contact, measured: xr.Dataset) -> Argume
 
 
 def _heating(contact: Contact, load: float, computed: xr.Dataset, fastest: float) -> list[Finding]:
-    """Return a finding if the liquid heats itself by more than the limit at the highest speed."""
+    """Return a finding if viscous heating at the highest speed exceeds the limit."""
     at = computed.sel(sliding_speed=fastest)
     half_width = float(hertz_half_width(load, contact))
     across = 2 * load / (np.pi * half_width) if contact.is_round else load
@@ -189,7 +189,7 @@ def _fit(
     settings = FitSettings(
         speed_range=model.settings["fit_speeds"],
         area_enhancement=best,
-        # the bounds lie unevenly: the error reaches the farther one with 95 %
+        # the bounds may be asymmetric: the larger distance counts as the 95 % error
         area_enhancement_error=max(best - low, high - best) / _95,
         common_error=model.repeatability / np.sqrt(runs),
         common_freedom=model.freedom,
@@ -200,7 +200,7 @@ def _fit(
     return fit_shear_stress(measured, contact, psd, model.viscosity, load, settings=settings)
 
 
-def _inputs(
+def _input_sensitivities(
     model: PlannedModel,
     speed: np.ndarray,
     contact: Contact,
@@ -208,7 +208,7 @@ def _inputs(
     load: float,
     body: Arguments,
 ) -> xr.Dataset | None:
-    """Return what the errors of load, radius and modulus make of the curve; None without any."""
+    """Return the sensitivities of the curve to load, radius and modulus; None without errors."""
     if not model.input_errors or not speed.size:
         return None
     decades = np.log10(speed.max() / speed.min())
@@ -217,13 +217,13 @@ def _inputs(
 
 
 def _range_of(value: float, error: float) -> tuple[float, float] | None:
-    """Return the 95 % range of a value with a relative standard uncertainty; None without one."""
+    """Return the 95 % range of a value with a relative standard uncertainty; None if that is 0."""
     factor = float(np.exp(_95 * error))
     return (value / factor, value * factor) if error > 0 else None
 
 
-def _with_parts(curve: xr.Dataset, inputs: xr.Dataset, stress: float) -> xr.Dataset:
-    """Add by how much each input moves the computed friction (model_input, sliding_speed)."""
+def _add_sensitivities(curve: xr.Dataset, inputs: xr.Dataset, stress: float) -> xr.Dataset:
+    """Add the change of computed friction by each input (model_input, sliding_speed)."""
     moved = moved_friction(inputs, stress, curve["sliding_speed"].values)
     names = inputs["model_input"].values
     parts = curve.assign(model_part=(("model_input", "sliding_speed"), moved))
@@ -231,15 +231,15 @@ def _with_parts(curve: xr.Dataset, inputs: xr.Dataset, stress: float) -> xr.Data
 
 
 def _with_other_area(computed: xr.Dataset) -> xr.Dataset:
-    """Give a computed curve, or what moves it, the contact area of the other theory."""
+    """Use the contact area of the other theory in a computed curve or its sensitivities."""
     names = ("friction_per_shear_stress", "solid_part")
     return computed.assign({n: computed[f"{n}_other"] for n in names if n in computed})
 
 
 def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float, float]:
-    """Area with adhesion over that of the model, at the load, and the bounds on it.
+    """Ratio of the area with adhesion to the model's area at the load, and its bounds.
 
-    It is 1 where the model's area is that with adhesion.
+    The ratio is 1 if the model includes adhesion.
     """
     path = folder / model.surface_file
     adhesion = optional_data(path, "adhesion_loads")
@@ -254,9 +254,9 @@ def _enhancement(model: PlannedModel, folder: Path) -> tuple[float, float, float
 
 
 def beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
-    """Model and points at the measured speeds; the fit among the attributes.
+    """Return model and points at the measured speeds, with the fit in the attributes.
 
-    Where the fitted shear stress is negative, the model is the one with none.
+    If the fitted shear stress is negative, the model is that with zero shear stress.
     """
     curve = fit.curve
     if fit.shear_stress < 0:
@@ -302,7 +302,7 @@ def beside(fit: ShearStressFit, measured: xr.Dataset) -> xr.Dataset:
 def _profiles(
     points: np.ndarray, contact: Contact, psd: xr.Dataset, load: float, parameters: Parameters
 ) -> xr.Dataset:
-    """Profiles at a few speeds from the slowest to the fastest that was measured."""
+    """Return film profiles at a few speeds between the slowest and fastest measured ones."""
     moving = points[points > 0]
     speeds = [
         float(f"{v:.2g}") for v in np.geomspace(moving.min(), moving.max(), _PROFILES).tolist()
@@ -338,7 +338,7 @@ def _traction(
 
 
 def _extent(model: PlannedModel, contact: Contact) -> float | None:
-    """Where the liquid begins [m]; of a ball by default where its radius ends."""
+    """Return the inlet length [m]; None for a ball without a stated one (its radius is used)."""
     return model.settings["inlet_length"] or (None if contact.is_round else np.inf)
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 def kept_model(store: Store, record: ModelRecord) -> ModelRecord:
     """Return the earlier record of a model that could not be computed now, if there is one.
 
-    It says in its outcome that it is kept; else the record comes back as it is.
+    The outcome states that it is kept. Otherwise the record is returned unchanged.
     """
     now = record.outcome
     if now.status != "failed" or now.error in VERDICTS:

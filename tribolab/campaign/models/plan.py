@@ -1,4 +1,4 @@
-"""Which measured curves get a model, and all that is needed to compute it."""
+"""Plan of the models: measured curves that get one, with everything needed to compute it."""
 
 from __future__ import annotations
 
@@ -22,31 +22,31 @@ if TYPE_CHECKING:
     from tribolab.records.parts import CurveOutcome, SurfaceOutcome
 
 _95 = 1.959963984540054
-_DIGITS = 2  # of a repeatability: one more run must not make every model new
+_DIGITS = 2  # digits of a repeatability; one more run should not change every model
 
 
 @dataclass(frozen=True)
 class PlannedModel:
-    """The model of one measured curve: all that a worker needs to know.
+    """Model of one measured curve, with everything that a worker needs.
 
     Parameters
     ----------
     curve
         The measured curve; its data file has the points.
     surface_file
-        Data file of the surface, with its spectrum.
+        Data file of the surface with its spectrum.
     contact
-        The table of the contact, [contact] or [contact.NAME].
+        Table of the contact, [contact] or [contact.NAME].
     viscosity
-        [Pa s]
+        Viscosity [Pa s].
     viscosity_range, youngs_modulus_range
-        Between which values [Pa s], [Pa] they are uncertain; None if the campaign does not say.
+        Their ranges [Pa s], [Pa]; None if not stated.
     settings
-        The table [model].
+        Table [model].
     area
         Theory of the contact area.
     leading
-        Whether it is the surface's model at its lowest load, which shows profiles and factors.
+        Whether this is the surface's model at its lowest load, with profiles and factors.
     uncertain
         Whether the model's own uncertainty is computed.
     repeatability, freedom
@@ -54,19 +54,19 @@ class PlannedModel:
     abscissa_error
         Relative standard uncertainty of viscosity times speed.
     input_errors
-        Those of load, radius and modulus, as far as they are stated.
+        Relative standard uncertainties of load, radius and modulus, if stated.
     work_of_adhesion, work_of_adhesion_range
-        In the medium [J/m2], and its bounds, where [model] adhesion counts it; else None.
+        Value in the medium [J/m2] and its bounds; None without [model] adhesion.
     flow_curve
-        Shear rates [1/s] and viscosities over that at rest [1] of a shear-thinning liquid.
+        Shear rates [1/s] and relative viscosities [1] of a shear-thinning liquid.
     temperature, tempered
-        Recorded while it slid [K], None if it was not; and whether the viscosity is that at it.
+        Temperature recorded while sliding [K] or None, and whether the viscosity depends on it.
     missing
-        What the campaign knows too little of; "" if a model can be computed.
+        What the campaign does not define; "" if the model can be computed.
     source, source_sha256
-        Files that the curve and the spectrum were made from.
+        Source files of curve and spectrum.
     config_sha256
-        Checksum of all that shapes the result, the data included.
+        Checksum of everything that affects the result, including the data.
     """
 
     curve: CurveOutcome
@@ -100,7 +100,7 @@ class PlannedModel:
 
     @property
     def normal_force(self) -> float:
-        """Of the measured curve [N]; 0 where it is not known, and then that is `missing`."""
+        """Load of the measured curve [N]; 0 if unknown, as `missing` then states."""
         return self.curve.normal_force or 0.0
 
     @property
@@ -112,14 +112,14 @@ class PlannedModel:
 def plan_models(
     campaign: Campaign, curves: Iterable[CurveRecord], surfaces: Iterable[SurfaceRecord]
 ) -> tuple[PlannedModel, ...]:
-    """Collect the measured curves in a fluid, and what is known of their contacts.
+    """Return the models of all measured curves in a fluid, in the order of the curves.
 
     Parameters
     ----------
     campaign
         From `load_campaign`.
     curves, surfaces
-        What is recorded of them.
+        Their records.
     """
     done = [curve for curve in curves if curve.outcome.done]
     if not campaign.model.compute:
@@ -170,13 +170,15 @@ def plan_models(
             freedom=freedom,
             missing=missing,
         )
-        planned.append(model if missing or surface is None else _sealed(model, record, surface))
+        planned.append(
+            model if missing or surface is None else _add_checksum(model, record, surface)
+        )
     order = {curve.outcome.name: number for number, curve in enumerate(done)}
     return tuple(sorted(planned, key=lambda model: order[model.curve.name]))
 
 
 def _viscosity(campaign: Campaign, curve: CurveRecord) -> MediumViscosity | None:
-    """Return the viscosity at the temperature that the runs of a curve recorded, if they did."""
+    """Return the viscosity at the recorded temperature, or as stated without one."""
     kelvin = curve.temperature_K
     recorded = None if kelvin is None else Recorded(kelvin, curve.temperature_spread_K)
     return campaign.viscosity_of(curve.outcome.medium, curve.model_inputs, recorded)
@@ -193,7 +195,7 @@ def _flow_curve(
 
 
 def _modulus_range(contact: Contact, error: float | None) -> tuple[float, float] | None:
-    """Return between which values [Pa] Young's modulus is, as stated or by its uncertainty."""
+    """Return the range of Young's modulus [Pa], as stated or from its uncertainty."""
     modulus, stated = contact.youngs_modulus, contact.youngs_modulus_range
     if stated is not None or modulus is None or error is None:
         return stated
@@ -204,7 +206,7 @@ def _modulus_range(contact: Contact, error: float | None) -> tuple[float, float]
 def _input_errors(
     stated: Mapping[str, float], modulus_range: tuple[float, float] | None
 ) -> dict[str, float]:
-    """Return the relative standard uncertainties of what the model takes as given."""
+    """Return the relative standard uncertainties of load, radius and modulus."""
     names = ("load", "radius", "youngs_modulus")
     errors = {name: stated[name] for name in names if stated.get(name, 0.0) > 0}
     if modulus_range is not None and "youngs_modulus" not in errors:
@@ -213,7 +215,7 @@ def _input_errors(
 
 
 def _adhesion(campaign: Campaign, medium: str) -> tuple[float | None, tuple[float, float] | None]:
-    """Return a medium's work of adhesion and its range [J/m2] where the models count it."""
+    """Return a medium's work of adhesion and its range [J/m2], if the models include adhesion."""
     table = campaign.medium.get(medium)
     if not campaign.model.adhesion or table is None or table.work_of_adhesion is None:
         return None, None
@@ -234,16 +236,16 @@ def _missing(
 
 
 def _repeatability(curves: Sequence[CurveRecord]) -> tuple[float, int]:
-    """Pool the run levels of all curves that were repeated."""
-    # late: starting stays quick
+    """Return the pooled repeatability of all repeated curves, and its degrees of freedom."""
+    # imported late for a quick start
     from tribolab.friction.coefficient.repeatability import pooled_repeatability
 
     spread, freedom = pooled_repeatability([np.array(c.levels, float) for c in curves if c.levels])
     return float(f"{spread:.{_DIGITS}g}"), freedom
 
 
-def _sealed(model: PlannedModel, curve: CurveRecord, surface: SurfaceRecord) -> PlannedModel:
-    """Add what the data are made from, and the checksum of all that shapes the model."""
+def _add_checksum(model: PlannedModel, curve: CurveRecord, surface: SurfaceRecord) -> PlannedModel:
+    """Add the sources, and the checksum of everything that affects the model."""
     joined = join_sources([asdict(curve.origin), source_attributes(surface.sources)])
     model = replace(
         model,

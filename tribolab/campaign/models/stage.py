@@ -1,4 +1,4 @@
-"""The models of a campaign: one beside each measured curve in a fluid."""
+"""Stage of the models: one for each measured curve in a fluid."""
 
 from __future__ import annotations
 
@@ -35,26 +35,26 @@ class ModelTask:
 
     @property
     def name(self) -> str:
-        """Of the model."""
+        """Name of the model."""
         return self.model.name
 
     @property
     def fingerprint(self) -> str:
-        """Of data, settings and version."""
+        """Checksum of data, settings and version."""
         return fingerprint_of(self.model.config_sha256)
 
 
 class Models(Recorded[ModelTask, ModelRecord, ModelRecord]):
-    """The stage of the models.
+    """Stage of the models.
 
     Parameters
     ----------
     campaign
-        It knows the media and the contact.
+        Campaign with media and contacts.
     curves, surfaces
-        What is recorded of them.
+        Their records.
     store
-        What is known, and where it is written down.
+        Known results, and storage of new ones.
     """
 
     name = "models"
@@ -72,14 +72,14 @@ class Models(Recorded[ModelTask, ModelRecord, ModelRecord]):
         super().__init__(store, [ModelTask(model, store.folder) for model in planned])
 
     def taken(self, task: ModelTask, record: ModelRecord) -> ModelRecord | None:
-        """Take over a model that was computed, and still can be."""
+        """Reuse a computed model, unless it now lacks inputs."""
         file = task.model.data_file
         if task.model.missing or not record.done or not self.linked(task, file, file):
             return None
         return replace(record, outcome=replace(record.outcome, reused=True))
 
     def order(self, tasks: Sequence[tuple[int, ModelTask]]) -> list[tuple[int, ModelTask]]:
-        """Return what takes longest first."""
+        """Return the tasks with the slowest models first."""
         return sorted(tasks, key=lambda pair: not pair[1].model.uncertain)
 
     @staticmethod
@@ -92,21 +92,21 @@ class Models(Recorded[ModelTask, ModelRecord, ModelRecord]):
         return ModelRecord(failed_model(task.model, *explain(error)))
 
     def keep(self, task: ModelTask, place: int, record: ModelRecord) -> ModelRecord:
-        """Write down what came of a model, or the earlier one where it could not be computed."""
+        """Store the record of a model, or the earlier one if it cannot be computed now."""
         return super().keep(task, place, kept_model(self._store, record))
 
 
 def process_model(task: ModelTask) -> ModelRecord:
-    """Compute the curve, fit the shear stress, vary what is not known; write and record them.
+    """Compute the curve, fit the shear stress, vary uncertain inputs; write and record them.
 
-    What goes wrong with the model is in the record.
+    Errors of the model are recorded.
 
     Raises
     ------
     OutputError
         If the results cannot be written.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.campaign.models.analysis import analyse_model
     from tribolab.records.models.model_rows import model_rows
 
@@ -122,7 +122,7 @@ def process_model(task: ModelTask) -> ModelRecord:
         rows = model_rows(groups, curve.medium, model.normal_force, adhesion)
     except OutputError:
         raise
-    except Exception as error:  # recorded: one model that fails must not stop the others
+    except Exception as error:  # recorded: one failed model must not stop the others
         reason, name = explain(error)
         return ModelRecord(failed_model(model, reason, name, time.monotonic() - began))
     outcome = ModelOutcome(
@@ -161,7 +161,7 @@ def failed_model(
 
 
 def _root(model: PlannedModel) -> xr.Dataset:
-    # late: xarray takes long to load
+    # imported late: xarray loads slowly
     import xarray as xr
 
     curve = model.curve

@@ -1,1 +1,1 @@
-"""What is known of a campaign and where it lies: catalogue, data files, the results folder."""
+"""Storage of a campaign's results: catalogue, data files and results folder."""

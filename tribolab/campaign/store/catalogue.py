@@ -1,10 +1,10 @@
-"""The catalogue: what is known of every part of a campaign, and from what it was made.
+"""Catalogue of a campaign: record of every part, with the fingerprint of its inputs.
 
-A file of SQLite in the results folder, one row for each run, curve, surface, model and figure: what
-it came to, small; everything that is shown of it, as compressed JSON of a typed record; the trace
-that the page draws. Tables, page, report.json and the next run are made from it, without opening
-a data file. Beside them the identity of every file that was read, so that what did not change is
-recognised by size, time and inode, without reading it again.
+The catalogue is an SQLite file in the results folder with one row for each run, curve, surface,
+model and figure: a small outcome, the complete record as compressed JSON, and the trace shown on
+the page. Tables, page, report.json and the next run are made from it without opening a data file.
+The catalogue also identifies every file that was read, so that unchanged files are recognised by
+size, time and inode without reading them again.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from tribolab.records.runs.run_record import RunRecord
 CATALOGUE = "catalogue.sqlite"
 _FORMAT = "1"
 _LARGEST_RECORD = 1 << 24  # bytes: records of long runs have some 100 kB
-_LATE = 2_000_000_000  # ns before it was read, within which a change says nothing of later ones
+_LATE = 2_000_000_000  # ns; a file changed within this time of reading may change again unnoticed
 _TABLES = """
 CREATE TABLE part (
   kind TEXT, name TEXT, place INTEGER, fingerprint TEXT, outcome TEXT, record BLOB,
@@ -44,15 +44,15 @@ Kept = TypeVar("Kept")
 
 
 def fingerprint_of(config_sha256: str) -> str:
-    """Return the checksum of all that shapes a part, but of its files: settings and version."""
-    # late: looks the installed package up
+    """Return the checksum of settings and version, i.e. of all inputs except files."""
+    # imported late: looks up the installed package
     from tribolab.version import __version__
 
     return sha256_of([__version__, config_sha256])
 
 
 class Entry(NamedTuple, Generic[Kept]):
-    """A part as it is known: from what, what it came to, and all that is shown of it."""
+    """Record of a part, with its name and the fingerprint of its inputs."""
 
     name: str
     fingerprint: str
@@ -60,41 +60,41 @@ class Entry(NamedTuple, Generic[Kept]):
 
 
 class Catalogue:
-    """What is known of the parts of a results folder, for reading.
+    """Read access to the records of a results folder.
 
     Parameters
     ----------
     known
-        An open catalogue; None knows nothing.
+        Open catalogue; None is empty.
     """
 
     def __init__(self, known: sqlite3.Connection | None) -> None:
         self._known = known
-        if known is not None:  # whoever forgets the catalogue closes it
+        if known is not None:  # close it when this object is garbage-collected
             weakref.finalize(self, known.close)
 
     @classmethod
     def of(cls, folder: Path | None) -> Catalogue:
         """Open the catalogue of a results folder.
 
-        A folder without one, or with one that is damaged or of another format, knows nothing.
+        A missing or damaged catalogue, or one of another format, counts as empty.
         """
         return Catalogue(_opened(folder))
 
     def get(self, kind: str, name: str, record: type[Kept]) -> Entry[Kept] | None:
-        """Return a part; None if there is none."""
+        """Return a part; None if it is unknown."""
         rows = self._rows(f"{_SELECT} WHERE kind=? AND name=?", (kind, name))
         return next(_entries(rows, record), None)
 
     def all(self, kind: str, record: type[Kept]) -> Iterator[Entry[Kept]]:
-        """Return all parts of a kind, in their order; one after the other, none is held."""
+        """Yield all parts of a kind in order, without keeping them in memory."""
         rows = self._rows(f"{_SELECT} WHERE kind=? ORDER BY place", (kind,))
         return _entries(rows, record)
 
     def outcomes(self, kind: str, outcome: type[Kept]) -> list[Kept]:
-        """Return what the parts of a kind came to, in their order."""
+        """Return the outcomes of the parts of a kind, in order."""
         rows = self._rows("SELECT outcome FROM part WHERE kind=? ORDER BY place", (kind,))
-        with contextlib.suppress(ValidationError):  # damaged: not known
+        with contextlib.suppress(ValidationError):  # damaged: counts as empty
             return [_adapter(outcome).validate_json(small) for (small,) in rows]
         return []
 
@@ -106,34 +106,34 @@ class Catalogue:
         return None
 
     def state(self, kind: str, name: str) -> tuple[int, int] | None:
-        """Return size and time of change [ns] of a part's data file as it was written."""
+        """Return size and modification time [ns] of a part's data file when it was written."""
         query = "SELECT size, modified FROM part WHERE kind=? AND name=?"
         return next(self._rows(query, (kind, name)), None)
 
     def files(self) -> dict[str, Identity]:
-        """Return the identity of every file that was read."""
+        """Return the identity of every file that was read, by path."""
         rows = self._rows("SELECT path, size, modified, inode, sha256 FROM file", ())
         return {os.fsdecode(path): Identity(*facts) for path, *facts in rows}
 
     def fact(self, name: str) -> str:
-        """Return a fact about the results as a whole; "" if it is not known."""
+        """Return a fact about the results as a whole; "" if unknown."""
         rows = self._rows("SELECT value FROM fact WHERE name=?", (name,))
         return next((str(value) for (value,) in rows), "")
 
     def close(self) -> None:
-        """Read no more."""
+        """Close the catalogue."""
         if self._known is not None:
             self._known.close()
             self._known = None
 
     def _rows(self, query: str, values: tuple[str, ...]) -> Iterator[Any]:
         if self._known is not None:
-            with contextlib.suppress(sqlite3.Error):  # damaged: nothing is known
+            with contextlib.suppress(sqlite3.Error):  # damaged: counts as empty
                 yield from self._known.execute(query, values)
 
 
 class Identity(NamedTuple):
-    """How a file is known again: size, time of change [ns], inode; and its checksum."""
+    """Identity of a file: size, modification time [ns], inode and checksum."""
 
     size: int
     modified: int
@@ -141,30 +141,29 @@ class Identity(NamedTuple):
     sha256: str
 
     def is_of(self, state: os.stat_result) -> bool:
-        """Whether a file is still the one that was read."""
+        """Whether a file is unchanged since it was read."""
         there = state.st_size, state.st_mtime_ns, state.st_ino
         return there == (self.size, self.modified, self.inode)
 
 
 class Store(Catalogue):
-    """The catalogue that is being written, and that of the results before.
+    """Catalogue being written, with access to the previous one.
 
     Parameters
     ----------
     folder
-        Of the results that are being written.
+        Folder of the results being written.
     previous
-        Folder of earlier results, if there is one.
+        Folder of earlier results, if any.
     verify
-        Whether files are recognised by their checksums only, each read anew.
+        Whether to read every file again and compare checksums.
     intact
-        Which files of the earlier results are as they were written; no others are taken over. By
-        default all are trusted.
+        Unchanged files of the earlier results; only these are reused. By default all are trusted.
 
     Attributes
     ----------
     before
-        What is known of the earlier results.
+        Catalogue of the earlier results.
     """
 
     def __init__(
@@ -184,7 +183,7 @@ class Store(Catalogue):
         path = folder / CATALOGUE
         path.unlink(missing_ok=True)
         self._new = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
-        # the folder appears as a whole when all is written, so nothing has to outlive a crash
+        # no protection against crashes is needed: the folder appears only when all is written
         self._new.executescript(f"PRAGMA journal_mode=OFF; PRAGMA synchronous=OFF; {_TABLES}")
         self._new.execute("BEGIN")
         super().__init__(self._new)
@@ -198,7 +197,7 @@ class Store(Catalogue):
         record: object,
         trace: PageTrace | None = None,
     ) -> None:
-        """Write down a part; a part of that name is replaced."""
+        """Store a part; replace one of the same name."""
         text = zlib.compress(_adapter(type(record)).dump_json(record), 3)
         coarse, fine = (trace.coarse, trace.fine) if trace else ("", "")
         outcome = getattr(record, "outcome", None)
@@ -209,26 +208,26 @@ class Store(Catalogue):
         self._new.execute("INSERT OR REPLACE INTO part VALUES (?,?,?,?,?,?,?,?,?,?)", row)
 
     def same(self, kind: str, name: str, fingerprint: str, record: type[Kept]) -> Kept | None:
-        """Return an earlier part that is made of the same; None if there is none."""
+        """Return an earlier part with the same fingerprint; None if there is none."""
         entry = self.before.get(kind, name, record)
         return entry.record if entry and entry.fingerprint == fingerprint else None
 
     def take(
         self, kind: str, earlier: str, place: int, fingerprint: str, record: RunRecord, file: str
     ) -> bool:
-        """Take over an earlier run with its data file and its trace.
+        """Reuse an earlier run with its data file and its trace.
 
         Parameters
         ----------
         kind, earlier, file
-            Where it stood.
+            Kind, name and data file of the earlier part.
         place, fingerprint, record
-            How it is written down now; the record says how run and data file are called.
+            New entry; the record contains the names of run and data file.
 
         Returns
         -------
         bool
-            False if the data file is not as it was written: then nothing is taken over.
+            False if the data file was changed: then nothing is reused.
         """
         outcome = record.outcome
         if not self.link(kind, earlier, file, outcome.data_file):
@@ -238,44 +237,44 @@ class Store(Catalogue):
         return True
 
     def link(self, kind: str, name: str, old: str, new: str) -> bool:
-        """Have the data file of an earlier part among the new ones.
+        """Link the data file of an earlier part into the new results.
 
         Returns
         -------
         bool
-            False if it is not there, or not as it was written: then the part is done anew.
+            False if it is missing or was changed: then the part is computed again.
         """
         return self.intact(kind, name, old) is not None and self.link_beside(old, new)
 
     def intact(self, kind: str, name: str, file: str) -> Path | None:
-        """Return the data file of an earlier part; None if it is not there as it was written."""
+        """Return the data file of an earlier part; None if it is missing or was changed."""
         if self.previous is None or (self._intact is not None and file not in self._intact):
             return None
         try:
             state = (self.previous / file).stat()
-        except OSError:  # gone
+        except OSError:  # missing
             return None
         same = (state.st_size, state.st_mtime_ns) == self.before.state(kind, name)
         return self.previous / file if same else None
 
     def link_beside(self, old: str, new: str = "") -> bool:
-        """Have a file of the earlier results among the new ones; False if it is not intact."""
+        """Link a file of the earlier results into the new ones; False if it is not intact."""
         if self.previous is None or (self._intact is not None and old not in self._intact):
             return False
         try:
             (self.folder / (new or old)).parent.mkdir(parents=True, exist_ok=True)
             link(self.previous / old, self.folder / (new or old))
-        except OSError:  # gone, or replaced by another process meanwhile
+        except OSError:  # missing, or just replaced by another process
             return False
         return True
 
     def identity(self, file: str) -> tuple[str, int, int]:
-        """Return name, size and time of change of a new file: what is taken over keeps them."""
+        """Return name, size and modification time of a new file; reused files keep them."""
         state = (self.folder / file).stat()
         return file, state.st_size, state.st_mtime_ns
 
     def order(self, kind: str, names: Sequence[str]) -> None:
-        """Give the parts of a kind their order; those that are not named are taken out."""
+        """Set the order of the parts of a kind, and delete those not named."""
         there = self._new.execute("SELECT name FROM part WHERE kind=?", (kind,)).fetchall()
         gone = {name for (name,) in there} - set(names)
         self._new.executemany(
@@ -285,7 +284,7 @@ class Store(Catalogue):
         self._new.executemany("UPDATE part SET place=? WHERE kind=? AND name=?", places)
 
     def sources(self, files: Iterable[tuple[Path, str]]) -> tuple[Source, ...]:
-        """Return label, checksum and size of files; no checksum of what cannot be read.
+        """Return label, checksum and size of files; unreadable ones have no checksum.
 
         Files that are known by size, time and inode are not read.
         """
@@ -303,12 +302,12 @@ class Store(Catalogue):
                     self._note(path, state, checksum, began)
 
     def say(self, name: str, value: str) -> None:
-        """Write down a fact about the results as a whole."""
+        """Store a fact about the results as a whole."""
         self._new.execute("INSERT OR REPLACE INTO fact VALUES (?,?)", (name, value))
 
     def save(self) -> None:
-        """Write everything to the disk, so that others may read it; more may be written then."""
-        # a name may have any bytes, which a text of SQLite may not
+        """Commit everything, so that others can read it; more may be written later."""
+        # a path may contain bytes that SQLite text cannot
         rows = [(os.fsencode(path), *identity) for path, identity in self._seen.items()]
         self._new.executemany("INSERT OR REPLACE INTO file VALUES (?,?,?,?,?)", rows)
         self.say("format", _FORMAT)
@@ -316,7 +315,7 @@ class Store(Catalogue):
         self._new.execute("BEGIN")
 
     def close(self) -> None:
-        """Write everything to the disk, and nothing more."""
+        """Commit everything and close the catalogue."""
         self.save()
         self._new.execute("COMMIT")
         super().close()
@@ -331,13 +330,13 @@ class Store(Catalogue):
                 return label, before.sha256, state.st_size
             began = time.time_ns()
             checksum = sha256_of_file(path)
-        except OSError:  # vanished or unreadable: the outcome of its part says so
+        except OSError:  # missing or unreadable: the outcome of its part reports it
             return label, "", 0
         self._note(path, state, checksum, began)
         return label, checksum, state.st_size
 
     def _note(self, path: Path, state: os.stat_result, checksum: str, began: int) -> None:
-        """Note a file, unless it was changed so shortly before that it may have changed since."""
+        """Note a file, unless it changed so recently that it may change again unnoticed."""
         if state.st_mtime_ns < began - _LATE:
             facts = (state.st_size, state.st_mtime_ns, state.st_ino, checksum)
             self._seen[str(path)] = Identity(*facts)
@@ -350,7 +349,7 @@ _ADAPTERS: dict[object, TypeAdapter[Any]] = {}
 
 
 def _adapter(record: type[Kept]) -> TypeAdapter[Kept]:
-    """Return what reads and writes a record; to make one takes a while, so each is made once."""
+    """Return the serializer of a record type; cached, as making one is slow."""
     if record not in _ADAPTERS:
         _ADAPTERS[record] = TypeAdapter(record)
     return _ADAPTERS[record]
@@ -360,7 +359,7 @@ def _opened(folder: Path | None) -> sqlite3.Connection | None:
     """Open the catalogue of earlier results for reading."""
     if folder is None:
         return None
-    with contextlib.suppress(sqlite3.Error, OSError):  # OSError: none is there, or a name too long
+    with contextlib.suppress(sqlite3.Error, OSError):  # OSError: missing file, or a name too long
         (folder / CATALOGUE).stat()
         address = f"{(folder / CATALOGUE).resolve().as_uri()}?mode=ro&immutable=1"
         known = sqlite3.connect(address, uri=True, check_same_thread=False)
@@ -377,7 +376,7 @@ def _has_our_format(known: sqlite3.Connection) -> bool:
 
 
 def _inflated(packed: bytes) -> bytes:
-    """Unpack a record; of a bomb only its beginning, which is no JSON."""
+    """Decompress a record; limited in size, so that a zip bomb gives invalid JSON."""
     return zlib.decompressobj().decompress(packed, _LARGEST_RECORD)
 
 
@@ -385,5 +384,5 @@ def _entries(rows: Iterable[tuple[str, str, bytes]], record: type[Kept]) -> Iter
     for name, fingerprint, text in rows:
         try:
             yield Entry(name, fingerprint, _adapter(record).validate_json(_inflated(text)))
-        except (ValidationError, zlib.error, TypeError):  # damaged: not known
+        except (ValidationError, zlib.error, TypeError):  # damaged: counts as unknown
             continue

@@ -1,4 +1,4 @@
-"""Data files of the results: written whole or not at all, read, and told by their content."""
+"""Writing, reading and linking of data files, and checksums of their content."""
 
 from __future__ import annotations
 
@@ -43,24 +43,24 @@ CURES = {
 
 
 def write_data(groups: Mapping[str | None, xr.Dataset], path: Path) -> None:
-    """Write a data file, whole or not at all.
+    """Write a data file completely or not at all.
 
-    A scheduler may repeat work whose worker died after it was done: readers of the file then go
-    on with the old one until the new one, of the same content, is complete.
+    A scheduler may repeat finished work whose worker died. Readers then see the old file until the
+    new one, with the same content, is complete.
 
     Parameters
     ----------
     groups
-        By the names of their groups; None is the root.
+        Datasets by name of the group; None is the root.
     path
-        The file.
+        Path of the file.
 
     Raises
     ------
     OutputError
-        If there is no room, or the folder is gone.
+        If the disk is full, or the folder is missing.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.netcdf.netcdf import write_groups
 
     part = path.with_name(f"{path.stem}.{uuid.uuid4().hex}{UNFINISHED}")
@@ -93,7 +93,7 @@ def _number_of(
 
 def read_data(path: Path, group: str | None = None) -> xr.Dataset:
     """Open a data file of a campaign, or one group of it."""
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.netcdf.cache import read_kept
 
     return read_kept(path, group)
@@ -108,12 +108,12 @@ def optional_data(path: Path, group: str) -> xr.Dataset | None:
 
 
 def link(old: Path, new: Path) -> None:
-    """Have a data file of earlier results in the new folder, too.
+    """Link a data file of earlier results into the new folder; copy it if links are unsupported.
 
     Raises
     ------
     FileNotFoundError
-        If it is not there (any more).
+        If it does not exist.
     """
     new.unlink(missing_ok=True)
     try:
@@ -125,7 +125,7 @@ def link(old: Path, new: Path) -> None:
 
 
 def digest(*parts: xr.Dataset | None) -> str:
-    """Return the checksum of datasets' names and values; when they were made does not matter."""
+    """Return the checksum of the names and values of datasets, without creation times."""
     checksum = hashlib.sha256()
     for data in parts:
         if data is None:

@@ -1,7 +1,7 @@
-"""Earlier results that are kept because what they were made from cannot be read now.
+"""Earlier results that are kept because their source files cannot be read now.
 
-A file that is empty, locked or away for an hour must not take good results with it. What is kept
-says so, and since when; it is dropped when the campaign no longer names its files.
+A file that is temporarily empty, locked or missing must not discard good results. Kept results
+state since when they are kept; they are dropped if the campaign no longer names their files.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from tribolab.records.parts import Finding
 
 PartRecord = TypeVar("PartRecord", SurfaceRecord, ModelRecord)
 
-# The files were read, and the answer is about what is in them: it stands.
+# final errors: the files were read, and the error concerns their content
 VERDICTS = ("AnalysisError", "ConfigError")
 GONE = "it is not there"
 
 
 def kept_text(path: Path, why: str) -> str:
-    """Return since when a part is kept, as its data file knows it, and why."""
-    # late: starting stays quick
+    """Return the text on why a part is kept, with the date of its data file."""
+    # imported late for a quick start
     from tribolab.reading.netcdf.netcdf import read_groups
 
     try:
@@ -43,18 +43,18 @@ def kept_record(
     Parameters
     ----------
     store
-        It has the data file of the earlier record linked among the new ones.
+        Store into which the data file of the earlier record is linked.
     kind, earlier
-        Where it stood in the catalogue, and the record.
+        Kind in the catalogue, and the record.
     why
-        In words.
+        Reason in words.
     data_file
-        How the file is called now; by default as before.
+        New name of the file; by default unchanged.
 
     Returns
     -------
     SurfaceRecord, ModelRecord or None
-        None if the data file is not as it was written.
+        None if the data file was changed.
     """
     before = earlier.outcome
     if store.previous is None:

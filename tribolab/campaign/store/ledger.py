@@ -1,4 +1,4 @@
-"""Which files of a results folder are ours: those that its marker lists and that are unchanged."""
+"""Ledger of a results folder: files that tribolab wrote, and whether they are unchanged."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ _ABOUT = (
 
 
 class LedgerEntry(NamedTuple):
-    """A file as it was written.
+    """State of a file when it was written.
 
     Attributes
     ----------
     size, modified, inode
-        In bytes; time of its last change [ns]; 0 if it is not known (of earlier versions).
+        Size [bytes], modification time [ns] and inode; 0 if unknown (earlier versions).
     digest, sample
-        BLAKE2b of all bytes, and of samples of them; "" if it is small or not known.
+        BLAKE2b of all bytes, and of samples of them; "" if the file is small or it is unknown.
     """
 
     size: int
@@ -43,13 +43,13 @@ class LedgerEntry(NamedTuple):
 
     @classmethod
     def of(cls, path: Path) -> LedgerEntry:
-        """Read a file."""
+        """Return the entry of a file as it is now."""
         state = path.stat()
         sample = _sample(path) if state.st_size > ALWAYS_READ.value else ""
         return cls(state.st_size, state.st_mtime_ns, _digest(path), state.st_ino, sample)
 
     def is_of(self, path: Path, *, whole: bool = False) -> bool:
-        """Whether a file is the one that was written; with `whole` told by all its bytes."""
+        """Whether a file is unchanged; with `whole` all bytes of a large file are compared."""
         if path.is_symlink() or not path.is_file():
             return False
         state = path.stat()
@@ -60,14 +60,14 @@ class LedgerEntry(NamedTuple):
         return _digest(path) == self.digest
 
     def is_state(self, state: os.stat_result) -> bool:
-        """Whether size, time and inode are those of the file as it was written."""
+        """Whether size, modification time and inode are unchanged."""
         there = (state.st_size, state.st_mtime_ns, state.st_ino)
         return there == (self.size, self.modified, self.inode)
 
 
 @dataclass(frozen=True)
 class Ledger:
-    """The files that one run wrote, by their path in the results folder.
+    """Files that one run wrote, by path in the results folder.
 
     Parameters
     ----------
@@ -76,10 +76,10 @@ class Ledger:
     files
         Entries by path relative to the folder, with "/" between its parts.
     folders
-        Folders that the run made and left empty, e.g. that of the data when every run failed.
+        Folders that the run left empty, e.g. ``data`` if every run failed.
     sound
-        Whether the marker is there as it was written. Of a damaged one those files are listed
-        whose own checksum still stands in it.
+        Whether the marker is unchanged. From a damaged marker, only files whose checksum it still
+        contains are listed.
     """
 
     folder: Path
@@ -89,7 +89,7 @@ class Ledger:
 
     @classmethod
     def read(cls, folder: Path) -> Ledger:
-        """Read the marker of a folder; one that is missing, or no regular file, lists nothing."""
+        """Read the marker of a folder; a missing or irregular one lists no files."""
         try:
             text = (folder / MARKER).read_bytes() if (folder / MARKER).is_file() else b""
         except OSError:
@@ -112,18 +112,18 @@ class Ledger:
         return cls(folder, ours)
 
     def is_ours(self, name: str, *, whole: bool = False) -> bool:
-        """Whether a file is the one that was written: a copied marker makes nothing ours."""
+        """Whether a file is ours and unchanged; a copied marker does not make other files ours."""
         entry = self.files.get(name)
         return entry is not None and entry.is_of(self.folder / name, whole=whole)
 
     def intact(self, *, whole: bool = False) -> frozenset[str]:
-        """Return the files that are as they were written.
+        """Return the unchanged files.
 
         Parameters
         ----------
         whole
-            Whether large files are checked by all their bytes, too; by default by size, time of
-            change, inode and samples.
+            Whether to compare all bytes of large files; by default size, modification time, inode
+            and samples are compared.
         """
         there = set(walk(self.folder))  # a forged marker may list any number of files
         names = [name for name in self.files if name in there]
@@ -132,12 +132,12 @@ class Ledger:
         return frozenset(name for name, same in zip(names, good, strict=True) if same)
 
     def damaged(self, intact: frozenset[str]) -> tuple[str, ...]:
-        """Return what is not as it was written, the marker first; `intact` is what is."""
+        """Return changed or missing files, the marker first; `intact` are the unchanged files."""
         marker = () if self.sound or not self.files else (MARKER,)
         return (*marker, *sorted(set(self.files) - intact))
 
     def problems(self) -> list[str]:
-        """Say what is not as it was written, each file checked by all its bytes."""
+        """Return a message for each changed or missing file; all bytes are compared."""
         if not self.files and not self.sound:
             return [
                 f"{MARKER}: lost, or damaged beyond use; 'tribolab verify --repair {self.folder}' "
@@ -154,10 +154,10 @@ class Ledger:
         return wrong
 
     def foreign(self, intact: frozenset[str] | None = None) -> list[str]:
-        """Return the paths of all files that are not ours, in the folder's order of names.
+        """Return the paths of all files that are not ours or were changed, sorted.
 
-        Symbolic links are files here, wherever they lead; folders count if they are empty and the
-        marker knows no file in them.
+        Symbolic links count as files. Folders count if they are empty and the marker lists no file
+        in them.
         """
         intact = self.intact() if intact is None else intact
         folders = self.folders | {os.path.dirname(name) for name in self.files}  # noqa: PTH120 - quick
@@ -171,7 +171,7 @@ class Ledger:
         return names
 
     def write(self, folder: Path) -> None:
-        """List everything in a folder as ours; what was taken over is not read again."""
+        """List all files of a folder as ours; reused files are not read again."""
         files, folders = {}, []
         for name in walk(folder):
             path = folder / name
@@ -193,10 +193,10 @@ def _write(folder: Path, files: Mapping[str, LedgerEntry], folders: Sequence[str
 
 
 def repair(folder: Path) -> None:
-    """Write a lost marker again, so that the next run computes everything and loses nothing.
+    """Write a lost marker again, so that the next run recomputes everything and loses nothing.
 
-    Data, figures and report.json are listed as they are. A person may have changed tables and
-    page: they and the catalogue count as changed, so the next run keeps them beside its own.
+    Data, figures and report.json are listed as they are. A person may have changed tables and page:
+    they and the catalogue count as changed, so the next run keeps them under other names.
     """
     files = {}
     for name in walk(folder):
@@ -223,7 +223,7 @@ def walk(folder: Path) -> list[str]:
 
 
 def other_name(name: str, modified: int) -> str:
-    """Return the name under which a file of ours is kept that somebody has changed.
+    """Return the new name of one of our files that somebody has changed.
 
     Examples
     --------
@@ -245,7 +245,7 @@ def _is_inside(name: str) -> bool:
 
 
 def _sample(path: Path) -> str:
-    """Return the checksum of evenly spread pieces of a file."""
+    """Return the checksum of evenly spaced samples of a file."""
     size, count, length = path.stat().st_size, int(SAMPLES.value), int(SAMPLE.value)
     checksum = hashlib.blake2b()
     with path.open("rb") as file:

@@ -1,4 +1,4 @@
-"""What of the results is read in full at every run, to tell whether it is as it was written."""
+"""Limits of the check whether result files are unchanged."""
 
 from tribolab.core.limit import Limit
 

@@ -1,4 +1,4 @@
-"""What a campaign came to, in all its parts."""
+"""Outcome of a campaign with all its parts."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Outcome:
-    """Everything that a campaign came to.
+    """Outcome of a campaign.
 
     Parameters
     ----------
     campaign
-        The campaign as it was read.
+        The campaign that was processed.
     folder
-        Where the results lie (while they are being written: the staging folder).
+        Folder of the results (the staging folder while they are written).
     store
-        The catalogue of all that is recorded, for reading.
+        Catalogue of all records, for reading.
     runs, curves
         One record each, in the order of the campaign file.
     sources
@@ -41,11 +41,11 @@ class Outcome:
     models
         One record for each measured curve with a fluid, in the order of the curves.
     foreign
-        Files in the results folder that are not ours; they were left there.
+        Files in the results folder that tribolab did not write; they are kept.
     lost_decisions
-        Which decisions in the review file are on a run that there is not.
+        Decisions in the review file on runs that do not exist.
     damaged
-        Files of the earlier results that were not as they had been written.
+        Files of the earlier results that were changed.
     """
 
     campaign: Campaign
@@ -62,18 +62,18 @@ class Outcome:
 
     @property
     def kept(self) -> dict[str, str]:
-        """Names of the parts that are earlier results, and why."""
+        """Reasons why parts are kept from earlier results, by name."""
         parts: tuple[PartOutcome, ...] = (*self.runs, *self.surfaces, *self.models)
         return {part.name: part.kept for part in parts if part.kept}
 
     @property
     def failed(self) -> tuple[RunOutcome, ...]:
-        """The runs that have no results."""
+        """Runs without results."""
         return tuple(run for run in self.runs if not run.done)
 
     @property
     def failed_models(self) -> tuple[ModelOutcome, ...]:
-        """The models that should be there and are not; of one skipped too little is known."""
+        """Models that failed; skipped ones, whose inputs are incomplete, are not included."""
         return tuple(model for model in self.models if model.status == "failed")
 
     @property
@@ -84,7 +84,7 @@ class Outcome:
 
 @dataclass(frozen=True)
 class OpenOutcome(Outcome):
-    """What a campaign came to while it is being written: its store takes more."""
+    """Outcome of a campaign while it is written; its store accepts more records."""
 
     store: Store
 
@@ -95,7 +95,7 @@ class OpenOutcome(Outcome):
         foreign: tuple[str, ...],
         damaged: tuple[str, ...] = (),
     ) -> Outcome:
-        """Return what it came to, as it now lies in a folder for reading."""
+        """Return the outcome of the published results in a folder, for reading."""
         parts = {part.name: getattr(self, part.name) for part in fields(self)}
         now = {"folder": folder, "store": store, "foreign": foreign, "damaged": damaged}
         return Outcome(**parts | now)

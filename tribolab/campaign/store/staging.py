@@ -1,10 +1,10 @@
-"""Results appear whole or not at all: written beside their place, then swapped in.
+"""Atomic replacement of a results folder: written to a staging folder, then swapped.
 
-The staging room ``.<name>.tribolab-<random>`` lies beside the output, on the same file system, or
-inside it where it cannot be renamed (a mount point, a folder whose parent is not ours to write
-in). It holds ``new`` (what is being written) and, where two folders cannot be exchanged in one
-step, for a moment ``old``. The file of the same name that ends in ``.lock`` is locked for as long
-as the process lives, whatever ends it: a room whose lock is free is a dead process's.
+The staging folder ``.<name>.tribolab-<random>`` is next to the output, on the same file system, or
+inside it if the output cannot be renamed (a mount point, or a parent folder without write access).
+It contains ``new`` (the results being written) and, if two folders cannot be exchanged in one
+step, temporarily ``old``. The file of the same name with the suffix ``.lock`` is locked while the
+process lives; a free lock marks the folder of a dead process.
 
 Files in the output that are not ours are never removed: they are linked into the new folder.
 """
@@ -29,22 +29,22 @@ from tribolab.core.errors import ConfigError, OutputError
 
 _RENAME_EXCHANGE = 2
 _AT_FDCWD = -100
-_READY = "ready"  # in a room inside the output: the swap has begun, and is to be completed
+_READY = "ready"  # marks a swap inside the output that has begun and must be completed
 
 
 @contextlib.contextmanager
 def staged(output: str | Path) -> Iterator[Path]:
-    """Yield a new, empty folder that takes the place of `output` when the block ends well.
+    """Yield a new, empty folder that replaces `output` if the block ends without an error.
 
-    If the block raises, `output` stays as it was and the new folder is removed. If the process
-    is killed, `output` holds either the old or the new results; the next call removes what was
-    left behind. Files in `output` that we did not write, or that somebody changed since, stay:
-    the former under their names, the latter under `other_name`.
+    If the block raises, `output` is unchanged and the new folder is removed. If the process is
+    killed, `output` contains either the old or the new results; the next call removes remnants.
+    Files in `output` that we did not write keep their names; those that somebody changed are kept
+    under `other_name`.
 
     Parameters
     ----------
     output
-        The results folder. It may be absent, empty, or hold results of an earlier run.
+        The results folder. It may be missing, empty, or contain results of an earlier run.
 
     Yields
     ------
@@ -54,15 +54,15 @@ def staged(output: str | Path) -> Iterator[Path]:
     Raises
     ------
     ConfigError
-        If `output` is a file, or a folder with something else than results in it.
+        If `output` is a file, or a folder with anything other than results.
     OutputError
         If the folder cannot be written, or the disk is full.
 
     Notes
     -----
-    The swap is one ``renameat2(RENAME_EXCHANGE)`` on Linux file systems that know it. Elsewhere
-    it is two renames; a kill between them is mended by the next call. A folder that cannot be
-    renamed is swapped entry by entry, with the same promise.
+    The swap is one ``renameat2(RENAME_EXCHANGE)`` on Linux file systems that support it. Elsewhere
+    it is two renames; the next call repairs an interruption between them. A folder that cannot be
+    renamed is swapped entry by entry, with the same guarantee.
 
     Examples
     --------
@@ -78,7 +78,7 @@ def staged(output: str | Path) -> Iterator[Path]:
         recover(output)
         _refuse_foreign(output)
         output.parent.mkdir(parents=True, exist_ok=True)
-        lock, room = _locked_room(output)
+        lock, room = _lock_staging_folder(output)
     except OSError as error:
         raise OutputError(f"{output}: {_cure(error)}") from error
     try:
@@ -86,7 +86,7 @@ def staged(output: str | Path) -> Iterator[Path]:
         yield room / "new"
         ledger = Ledger.read(output)
         ledger.write(room / "new")
-        _take_along(ledger, room / "new")
+        _keep_foreign_files(ledger, room / "new")
         _swap(room, output)
     except OSError as error:
         if not _is_about(error, room, output):
@@ -99,12 +99,12 @@ def staged(output: str | Path) -> Iterator[Path]:
 
 
 def resolved(output: str | Path) -> Path:
-    """Return the folder that a path means, without links.
+    """Return the absolute path of a folder, with links resolved.
 
     Raises
     ------
     ConfigError
-        If it leads nowhere, e.g. a link to itself.
+        If it cannot be resolved, e.g. a link to itself.
     """
     try:
         return Path(output).resolve()
@@ -115,9 +115,12 @@ def resolved(output: str | Path) -> Path:
 
 
 def recover(output: str | Path) -> None:
-    """Remove what dead processes left beside or in `output`, and complete a swap cut short."""
+    """Remove remnants of dead processes next to or in `output`, and complete interrupted swaps."""
     output = resolved(output)
-    for room in (*_rooms(output.parent, _prefix(output)), *_rooms(output, _prefix(output))):
+    for room in (
+        *_rooms(output.parent, _prefix(output)),
+        *_rooms(output, _prefix(output)),
+    ):
         if room.suffix == ".lock" or _alive(room):
             continue
         if room.parent == output:
@@ -127,13 +130,16 @@ def recover(output: str | Path) -> None:
             complete = room / "new" if (room / "new").exists() else room / "old"
             complete.rename(output)
         shutil.rmtree(room, ignore_errors=True)
-    for lock in (*_rooms(output.parent, _prefix(output)), *_rooms(output, _prefix(output))):
+    for lock in (
+        *_rooms(output.parent, _prefix(output)),
+        *_rooms(output, _prefix(output)),
+    ):
         if lock.suffix == ".lock" and not _alive(lock.with_suffix("")):
             lock.unlink(missing_ok=True)
 
 
 def _rooms(place: Path, prefix: str) -> list[Path]:
-    """Rooms and locks in a folder; names are compared as they are: brackets are no wildcards."""
+    """Return staging folders and locks in a folder; brackets in names are no wildcards."""
     try:
         return sorted(path for path in place.iterdir() if path.name.startswith(prefix))
     except OSError:
@@ -148,8 +154,8 @@ def _lock_of(room: Path) -> Path:
     return room.with_name(f"{room.name}.lock")
 
 
-def _home_of_room(output: Path) -> Path:
-    """Where the room is made: beside the output, or inside it if it cannot be renamed."""
+def _parent_of_staging(output: Path) -> Path:
+    """Return the folder for staging: the parent of the output, or the output if it is fixed."""
     if not output.is_dir():
         return output.parent
     parent = output.parent
@@ -157,14 +163,14 @@ def _home_of_room(output: Path) -> Path:
     return output if fixed or not os.access(parent, os.W_OK, effective_ids=True) else parent
 
 
-def _locked_room(output: Path) -> tuple[IO[bytes], Path]:
-    """Lock a new name; the lock is made before its room, so that no living room is without."""
-    home = _home_of_room(output)
+def _lock_staging_folder(output: Path) -> tuple[IO[bytes], Path]:
+    """Lock a new name; the lock is created first, so that a folder in use is always locked."""
+    home = _parent_of_staging(output)
     while True:
         handle, name = tempfile.mkstemp(prefix=_prefix(output), suffix=".lock", dir=home)
         lock = os.fdopen(handle, "wb")
         fcntl.flock(lock, fcntl.LOCK_EX)
-        if Path(name).exists():  # else somebody tidied it away before it was locked
+        if Path(name).exists():  # else another process removed it before it was locked
             return lock, Path(name).with_suffix("")
         lock.close()
 
@@ -181,7 +187,7 @@ def _alive(room: Path) -> bool:
 
 
 def _refuse_foreign(output: Path) -> None:
-    """Refuse a folder that holds something, and nothing that we wrote."""
+    """Raise if a folder is not empty and contains no file that we wrote."""
     if not output.exists():
         return
     if not output.is_dir():
@@ -203,11 +209,11 @@ def _refuse_foreign(output: Path) -> None:
         )
 
 
-def _take_along(ledger: Ledger, new: Path) -> None:
-    """Link what is not ours into the new folder; what of ours was changed, under another name.
+def _keep_foreign_files(ledger: Ledger, new: Path) -> None:
+    """Link foreign files into the new folder, and our changed files under other names.
 
-    Where the catalogue is damaged, nothing is known of runs whose raw files cannot be read now:
-    their data files stay, too.
+    If the catalogue is damaged, runs whose raw files cannot be read now are unknown: their data
+    files are kept, too.
     """
     intact = ledger.intact()
     names = ledger.foreign(intact)
@@ -226,7 +232,7 @@ def _keep(ledger: Ledger, name: str, new: Path) -> None:
     if name in ledger.files or target.exists():
         target = new / other_name(name, old.lstat().st_mtime_ns)
     for above in reversed(target.relative_to(new).parents):
-        if (new / above).is_file():  # a folder of theirs has the name of a file of ours
+        if (new / above).is_file():  # a foreign folder has the name of one of our files
             target = new / f"{name.replace('/', '_')}"
             break
     if target.exists() or target.is_symlink():
@@ -254,7 +260,7 @@ def _swap(room: Path, output: Path) -> None:
         replaced = room / "old"
         output.rename(replaced)
         new.rename(output)
-    # what somebody put there while the swap was made ready
+    # files that were added while the swap was prepared
     for name in Ledger(replaced, before.files).foreign():
         _keep_late(replaced / name, output / name)
 
@@ -268,7 +274,7 @@ def _keep_late(old: Path, target: Path) -> None:
 
 
 def _move_in(room: Path, output: Path) -> None:
-    """Put each entry of the new folder in its place, the old one away; may be cut short."""
+    """Move the old entries away and the new ones into place; can resume after an interruption."""
     (room / "old").mkdir(exist_ok=True)
     new = room / "new"
     wanted = {path.name for path in new.iterdir()} if new.is_dir() else set()
@@ -284,7 +290,7 @@ def _move_in(room: Path, output: Path) -> None:
 
 
 def exchange(former: Path, latter: Path) -> bool:
-    """Exchange two paths in one step; False where the system cannot."""
+    """Exchange two paths in one step; return False if the system cannot."""
     try:
         renameat2 = ctypes.CDLL(None, use_errno=True).renameat2
     except (AttributeError, OSError):
@@ -305,7 +311,7 @@ def exchange(former: Path, latter: Path) -> bool:
 
 
 def _is_about(error: OSError, room: Path, output: Path) -> bool:
-    """Whether an error is about writing here: one of our files, or a full disk and the like."""
+    """Whether an error concerns writing here: one of our files, or e.g. a full disk."""
     if error.filename is None:
         return error.errno in CURES
     path = Path(str(error.filename))

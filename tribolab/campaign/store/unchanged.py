@@ -1,4 +1,4 @@
-"""Whether anything has changed since the results were made: told without doing any work."""
+"""Quick check whether anything has changed since the results were made."""
 
 from __future__ import annotations
 
@@ -37,21 +37,21 @@ if TYPE_CHECKING:
 AnyOutcome = TypeVar("AnyOutcome", RunOutcome, SurfaceOutcome, ModelOutcome)
 _FACT = "made from"
 _SOURCES = "sources"
-# Errors that the files themselves give: with the same files they would come again.
+# errors caused by the files themselves: with the same files they would recur
 _LASTING = ("ReadError", "AnalysisError", "UnitError", "ConfigError")
 
 
 def note(outcome: OpenOutcome, runs: Sequence[PlannedRun], options: Mapping[str, object]) -> None:
-    """Write down what results are made from, so that `unchanged` finds it.
+    """Store the fingerprint of the inputs, so that `unchanged` finds it.
 
     Parameters
     ----------
     outcome
-        What was made; nothing is written down of what may turn out otherwise next time.
+        Outcome to be stored; nothing is stored if a repetition might give another outcome.
     runs
-        As they were planned.
+        The planned runs.
     options
-        Of the report.
+        Options of the report.
     """
     parts: tuple[PartOutcome, ...] = (*outcome.runs, *outcome.surfaces, *outcome.models)
     lasting = all(part.status != "failed" or part.error in _LASTING for part in parts)
@@ -64,8 +64,8 @@ def note(outcome: OpenOutcome, runs: Sequence[PlannedRun], options: Mapping[str,
 def fingerprint(
     campaign: Campaign, runs: Sequence[PlannedRun], options: Mapping[str, object]
 ) -> str:
-    """Return the checksum of all that results are made from, but of the raw files' content."""
-    # late: looks the installed package up
+    """Return the checksum of all inputs of the results except the content of raw files."""
+    # imported late: looks up the installed package
     from tribolab.version import __version__
 
     review = campaign.file.parent / REVIEW_FILE
@@ -95,21 +95,21 @@ def unchanged(
     verify: bool = False,
     intact: frozenset[str] | None = None,
 ) -> Outcome | None:
-    """Return what the results came to if nothing that they are made from has changed.
+    """Return the earlier outcome if no input of the results has changed; else None.
 
     Parameters
     ----------
     campaign, runs
         From `load_and_plan`.
     place
-        Folder of the results.
+        Results folder.
     options
-        Of the report.
+        Options of the report.
     verify
-        Whether every file is read to tell; by default those only whose size, time or inode is not
-        what it was.
+        Whether to read every file; by default only those whose size, modification time or inode
+        changed.
     intact
-        Which files of the results are as they were written, if that is known.
+        Unchanged files of the results, if known.
     """
     ledger = Ledger.read(place)
     intact = ledger.intact(whole=verify) if intact is None else intact
@@ -152,7 +152,7 @@ def _dialect(campaign: Campaign, instrument: str) -> str:
 
 
 def _inputs(campaign: Campaign, runs: Sequence[PlannedRun]) -> list[tuple[Path, str]]:
-    """Return every file that is read, and its label."""
+    """Return every input file and its label."""
     files = [pair for run in runs for pair in zip(run.files, run.labels, strict=True)]
     others = [scan for surface in campaign.surface for scan in scans_of(campaign, surface)]
     others += [*modulus_files(campaign), *flow_curve_files(campaign)]
@@ -162,7 +162,7 @@ def _inputs(campaign: Campaign, runs: Sequence[PlannedRun]) -> list[tuple[Path, 
 def _are_same(
     files: Sequence[tuple[Path, str]], known: Mapping[str, Identity], sums: Mapping[str, str]
 ) -> bool:
-    """Whether files are those that were read, the ones known by identity without reading them."""
+    """Whether input files are unchanged; files with the same identity are not read."""
     try:
         for file, label in files:
             identity = known.get(str(file))

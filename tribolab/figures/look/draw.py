@@ -198,14 +198,14 @@ def _part_of_decade(value: float, place: int | None = None) -> str:
 
 
 def _parts_locator(decades: float) -> Any:
-    # late: matplotlib's locators take a moment to load
+    # imported late: matplotlib's locators load slowly
     from matplotlib.ticker import LogLocator
 
     return LogLocator(subs=(1, 2, 5) if decades > 0.35 else (1, 1.5, 2, 3, 4, 5, 6, 7, 8, 9))
 
 
 def _dates(axes: Axes) -> None:
-    # late: dates take long to load
+    # imported late: dates load slowly
     import matplotlib.dates as mdates
 
     locator = mdates.AutoDateLocator(maxticks=6)
@@ -214,7 +214,7 @@ def _dates(axes: Axes) -> None:
 
 
 def _wrapped(text: str) -> str:
-    # late: needed for long names only
+    # imported late: needed for long names only
     import textwrap
 
     apart = str(text).replace("_", "_ ")  # a long name breaks at its underscores

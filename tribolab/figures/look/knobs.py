@@ -52,7 +52,7 @@ def knobs(**ranges: Any) -> Callable[[Draw], Draw]:
     """
 
     def show(draw: Draw) -> Draw:
-        # late: IPython takes long to load
+        # imported late: IPython loads slowly
         from IPython.display import Markdown, display, update_display
 
         defaults = {
@@ -87,7 +87,7 @@ def knobs(**ranges: Any) -> Callable[[Draw], Draw]:
 
 def _controls(ranges: Arguments, defaults: Arguments) -> Arguments:
     """Return a widget for each parameter, at its default."""
-    # late: ipywidgets takes long to load
+    # imported late: ipywidgets loads slowly
     from ipywidgets import interactive
 
     controls = {}
@@ -104,7 +104,7 @@ def _controls(ranges: Arguments, defaults: Arguments) -> Arguments:
 
 def _box(controls: Arguments) -> Arguments:
     """Return what a notebook shows of the knobs, and what stands for them where none runs."""
-    # late: ipywidgets takes long to load
+    # imported late: ipywidgets loads slowly
     from ipywidgets import VBox
 
     places = ", ".join(f"{c.description} = {c.value}" for c in controls.values())

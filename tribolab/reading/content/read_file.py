@@ -49,7 +49,7 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
         If the file is not what the dialect says.
     """
     if isinstance(dialect, PythonReader):
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.reading.content.containers import read_columns
 
         return _checked(read_columns(path, dialect), dialect)
@@ -61,7 +61,7 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
         )
     dialect = as_written(file, dialect)
     if dialect.format != "text" or dialect.text.container:
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.reading.content.containers import read_columns
 
         content = read_columns(file.path, dialect)
@@ -73,7 +73,7 @@ def read_content(path: Path, dialect: Dialect, size: int = 0) -> Content:
 
 
 def _read_text(file: File, dialect: Dialect, size: int) -> Content:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.dialect.delimited.read_text import Hasher, read_table
     from tribolab.reading.dialect.delimited.rows_outside import foot_of, rows_outside
     from tribolab.reading.dialect.delimited.tables import find_tables

@@ -34,7 +34,7 @@ def open_as(path: Path, dialect: Dialect) -> RawFile:
         return read_records(path, dialect.binary.record, dialect.binary.offset)
     if dialect.format != "excel":
         return read_container(path, dialect.text.container or dialect.format)
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.raw.containers.workbook import read_sheet, read_sheets
 
     below = header.units == "row"

@@ -86,7 +86,7 @@ def load_dialect(name_or_path: Instrument) -> Dialect:
     if str(name_or_path) in known:
         return _load(known[str(name_or_path)])
     if is_reader(str(name_or_path)):
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.reading.dialect.python_reader import python_reader
 
         return python_reader(str(name_or_path))
@@ -120,7 +120,7 @@ def recognise(path: str | Path) -> Dialect:
     find = _fitting.__wrapped__ if state is None else _fitting
     fitting = find(file, state, tuple(known_dialects().values()))
     if not fitting and installed_readers():
-        # late: few have any
+        # imported late: rarely needed
         from tribolab.reading.dialect.python_reader import recognised_by
 
         fitting = recognised_by(file.head)
@@ -141,7 +141,7 @@ def recognise(path: str | Path) -> Dialect:
 @functools.lru_cache(maxsize=4)  # one reading asks several times
 def _fitting(file: File, _: Identity | None, known: tuple[Path, ...]) -> list[Dialect]:
     """Return the dialects that a file fits."""
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.dialect.recognise import mismatch
 
     return [dialect for dialect in map(_load, known) if mismatch(file, dialect) is None]
@@ -251,7 +251,7 @@ def _explain(problem: Any) -> str:
 
 def _model_at(loc: tuple[str | int, ...]) -> list[str]:
     """Names of the keys that are allowed at a place of the dialect."""
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.dialect import model as dialect_model
 
     name = next((str(part) for part in reversed(loc) if isinstance(part, str)), "dialect")

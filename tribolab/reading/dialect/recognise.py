@@ -40,17 +40,17 @@ def mismatch(file: File, dialect: Dialect) -> str | None:
     if rules.file_name and not guarded(rules.file_name).search(file.path.name):
         return "its name does not fit"
     if dialect.format == "mat" and dialect.tables is None:
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.reading.raw.containers.mat import variable_names
 
         return _names_missing(rules, variable_names(file.path))
     if dialect.format == "tdms" and dialect.tables is None:
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.reading.raw.containers.tdms import channel_names
 
         return _names_missing(rules, channel_names(file.path))
     if dialect.format != "text" or dialect.text.container:
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.reading.dialect.containers import column_names
 
         return _names_missing(rules, column_names(file.path, dialect))

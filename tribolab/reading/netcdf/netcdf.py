@@ -117,7 +117,7 @@ def write_groups(groups: Mapping[str | None, xr.Dataset], path: str | Path) -> P
 
 
 def _write(path: Path, groups: Mapping[str | None, xr.Dataset], mode: Literal["w", "a"]) -> Path:
-    # late: netCDF4 takes long to load
+    # imported late: netCDF4 loads slowly
     import netCDF4
 
     try:
@@ -272,7 +272,7 @@ def _unchanged(path: Path) -> Path:
 @contextlib.contextmanager
 def _whole(path: Path) -> Iterator[netCDF4.Dataset]:
     """Open a file in which no data are from elsewhere."""
-    # late: netCDF4 takes long to load
+    # imported late: netCDF4 loads slowly
     import netCDF4
 
     with damage_told(path, "netCDF file"):

@@ -89,7 +89,7 @@ def _import_for_the_next(modules: list[str]) -> None:
 def _limit(job: Job) -> None:
     """Bound time, memory and output of this process."""
     with contextlib.suppress(ImportError, ValueError, OSError):
-        # late: POSIX alone has it
+        # imported late: exists on POSIX only
         import resource
 
         def bound(what: int, most: int, grace: int = 0) -> None:

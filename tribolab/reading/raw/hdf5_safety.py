@@ -61,7 +61,7 @@ def refuse_outside(path: Path) -> None:
     if not is_hdf5(path):
         return
     try:
-        # late: h5py takes long to load
+        # imported late: h5py loads slowly
         import h5py
     except ImportError as error:
         raise missing(path, "h5py") from error

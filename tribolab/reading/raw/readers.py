@@ -48,7 +48,7 @@ def is_reader(name: str) -> bool:
 @functools.lru_cache(maxsize=1)
 def installed_readers() -> dict[str, EntryPoint]:
     """Return the readers of installed packages by name."""
-    # late: takes long to load
+    # imported late: loads slowly
     from importlib.metadata import entry_points
 
     return {point.name: point for point in entry_points(group=GROUP)}

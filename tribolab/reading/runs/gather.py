@@ -128,7 +128,7 @@ def _zeros_of_formulas(attrs: Json, dialect: Dialect, zero: str | None) -> dict[
 def _blank(run: Path, name: str, dialect: Dialect) -> dict[str, np.ndarray]:
     """Return the columns of a blank run, beside the run or a table in it, and what follows."""
     if dialect.tables is not None and name.startswith("table "):
-        # late: starting stays quick
+        # imported late for a quick start
         from tribolab.reading.content.containers import read_table
 
         return read_table(peek(run).path, dialect, name.removeprefix("table "))
@@ -214,7 +214,7 @@ def _speed_from(dialect: Dialect) -> str:
 
 def _attributes(contents: list[Content], dialect: Dialect, origin: float) -> Json:
     """Provenance, and what else the run should know of its files."""
-    # late: looks the installed package up
+    # imported late: looks up the installed package
     from tribolab.version import __version__
 
     labels = {name: label for content in contents for name, label in content.labels.items()}

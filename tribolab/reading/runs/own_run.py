@@ -45,7 +45,7 @@ def read_own_run(path: Path, content: Path | None = None) -> xr.Dataset:
     ReadError
         If it cannot be read, has no time, or a quantity of a run is no number along time.
     """
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.netcdf.netcdf import read_netcdf
 
     cure = "columns of one length, with names and units, are read as they are: " + _DESCRIBE

@@ -127,7 +127,7 @@ def with_companion(log: Signals, path: Path, dialect: Dialect) -> Signals:
 
 
 def _joined(log: Signals, companions: LogDialects, shift: float | None) -> Signals:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.clocks.merge import merge
 
     motion = read_unchanged([path for path, _ in companions], lambda: gather(companions))
@@ -138,7 +138,7 @@ def _without_inertia(run: xr.Dataset, mass: str | float | None) -> xr.Dataset:
     """Take the inertia of a mass out, if one is stated."""
     if mass is None:
         return run
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.runs.inertia import take_inertia
 
     where = str(run.attrs["source"])
@@ -153,7 +153,7 @@ def _own_run(path: Path, instrument: Instrument | None) -> xr.Dataset | None:
         return None
     if (first := peek(path)).format != "netcdf":
         return None
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.runs.own_run import read_own_run
 
     return read_own_run(path, first.path)

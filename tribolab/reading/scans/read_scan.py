@@ -159,7 +159,7 @@ def _without_isolated(scan: xr.Dataset) -> xr.Dataset:
 
 def _recognised(path: Path) -> Dialect | None:
     """Return the text dialect that a file is written in; None for other formats."""
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.dialect.recognise import mismatch
 
     try:
@@ -208,7 +208,7 @@ def _by_dialect(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
 
 
 def _of_columns(path: Path, dialect: Dialect) -> tuple[list[xr.Dataset], str]:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.content.values import single_values
     from tribolab.reading.scans.traces import traces_of
 

@@ -212,7 +212,7 @@ def _holds_columns(path: Path) -> bool:
 
 @functools.lru_cache(maxsize=16)  # a file is looked at more than once
 def _holds_tables(path: Path, size: int, changed: int) -> bool:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.raw.containers.json_tables import holds_tables
 
     try:

@@ -1,1 +1,1 @@
-"""report.json: its types, and what fills them."""
+"""Types and content of report.json."""

@@ -1,4 +1,4 @@
-"""Everything that the report says, as plain data: report.json, and what the page is made from."""
+"""Content of the report as plain data, for report.json and the page."""
 
 from __future__ import annotations
 
@@ -41,9 +41,9 @@ if TYPE_CHECKING:
     from tribolab.records.part_records import FigureRecord
     from tribolab.records.parts import CurveOutcome, Notice, RunOutcome, SurfaceOutcome
 
-_BY_HAND = ("rejected", "accepted")  # what a person may decide on a run
+_BY_HAND = ("rejected", "accepted")  # possible decisions on a run
 _HEAD = TypeAdapter(ReportHead)
-_INSTRUMENTS = 3  # whose ranges are told apart in the headline
+_INSTRUMENTS = 3  # maximum number whose ranges are listed separately in the headline
 _LIBRARIES = ["numpy", "scipy", "pandas", "xarray", "netCDF4", "matplotlib"]
 
 
@@ -57,7 +57,7 @@ def labels(what: RunOutcome | CurveOutcome) -> Row:
 
 
 def report_document(head: ReportHead) -> Json:
-    """Return what stands first in the report, as plain data, ready for JSON."""
+    """Return the head of the report as plain data for JSON."""
     return plain_value(_HEAD.dump_python(head, by_alias=True))
 
 
@@ -73,20 +73,20 @@ def report_head(
     joints: Iterable[JointRecord],
     figures: Mapping[str, Sequence[FigureRecord]],
 ) -> ReportHead:
-    """Return all of the report but its runs.
+    """Return the report without its runs.
 
     Parameters
     ----------
     outcome
-        What the campaign came to.
+        Outcome of the campaign.
     runs
-        Of each run what `brief_run` says.
+        Result of `brief_run` for each run.
     findings
-        All findings, gravest first.
+        All findings, most severe first.
     curves, surfaces, modes, models, joints
-        As they are reported.
+        Their records for the report.
     figures
-        By their section.
+        Figures by section.
     """
     rejected = [surface.name for surface in outcome.surfaces if surface.quality in _BAD]
     return ReportHead(
@@ -112,7 +112,7 @@ def report_head(
 
 
 def _of_surfaces(surfaces: Sequence[SurfaceOutcome], rejected: Sequence[str]) -> CampaignVerdict:
-    """Return what came of a campaign that measured surfaces only."""
+    """Return the verdict on a campaign that measured surfaces only."""
     scanned = [surface for surface in surfaces if surface.files]
     done = sum(surface.done for surface in scanned)
     suspect = sum(surface.quality == "suspect" for surface in scanned if surface.done)
@@ -131,7 +131,7 @@ def verdict(
     rejected_scans: Sequence[str] = (),
     lost_decisions: int = 0,
 ) -> CampaignVerdict:
-    """Return what came of the campaign in one sentence and its numbers.
+    """Return the result of the campaign in one sentence, with its numbers.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def verdict(
     rejected_scans
         Surfaces whose scans failed their checks.
     lost_decisions
-        How many decisions are on runs that there are not.
+        Number of decisions on runs that do not exist.
     """
     done = [run for run in runs if run["status"] == "done"]
     failed = len(runs) - len(done)
@@ -205,7 +205,7 @@ def verdict(
 
 
 def state_of(verdict: Mapping[str, Any]) -> str:
-    """Return the one word that page and terminal begin with.
+    """Return the status word with which page and terminal begin.
 
     Examples
     --------
@@ -226,7 +226,7 @@ def _bounds(runs: Iterable[Mapping[str, Any]]) -> list[float]:
 
 
 def _steady(runs: Iterable[Mapping[str, Any]]) -> list[float]:
-    """Return the steady friction of runs that all run in; none if one does not."""
+    """Return the steady friction of the runs if all of them run in; else []."""
     settled = [run.get("running_in", ()) for run in runs]
     if not all(len(rows) == 1 and rows[0]["verdict"] != NONE for rows in settled):
         return []
@@ -235,7 +235,7 @@ def _steady(runs: Iterable[Mapping[str, Any]]) -> list[float]:
 
 
 def _ranges(runs: Sequence[Mapping[str, Any]], unit: str) -> str:
-    """Return what was measured, lowest to highest; of several instruments each for itself."""
+    """Return the measured range; for several instruments one range each."""
     apart: dict[str, list[Mapping[str, Any]]] = {}
     for run in runs:
         if run["value_min"] is not None:
@@ -249,7 +249,7 @@ def _ranges(runs: Sequence[Mapping[str, Any]], unit: str) -> str:
 
 
 def brief_run(run: Mapping[str, Any]) -> Json:
-    """Return what the table of runs shows of a run: all but what is long."""
+    """Return the short entries of a run, for the table of runs."""
     brief = {key: value for key, value in run.items() if key not in _LONG}
     objections = [row for row in run["checks"] if row["status"] in ("suspect", "fail", "error")]
     return brief | {"checks": objections}
@@ -270,8 +270,8 @@ def _campaign(campaign: Campaign) -> CampaignFile:
 
 
 def versions() -> dict[str, str]:
-    """Return the versions of Python, of tribolab and of what computes for it."""
-    # late: looks the installed package up
+    """Return the versions of Python, tribolab and the numerical libraries."""
+    # imported late: looks up the installed package
     from tribolab.version import __version__
 
     known = {"tribolab": __version__, "python": platform.python_version()}
@@ -284,7 +284,7 @@ def versions() -> dict[str, str]:
 
 
 def write_json(document: Mapping[str, Any], runs: Iterable[Mapping[str, Any]], path: Path) -> None:
-    """Write the report as strict JSON: UTF-8, no NaN; the runs one by one, a line each."""
+    """Write the report as strict JSON: UTF-8, no NaN, one run per line."""
 
     def text(value: Any, indent: int | None = 1) -> str:
         return json.dumps(value, ensure_ascii=False, indent=indent, allow_nan=False)

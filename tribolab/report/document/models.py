@@ -1,4 +1,4 @@
-"""What tables and report say of the models: shear stresses, curves, sensitivity, and in words."""
+"""Tables of the models: shear stresses, curves and sensitivities."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 _95 = 1.959963984540054
 _STATISTICAL = "statistical only: the spectrum's error is not in it"
-BESIDE_FIT = {  # what only several models or the surface tell, and what it means
+BESIDE_FIT = {  # columns that depend on several models or on the surface, and their meanings
     "area_dry_over_wet": "real contact area, dry divided by in the medium",
     "judgement": "where measurement and model differ, in words",
     "spectrum_error_low": "relative change of the shear stress due to the uncertain spectrum, down",
@@ -46,7 +46,7 @@ _CURVE = [
     *("minimum_separation_m", "central_separation_m", "contact_area_ratio", "solid_load_share"),
     *("residual", "load_balance", "flux_variation", "iterations", "cells"),
 ]
-SENSITIVE = {  # columns of a variation, and what they mean
+SENSITIVE = {  # columns of a variation, and their meanings
     "variation": "",
     "low": "",
     "high": "",
@@ -62,21 +62,21 @@ SENSITIVE = {  # columns of a variation, and what they mean
 
 @dataclass(frozen=True, kw_only=True)
 class ModelRow(ModelRows):
-    """A model in work for the tables: its fit gets what only several models tell."""
+    """Model with rows that can be completed by results from several models."""
 
     model: ModelOutcome
     fit: Json | None
 
     @property
     def labels(self) -> Row:
-        """Columns that stand first in every table."""
+        """Leading columns of every table."""
         model = self.model
         values = model.curve, model.surface, model.medium, model.normal_force
         return dict(zip(("curve", *MODEL_LABELS), values, strict=True))
 
 
 def model_rows_of(records: Iterable[ModelRecord]) -> dict[str, ModelRow]:
-    """Return the rows of all models that are done, by name, and complete them."""
+    """Return the completed rows of all models with results, by name."""
     rows = {}
     for record in records:
         if record.rows is None:
@@ -91,10 +91,10 @@ def model_rows_of(records: Iterable[ModelRecord]) -> dict[str, ModelRow]:
 
 
 def complete(rows: Sequence[ModelRow]) -> None:
-    """Add what needs several models: the spectrum's error and ratios between surfaces.
+    """Add results from several models: error due to the spectrum, and ratios between surfaces.
 
-    The spectrum's error is known where the model's uncertainty was computed; at the other loads of
-    the surface it is taken from there, since it moves the whole plateau by one factor.
+    The error due to the spectrum is known at the load at which the model's uncertainty was
+    computed. It scales the whole plateau, so it is also used at the other loads of the surface.
     """
     fitted = [(row.model, row.fit) for row in rows if row.fit is not None]
     shifts = [(row.model, row.shift) for row in rows if row.shift is not None]
@@ -116,7 +116,7 @@ def complete(rows: Sequence[ModelRow]) -> None:
         fit["shear_stress_high_Pa"] = stress + float(np.hypot(half, stress * high))
     for place, (model, fit) in enumerate(fitted):
         fit |= {"ratio_to": "", "ratio": None, "ratio_error": None}
-        # those before it at the same load and in the same medium, in the order of the campaign
+        # earlier models in the campaign at the same load in the same medium
         earlier = [
             (other, of)
             for other, of in fitted[:place]
@@ -140,14 +140,14 @@ def complete(rows: Sequence[ModelRow]) -> None:
 
 
 def _add_spectrum(fit: Json, relative: float) -> None:
-    """Add the spectrum's relative standard error to those of the shear stresses."""
+    """Add the relative error due to the spectrum to those of the shear stresses."""
     for name in ("shear_stress_total_error_Pa", "corrected_shear_stress_error_Pa"):
         value = "corrected_shear_stress_Pa" if "corrected" in name else "shear_stress_Pa"
         fit[name] = float(np.hypot(fit[name], relative * fit[value]))
 
 
 def _is_known(fit: Json) -> bool:
-    """Whether a shear stress stands out from its error: a ratio to another says nothing."""
+    """Whether a shear stress exceeds twice its error; else a ratio to it is meaningless."""
     return fit["corrected_shear_stress_Pa"] > 2 * fit["corrected_shear_stress_error_Pa"]
 
 
@@ -156,7 +156,7 @@ def _kind(model: ModelOutcome) -> tuple[str, str]:
 
 
 def shear_stress_table(rows: Sequence[ModelRow]) -> pd.DataFrame:
-    """Return the fitted shear stress of each curve; report.json has all of the fits."""
+    """Return the fitted shear stress of each curve; report.json has complete fits."""
     fits = [row.labels | row.fit for row in rows if row.fit is not None]
     return pd.DataFrame(fits, columns=SHEAR_STRESS)
 

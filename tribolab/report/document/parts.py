@@ -1,4 +1,4 @@
-"""Records of runs, curves, surfaces, models and sliding modes, as report.json has them."""
+"""Records of runs, curves, surfaces, models and sliding modes for report.json."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _RUN = TypeAdapter(ReportedRun)
 
 
 def run_document(record: RunRecord) -> Json:
-    """Return a run as report.json has it, as plain data."""
+    """Return a run for report.json as plain data."""
     run = record.outcome
     reported = ReportedRun(
         **_part(run),

@@ -1,4 +1,4 @@
-"""What report.json holds, as types: the report is made of them, and its schema from them."""
+"""Types of report.json, from which it and its schema are made."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ SpeedRow = Annotated[
 
 @dataclass(frozen=True, kw_only=True)
 class ReportedPart:
-    """What is said of every run, surface and model."""
+    """Common fields of every run, surface and model."""
 
     name: str
     status: Status
@@ -99,7 +99,7 @@ class ReportedPart:
 
 @dataclass(frozen=True, kw_only=True)
 class _RunHead(ReportedPart):
-    """What of a run's outcome stands before its numbers."""
+    """Header fields of a run's outcome."""
 
     surface: str
     medium: str
@@ -261,7 +261,7 @@ class SourceFile:
 
 @dataclass(frozen=True, kw_only=True)
 class ReportHead:
-    """Everything in report.json but the runs, which are written one by one."""
+    """Everything in report.json except the runs, which are written one by one."""
 
     schema_version: Literal["2.0"] = "2.0"
     made_at: Annotated[str, Field(pattern=r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$")]
@@ -287,13 +287,13 @@ class ReportHead:
 
 @dataclass(frozen=True, kw_only=True)
 class Report(ReportHead):
-    """The whole of report.json."""
+    """Complete content of report.json."""
 
     runs: tuple[ReportedRun, ...]
 
 
 class _Closed(GenerateJsonSchema):
-    """A schema without titles, whose objects have every field and no other."""
+    """Schema generator without titles, in which objects have exactly the listed fields."""
 
     def dataclass_schema(self, schema: core_schema.DataclassSchema) -> JsonSchemaValue:
         made = super().dataclass_schema(schema)

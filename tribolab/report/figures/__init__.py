@@ -1,1 +1,1 @@
-"""Figures for papers: drawn by workers, kept while what they show is the same."""
+"""Figures for publication: drawn by workers, and reused while their data are unchanged."""

@@ -1,4 +1,4 @@
-"""Which figures a report draws: light to import, as every command asks it."""
+"""Choice of the figures that a report draws; fast to import, as every command needs it."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ _WANTED: dict[str, Wanted] = {"all": "all", "curves": "curves", "none": "none"}
 
 
 def wanted(word: str) -> Wanted:
-    """Return which figures are meant.
+    """Return the choice of figures for an option.
 
     Raises
     ------
     ConfigError
-        If the word is none of ``"all"``, ``"curves"``, ``"none"``.
+        If it is not ``"all"``, ``"curves"`` or ``"none"``.
     """
     if word in _WANTED:
         return _WANTED[word]

@@ -1,4 +1,4 @@
-"""The files of the figures: drawn by workers, taken over where their data are the same."""
+"""Stage of the figure files: drawn by workers, reused if their data are the same."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ from tribolab.report.code import code_of_figures
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-# Matplotlib's fonts are not made for several threads.
+# Matplotlib's fonts are not thread-safe.
 DRAWING = threading.Lock()
 SECTIONS = ("figures", "surface_figures", "model_figures", "sliding_figures")
-_MAX_LABELS = 12  # in the legend of one figure
-_KEYS = {"surfaces": 1, "contact": 1, "model": 2, "sliding": 3}  # section of the page to a key
+_MAX_LABELS = 12  # most labels in the legend of one figure
+_KEYS = {"surfaces": 1, "contact": 1, "model": 2, "sliding": 3}  # key by section of the page
 
 
 @dataclass(frozen=True)
 class DrawnFigures:
-    """The figures of one subject as they lie in the results folder."""
+    """Records of the figures of one subject in the results folder."""
 
     figures: tuple[FigureRecord, ...]
 
 
 @dataclass(frozen=True)
 class FigureTask:
-    """Figures of one subject to draw: `make` takes the results folder, and may travel."""
+    """Figures of one subject to draw; `make` takes the results folder and can be pickled."""
 
     name: str
     make: Callable[[Path], Sequence[FigureSpec]]
@@ -49,26 +49,26 @@ class FigureTask:
 
 
 class Figures(Recorded[FigureTask, DrawnFigures, Notice]):
-    """The stage of the figures for publication."""
+    """Stage of the figures for publication."""
 
     name = "figures"
     kind = "figure"
     record = DrawnFigures
 
     def taken(self, task: FigureTask, record: DrawnFigures) -> DrawnFigures | None:
-        """Take over the pictures, their numbers, and their PDF if that is wanted."""
+        """Reuse the pictures, their numbers, and their PDFs if wanted."""
         files = [name for one in record.figures for name in (one.file, one.data) if name]
         files += [_pdf(one.file) for one in record.figures if task.pdf]
         return record if all(map(self._store.link_beside, files)) else None
 
     @staticmethod
     def work(task: FigureTask) -> DrawnFigures:
-        """Draw the figures of one subject into the results."""
+        """Draw the figures of one subject into the results folder."""
         specs = [one for spec in task.make(task.folder) if spec.series for one in on_paper(spec)]
         return DrawnFigures(tuple(draw_figure(spec, task.folder, pdf=task.pdf) for spec in specs))
 
     def failed(self, task: FigureTask, error: BaseException) -> Notice:
-        """Return why figures could not be drawn."""
+        """Return the reason why figures could not be drawn."""
         return Notice("error", "", f"figures of {task.name}", explain(error)[0])
 
 
@@ -81,22 +81,22 @@ def figure_task(
     *,
     pdf: bool = False,
 ) -> FigureTask:
-    """Return a task with the checksum of all that shapes its figures.
+    """Return a task with the checksum of everything that affects its figures.
 
     Parameters
     ----------
     name
-        Of the subject.
+        Name of the subject.
     make
-        What describes them: a function of a module, with its arguments.
+        Picklable function that returns the figures' descriptions.
     shaping
-        Those arguments: their text differs when they do.
+        Arguments of that function; their text identifies them.
     files
         Data files that are read, relative to the results folder.
     store
-        Where their checksums are known.
+        Store with their checksums.
     pdf
-        Whether figures are written as PDF, too.
+        Whether to write figures also as PDF.
     """
     identities = [store.identity(file) for file in files]
     mark = sha256_of([code_of_figures(), name, repr(shaping), identities])
@@ -106,7 +106,7 @@ def figure_task(
 def described_tasks(
     specs: Sequence[FigureSpec], store: Store, *, pdf: bool = False
 ) -> list[FigureTask]:
-    """Return a task for each figure that is described already."""
+    """Return a task for each figure that is already described."""
     return [figure_task(spec.id, partial(_given, spec), spec, (), store, pdf=pdf) for spec in specs]
 
 
@@ -115,18 +115,18 @@ def _given(spec: FigureSpec, folder: Path) -> list[FigureSpec]:
 
 
 def draw_figure(spec: FigureSpec, folder: Path, *, pdf: bool = False) -> FigureRecord:
-    """Write a figure as SVG with the numbers that it shows, and return its record.
+    """Write a figure as SVG with a table of its numbers, and return its record.
 
     Parameters
     ----------
     spec
-        What it shows.
+        Description of the figure.
     folder
         The results folder.
     pdf
-        Whether it is written as PDF, too.
+        Whether to write it also as PDF.
     """
-    # late: who draws no files waits for no matplotlib
+    # imported late: matplotlib is needed only to draw files
     from tribolab.figures.look.draw import draw
 
     file = f"figures/{file_name(spec)}.svg"
@@ -137,7 +137,7 @@ def draw_figure(spec: FigureSpec, folder: Path, *, pdf: bool = False) -> FigureR
 
 
 def write_figure(figure: Figure, folder: Path, file: str, *, pdf: bool = False) -> str:
-    """Write a figure and a table of its numbers, and return the table's file; "" if it has none.
+    """Write a figure and a table of its numbers; return the table's file, "" without one.
 
     Parameters
     ----------
@@ -146,11 +146,11 @@ def write_figure(figure: Figure, folder: Path, file: str, *, pdf: bool = False) 
     folder
         The results folder.
     file
-        Path of the SVG relative to it; the numbers go to the same name with ``.csv``.
+        Path of the SVG relative to it; the table has the same name with ``.csv``.
     pdf
-        Whether it is written as PDF, too.
+        Whether to write it also as PDF.
     """
-    # late: who draws no files waits for no matplotlib
+    # imported late: matplotlib is needed only to draw files
     from tribolab import plot
 
     plot.save(figure, folder / file)
@@ -160,13 +160,13 @@ def write_figure(figure: Figure, folder: Path, file: str, *, pdf: bool = False) 
     if not len(numbers):
         return ""
     data = Path(file).with_suffix(".csv").as_posix()
-    # nine digits: more than any eye or figure resolves
+    # nine digits exceed the resolution of any figure
     tables.write_csv(numbers, folder / data, digits=9)
     return data
 
 
 def file_name(spec: FigureSpec) -> str:
-    """Return the name of a figure's files: curves are named after what they show.
+    """Return the base name of a figure's files; curves are named after surface and medium.
 
     Examples
     --------
@@ -179,9 +179,9 @@ def file_name(spec: FigureSpec) -> str:
 
 
 def on_paper(spec: FigureSpec) -> list[FigureSpec]:
-    """Return a figure with all its loads, named and shaded; the page shows one at a time.
+    """Return a figure with all its loads labelled and shaded; the page shows one at a time.
 
-    If its legend would be too long, there is a figure for each load.
+    If the legend would be too long, return a figure for each load.
     """
     loads = sorted({one.load for one in spec.series if one.load is not None})
     if not spec.one_load or len(loads) < 2:
@@ -210,7 +210,7 @@ def on_paper(spec: FigureSpec) -> list[FigureSpec]:
 
 
 def key_of(record: FigureRecord) -> str:
-    """Return under which key of report.json a figure is listed."""
+    """Return the key of report.json under which a figure is listed."""
     return SECTIONS[_KEYS.get(record.kind, 0)]
 
 

@@ -1,1 +1,1 @@
-"""The figures that the page itself draws: what they show, as data."""
+"""Data of the figures that the page draws itself."""

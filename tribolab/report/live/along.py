@@ -1,4 +1,4 @@
-"""Friction along runs at one speed, over distance, time and cycles: running-in and steady state."""
+"""Friction along runs at one speed over distance, time and cycles: running-in, steady state."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from tribolab.records.runs.run_record import RunRecord
 from tribolab.records.runs.running_in_record import RunningIn
 from tribolab.records.wording import error_text
 
-MAX_RUNS = 8  # that are shown
+MAX_RUNS = 8  # most runs shown
 
 
 class Along(NamedTuple):
-    """A run at one speed, friction along it, and its running-in if it is long enough."""
+    """Run at one speed, its friction along the run, and its running-in if it is long enough."""
 
     record: RunRecord
     course: Sequence[Row]
@@ -28,12 +28,12 @@ class Along(NamedTuple):
 
     @property
     def counted(self) -> str:
-        """What friction is averaged over."""
+        """Unit over which friction is averaged, e.g. strokes."""
         return STROKES if self.settled is None else self.settled.counted
 
 
 def along_of(record: RunRecord) -> Along | None:
-    """Return a run that slides at one speed, more than once or long enough for running-in."""
+    """Return a run at one speed with several strokes or a running-in; else None."""
     settled = record.facts.running_in
     if record.outcome.quality in BAD or len(settled) > 1:
         return None
@@ -44,7 +44,7 @@ def along_of(record: RunRecord) -> Along | None:
 
 
 def _strokes(record: RunRecord) -> list[Row]:
-    """Return the friction of each stroke of a run at one speed; none of a run at several."""
+    """Return the friction of each stroke of a run at one speed; empty for several speeds."""
     rows = [row for row in record.facts.segments if row.get("friction_coefficient") is not None]
     speeds = [number_of(row, "sliding_speed_m_s") or 0.0 for row in rows]
     tolerance = 1 + of_points.SPEED_TOLERANCE.value
@@ -76,9 +76,9 @@ def along_figures(runs: Sequence[Along], count: int) -> list[FigureSpec]:
     Parameters
     ----------
     runs
-        Those that are shown.
+        Runs to show.
     count
-        How many there are.
+        Number of all such runs.
     """
     figures = []
     for name, axis, column, ends in _OVER:
@@ -104,7 +104,7 @@ def along_figures(runs: Sequence[Along], count: int) -> list[FigureSpec]:
 
 
 def _title(runs: Sequence[Along]) -> str:
-    """Return the steady value of a single run, or that friction along runs is shown."""
+    """Return the steady value of a single run, or a title for several runs."""
     if len(runs) > 1:
         return "Friction along the runs"
     (settled,) = (run.settled for run in runs)

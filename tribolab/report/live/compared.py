@@ -1,4 +1,4 @@
-"""Surfaces, media and loads beside each other: how friction falls, and every single run."""
+"""Comparison of surfaces, media and loads: decrease of friction with speed, and every run."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ _HALF = 0.5
 def comparisons(known: FrictionOverSpeed) -> list[FigureSpec]:
     """Return all curves relative to their highest friction, and all single runs of repeats.
 
-    What a curve itself is stands in its card and is not repeated.
+    Curves in absolute units are on their cards and are not repeated.
     """
     colours = surface_colours([*known.surfaces, *(c.outcome.surface for c in known.curves)])
-    return [*_falling(known, colours), _every_run(known, colours)]
+    return [*_normalised_curves(known, colours), _every_run(known, colours)]
 
 
 def _load(curve: CurveRecord) -> str:
@@ -39,16 +39,16 @@ def _load(curve: CurveRecord) -> str:
     return load_text(None, curve.outcome.load_from) if force is None else force_text(force)
 
 
-def _falling(known: FrictionOverSpeed, colours: Mapping[str, int]) -> list[FigureSpec]:
-    """Return at which speed each curve leaves its highest friction; of one alone nothing."""
-    alone = len(systems(known)) == 1  # then loads are compared, and have the colours
+def _normalised_curves(known: FrictionOverSpeed, colours: Mapping[str, int]) -> list[FigureSpec]:
+    """Return normalised friction over speed of all curves; empty for fewer than two."""
+    alone = len(systems(known)) == 1  # then loads are compared, each in its colour
     loads = places(map(_load, known.curves))
     series = []
     for curve in known.curves:
         outcome = curve.outcome
         load = _load(curve)
         name = load if alone else system_name(outcome.surface, outcome.medium, outcome.run_names)
-        drawn = _shares(curve, name, loads[load] if alone else colours[outcome.surface])
+        drawn = _normalised_series(curve, name, loads[load] if alone else colours[outcome.surface])
         series += [drawn] if drawn else []
     if len(series) < 2:
         return []
@@ -72,7 +72,7 @@ def _falling(known: FrictionOverSpeed, colours: Mapping[str, int]) -> list[Figur
     return [figure]
 
 
-def _shares(curve: CurveRecord, label: str, colour: int) -> Series | None:
+def _normalised_series(curve: CurveRecord, label: str, colour: int) -> Series | None:
     known = [(row, number_of(row, "friction_coefficient")) for row in curve.points]
     drawn = [(row, mu) for row, mu in known if mu is not None and row["sliding_speed_m_s"]]
     rows = [row for row, _ in drawn]
@@ -102,7 +102,7 @@ def _shares(curve: CurveRecord, label: str, colour: int) -> Series | None:
 
 
 def _every_run(known: FrictionOverSpeed, colours: Mapping[str, int]) -> FigureSpec:
-    """Return all runs of the curves that have repeats; of the others the curve is the run."""
+    """Return the friction of each run of the curves with repeats."""
     series: list[Series] = []
     for curve in known.curves:
         outcome = curve.outcome

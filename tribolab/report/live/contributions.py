@@ -1,4 +1,4 @@
-"""What the uncertainty of the measured curves is made of: one bar for each part, and what helps."""
+"""Uncertainty budget of the measured curves: one bar for each part, and the best improvement."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from tribolab.metrology.budget_parts import BETWEEN, NOISE, coverage_factor
 from tribolab.records.part_records import CurveRecord
 from tribolab.records.parts import number_of
 
-_MIN_SHARE = 0.005  # of the variance: less is no bar
-_MIN_GAIN = 0.01  # of U95: less is no advice
+_MIN_SHARE = 0.005  # share of the variance below which a part has no bar
+_MIN_GAIN = 0.01  # relative reduction of U95 below which no advice is given
 
 
 class Contribution(NamedTuple):
     """One part of the uncertainty of one point.
 
-    `relative` is its standard uncertainty over µ, `share` that of the variance, `gain` by how much
-    U95 would shrink: by one more repeat, or if the part were known twice as well.
+    `relative` is its standard uncertainty divided by µ, `share` its share of the variance, and
+    `gain` the relative reduction of U95 by one more repeat or by halving this part.
     """
 
     part: str
@@ -49,7 +49,7 @@ def contributions(curves: Iterable[CurveRecord]) -> list[Contribution]:
 
 
 def _gain(part: str, share: float, dof: float, runs: float) -> float:
-    """Return by how much U95 of a point shrinks: by one more repeat, or half of another part."""
+    """Return the relative reduction of U95 by one more repeat, or by halving another part."""
     if part != BETWEEN:
         return 1 - math.sqrt(1 - 0.75 * share)
     smaller = math.sqrt(1 - share / (runs + 1))
@@ -89,7 +89,7 @@ def contribution_figures(curves: Sequence[CurveRecord]) -> list[FigureSpec]:
 
 
 def _advice(parts: dict[str, list[Contribution]], share: dict[str, float], count: int) -> str:
-    """Say what dominates and what would help most."""
+    """Return a sentence on the largest part and on the best improvement."""
     first = max(share, key=lambda part: share[part])
     gains = {part: sum(each.gain for each in mine) / count for part, mine in parts.items()}
     best = max(gains, key=lambda part: gains[part])

@@ -1,4 +1,4 @@
-"""Measured and computed friction over speed: the answer's cards, and the model's parts."""
+"""Measured and computed friction over speed: cards for the page, figures for publication."""
 
 from __future__ import annotations
 
@@ -25,28 +25,28 @@ from tribolab.report.plain import listed, plain_speed
 if TYPE_CHECKING:
     from tribolab.records.parts import Row
 
-_ONE_RATIO = 1.1  # largest over smallest slide-roll ratio of curves over one entrainment speed
-_MOST_NAMED = 3  # runs that a title names
+_ONE_RATIO = 1.1  # largest ratio of slide-roll ratios of curves on one entrainment-speed axis
+_MOST_NAMED = 3  # runs named in a title
 _AS_FOUND = "without decisions by hand"
 _SPEED, _ROLLING, _MU = "sliding_speed_m_s", "rolling_speed_m_s", "friction_coefficient"  # columns
 
 
 @dataclass(frozen=True)
 class FrictionOverSpeed:
-    """All that is known of friction over speed.
+    """Measured and computed friction over speed of a campaign.
 
     Parameters
     ----------
     curves
         Measured curves that can be shown.
     points
-        Of every run, by its name.
+        Points of each run, by name of the run.
     models
-        By the name of the measured curve.
+        Models by name of the measured curve.
     bands
         Uncertainty of the models, by the same name.
     surfaces
-        Names in the order of the campaign, which their colours follow.
+        Names in the order of the campaign, which sets their colours.
     """
 
     curves: Sequence[CurveRecord]
@@ -67,7 +67,7 @@ def systems(known: FrictionOverSpeed) -> dict[tuple[str, str], list[CurveRecord]
 
 
 def system_name(surface: str, medium: str, runs: Sequence[str] = ()) -> str:
-    """Return surface and medium in words; runs that name neither stand for themselves."""
+    """Return surface and medium in words; without both the names or number of the runs."""
     named = ", ".join(filter(None, (surface, medium)))
     if named or not runs:
         return named or "runs"
@@ -75,14 +75,14 @@ def system_name(surface: str, medium: str, runs: Sequence[str] = ()) -> str:
 
 
 def told_apart(media: Collection[str], in_liquid: str, dry: str) -> str:
-    """Return how dry and wet are told apart in a figure; "" where it shows one of them alone.
+    """Return the legend for dry and wet data; "" if a figure shows only one of them.
 
     Parameters
     ----------
     media
-        What it shows.
+        Media in the figure.
     in_liquid, dry
-        How each is drawn, in a word.
+        Style of each in a word.
 
     Examples
     --------
@@ -99,7 +99,7 @@ def told_apart(media: Collection[str], in_liquid: str, dry: str) -> str:
 def card_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
     """Return one figure for each surface and medium: measured, and the model with its band.
 
-    Those of one medium have the same axes, so that surfaces are compared at a glance.
+    Figures of one medium have the same axes, for easy comparison of surfaces.
     """
     cards = [
         (medium, _card(known, place, surface, medium, curves))
@@ -126,7 +126,7 @@ def _card(
     name = system_name(surface, medium, list(all_runs))
     rows = [row for curve in curves for row in curve.points]
     values, every = ([number_of(row, name) for row in rows] for name in (_MU, _SPEED))
-    one_load = bool(surface or medium)  # runs that name neither are of as many systems
+    one_load = bool(surface or medium)  # each run without surface and medium is a system of its own
     spec = stribeck.spec(measured, models, surfaces=known.surfaces, scale="log")
     spec = _over_entrainment(spec, measured + models)
     return replace(
@@ -144,7 +144,7 @@ def _card(
 
 
 def _over_entrainment(spec: FigureSpec, drawn: Sequence[xr.Dataset]) -> FigureSpec:
-    """Return a card over the entrainment speed if all of it has one slide-roll ratio."""
+    """Return a card over the entrainment speed if all its data have one slide-roll ratio."""
     ratios = [float(data.attrs.get("slide_roll_ratio", np.nan)) for data in drawn]
     ratio = float(np.mean(ratios))
     if not ratio > 0 or max(ratios) > _ONE_RATIO * min(ratios):
@@ -155,7 +155,7 @@ def _over_entrainment(spec: FigureSpec, drawn: Sequence[xr.Dataset]) -> FigureSp
 
 
 def _on_card(series: Series, one_load: bool) -> Series:
-    """Return a series as cards have it: points not joined, one load in its surface's colour."""
+    """Return a series in the style of cards: points not joined, a single load unshaded."""
     if series.label == _AS_FOUND:
         return replace(series, colour=GREY, shade=0.0, open=True, joined=False)
     if one_load:
@@ -164,7 +164,7 @@ def _on_card(series: Series, one_load: bool) -> Series:
 
 
 def curve_label(curve: CurveOutcome, curves: Sequence[CurveRecord]) -> str:
-    """Return what a legend calls a curve: which it is where no choice of load parts them."""
+    """Return the legend label of a curve; with its load if that is ambiguous."""
     loads = [other.outcome.normal_force for other in curves]
     nameless = not (curve.surface or curve.medium)
     if len(curves) > 1 and nameless:
@@ -175,7 +175,7 @@ def curve_label(curve: CurveOutcome, curves: Sequence[CurveRecord]) -> str:
 
 
 def labels_of(curve: CurveOutcome) -> SeriesLabels:
-    """Return what all series of a curve are of."""
+    """Return the labels common to all series of a curve."""
     return {
         "surface": curve.surface,
         "medium": curve.medium,
@@ -188,7 +188,7 @@ def labels_of(curve: CurveOutcome) -> SeriesLabels:
 def _dataset(
     outcome: CurveOutcome, rows: Sequence[Row], label: str, **more: Sequence[str]
 ) -> xr.Dataset:
-    """Return a measured or computed curve as the figures take it."""
+    """Return a measured or computed curve as a dataset for the figures."""
     known = [row for row in rows if row.get(_MU) is not None]
     names = [_MU, *(f"{_MU}_{end}" for end in ("U95",) if any(f"{_MU}_{end}" in r for r in known))]
     columns = {name: _floats(number_of(row, name) for row in known) for name in names}
@@ -224,12 +224,12 @@ def _measured(known: FrictionOverSpeed, curve: CurveRecord, label: str) -> xr.Da
 
 
 def _briefly(says: str) -> str:
-    """Return the first thing that an uncertainty does not hold: the pointer has little room."""
+    """Return the first component missing from an uncertainty, short enough for a tooltip."""
     return says.partition(";")[0].partition(", because")[0]
 
 
 def _as_found(curve: CurveRecord) -> list[xr.Dataset]:
-    """Return the curve without a person's decisions, if there are any: they must be seen."""
+    """Return the curve without a person's decisions, if there are any."""
     rows = [row for row in curve.points_as_found if row[_MU] is not None]
     words = [
         f"{_AS_FOUND}\nv = {plain_speed(number_of(row, _SPEED))}\n"
@@ -244,7 +244,7 @@ def _has_stress(model: ModelRow) -> bool:
 
 
 def slide_roll_ratio(curve: CurveRecord) -> float | None:
-    """Return the slide-roll ratio of a measured curve; None where one body was at rest."""
+    """Return the slide-roll ratio of a measured curve; None if one body was at rest."""
     for row in curve.points:
         sliding, rolling = (
             number_of(row, _SPEED),
@@ -256,14 +256,14 @@ def slide_roll_ratio(curve: CurveRecord) -> float | None:
 
 
 def _within(rows: Sequence[Row], curve: CurveRecord) -> list[Row]:
-    """Return the speeds of a model's curve that matter: those measured, and a decade around."""
+    """Return the rows of a model within a decade around the measured speeds."""
     known = [float(row["sliding_speed_m_s"] or 0) for row in curve.points]
     low, high = min(known) / 10, max(known) * 10
     return [row for row in rows if low <= float(row["sliding_speed_m_s"] or 0) <= high]
 
 
 def _modelled(known: FrictionOverSpeed, model: ModelRow, curve: CurveRecord) -> list[xr.Dataset]:
-    """Return the computed curve with its band, at the speeds that matter."""
+    """Return the computed curve with its band, within a decade around the measured speeds."""
     rows = _within(model.curve, curve)
     if not rows:
         return []

@@ -1,4 +1,4 @@
-"""The figures of a campaign that need its data files, by subject: for the page and as files."""
+"""Figures of a campaign that need its data files, by subject, for the page and as files."""
 
 from __future__ import annotations
 
@@ -36,16 +36,16 @@ Bands = Callable[[Path], dict[str, Band]]
 def begun_live_figures(
     subjects: Sequence[Subject], store: Store, executor: Executor | None = None
 ) -> Callable[[], tuple[list[LiveRecord], list[Notice]]]:
-    """Begin the figures of the page that need data files; the returned function waits for them.
+    """Start the page's figures that need data files; the returned function waits for them.
 
     Parameters
     ----------
     subjects
         From `figure_subjects`.
     store
-        Where records and checksums are known.
+        Store with records and checksums.
     executor
-        Where the figures are made; without one it is done here.
+        Executor; without one the figures are made in this process.
     """
     tasks = [
         live_task(
@@ -67,7 +67,7 @@ def _live_record(make: Make, bands: Bands | None, folder: Path) -> LiveRecord:
 
 
 class Subject(NamedTuple):
-    """Figures of one subject: what describes them, what shapes them, the data files they read."""
+    """Figures of one subject: function that describes them, its arguments, and its data files."""
 
     name: str
     make: Make
@@ -83,7 +83,7 @@ def figure_subjects(
     modes: Mapping[str, ModeRecord],
     joints: Sequence[JointRecord],
 ) -> list[Subject]:
-    """Return what can be drawn from the data files of a campaign, by subject.
+    """Return the figures that can be drawn from the data files of a campaign, by subject.
 
     Parameters
     ----------
@@ -92,11 +92,11 @@ def figure_subjects(
     curves
         Measured curves that can be shown.
     models
-        Models that are done.
+        Models with results.
     modes
-        How the curves slide, by the curve's name.
+        Sliding modes by name of the curve.
     joints
-        Joint fits that are done.
+        Joint fits with results.
     """
     surfaces = tuple(surface.name for surface in outcome.surfaces)
     judged = [
@@ -107,7 +107,7 @@ def figure_subjects(
     done = [surface for surface in outcome.surfaces if surface.done]
     traced = dict.fromkeys(contact.slow.file for contact in judged if contact.slow)
     ramps = [run for run in outcome.runs if has_ramps(run)][:MAX_RUNS]
-    alone = not outcome.runs  # then the surfaces are the answer
+    alone = not outcome.runs  # without runs the surfaces come first
     return [
         Subject("ramps", partial(ramp_specs, ramps), ramps, [run.data_file for run in ramps]),
         Subject(

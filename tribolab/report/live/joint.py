@@ -32,9 +32,9 @@ def joint_specs(
     Parameters
     ----------
     joints
-        Those that are done.
+        Joint fits with results.
     surfaces
-        Names in the order of the campaign, which colours follow.
+        Names in the order of the campaign, which sets colours.
     folder
         The results folder with their data files.
     """

@@ -1,4 +1,4 @@
-"""Friction over load, at the slowest, a middle and the fastest speed that the loads share."""
+"""Friction over load at the slowest, a middle and the fastest common speed of the loads."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tribolab.report.live.points import point_error
 from tribolab.report.plain import plain_speed
 
 _MIN_LOADS = 2
-_SAME = 1.1  # speeds within this ratio are one, as in the measured curves
+_SAME = 1.1  # largest ratio of speeds that count as one, as for measured curves
 _LOAD, _MU = Axis("normal force", "N"), Axis("friction coefficient µ")
 
 

@@ -1,4 +1,4 @@
-"""Figures of the models: curves with residuals, shear stress, sensitivity, inside the contact."""
+"""Figures of the models: curves with residuals, shear stress, sensitivity, film profiles."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ _MPA = 1e-6
 def model_specs(
     models: Sequence[ModelRow], surfaces: Sequence[str], folder: Path
 ) -> list[FigureSpec]:
-    """Return the figures of the section on models that need their data files.
+    """Return the figures of the models that need their data files.
 
     Parameters
     ----------
     models
-        Those that are done.
+        Models with results.
     surfaces
         Names in the order of the campaign.
     folder
@@ -76,7 +76,7 @@ def _labels(row: ModelRow) -> SeriesLabels:
 
 
 def shear_stress_figure(models: Sequence[ModelRow], surfaces: Sequence[str]) -> FigureSpec:
-    """Return the fitted shear stresses over the load."""
+    """Return the fitted shear stresses over load."""
     rows = [
         fit
         | {
@@ -121,7 +121,7 @@ def _by_system(models: Sequence[ModelRow]) -> dict[tuple[str, str], list[ModelRo
 
 
 def sensitivity(models: Sequence[ModelRow], colours: Mapping[str, int]) -> FigureSpec:
-    """Return how far each thing that is not known moves the model."""
+    """Return the sensitivity of the model to each uncertain input."""
     series = []
     for row in models:
         varied = sorted(row.sensitivity, key=lambda change: float(change["largest_change"] or 0))
@@ -184,17 +184,17 @@ def _curves(models: Sequence[ModelRow], order: Sequence[str], folder: Path) -> l
 
 
 def _labelled(spec: FigureSpec, row: ModelRow) -> FigureSpec:
-    """Return a figure whose series have the medium and load of a model."""
+    """Return a figure whose series are labelled with the medium and load of a model."""
     return replace(spec, series=tuple(replace(one, **_labels(row)) for one in spec.series))
 
 
 def _merged(
     specs: Sequence[FigureSpec], id: str, name: str, alt: str, *, one_load: bool
 ) -> FigureSpec:
-    """Return one figure of what several have, for the section on models."""
+    """Return one figure with the series of several, for the section on models."""
     series = tuple(one for spec in specs for one in spec.series)
     title = f"{name}: {specs[0].title[:1].lower()}{specs[0].title[1:]}"
-    note = max((spec.note for spec in specs), key=len)  # that with a model
+    note = max((spec.note for spec in specs), key=len)  # the note of a model is the longest
     return replace(
         specs[0],
         note=note,

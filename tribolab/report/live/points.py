@@ -1,4 +1,4 @@
-"""Friction over speed, run by run, and what the error bars of a curve hold."""
+"""Friction over speed, run by run, and the components of a curve's error bars."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from tribolab.records.parts import Row, number_of
 from tribolab.records.wording import error_text
 from tribolab.report.plain import plain_speed
 
-_NAMED = 4  # runs, at a point
-_SAME = 1.1  # speeds within this ratio are one, as in the measured curves
+_NAMED = 4  # runs named at a point
+_SAME = 1.1  # largest ratio of speeds that count as one, as for measured curves
 
 
 class RunPoint(NamedTuple):
-    """Mean friction of one run at one speed [m/s], its U95 within the run, and its samples."""
+    """Mean friction of one run at one speed [m/s], its U95 within the run, and sample numbers."""
 
     run: str
     speed: float
@@ -29,11 +29,11 @@ class RunPoint(NamedTuple):
     within: float | None
     effective_samples: float
     segments: int
-    load: float | None = None  # [N] that it is filed under, of a run under several
+    load: float | None = None  # assigned load [N] of a run with several loads
 
 
 class PointError(NamedTuple):
-    """U95 of a point of a curve, what it includes, and the scatter of its runs."""
+    """U95 of a point of a curve, the variation it includes, and the scatter of its runs."""
 
     size: float | None
     holds: str
@@ -49,14 +49,13 @@ def run_points(
     Parameters
     ----------
     name
-        Of the run.
+        Name of the run.
     segments
         Rows of its segments, as in report.json.
     offset
-        How the offset of the force was removed: by the half loop, two strokes are one observation.
+        Method of offset removal; with the half loop, two strokes are one observation.
     filed
-        Of a run under several loads, the load [N] that each measured one [N] is filed under: a
-        point holds one of them.
+        Assigned load [N] of each measured load [N] of a run with several loads; each point has one.
 
     Examples
     --------
@@ -78,7 +77,7 @@ def run_points(
             for load, rows in parts.items()
             for point in run_points(name, rows, offset)
         ]
-    # a segment that a person rejected is listed in the tables, and no number includes it
+    # segments rejected by a person are listed in the tables only
     rows = [row for row in segments if not row.get("rejected")]
     rows.sort(key=lambda row: number_of(row, "start_s") or 0.0)
 
@@ -86,7 +85,7 @@ def run_points(
         return np.array([number_of(row, key) for row in rows], float)
 
     name_of = "friction_coefficient"
-    # a course along the path may go on: the wider of the errors over the path and beyond it
+    # the larger of the errors within the path and beyond it, as a trend may continue
     sem, wide = (
         np.fmax(column(f"{name_of}_{end}"), column(f"{name_of}_beyond_{end}"))
         for end in ("sem", "U95")
@@ -125,7 +124,7 @@ def of_curve(points: Iterable[RunPoint], load: float | None) -> list[RunPoint]:
 
 
 def at_speed(points: Sequence[RunPoint], speed: float) -> list[RunPoint]:
-    """Return the points at a speed of a curve."""
+    """Return the points at one speed of a curve."""
     return [point for point in points if speed / _SAME <= point.speed <= speed * _SAME]
 
 
@@ -135,9 +134,9 @@ def point_error(row: Mapping[str, Any], points: Sequence[RunPoint]) -> PointErro
     Parameters
     ----------
     row
-        Of the table of measured curves.
+        Row of the table of measured curves.
     points
-        Of its runs at this speed.
+        Points of its runs at this speed.
 
     Returns
     -------
@@ -164,9 +163,9 @@ def point_error(row: Mapping[str, Any], points: Sequence[RunPoint]) -> PointErro
 def told_point(
     row: Mapping[str, Any], error: PointError, points: Sequence[RunPoint], says: str = ""
 ) -> str:
-    """Return what the pointer reads at a point of a curve, a line for each thing.
+    """Return the tooltip of a point of a curve, one line for each item.
 
-    `says` is what its uncertainty does not hold.
+    `says` names the component missing from its uncertainty.
     """
     speed, mu = row["sliding_speed_m_s"], row["friction_coefficient"]
     lines = [f"v = {plain_speed(speed)}", f"µ = {error_text(mu, error.size)} (U95, {error.holds})"]
@@ -185,6 +184,6 @@ def told_point(
         count = sum(point.segments for point in points)
         lines += [many(count, "segment"), f"{samples:.0f} independent samples"]
         names = [point.run for point in points]
-        # a line for each: a long one would be cut beside the point, or lie on it
+        # one line each, as a long line would be cut
         lines += names[:_NAMED] + ([f"and {len(names) - _NAMED} more"] * (len(names) > _NAMED))
     return "\n".join(lines)

@@ -1,4 +1,4 @@
-"""Friction over speed of runs whose speed never stays constant."""
+"""Friction over speed of runs without intervals of constant speed."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from tribolab.records.parts import BAD, RunOutcome
 MAX_RUNS = 8
 _SPEEDS = "sliding_velocity", "set_speed"
 _BINS_PER_DECADE = 12
-_MIN_SAMPLES = 5  # of a bin
+_MIN_SAMPLES = 5  # smallest number of samples of a bin
 _MIN_DECADES = 0.3
-_SMOOTHED = 50  # parts of a record in which the speed rises or falls
+_SMOOTHED = 50  # intervals in which the sign of acceleration is determined
 
 
 def has_ramps(run: RunOutcome) -> bool:
-    """Whether a run may have ramps alone: it was read and has no segment."""
+    """Whether a run may consist of ramps only: it was read and has no segment."""
     return run.done and run.segments == 0 and run.quality not in BAD
 
 
 def ramp_specs(runs: Sequence[RunOutcome], folder: Path) -> list[FigureSpec]:
-    """Return friction over the momentary speed of runs without constant speed.
+    """Return friction over instantaneous speed of runs without constant speed.
 
     Parameters
     ----------
     runs
-        What they came to.
+        Outcomes of the runs.
     folder
         The results folder with their data files.
     """
@@ -61,7 +61,7 @@ def ramp_specs(runs: Sequence[RunOutcome], folder: Path) -> list[FigureSpec]:
 
 
 def _legs(run: RunOutcome, place: int, file: Path) -> list[Series]:
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.netcdf.netcdf import read_groups
 
     groups = read_groups(file, ("run", "friction"), only={"run": (*LOOKED_AT, *_SPEEDS)})
@@ -107,7 +107,7 @@ def _legs(run: RunOutcome, place: int, file: Path) -> list[Series]:
 
 
 def _rising(speed: np.ndarray) -> np.ndarray:
-    """Return whether the speed rises at each sample, judged over parts of the record."""
+    """Return whether the speed rises at each sample, averaged over intervals."""
     edges = np.linspace(0, speed.size, min(_SMOOTHED, speed.size) + 1).astype(int)
     means = np.add.reduceat(np.nan_to_num(speed), edges[:-1]) / np.diff(edges)
     return np.repeat(np.gradient(means) > 0, np.diff(edges))

@@ -1,4 +1,4 @@
-"""What is recorded of live figures, and the stage that makes them where their data changed."""
+"""Records of live figures, and the stage that makes them if their data changed."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tribolab.report.live.shown import ShownFigure
 
 
 class Band(NamedTuple):
-    """Speeds [m/s], and the lower and upper edge of what a model does not know of friction."""
+    """Speeds [m/s], and lower and upper bound of a model's friction."""
 
     speed: list[float | None]
     low: list[float | None]
@@ -26,7 +26,7 @@ class Band(NamedTuple):
 
 @dataclass(frozen=True)
 class LiveRecord:
-    """Figures made from data files, and what curves need of them, by the name of the curve."""
+    """Figures made from data files, and model bands by name of the curve."""
 
     figures: tuple[ShownFigure, ...] = ()
     bands: dict[str, Band] = field(default_factory=dict)
@@ -34,7 +34,7 @@ class LiveRecord:
 
 @dataclass(frozen=True)
 class LiveTask:
-    """Figures of one kind to make: `make` takes the results folder, and may travel."""
+    """Figures of one kind to make; `make` takes the results folder and can be pickled."""
 
     name: str
     make: Callable[[Path], LiveRecord]
@@ -49,20 +49,20 @@ def live_task(
     files: Sequence[str],
     store: Store,
 ) -> LiveTask:
-    """Return a task with the checksum of all that shapes its figures.
+    """Return a task with the checksum of everything that affects its figures.
 
     Parameters
     ----------
     name
-        Of the kind of figures.
+        Kind of figures.
     make
-        What makes them: a function of a module, with what it wants to know.
+        Picklable function that makes the figures.
     shaping
-        That, as text that is another when it is something else.
+        Its arguments; their text identifies them.
     files
         Data files that are read, relative to the results folder.
     store
-        It knows whether these are as they were.
+        Store with the identities of these files.
     """
     identities = [store.identity(file) for file in files]
     fingerprint = sha256_of([code_of_figures(), name, repr(shaping), identities])
@@ -70,7 +70,7 @@ def live_task(
 
 
 class LiveFigures(Recorded[LiveTask, LiveRecord, Notice]):
-    """The stage of the figures that the page draws."""
+    """Stage of the figures that the page draws."""
 
     name = "page"
     kind = "live"
@@ -82,5 +82,5 @@ class LiveFigures(Recorded[LiveTask, LiveRecord, Notice]):
         return task.make(task.folder)
 
     def failed(self, task: LiveTask, error: BaseException) -> Notice:
-        """Return why figures could not be made."""
+        """Return the reason why figures could not be made."""
         return Notice("error", "", f"figures of {task.name}", explain(error)[0])

@@ -1,4 +1,4 @@
-"""A live figure as the page has it: its words, its data compressed, and a still picture."""
+"""Live figure for the page: its texts, compressed data, and a static picture."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from tribolab.records.runs.traces import script_json
 
 @dataclass(frozen=True)
 class ShownFigure:
-    """A live figure as it stands in the page.
+    """Live figure in the page.
 
     Parameters
     ----------
     id, section, title, note, alt, height, rows
-        As of `FigureSpec`.
+        As in `FigureSpec`.
     surface, medium
-        What all of it is of; "" where there are several.
+        Common surface and medium; "" for several.
     loads
-        In words, if one of them is chosen.
+        Selectable loads in words.
     panels, labels
-        How many there are, which tell how much room it takes before it is drawn.
+        Their numbers, which determine the size before drawing.
     packed
-        What it shows, compressed, as text that may stand in a script element.
+        Compressed data as text that is valid in a script element.
     still
-        Its first view as SVG, which stands there until it is drawn.
+        Initial view as SVG, shown until the figure is drawn.
     """
 
     id: str
@@ -49,7 +49,7 @@ class ShownFigure:
 
 
 def shown_figures(figures: Iterable[FigureSpec]) -> tuple[ShownFigure, ...]:
-    """Return what the page has of figures; one without anything to show is left out."""
+    """Return the figures for the page; those without series are left out."""
     return tuple(_shown(figure) for figure in figures if figure.series)
 
 

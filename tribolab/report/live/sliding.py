@@ -1,4 +1,4 @@
-"""How the contacts slide: waveforms over speed, frequencies, slow traces, spectra, events."""
+"""Sliding of the contacts: waveforms over speed, frequencies, slow traces, spectra, events."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ from tribolab.report.slowest import Slow, lowest_loads
 
 _UNDECIDED = "not decided"
 _STEADY = frozenset({"smooth sliding", _UNDECIDED})
-_APART = 1.2  # of two speeds, from which on they are not one
+_APART = 1.2  # largest ratio of speeds that count as one
 _EXCERPT = 800  # points of a slow trace
-# Of what is looked at and of what stands beside it: in a liquid, and dry, in the same colour.
+# line styles of the main and the secondary quantity: in a liquid, and dry, in the same colour
 _STYLES: tuple[tuple[Style, Style], ...] = (("line", "dashed"), ("dotted", "dashdot"))
 
 
 class Judged(NamedTuple):
-    """A measured curve, how it slides, and a run of it to look at; None where there is none."""
+    """Measured curve, its sliding mode, and its slowest segments; None without any."""
 
     curve: CurveOutcome
     mode: ModeRecord
@@ -57,13 +57,13 @@ def sliding_specs(
     Parameters
     ----------
     judged
-        All curves whose mode was judged.
+        Curves with a sliding mode.
     surfaces
-        Names in the order of the campaign, which colours follow.
+        Names in the order of the campaign, which sets colours.
     folder
         The results folder with the data files of the runs.
     """
-    # of results without traces no speed is judged
+    # results without traces have no waveforms
     judged = [contact for contact in judged if any("waveform" in r for r in contact.mode.speeds)]
     colours = _colours(judged, surfaces)
     by_name = {contact.curve.name: contact for contact in judged}
@@ -80,9 +80,9 @@ def sliding_specs(
 
 
 def _colours(judged: Sequence[Judged], surfaces: Sequence[str]) -> dict[str, int]:
-    """Return the colour of each curve: its surface's, or its own if that does not tell it."""
+    """Return the colour of each curve: that of its surface, or its own if that is ambiguous."""
     curves = [contact.curve for contact in judged]
-    # of one surface one load is opened, dry and in a liquid by their lines
+    # one load per surface is opened; dry and wet differ by their lines
     drawn = {(curve.surface, is_dry(curve.medium), _system(curve)) for curve in curves}
     if len({key[:2] for key in drawn}) == len(drawn):
         of_surface = surface_colours([*surfaces, *(curve.surface for curve in curves)])
@@ -101,7 +101,7 @@ def _name(curve: CurveOutcome) -> str:
 
 
 def _waveforms(judged: Sequence[Judged]) -> FigureSpec:
-    """Return which waveform is seen at every speed."""
+    """Return the waveform of each curve at every speed."""
     if not judged:
         return FigureSpec()
     curves = {_name(contact.curve): _waveform_curve(contact) for contact in judged}
@@ -118,7 +118,7 @@ def _waveforms(judged: Sequence[Judged]) -> FigureSpec:
 
 
 def _waveform_curve(contact: Judged) -> xr.Dataset:
-    """Return the waveforms of a curve as the figures take them."""
+    """Return the waveforms of a curve as a dataset for the figures."""
     rows = contact.mode.speeds
     drops = [np.nan if row["drop"] is None else row["drop"] for row in rows]
     columns = {
@@ -186,8 +186,8 @@ def _frequencies(judged: Sequence[Judged], colours: Mapping[str, int]) -> Figure
     )
 
 
-class _Open(NamedTuple):
-    """What is opened of one condition: its traces at the slowest speeds, and its stick-slip."""
+class _Opened(NamedTuple):
+    """Data of one condition: traces at the slowest speeds, and stick-slip results."""
 
     name: str
     labels: SeriesLabels
@@ -221,8 +221,8 @@ class _Open(NamedTuple):
         )
 
 
-def _opened(contact: Judged, colours: Mapping[str, int], folder: Path) -> _Open:
-    # late: starting stays quick
+def _opened(contact: Judged, colours: Mapping[str, int], folder: Path) -> _Opened:
+    # imported late for a quick start
     from tribolab.reading.netcdf.netcdf import read_groups
 
     assert contact.slow is not None
@@ -236,13 +236,13 @@ def _opened(contact: Judged, colours: Mapping[str, int], folder: Path) -> _Open:
     labels |= {"load": None, "runs": (contact.slow.run,)}
     colour = colours[contact.curve.name]
     first = contact.slow.segments[0][0]
-    return _Open(_name(contact.curve), labels, colour, contact.slow.run, traces, slip, first)
+    return _Opened(_name(contact.curve), labels, colour, contact.slow.run, traces, slip, first)
 
 
 def _trace(
     run: xr.Dataset, segments: xr.Dataset, friction: xr.Dataset, number: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return friction over sliding distance [um] of the middle of a segment."""
+    """Return friction over sliding distance [um] in the middle of a segment."""
     time = np.asarray(run["time"], float)
     start, stop = (float(segments[f"trimmed_{end}"][number]) for end in ("start", "stop"))
     inside = np.flatnonzero((time >= start) & (time <= stop))
@@ -253,12 +253,12 @@ def _trace(
     return distance[kept], sign * values[kept]
 
 
-def _media(opened: Sequence[_Open]) -> list[str]:
+def _media(opened: Sequence[_Opened]) -> list[str]:
     return [contact.labels["medium"] for contact in opened]
 
 
-def _by_line(opened: Sequence[_Open], first: str, second: str) -> str:
-    """Say what the lines are: of what is looked at, and of what stands beside it."""
+def _line_legend(opened: Sequence[_Opened], first: str, second: str) -> str:
+    """Return the legend of the line styles for the main and the secondary quantity."""
     wet, dry = (
         f"{looked}: {first}; {beside}: {second}"
         for looked, beside in (("full", "dotted"), ("dashed", "dots and dashes"))
@@ -271,10 +271,10 @@ def _by_line(opened: Sequence[_Open], first: str, second: str) -> str:
     return f"In a liquid{unnamed}, {wet}. Dry, {dry}."
 
 
-_UNITS_OF_WAY = (("m", 1e-6, 1e6), ("mm", 1e-3, 1e4), ("µm", 1.0, 0.0))  # from so many µm on
+_UNITS_OF_WAY = (("m", 1e-6, 1e6), ("mm", 1e-3, 1e4), ("µm", 1.0, 0.0))  # unit, per µm, from µm
 
 
-def _traces(opened: Sequence[_Open]) -> FigureSpec:
+def _traces(opened: Sequence[_Opened]) -> FigureSpec:
     series = []
     longest = max((d[-1] for c in opened for _, d, _ in c.traces if d.size), default=0.0)
     unit, scale = next((u, s) for u, s, least in _UNITS_OF_WAY if longest >= least)
@@ -290,7 +290,7 @@ def _traces(opened: Sequence[_Open]) -> FigureSpec:
         "sliding-traces",
         "sliding",
         "Friction over sliding distance at the slowest speeds",
-        _by_line(opened, "the slowest speed", "the next")
+        _line_legend(opened, "the slowest speed", "the next")
         + " At the lowest load of each surface and medium.",
         "Friction over sliding distance, a line for each condition and speed.",
         (Panel(Axis("sliding distance", unit), Axis("friction coefficient µ")),),
@@ -298,7 +298,7 @@ def _traces(opened: Sequence[_Open]) -> FigureSpec:
     )
 
 
-def _spectra(opened: Sequence[_Open]) -> FigureSpec:
+def _spectra(opened: Sequence[_Opened]) -> FigureSpec:
     series = []
     for contact in opened:
         if not contact.slip.sizes.get("frequency", 0):
@@ -315,7 +315,7 @@ def _spectra(opened: Sequence[_Open]) -> FigureSpec:
         "sliding-spectra",
         "sliding",
         "Spectra of friction at the slowest speed",
-        _by_line(opened, "the power", "what noise exceeds in one spectrum of a thousand")
+        _line_legend(opened, "the power", "what noise exceeds in one spectrum of a thousand")
         + " What rises above that is an oscillation.",
         "Power spectrum of the friction coefficient over frequency.",
         (Panel(Axis("frequency", "Hz", log=True), Axis("power spectrum of µ", "1/Hz", log=True)),),
@@ -323,7 +323,7 @@ def _spectra(opened: Sequence[_Open]) -> FigureSpec:
     )
 
 
-def _events(opened: Sequence[_Open]) -> FigureSpec:
+def _events(opened: Sequence[_Opened]) -> FigureSpec:
     series = []
     for contact in opened:
         if not contact.slip.sizes.get("event", 0):
@@ -343,8 +343,8 @@ def _events(opened: Sequence[_Open]) -> FigureSpec:
     )
 
 
-def _spectrogram(opened: Sequence[_Open]) -> FigureSpec:
-    """Return power over that of noise, for every speed and frequency; nothing of one speed."""
+def _spectrogram(opened: Sequence[_Opened]) -> FigureSpec:
+    """Return power relative to noise over speed and frequency; empty for a single speed."""
     series: list[Series] = []
     low, high = np.inf, 0.0
     for contact in opened:

@@ -1,4 +1,4 @@
-"""Static and kinetic friction over the time of rest before each start."""
+"""Static and kinetic friction over the rest time before each start."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from tribolab.friction.statistics import NORMAL
 from tribolab.records.parts import BAD, Row, number_of
 from tribolab.records.runs.run_record import RunRecord
 
-_MIN_TIMES = 3  # of rest that differ: else the rests are those between strokes
-_MIN_RATIO = 1.5  # of two times of rest that differ
+_MIN_TIMES = 3  # smallest number of distinct rest times: fewer occur between ordinary strokes
+_MIN_RATIO = 1.5  # smallest ratio of distinct rest times
 
 
 def starts_of(record: RunRecord) -> tuple[Row, ...]:
-    """Return the starts of a run after rests of different lengths; none of another test."""
+    """Return the starts of a run after rests of different lengths; empty for other tests."""
     rows = [row for row in record.starts if (number_of(row, "waiting_time_s") or 0) > 0]
     times: list[float] = []
     for time in sorted(number_of(row, "waiting_time_s") or 0.0 for row in rows):
@@ -25,7 +25,7 @@ def starts_of(record: RunRecord) -> tuple[Row, ...]:
 
 
 def static_figures(runs: Sequence[RunRecord]) -> list[FigureSpec]:
-    """Return static and kinetic friction over the time of rest, of runs that have both."""
+    """Return static and kinetic friction over rest time, of runs that have both."""
     held = [(run.outcome, rows) for run in runs if (rows := starts_of(run))]
     if not held:
         return []

@@ -21,14 +21,14 @@ if TYPE_CHECKING:
 
 
 class _Opened:
-    """The surfaces of a campaign, and their data by group.
+    """Surfaces of a campaign, and their data by group.
 
     Parameters
     ----------
     surfaces
-        Those that are done.
+        Surfaces with results.
     order
-        Names in the order of the campaign, which colours follow.
+        Names in the order of the campaign, which sets colours.
     folder
         The results folder with their data files.
     """
@@ -41,7 +41,7 @@ class _Opened:
         self.folder = folder
 
     def read(self, group: str) -> dict[str, xr.Dataset]:
-        """Return a group of the surfaces that have it, by name."""
+        """Return a group of all surfaces that have it, by name."""
         return {
             surface.name: read_data(self.folder / surface.data_file, group=group)
             for surface in self.surfaces
@@ -49,7 +49,7 @@ class _Opened:
         }
 
     def loads(self) -> xr.Dataset | None:
-        """Return the loads of the surface with most of them, whose Hertz pressures are marked."""
+        """Return the loads of the surface with most loads, whose Hertz pressures are marked."""
         return max(self.read("loads").values(), key=lambda one: one.sizes["load"], default=None)
 
 
@@ -61,11 +61,11 @@ def surface_specs(
     Parameters
     ----------
     surfaces
-        What the campaign knows of them.
+        Records of the surfaces.
     order
-        Names in the order of the campaign, which colours follow.
+        Names in the order of the campaign, which sets colours.
     alone
-        Whether there are no runs: then profiles and spectra are on the first screen.
+        Whether there are no runs; then profiles and spectra come first.
     folder
         The results folder with their data files.
     """
@@ -97,7 +97,7 @@ def _profiles(opened: _Opened) -> FigureSpec:
 
 
 def _modulus(opened: _Opened) -> FigureSpec | None:
-    first = next(iter(opened.read("modulus").items()), None)  # one rubber
+    first = next(iter(opened.read("modulus").items()), None)  # all surfaces have the same rubber
     if first is None:
         return None
     spec = rough.modulus.spec(first[1].assign_attrs(surface=first[0]))

@@ -1,4 +1,4 @@
-"""Friction over the slide-roll ratio, measured and computed, of machines whose bodies both turn."""
+"""Measured and computed friction over the slide-roll ratio, for two moving bodies."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _MU, _RATIO, _ROLLING = "friction_coefficient", "slide_roll_ratio", "rolling_spe
 
 
 def traction_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
-    """Return a figure for each surface and medium of which traction curves were measured."""
+    """Return a figure for each surface and medium with traction curves."""
     figures = []
     for place, ((surface, medium), curves) in enumerate(systems(known).items(), start=1):
         series = [s for curve in curves for s in _series(known, curve)]
@@ -38,7 +38,7 @@ def traction_figures(known: FrictionOverSpeed) -> list[FigureSpec]:
 
 
 def _series(known: FrictionOverSpeed, curve: CurveRecord) -> list[Series]:
-    """Return the points of a curve's traction steps, and the model's line through each."""
+    """Return the measured traction points of a curve, and the model's lines."""
     model = known.models.get(curve.outcome.name)
     found = []
     for number, (speed, rows) in enumerate(_by_speed(curve.traction).items()):

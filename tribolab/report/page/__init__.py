@@ -1,1 +1,1 @@
-"""The page: its sections, its answer, its words."""
+"""Report page: its sections, key numbers and texts."""

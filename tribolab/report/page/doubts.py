@@ -1,4 +1,4 @@
-"""What is doubtful of a campaign, each doubt with what removes it: the gravest first."""
+"""Doubts about a campaign, each with its remedy, most severe first."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from tribolab.report.live.curves import system_name
 from tribolab.report.plain import listed
 
 _GRAVE = ("error", "fail", "suspect")
-_MAX_NAMED, _MAX_LISTED = 2, 6  # runs named in a doubt, and in that about all left out
+_MAX_NAMED, _MAX_LISTED = 2, 6  # runs named in a doubt, and in the doubt about runs left out
 _REPEATS = "repeats"  # name of the check
 _COMPARE = "Compare its trace with those of its repeats."
 _UNCALIBRATED = "statistical only"
 
 
 class Doubt(NamedTuple):
-    """What is doubtful and what to do; `level` is "fail", "suspect" or "note".
+    """Doubt and its remedy; `level` is "fail", "suspect" or "note".
 
-    `runs` names those concerned, `link` leads to what shows it.
+    `runs` names the runs concerned, `link` is the address of their details.
     """
 
     level: str
@@ -37,7 +37,7 @@ def doubts(document: Mapping[str, Any]) -> list[Doubt]:
     Parameters
     ----------
     document
-        As in report.json, of the runs at least the brief part.
+        Content of report.json; short entries of the runs suffice.
     """
     found = [*_of_findings(document), *_missing_curves(document)]
     found.sort(key=lambda doubt: _GRAVE.index(doubt.level))
@@ -45,7 +45,7 @@ def doubts(document: Mapping[str, Any]) -> list[Doubt]:
 
 
 def _odd(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
-    """Name the runs that contradict their repeats."""
+    """Yield the runs that contradict their repeats."""
     odd = [
         (run["name"], row["message"])
         for run in runs
@@ -62,7 +62,7 @@ def _odd(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
 
 
 def _left_out(runs: Sequence[Mapping[str, Any]]) -> Iterable[Doubt]:
-    """Name the runs that no result includes, each with the gravest reason."""
+    """Yield the runs that no result includes, each with the most severe reason."""
     bad = [run for run in runs if is_bad(run)]
     for run in bad if len(bad) <= _MAX_NAMED else ():
         yield Doubt("fail", run["name"], f"left out, {why(run)}", "", f"run {run['name']}")
@@ -96,15 +96,15 @@ def _of_findings(document: Mapping[str, Any]) -> Iterable[Doubt]:
     for (severity, where), rows in grouped.items():
         names = list(dict.fromkeys(name for members, _ in rows for name in members))
         message = rows[0][1]
-        said = _said(message, runs.get(names[0])) if names else ""
+        said = _check_message(message, runs.get(names[0])) if names else ""
         cure = message[len(said) :].lstrip(". ") if said else ""
         text = said or (message if where == "run" else f"{check_words(where)}: {message}")
         link = f"run {names[0]}" if len(names) == 1 else "#findings"
         yield Doubt(severity, _names(names, len(runs)), text.rstrip("."), cure, link)
 
 
-def _said(message: str, run: Mapping[str, Any] | None) -> str:
-    """Return the message of the check behind a finding, which the cure follows."""
+def _check_message(message: str, run: Mapping[str, Any] | None) -> str:
+    """Return the message of the check at the start of a finding; "" without one."""
     checks = run["checks"] if run is not None else ()
     known = [check["message"] for check in checks if message.startswith(check["message"])]
     return max(known, key=len, default="")
@@ -119,7 +119,7 @@ def _names(names: Sequence[str], of: int) -> str:
 
 
 def _missing_curves(document: Mapping[str, Any]) -> Iterable[Doubt]:
-    """Give the conditions that were measured and have no curve, and why."""
+    """Yield the measured conditions without a curve, and the reason."""
     there = {
         (curve["surface"], curve["medium"], curve["nominal_normal_force_N"])
         for curve in document["curves"]
@@ -138,7 +138,7 @@ def _missing_curves(document: Mapping[str, Any]) -> Iterable[Doubt]:
 
 
 def _why(runs: Sequence[Mapping[str, Any]]) -> str:
-    """Say why runs of one condition make no curve; "" if they have no segment to begin with."""
+    """Return why runs of one condition give no curve; "" if they lack segments."""
     failed = [run for run in runs if run["status"] != "done"]
     rejected = [run for run in runs if run["status"] == "done" and is_bad(run)]
     which = {1: "its only run", 2: "both runs"}.get(len(runs), f"all {len(runs)} runs")

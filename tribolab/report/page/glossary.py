@@ -1,4 +1,4 @@
-"""What the words of the page mean: shown at the heads of its tables, and as a list."""
+"""Glossary of the page, shown at table heads and as a list."""
 
 from __future__ import annotations
 
@@ -64,15 +64,15 @@ GLOSSARY: dict[str, str] = {
     "Suspect": "A check found something that may spoil the numbers; they are used.",
 }
 
-# What a campaign of surfaces alone speaks of.
+# terms for campaigns of surfaces only
 OF_SURFACES = frozenset(
     ("A/A₀", "Pull-off force", "h rms", "Rq", "Pq", "Sq", "Slope rms", "Hurst exponent", "Roll-off")
 )
 
-# Of these what only its contact makes.
+# of these, terms that require a contact
 OF_CONTACT = frozenset(("A/A₀", "Pull-off force"))
 
-# What only a rubber and a fitted theory speak of.
+# terms that require a rubber or a fitted model
 OF_MODELS = frozenset(
     (
         *("Shear stress σ", "95 % interval", "χ² per freedom", "Runs test p", "Forced wetting"),
@@ -82,7 +82,7 @@ OF_MODELS = frozenset(
 
 
 def words_of(*, runs: bool, surfaces: bool, contact: bool, models: bool) -> dict[str, str]:
-    """Return the words that a page with these sections speaks of, with their meanings.
+    """Return the terms used on a page with these sections, with their meanings.
 
     >>> sorted(words_of(runs=False, surfaces=True, contact=False, models=False))[:3]
     ['Hurst exponent', 'Pq', 'Roll-off']
@@ -97,7 +97,7 @@ def words_of(*, runs: bool, surfaces: bool, contact: bool, models: bool) -> dict
     }
 
 
-# Words in the sentences of the first screen that are explained where they stand.
+# terms explained at their first use on the first screen
 TERMS: dict[str, str] = {
     "lift off": GLOSSARY["Lift-off"],
     "plateau": GLOSSARY["Plateau"],
@@ -114,7 +114,7 @@ TERMS: dict[str, str] = {
     "within the run": GLOSSARY["within the run"],
 }
 
-# Heads of columns that are explained by a word of the glossary or in their own words.
+# column heads explained by a glossary entry or by their own text
 HEADS: dict[str, str] = {
     "Run": "Name of the run, from its raw file. Below it the gravest objection of its checks.",
     "State": "ok; suspect: a check doubts it; odd: it contradicts its repeats; rejected: its "

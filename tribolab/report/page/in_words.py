@@ -12,22 +12,22 @@ from tribolab.records.wording import NORMAL, error_text
 from tribolab.report.live.curves import system_name
 from tribolab.report.plain import listed
 
-_MIN_SHARE = 0.005  # of the variance: less is not listed
+_MIN_SHARE = 0.005  # share of the variance below which a part is not listed
 
 
 def by_speed(points: Iterable[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Return the rows of a curve with friction at a known speed, from slow to fast."""
+    """Return the rows of a curve with known speed and friction, from slow to fast."""
     known = [r for r in points if r["friction_coefficient"] is not None and r["sliding_speed_m_s"]]
     return sorted(known, key=lambda row: row["sliding_speed_m_s"])
 
 
 def half_speed(falling: Sequence[Mapping[str, Any]]) -> float | None:
-    """Return the speed at which half of the first row's friction is left [m/s]; None if at none.
+    """Return the speed [m/s] at which friction drops to half of the first row; None if never.
 
     Parameters
     ----------
     falling
-        Rows of a curve from its highest friction on, in the order of their speeds.
+        Rows of a curve from its peak friction on, by increasing speed.
     """
     half = 0.5 * falling[0]["friction_coefficient"]
     for row, other in itertools.pairwise(falling):
@@ -52,7 +52,7 @@ def budget_shares(curve: Mapping[str, Any]) -> list[tuple[str, float]]:
 
 
 def conditions(of: Sequence[Mapping[str, Any]]) -> str:
-    """Return the conditions of curves or models in words, loads of the same kind together.
+    """Return the conditions of curves or models in words, grouped by surface and medium.
 
     Examples
     --------
@@ -64,7 +64,7 @@ def conditions(of: Sequence[Mapping[str, Any]]) -> str:
     grouped: dict[str, list[float | None]] = {}
     for curve in of:
         if not (curve["surface"] or curve["medium"]) and "condition" in curve:
-            grouped[curve["condition"]] = [None]  # the load is in it
+            grouped[curve["condition"]] = [None]  # the condition includes the load
             continue
         name = system_name(curve["surface"], curve["medium"], curve.get("runs", ()))
         grouped.setdefault(name, []).append(curve["nominal_normal_force_N"])
@@ -75,12 +75,12 @@ def conditions(of: Sequence[Mapping[str, Any]]) -> str:
 
 
 def oscillation_text(mode: Mapping[str, Any]) -> str:
-    """Return in how many segments a contact sticks and slips, and how its frequency goes.
+    """Return the number of segments with stick-slip, and the scaling of its frequency.
 
     Parameters
     ----------
     mode
-        A sliding mode, as in report.json.
+        Sliding mode as in report.json.
     """
     count = mode["segments_oscillating"]
     if not count:

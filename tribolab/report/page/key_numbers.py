@@ -1,4 +1,4 @@
-"""The numbers that answer a campaign: one row per condition."""
+"""Key numbers of a campaign: one row per condition."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tribolab.report.plain import plain_speed
 
 
 class KeyRow(NamedTuple):
-    """One row: its cells in words, and what it is of, for the choice of surface, medium, load."""
+    """Row of cells in words, with labels for the choice of surface, medium and load."""
 
     cells: tuple[str, ...]
     surface: str = ""
@@ -27,14 +27,14 @@ class KeyRow(NamedTuple):
 
 
 class KeyTable(NamedTuple):
-    """Heads and rows, the first cell of each being its name."""
+    """Heads and rows; the first cell of each row is its name."""
 
     heads: tuple[str, ...]
     rows: tuple[KeyRow, ...]
 
 
 def friction_numbers(document: Mapping[str, Any]) -> KeyTable:
-    """Return what each measured curve amounts to: highest and lowest friction, and the model."""
+    """Return highest and lowest friction of each measured curve, and the fitted model."""
     models = {model["curve"]: model["fit"] for model in document.get("models", ())}
     rough = {
         surface["name"]: error_text(
@@ -83,7 +83,7 @@ def _at_speed(row: Mapping[str, Any]) -> str:
 
 
 def _stress(fit: Mapping[str, Any] | None) -> str:
-    """Return the shear stress with its 95 % interval, or why there is none."""
+    """Return the shear stress with its 95 % interval, or the reason for its absence."""
     if fit is None:
         return "–"
     if not is_described(str(fit["judgement"])):
@@ -125,7 +125,7 @@ def _mean(settled: Mapping[str, Any], name: str) -> str:
 
 
 def roughness_numbers(document: Mapping[str, Any]) -> KeyTable:
-    """Return roughness, slope and Hurst exponent of each surface, and how many scans agree."""
+    """Return roughness, slope and Hurst exponent of each surface, and the number of scans."""
     rows = []
     for surface in document["surfaces"]:
         row = surface["roughness"]

@@ -1,7 +1,6 @@
-"""The report as one HTML file that opens offline and asks nothing of the network.
+"""The report as one HTML file that opens offline without network access.
 
-What the page has is listed in `tribolab.report.page.sections`, which also says how to add a
-section.
+The sections are listed in `tribolab.report.page.sections`, with instructions for adding one.
 """
 
 from __future__ import annotations
@@ -29,13 +28,13 @@ from tribolab.report.page.views import views
 if TYPE_CHECKING:
     from tribolab.campaign.store.catalogue import Catalogue
 
-_MAX_ROWS = 100  # of the list of runs; more are packed, and laid out when they are asked for
-_MAX_DOUBTS = 4  # on the first screen
+_MAX_ROWS = 100  # rows in the list of runs; more are compressed and added on request
+_MAX_DOUBTS = 4  # most doubts on the first screen
 RunDocuments = Callable[[], Iterable[Json]]
 
 
 class Detail(NamedTuple):
-    """What stands under one run: its place from 1, and all the rest compressed."""
+    """Details of one run: its place from 1, and all other data compressed."""
 
     run: Json
     place: int
@@ -50,27 +49,27 @@ def write_page(
     live: Sequence[ShownFigure] = (),
     points: Mapping[str, Sequence[RunPoint]] | None = None,
 ) -> Path:
-    """Write ``report.html`` into the results folder, with what it shows inside it.
+    """Write ``report.html`` with all its data into the results folder.
 
-    The details of runs are compressed, and the page unpacks them when they are asked for. The
-    page is written piece by piece: the details of one run at a time are in memory.
+    The details of runs are compressed, and the page unpacks them on request. The page is written
+    piece by piece, with the details of only one run in memory.
 
     Parameters
     ----------
     document
-        From `tribolab.report.document.document.report_document`, with what is brief of the runs,
+        From `tribolab.report.document.document.report_document`, with short entries of the runs,
         and with ``review`` from `tribolab.report.page.reviewing.review_data` if the reader may
-        decide on them.
+        decide on runs.
     folder
         Results folder.
     runs
-        Gives the runs as report.json has them.
+        Function that yields the runs as in report.json.
     store
-        It has the traces of the runs.
+        Store with the traces of the runs.
     live
         Figures that the page draws.
     points
-        Friction over speed of each run, by its name.
+        Friction over speed, by name of the run.
     """
     context = _context(document, folder, runs, store, live, points or {})
     template, frame = framing("report.html.j2", shown_sections(context), folder, draws=True)
@@ -82,7 +81,7 @@ def write_page(
 
 
 def prepare_page() -> None:
-    """Compile the templates, and compress the library: what a page takes before its numbers."""
+    """Compile the templates and compress the library, before any results exist."""
     library()
     jinja = environment(Path())
     for name in jinja.list_templates():
@@ -143,7 +142,7 @@ def _context(
 
 
 def grouped_findings(findings: Sequence[Json]) -> list[Json]:
-    """Return findings, those that say the same once for all runs that they hold for.
+    """Return findings grouped by message, each with all its runs.
 
     Examples
     --------
@@ -154,7 +153,7 @@ def grouped_findings(findings: Sequence[Json]) -> list[Json]:
     rows: dict[tuple[str, str, str], Json] = {}
     for finding in findings:
         where, message = finding["where"], finding["message"]
-        # surfaces and models are named in the place: what is said of all of them is said once
+        # findings on several surfaces or models are grouped, although each place has its name
         kind, _, name = where.partition(" ")
         part = name if kind in ("surface", "model") else ""
         key = finding["severity"], kind if part else where, message
@@ -168,7 +167,7 @@ def grouped_findings(findings: Sequence[Json]) -> list[Json]:
 
 
 def omitted_rows(runs: Sequence[Json]) -> list[Json]:
-    """Return what was left out of all runs, a row per reason, the longest first."""
+    """Return the omitted parts of all runs, one row per reason, longest first."""
     total = sum(run["duration_s"] or 0.0 for run in runs)
     rows: dict[str, Json] = {}
     for run in runs:

@@ -1,4 +1,4 @@
-"""What the page needs so that a reader can decide on it: the review file as it stands, as data."""
+"""Current review file as data, so that a reader can edit decisions on the page."""
 
 from __future__ import annotations
 
@@ -19,26 +19,26 @@ if TYPE_CHECKING:
     from tribolab.campaign.settings.config import Campaign
 
 _HEADER = re.compile(r"^[ \t]*\[\[[ \t]*decision[ \t]*\]\]", re.MULTILINE)
-_ABOVE = re.compile(r"(?:^[ \t]*#[^\n]*\n)+\Z", re.MULTILINE)  # comment lines that end a text
+_ABOVE = re.compile(r"(?:^[ \t]*#[^\n]*\n)+\Z", re.MULTILINE)  # comment lines at the end of a text
 
 
 def review_data(campaign: Campaign, runs: Sequence[Mapping[str, Any]]) -> Json:
-    """Return the decisions beside a campaign file, as the page carries them.
+    """Return the decisions of a campaign as data for the page.
 
     Parameters
     ----------
     campaign
         The campaign.
     runs
-        As in report.json: they know which segments a decision touched.
+        As in report.json, with the segments that each decision affected.
 
     Returns
     -------
     dict
-        ``key`` tells this campaign from others, ``files`` names the campaign and the review file,
-        ``head`` is what stands before the first decision, and ``entries`` has the decisions in
-        their order: times [s], the numbers of their ``segments``, from 1, whether they were
-        ``applied``, and their ``text`` as a person wrote it, "" where it is no table of its own.
+        ``key`` identifies this campaign, ``files`` are the names of campaign and review file,
+        ``head`` is the text before the first decision, and ``entries`` are the decisions in order:
+        times [s], numbers of their ``segments``, from 1, whether they were ``applied``, and their
+        ``text`` as a person wrote it, "" if it is not a separate table.
     """
     file = Path(campaign.file)
     name = f"{as_text(file.parent.absolute())}\n{as_text(file.name)}\n{campaign.name}"
@@ -74,10 +74,10 @@ def _same(row: Mapping[str, Any], plain: Mapping[str, Any]) -> bool:
 
 
 def decision_texts(text: str) -> tuple[str, list[str]]:
-    r"""Return what stands before the first decision of a review file, and each decision's text.
+    r"""Return the text before the first decision of a review file, and each decision's text.
 
-    A decision has the comment lines right above it. If decisions are not written as tables of
-    their own, both are empty: then only what they say can be kept.
+    A decision includes the comment lines directly above it. If decisions are not separate tables,
+    both are empty: then only their content can be kept.
 
     Examples
     --------
@@ -97,6 +97,6 @@ def decision_texts(text: str) -> tuple[str, list[str]]:
         whole = tomllib.loads(text).get("decision", [])
         if [entry for entries in told for entry in entries] == whole and not tomllib.loads(head):
             return head, texts
-    except tomllib.TOMLDecodeError:  # a header inside a text
+    except tomllib.TOMLDecodeError:  # header inside a text
         pass
     return "", []

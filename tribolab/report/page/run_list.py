@@ -1,4 +1,4 @@
-"""All runs at a glance, the worst first: state, friction, deviation from the repeats, trace."""
+"""List of all runs, worst first: state, friction, deviation from the repeats, trace."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ _ODD = "odd"
 _WORST_FIRST: tuple[str, ...] = ("failed", "rejected", "error", "rejected by hand", "kept")
 _WORST_FIRST += (_ODD, "suspect", "accepted")
 _ALL, _STEADY = "all speeds", "steady"
-_DIGITS = 6  # of a deviation: two repeats deviate alike
-_SAME = 1.1  # speeds within this ratio are one, as in the measured curves
+_DIGITS = 6  # digits of a deviation, so that those of two repeats are equal
+_SAME = 1.1  # largest ratio of speeds that count as one, as for measured curves
 
 
 class ListedRun(NamedTuple):
-    """One row: `values` has friction and deviation in words for each of the speeds.
+    """Row of a run: `values` are friction and deviation in words at each speed.
 
-    `place` is that of the run in the report, from 1; `spark` the outline of its trace as SVG path;
+    `place` is its position in the report, from 1; `spark` the outline of its trace as SVG path;
     `worst` its rank.
     """
 
@@ -44,7 +44,7 @@ class ListedRun(NamedTuple):
 
 
 class RunList(NamedTuple):
-    """Rows, the worst first, the speeds at which they compare, and the one shown at first."""
+    """Rows, worst first, the speeds for comparison, and the initial speed."""
 
     rows: tuple[ListedRun, ...]
     speeds: tuple[str, ...]
@@ -56,16 +56,16 @@ def listed_runs(
     points: Mapping[str, Sequence[RunPoint]],
     traces: Mapping[str, Mapping[str, Any]],
 ) -> RunList:
-    """Return all runs, those that count least first, then those that deviate most.
+    """Return all runs: first by severity of their state, then by deviation from repeats.
 
     Parameters
     ----------
     runs
-        As in report.json, at least their brief part.
+        As in report.json; short entries suffice.
     points
-        Friction over speed of each run, by its name.
+        Friction over speed, by name of the run.
     traces
-        Coarse trace of each run, by its name, as `tribolab.records.runs.traces` has it.
+        Coarse trace from `tribolab.records.runs.traces`, by name of the run.
     """
     speeds = _speeds(points)
     means = {run["name"]: _means(run, points.get(run["name"], ()), speeds) for run in runs}
@@ -90,7 +90,7 @@ def listed_runs(
 
 
 def _state(run: Mapping[str, Any]) -> str:
-    """Return the state of a run in words; one that contradicts its repeats is an odd one."""
+    """Return the state of a run in words; "odd" if it contradicts its repeats."""
     word = status_word(run)
     odd = any(row["check"] == "repeats" and not row["decision"] for row in run["checks"])
     return _ODD if odd and word in ("done", "suspect") else word
@@ -103,7 +103,7 @@ def _rank(row: ListedRun, off: Sequence[float | None]) -> tuple[int, float]:
 
 
 def _speeds(points: Mapping[str, Sequence[RunPoint]]) -> list[float]:
-    """Return the speeds of all runs, neighbours that count as one by their first."""
+    """Return the distinct speeds of all runs; neighbours count as one."""
     speeds: list[float] = []
     for speed in sorted({point.speed for of_run in points.values() for point in of_run}):
         if speed > (_SAME * speeds[-1] if speeds else 0):
@@ -112,7 +112,7 @@ def _speeds(points: Mapping[str, Sequence[RunPoint]]) -> list[float]:
 
 
 def _most_common(means: Sequence[Sequence[float | None]]) -> int:
-    """Return which speed most runs have, of those the middle one."""
+    """Return the index of the speed with most runs; of several the middle one."""
     counts = [sum(value is not None for value in column) for column in zip(*means, strict=True)]
     best = [place for place, count in enumerate(counts) if count == max(counts)]
     return best[len(best) // 2] if best else 0
@@ -129,7 +129,7 @@ def _means(
 
 
 def _steady(run: Mapping[str, Any]) -> float | None:
-    """Return steady friction of a run at one speed, else its mean over all."""
+    """Return the steady friction of a run at one speed, else its overall mean."""
     if len(run["running_in"]) != 1:
         return None
     (settled,) = run["running_in"]
@@ -144,7 +144,7 @@ def _overall(run: Mapping[str, Any]) -> float | None:
 def _deviations(
     runs: Sequence[Mapping[str, Any]], means: Mapping[str, Sequence[float | None]]
 ) -> dict[str, list[float | None]]:
-    """Return by how much each run is off the median of its usable repeats, at each speed."""
+    """Return the relative deviation of each run from the median of its repeats, by speed."""
     conditions: dict[tuple[Any, ...], list[Mapping[str, Any]]] = {}
     for run in runs:
         key = run["surface"], run["medium"], run["nominal_normal_force_N"], run["quantity"]
@@ -164,7 +164,7 @@ def _deviations(
 
 
 def _signed(share: float | None) -> str:
-    """Return a deviation in percent with its sign, to a tenth below ten percent."""
+    """Return a deviation in percent with its sign, with one decimal below ten percent."""
     if share is None:
         return ""
     text = f"{100 * share:+.{1 if abs(share) < 0.0995 else 0}f} %"

@@ -1,4 +1,4 @@
-"""All scans at a glance, the worst first."""
+"""List of all scans, worst first."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _ORDER = ("error", "fail", "suspect")
 
 
 class ListedScan(NamedTuple):
-    """A scan, its surface, and the gravest objection of its checks in words."""
+    """Scan, its surface, and the most severe objection of its checks in words."""
 
     name: str
     surface: str

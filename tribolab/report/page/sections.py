@@ -1,11 +1,10 @@
-"""The sections of the report page, in the order in which it has them.
+"""Sections of the report page, in order.
 
-To add one: write ``templates/sections/<name>.html.j2`` (the body only: heading and place in the
-contents are made from the entry below; the whole report is its context, the helpers come with
-``{% import "parts.html.j2" as part with context %}``), put what it shows into the document under
-one key (`tribolab.report.results.write_report` and
-`tribolab.report.document.schema.ReportHead`), and add an entry here. A section with a `key`
-appears once the document has something under that key.
+To add one: write ``templates/sections/<name>.html.j2`` (the body only: heading and contents are
+made from the entry below; the report is its context, and ``{% import "parts.html.j2" as part with
+context %}`` imports helpers), put its data into the document under one key
+(`tribolab.report.results.write_report` and `tribolab.report.document.schema.ReportHead`), and add
+an entry here. A section with a `key` appears if the document has data under that key.
 """
 
 from __future__ import annotations
@@ -17,18 +16,18 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Section:
-    """A section of the page.
+    """Section of the page.
 
     Parameters
     ----------
     id
-        Its address on the page: links to ``#id`` lead here.
+        Anchor for links to ``#id``.
     title
-        Heading, and what the contents say.
+        Heading, also in the contents.
     template
         Path of its template under ``templates/``.
     key
-        Key of the document without which the section is left out; "" is always there.
+        Key of the document that the section requires; "" for none.
     """
 
     id: str
@@ -53,7 +52,7 @@ _SECTIONS = (
 
 
 def shown_sections(document: Mapping[str, Any]) -> list[Section]:
-    """Return the sections that have something to say about a report.
+    """Return the sections for which a report has data.
 
     Examples
     --------

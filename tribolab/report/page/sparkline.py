@@ -1,4 +1,4 @@
-"""The outline of a run's trace, small enough for a row of a table."""
+"""Outline of a run's trace, small enough for a table row."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 
 from tribolab.records.packed import unpack_points
 
-WIDTH, HEIGHT = 150, 30  # of the picture, in its own units
-_COLUMNS = 50  # each with its lowest and its highest value
+WIDTH, HEIGHT = 150, 30  # size of the picture in its own units
+_COLUMNS = 50  # each with its minimum and maximum
 
 
 def spark_path(trace: Mapping[str, Any]) -> str:
@@ -19,7 +19,7 @@ def spark_path(trace: Mapping[str, Any]) -> str:
     Parameters
     ----------
     trace
-        As `tribolab.records.runs.traces.decimated_trace` has it.
+        From `tribolab.records.runs.traces.decimated_trace`.
     """
     places, values = unpack_points(trace["signals"][0])
     knots, at_s = trace["clock"]

@@ -1,4 +1,4 @@
-"""What every page is made with: templates, scripts, styles, and the policy that guards it."""
+"""Common parts of all pages: templates, scripts, styles, and content security policy."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from tribolab.report.page.sections import Section
 from tribolab.report.plain import plain_speed, plain_speeds, without_exponents
 
 _PROLOGUE = re.compile(r"^.*?(?=<svg)", re.DOTALL)
-# Everything that may stand in a data address inside a quoted HTML attribute.
+# characters that are safe in a data URL within a quoted HTML attribute
 _SAFE = " !$'()*+,-./:;=?@[]^_`{|}~"
 _STYLES = ("report.css", "still.css", "review.css")
 _SCRIPTS = (
@@ -54,19 +54,19 @@ _LIBRARY, _LICENCE = "plotly-basic.min.js", "plotly.LICENSE"
 def framed(
     template: str, context: Mapping[str, Any], sections: Sequence[Section], folder: Path
 ) -> str:
-    """Return a page made from a template that extends ``frame.html.j2``.
+    """Return a page from a template that extends ``frame.html.j2``.
 
     Parameters
     ----------
     template
-        Its path under ``templates/``.
+        Path of the template under ``templates/``.
     context
-        What the template and its sections show; of it the frame itself takes ``versions`` and the
-        ``status`` of the ``verdict``, the banner's colour.
+        Data for the template and its sections; the frame uses ``versions`` and, for the colour of
+        the banner, the ``status`` of the ``verdict``.
     sections
-        What the page has, in order.
+        Sections of the page, in order.
     folder
-        Folder in which the figures lie.
+        Folder of the figures.
     """
     page, frame = framing(template, sections, folder, draws=False)
     return page.render(dict(context) | frame)
@@ -75,20 +75,20 @@ def framed(
 def framing(
     template: str, sections: Sequence[Section], folder: Path, *, draws: bool
 ) -> tuple[jinja2.Template, Json]:
-    """Return a template, and what the frame of a page wants to know.
+    """Return a template, and the variables for the frame of the page.
 
     Parameters
     ----------
     template, sections, folder
         As for `framed`.
     draws
-        Whether the page draws figures, and so needs the library for it.
+        Whether the page draws figures and needs the drawing library.
 
     Notes
     -----
-    Scripts and styles are allowed by their checksums alone, the library too, which is unpacked from
-    the page. It makes an empty style element, whose checksum is allowed as well, and fills it by
-    script.
+    Only scripts and styles with listed checksums are allowed, including the library, which is
+    unpacked from the page. It creates an empty style element, whose checksum is also allowed, and
+    fills it by script.
     """
     style = "".join(asset(name) for name in _STYLES)
     names = (*_SCRIPTS[:4], *_DRAWING, *_SCRIPTS[4:]) if draws else _SCRIPTS
@@ -109,12 +109,12 @@ def framing(
 
 @cache
 def library() -> str:
-    """Return the library that draws, compressed, as text."""
+    """Return the drawing library, compressed, as text."""
     return deflated(asset(_LIBRARY).encode())
 
 
 class _Compiled(jinja2.BytecodeCache):
-    """Templates as code: of many pages in one process the first alone compiles them."""
+    """Cache of compiled templates, for several pages in one process."""
 
     def __init__(self) -> None:
         self._codes: dict[str, bytes] = {}
@@ -131,7 +131,7 @@ _COMPILED = _Compiled()
 
 
 def _printed(value: object) -> object:
-    """Escape control characters of a text; one that is HTML already stays so."""
+    """Escape control characters of a text; HTML markup remains markup."""
     if not isinstance(value, str):
         return value
     kind = Markup if isinstance(value, Markup) else str
@@ -139,7 +139,7 @@ def _printed(value: object) -> object:
 
 
 def environment(folder: Path) -> jinja2.Environment:
-    """Return what fills the templates of pages whose figures lie in a folder."""
+    """Return the template environment of pages whose figures are in a folder."""
     jinja = jinja2.Environment(
         loader=jinja2.PackageLoader("tribolab.report"),
         bytecode_cache=_COMPILED,
@@ -200,23 +200,23 @@ def environment(folder: Path) -> jinja2.Environment:
 
 
 def asset(name: str) -> str:
-    """Return the text of one of the page's own files."""
+    """Return the text of one of the page's asset files."""
     return (files("tribolab.report") / "assets" / name).read_text(encoding="utf-8")
 
 
 def csp_hash(text: str) -> str:
-    """Return what a content security policy calls a piece of inline code."""
+    """Return the hash of inline code for a content security policy."""
     digest = hashlib.sha256(text.encode()).digest()
     return "sha256-" + base64.b64encode(digest).decode()
 
 
 def data_address(svg: str) -> Markup:
-    """Return a figure as an address that holds the figure itself.
+    """Return an SVG figure as a data URL.
 
-    As an image it is shut off from the page: its ids meet no others, and nothing in it can run.
+    As an image it is isolated from the page: its ids cannot collide and its scripts cannot run.
     """
     body = _PROLOGUE.sub("", svg, count=1).replace('"', "'").replace("\n", " ")
-    # what HTML would have to escape in a quoted attribute (" & < >) is escaped already
+    # HTML's special characters in quoted attributes (" & < >) are already percent-encoded
     return Markup("data:image/svg+xml," + quote(body, safe=_SAFE))
 
 
@@ -224,7 +224,7 @@ _TERM = re.compile("|".join(map(re.escape, TERMS)), re.IGNORECASE)
 
 
 def explained(text: str) -> list[tuple[str, str]]:
-    """Return a sentence in pieces, each with its explanation: a word that needs one, at first.
+    """Split a sentence into pieces; each first use of a glossary term has its explanation.
 
     Examples
     --------
@@ -243,5 +243,5 @@ def explained(text: str) -> list[tuple[str, str]]:
 
 
 def breakable(name: str) -> Markup:
-    """Return a name that a narrow column may break after ``_`` or ``-``, else as it is."""
+    """Return a name that a narrow column may break after ``_`` or ``-``; else unchanged."""
     return Markup("<wbr>").join(re.findall(r"[^_-]+[_-]*|[_-]+", name))

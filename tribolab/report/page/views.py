@@ -1,4 +1,4 @@
-"""What the first screen shows: the test decides which view comes first, a button changes it."""
+"""Views of the first screen; the type of test determines the first one."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _TITLES = {
     "load": "Over load",
     "surfaces": "Surfaces",
 }
-_MIN_SPEEDS = 2  # of a curve
+_MIN_SPEEDS = 2  # smallest number of speeds of a curve
 
 
 class View(NamedTuple):
@@ -36,20 +36,20 @@ class View(NamedTuple):
 
     @property
     def columns(self) -> int:
-        """How many figures are next to each other so that all of them fill the screen."""
+        """Number of figures per row to fill the screen."""
         count = len(self.figures)
         return 1 if count == 1 else 2 if count in (2, 4) else 3 if count <= 9 else 4
 
 
 def views(document: Mapping[str, Any], live: Sequence[ShownFigure]) -> list[View]:
-    """Return the views of a campaign, the one that answers its test first.
+    """Return the views of a campaign, first the one that suits its test.
 
     Parameters
     ----------
     document
-        As in report.json.
+        Content of report.json.
     live
-        All figures of the page; the section of those on the first screen is "view-" and its name.
+        All figures of the page; those of a view have the section "view-" plus its name.
     """
     figures: dict[str, list[ShownFigure]] = {}
     for figure in live:
@@ -66,6 +66,6 @@ def views(document: Mapping[str, Any], live: Sequence[ShownFigure]) -> list[View
         if name in figures
     ]
     speeds = max((len(curve["points"]) for curve in document["curves"]), default=0)
-    if speeds < _MIN_SPEEDS:  # a single point is no curve
+    if speeds < _MIN_SPEEDS:  # one point is not a curve
         found.sort(key=lambda view: view.name == "curve")
     return found

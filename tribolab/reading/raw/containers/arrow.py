@@ -29,7 +29,7 @@ def read_arrow(path: Path) -> RawFile:
     ReadError
         If it is damaged.
     """
-    # late: pyarrow takes long to load
+    # imported late: pyarrow loads slowly
     import pyarrow as pa
     from pyarrow import feather
     from pyarrow import parquet as pq

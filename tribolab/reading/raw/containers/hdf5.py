@@ -46,7 +46,7 @@ def read_hdf5(path: Path) -> RawFile:
     ReadError
         If it is damaged, or takes data from outside.
     """
-    # late: h5py takes long to load
+    # imported late: h5py loads slowly
     import h5py
 
     found = _Found(h5py)

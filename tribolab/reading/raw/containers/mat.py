@@ -56,7 +56,7 @@ def read_variables(path: Path) -> list[Variable]:
     ReadError
         If the file is damaged or cut short.
     """
-    # late: SciPy takes long to load
+    # imported late: SciPy loads slowly
     from scipy.io import loadmat
 
     _refuse_bomb(path)
@@ -98,7 +98,7 @@ def _refuse_bomb(path: Path) -> None:
 
 def _variables(name: str, value: Any, depth: int) -> list[Variable]:
     """Return a variable, or the fields of a structure."""
-    # late: SciPy takes long to load
+    # imported late: SciPy loads slowly
     from scipy.io.matlab import MatlabFunction, MatlabOpaque
 
     if isinstance(value, MatlabFunction | MatlabOpaque):

@@ -42,7 +42,7 @@ def read_tdms(path: Path, *, values: bool = True) -> RawFile:
     ReadError
         If the file is damaged, or nptdms is not installed.
     """
-    # late: nptdms takes long to load
+    # imported late: nptdms loads slowly
     from nptdms import TdmsFile
 
     groups = Groups()

@@ -76,7 +76,7 @@ def _book(path: Path) -> Any:
         head = file.read(_HEAD)
     if is_xml_workbook(head):
         return XmlWorkbook(path)
-    # late: python_calamine takes long to load
+    # imported late: python_calamine loads slowly
     from python_calamine import CalamineWorkbook
 
     return CalamineWorkbook.from_path(path)

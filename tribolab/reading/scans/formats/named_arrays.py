@@ -109,7 +109,7 @@ def _of_mat(path: Path) -> HeldArrays:
 
 @isolated("scipy.io")
 def _of_netcdf(path: Path) -> HeldArrays:
-    # late: SciPy takes long to load
+    # imported late: SciPy loads slowly
     from scipy.io import netcdf_file
 
     held = HeldArrays([], {})
@@ -123,7 +123,7 @@ def _of_netcdf(path: Path) -> HeldArrays:
 
 @isolated("h5py")
 def _of_hdf5(path: Path) -> HeldArrays:
-    # late: h5py takes long to load
+    # imported late: h5py loads slowly
     import h5py
 
     held = HeldArrays([], {})

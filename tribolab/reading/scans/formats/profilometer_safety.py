@@ -55,7 +55,7 @@ def formats_to_try(path: Path, sure: list[str], possible: list[str]) -> list[str
 
 def _arrays_only(path: Path) -> None:
     """Read the MAT file with our own reader first: it holds every size against the file's."""
-    # late: starting stays quick
+    # imported late for a quick start
     from tribolab.reading.raw.containers.mat import read_variables
 
     if any(variable.numbers is None for variable in read_variables(path)):

@@ -53,7 +53,7 @@ def read_foreign(
         If SurfaceTopography is missing or does not know the format, or no unit is known.
     """
     try:
-        # late: SurfaceTopography takes long to load
+        # imported late: SurfaceTopography loads slowly
         from SurfaceTopography.IO import open_topography, readers
         from SurfaceTopography.IO.Reader import MagicMatch
     except ImportError as error:
