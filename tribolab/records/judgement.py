@@ -97,7 +97,9 @@ def why(run: Mapping[str, Any]) -> str:
     """
     if run["status"] != "done":
         told = str(run["reason"] or run["error"])
-        return next((told[len(f) + 2 :] for f in run["files"] if told.startswith(f"{f}: ")), told)
+        return next(
+            (told[len(f) + 2 :] for f in run.get("files", ()) if told.startswith(f"{f}: ")), told
+        )
     if run.get("kept"):
         return str(run["kept"])
     if run["quality"] in _BY_HAND:
