@@ -121,7 +121,7 @@ def _bare(cell: str) -> tuple[str, str]:
     if len(cell) > _MAX_NAME:
         return cell, ""
     match = _UNIT.search(cell)
-    if match is not None and normalise_label(match[1]) not in ("d", "delta", "δ"):
+    if match is not None and normalise_label(match[1]) not in ("d", "delta", "\u03b4"):
         return _IN.sub("", cell[: match.start()].strip()).strip(), match[1].strip()
     # NETZSCH writes "E'/MPa", RheoWin "G' in Pa"; "E''/E'" has no unit
     bare = _BARE_UNIT.fullmatch(cell)

@@ -62,7 +62,7 @@ _TURNS_FIRST = re.compile(  # "rpm 200"
 _TEXT = re.compile(
     r"\W*(?P<key>[^\W\d][^:：=\t;]*?)(?:\"?\s*[:：=\t;]\s*|\s{2,80})[\"\[(]?(?P<text>[^\W\d].*)$"
 )
-_UNIT_ALONE = re.compile(  # "Units um", "単位,μm"
+_UNIT_ALONE = re.compile(  # "Units um", "Units,um"
     r"[\W_]*(?P<key>[^\W\d]\w{0,20}(?:\s[^\W\d]{1,10})?)(?P<gap>\s+|\"?\s*,\s*\"?)"
     r"[\[(]?(?P<unit>[^\W\d]{1,20})[\])]?\W*$"
 )

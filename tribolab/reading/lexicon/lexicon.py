@@ -26,6 +26,7 @@ _TOKENS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[^\W\d_A-Z]+")
 CLAUSE_END = r"[;:,=|()\[\]：；，（）、。]|\.\s+(?=[^\W\d_a-zа-яё])"  # a capital begins a sentence
 _CLAUSE = re.compile(CLAUSE_END)
 _SIGNS = re.compile(r"[^\w;]+|_")
+UNPARTED = "\u3040-\u30ff\u4e00-\u9fff\uac00-\ud7a3"  # letters of which two make a word
 _FIRST_UNPARTED = "\u2e80"  # of the letters of languages that put no blanks between words
 _NO_LANGUAGE = ("of", "symbols", "stems", "vague")
 

@@ -6,6 +6,7 @@ import re
 
 from tribolab.core.errors import TribolabError
 from tribolab.units.conversion import conversion
+from tribolab.units.spellings import MICRO
 
 # SI units of what instruments record
 _MEASURED = (
@@ -37,7 +38,7 @@ def is_unit(text: str) -> bool:
     """
     if text in _WEIGHTS or text.lower() in _NO_UNIT:
         return True
-    if not re.fullmatch(r"[^\W\d_µμ°]*[\w/*^.·°%²³µμ-]*", text) or text.isdigit():
+    if not re.fullmatch(rf"[^\W\d_{MICRO}°]*[\w/*^.·°%²³-]*", text) or text.isdigit():
         return False
     for unit in _MEASURED:
         try:

@@ -27,7 +27,7 @@ _LONGEST_LETTER = 3  # bytes of it that may stand at the end of what was read
 # what lies beside the data in an archive: texts about them, pictures, what systems leave behind
 _README = re.compile(
     r"(?:^|/)[^/]*(?:read[ _-]?me|lies[ _-]?mich|l[ie]s?ez[ _-]?moi|leeme|leggimi|leia[ _-]?me|info"
-    r"|about|notes?|notizen?|description|beschreibung|codebook|说明|説明)[^/]*\.(?:txt|md|rst|asc)$"
+    r"|about|notes?|notizen?|description|beschreibung|codebook)[^/]*\.(?:txt|md|rst|asc)$"
     r"|(?:^|/)read[ _-]?me$|\.(?:md|rst)$",
     re.IGNORECASE,
 )

@@ -24,10 +24,10 @@ from tribolab.units.quantities import QUANTITIES
 from tribolab.units.stamping import stamp
 
 _SETTINGS = {"Lc": "lambda_c", "Ls": "lambda_s", "Pitch": "pitch", "M-Speed": "measuring_speed"}
-_NAMES = {"rdq": "Rdq", "rδq": "Rdq"}
+_NAMES = {"rdq": "Rdq", "r\u03b4q": "Rdq"}
 _CUTOFFS = (
-    (re.compile(r"(?i)^(λ|l|lambda)_? ?c$|^cut-? ?off"), "lambda_c_m"),
-    (re.compile(r"(?i)^(λ|l|lambda)_? ?s$"), "lambda_s_m"),
+    (re.compile(r"(?i)^(\u03bb|l|lambda)_? ?c$|^cut-? ?off"), "lambda_c_m"),
+    (re.compile(r"(?i)^(\u03bb|l|lambda)_? ?s$"), "lambda_s_m"),
 )
 _WITHOUT_UNIT = ("1", "%")
 

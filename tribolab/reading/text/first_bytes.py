@@ -226,7 +226,7 @@ _MODE = re.compile(r"^Mode;RES\s*$", re.MULTILINE)
 
 # a roughness parameter, its value (asterisks: not computed) and its unit
 _NAMED = re.compile(
-    r"^\s*(?P<name>[RPWS](?:a|q|z|t|p|v|c|sk|ku|dq|Δq|Sm|z1max|max|3z|k|pk|vk)\d?|(?:λ|[Ll])[cs]"
+    r"^\s*(?P<name>[RPWS](?:a|q|z|t|p|v|c|sk|ku|dq|\u0394q|Sm|z1max|max|3z|k|pk|vk)\d?|(?:\u03bb|[Ll])[cs]"
     r"|[Cc]ut-? ?off)\s*[:=;,\t ]\s*(?P<value>[-+]?\d+(?:[.,]\d+)?|\*[.,*]*\*)"
     r"\s*[;,\t]?\s*(?P<unit>[^\s\d;,*][^\s;,]*)?\s*[;,]*\s*$"
 )

@@ -8,10 +8,10 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from tribolab.core.errors import shown
-from tribolab.reading.lexicon.lexicon import keys_of, words_of
+from tribolab.reading.lexicon.lexicon import keys_of, normalise_label, words_of
 from tribolab.reading.scans.formats.named_arrays import HeldArray
 from tribolab.reading.scans.unit_words import axes_of, is_about_heights, stated_units
-from tribolab.units.spellings import unit_of_length
+from tribolab.units.spellings import MICRO, unit_of_length
 
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[^\W\d_A-Z]+")
 _LATERAL = frozenset("lateral horizontal position pos".split())
@@ -20,7 +20,7 @@ UNITS = frozenset(keys_of("unit"))
 _JOINED = re.compile(r"(?i)^(xy|[xyz])(units?)$|^(units?)(xy|[xyz])$")  # "xunits"
 _SCALE = re.compile(
     r"(?i)^(?:(?:z|height)_?)?(?:scale(?:_?factor)?|scaling|gain|factor|multiplier|increment|lsb|slope"
-    r"|calibration|resolution)(?:_(?P<unit>[npuµμ]m|mm|m))?$"
+    rf"|calibration|resolution)(?:_(?P<unit>[npu{MICRO}]m|mm|m))?$"
 )
 _OFFSET = re.compile(r"(?i)^(?:add_?|z_?|height_?)?(?:offset|intercept)(?:_\w{1,2})?$")
 _FILL = re.compile(
@@ -30,13 +30,13 @@ _OF_HEIGHTS = re.compile(r"(?i)^(?:z|heights?)_")
 
 
 def tokens(name: str) -> frozenset[str]:
-    """Return the words of an array's own name, in small letters.
+    """Return the words of an array's own name, normalised.
 
     >>> sorted(tokens("scan/heightMap"))
     ['height', 'heightmap', 'map']
     """
     leaf = re.split(r"[./]", name)[-1]
-    return frozenset(word.lower() for word in _WORD.findall(leaf)) | {leaf.lower()}
+    return frozenset(normalise_label(word) for word in [*_WORD.findall(leaf), leaf])
 
 
 def stated_unit(texts: Mapping[str, str], axis: str) -> str | None:

@@ -11,6 +11,7 @@ import xarray as xr
 
 from tribolab.core.errors import ReadError, shown
 from tribolab.core.untyped import Json
+from tribolab.reading.lexicon.lexicon import plain_words
 from tribolab.reading.raw.missing_marks import measurable, take_marks
 from tribolab.reading.scans.formats.array_units import (
     UNITS,
@@ -29,11 +30,7 @@ from tribolab.units.conversion import conversion
 from tribolab.units.spellings import unit_of_length
 
 _MIN_ROWS = 8  # rows, and heights of each
-_HEIGHTS = frozenset(
-    "z zz zs zdata zmap height heights heightmap topo topography topographie elevation elevations "
-    "hoogte hoogtes höjd højde høyde "
-    "höhe höhen hoehe hauteur altura altezza wysokość výška высота".split()
-)
+_HEIGHTS = plain_words("height_array")
 _PERHAPS = frozenset(
     "surface surf depth depths profile profiles profil profils relief trace traces data map".split()
 )

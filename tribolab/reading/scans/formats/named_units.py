@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from tribolab.core.errors import Cure
-from tribolab.units.spellings import unit_of_length
+from tribolab.units.spellings import MICRO, unit_of_length
 
 _SAID = re.compile(
     r"(?i)(?<![^\W_])(?P<what>xyz|xy|x|y|z|heights?|h(?:ö|oe)hen?)[-_ =]?(?:in[-_ ])?"
-    r"(?P<unit>[npuµμ]m|mm|cm|microns?|(?<=in[-_ ])m)(?![^\W_])"
+    rf"(?P<unit>[npu{MICRO}]m|mm|cm|microns?|(?<=in[-_ ])m)(?![^\W_])"
 )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from tribolab.arrays.medians import median
 from tribolab.reading.clocks.faults import find_faults, rows_at_fault
 from tribolab.reading.content.newest_first import is_newest_first
-from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern
+from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern, plain_words
 from tribolab.reading.text.cells import split_name
 from tribolab.units.quantities import unit_conversion
 
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
 _FEW_AT_FAULT = 0.01  # of the rows
 _DAY, _HOUR = 86400.0, 3600.0  # [s]
-_INTERVALS = {"dt", "deltat", "δt", "interval", "intervall"}
 OnRepeat = Literal["", "drop", "interpolate"]
 
 
@@ -35,7 +34,9 @@ def summed(columns: list[DraftColumn], numbers: np.ndarray) -> bool:
         Their numbers (rows, columns); changed in place.
     """
     column = next((c for c in columns if c.used and c.quantity == "time" and not c.form), None)
-    if column is None or normalise_label(split_name(column.label)[0]) not in _INTERVALS:
+    if column is None or normalise_label(split_name(column.label)[0]) not in plain_words(
+        "interval"
+    ):
         return False
     passed = numbers[:, column.place - 1]
     if len(passed) < 2 or not (passed >= 0).all() or (np.diff(passed) > 0).all():

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from tribolab.reading.interpret.names import COUNTS, is_count, matches, split_unit
 from tribolab.reading.interpret.unit_texts import is_unit, measures_something
-from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern
+from tribolab.reading.lexicon.lexicon import alternatives, normalise_label, part_pattern
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.unknown.columns.unit_and_sign import Bare
 from tribolab.reading.unknown.header.settings import text_settings
@@ -80,7 +80,7 @@ def _in_small_letters(unit: str | None) -> str:
 
 _MOST_NAMES = 64
 _IN = (
-    r"\s{0,3}(?:(?:is\s|ist\s|est\s|es\s|è\s|é\s)?(?:in|en|em|w|v|i|в)\s|[:=]|(?=[\[(]))"
+    rf"\s{{0,3}}(?:{alternatives('in')}\s|[:=]|(?=[\[(]))"
     r"\s{0,3}[\[(]?"
 )
 # "t - time [s];  Fx: friction force (N), Fz = load (N)", up to where another name is explained

@@ -9,18 +9,16 @@ import numpy as np
 
 from tribolab.reading.interpret.names import is_count, is_track_radius, split_unit
 from tribolab.reading.interpret.unit_texts import converts
-from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label
+from tribolab.reading.lexicon.lexicon import key_pattern, normalise_label, part_pattern
 from tribolab.reading.text.cells import split_name
 from tribolab.reading.unknown.model import DraftColumn
+from tribolab.units.spellings import MICRO
 
 _TORQUE = key_pattern("torque")
-_TORQUE_UNIT = re.compile(r"[cmkuµμ]?N\s?[·⋅・∙•*.]?\s?[cmuµμ]?m")  # and no J
-_ANGLE = re.compile(r"angle|winkel|angolo|angulo|角|phi|^(?:theta|rotation)$")
+_TORQUE_UNIT = re.compile(rf"[cmku{MICRO}]?N\s?[·⋅・∙•*.]?\s?[cmu{MICRO}]?m")  # and no J
+_ANGLE = key_pattern("angle")
 # what turns, where its unit is one of angles
-_TURNS_IN_ANGLES = re.compile(
-    r"encoder|resolver|codeur|drehgeber|turntable|drehteller|drehtisch|spindle|spindel|dis[ck]|scheibe|rotor"
-    r"|shaft|welle|rotat|turn|dreh|giro|編碼|编码|回転|旋转|encod"
-)
+_TURNS_IN_ANGLES = part_pattern("turns_in_angles")
 _TURNS = re.compile(
     r"^(?:number|no|nr|n)?(?:of)?(?:revolution|turn|rev|rotation|umdrehung)(?:s|en)?$"
 )

@@ -11,7 +11,12 @@ from tribolab.core.errors import shown
 from tribolab.reading.interpret.amounts import Amount
 from tribolab.reading.interpret.names import matches
 from tribolab.reading.interpret.unit_texts import converts
-from tribolab.reading.lexicon.lexicon import normalise_label, part_pattern, role_of
+from tribolab.reading.lexicon.lexicon import (
+    UNPARTED,
+    normalise_label,
+    part_pattern,
+    role_of,
+)
 from tribolab.reading.unknown.columns.evidence import (
     BOTH_FORCES,
     FRICTION,
@@ -31,9 +36,7 @@ from tribolab.units.quantities import unit_conversion
 
 _LONGEST_LINE = 300  # characters of a line that are looked at
 _AXIS = re.compile(r"(?:f|force|kraft|sila|forza)?(?:[xyz]|[1-3])")  # names of a sensor's axes
-_WORDS = (
-    r"(?:[^\W\d][^;|,；，]|[぀-ヿ一-鿿가-힣])[^;|,；，]{1,60}"  # two of such letters make a word
-)
+_WORDS = rf"(?:[^\W\d][^;|,；，]|[{UNPARTED}])[^;|,；，]{{1,60}}"  # two of such letters make a word
 _KNOWN_SHARE = 0.3  # of an explanation that a known word makes up
 _LETTERS_OF_NAME = 4  # of a name that a text mentions
 _STATED = 8.0  # log odds of what the text says outright

@@ -12,10 +12,11 @@ from tribolab.core.errors import shown
 from tribolab.reading.lexicon.lexicon import alternatives, normalise_label, part_pattern, says
 from tribolab.reading.numbers import numbers_in
 from tribolab.reading.unknown.layout.text_layout import Layout
+from tribolab.units.spellings import MICRO
 
 _MAX_LINE = 200  # characters of a line that are looked at
 _QUOTED = 3
-_RAW = re.compile(rf"[mkµμu]?V|{alternatives('count')}", re.IGNORECASE)
+_RAW = re.compile(rf"[mk{MICRO}u]?V|{alternatives('count')}", re.IGNORECASE)
 _EQUALS = re.compile(rf"\s?{alternatives('equals')}\s?", re.IGNORECASE)
 _UNIT_OF_NAME = re.compile(r"[\[(](\w{1,12}/\w{1,12})[\])]")
 

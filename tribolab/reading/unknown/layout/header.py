@@ -8,7 +8,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from tribolab.reading.interpret.unit_texts import is_unit
-from tribolab.reading.lexicon.lexicon import known_words
+from tribolab.reading.lexicon.lexicon import alternatives, known_words
+from tribolab.units.spellings import MICRO
 
 if TYPE_CHECKING:
     from tribolab.reading.unknown.layout.lines import Grammar
@@ -20,21 +21,21 @@ _WORD = re.compile(r"\S+")
 # A name of words with its unit in brackets, or a word. No name is longer than so: without an end to
 # look for it, a long line without brackets would be gone through once for each of its words
 _BRACKETED = re.compile(r"\S[^\[\]()]{0,200}?[\[(][^\[\]()]{0,100}[\])]|\S+")
-# "単位,μm" and "点数,1500" say something, and name no column
+# "Units,um" and "Points,1500" say something, and name no column
 _SAYS = re.compile(
-    r"[^\W\d]\W*[,;]\W*(?:[nmkuµμ]?m|Å|мкм|мм|нм|微米|纳米|毫米|[-+]?\d[\d.,]*)\W*$"
-    r"|^\W*(?:units?|einheit(?:en)?|unit[éà]s?|unidad(?:es)?|单位|単位)\s+[^\W\d]{1,3}\W*$"
-    r"|(?<![\w.,(\[])\d+(?:[.,]\d+|[.,]?\d*\s?(?:[nmkuµμ]?m|Å|Hz|N|s|mm/s|°C)(?![^\W\d_]))(?![^()\[\]]*[)\]])",
+    rf"[^\W\d]\W*[,;]\W*(?:{alternatives('unit_alone')}|[-+]?\d[\d.,]*)\W*$"
+    rf"|^\W*{alternatives('unit_key')}\s+[^\W\d]{{1,3}}\W*$"
+    rf"|(?<![\w.,(\[])\d+(?:[.,]\d+|[.,]?\d*\s?(?:[nmku{MICRO}]?m|Å|Hz|N|s|mm/s|°C)(?![^\W\d_]))"
+    r"(?![^()\[\]]*[)\]])",
     re.IGNORECASE,
 )
 # what parts the header from the numbers, and names no column
 _MARK = re.compile(
-    r"\W*(?:(?:end|eoh|begin|start|fin|fine|ende|beginn|anfang|d[ée]but|inicio|inizio|fim|einde|slut"
-    r"|koniec|konec|loppu|конец|начало)(?=[\W_]|$)[\s_\-]*(?:of|der|des|de[lr]?|du|dell[ao']|da|do|van)?"
+    rf"\W*(?:{alternatives('ends')}(?=[\W_]|$)[\s_\-]*(?:of|der|des|de[lr]?|du|dell[ao']|da|do|van)?"
     r"[\s_\-]*(?:the|la|l')?[\s_\-]*(?:file|datei)?[\s_\-]*"
-    r"(?:header|head|kopf\w*|vorspann|en-?t[êe]te|cabecera|encabezado|cabe[çc]alho|intestazione|koptekst"
-    r"|data|daten|messwerte|values|donn[ée]es|datos|dati|dados|nag[łl]\w*|hlavi[čc]k\w*|заголов\w*|данн\w*)?"
-    r"|(?:header|data|header[\s_\-]*section)[\s_\-]*(?:end|start|begin)s?|(?:头|表头|数据)(?:结束|开始))\W*",
+    rf"{alternatives('header_or_data')}?"
+    r"|(?:header|data|header[\s_\-]*section)[\s_\-]*(?:end|start|begin)s?"
+    rf"|{alternatives('header_ends_unparted')})\W*",
     re.IGNORECASE,
 )
 _STEMS = frozenset(stem for word in known_words("run") for stem in (*word.stems, *word.vague))

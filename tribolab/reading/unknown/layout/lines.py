@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from tribolab.reading.lexicon.lexicon import eastern_words, known_words
 from tribolab.reading.text.cells import split_row
 from tribolab.reading.text.first_bytes import HEAD, wide_encoding
+from tribolab.units.spellings import MICRO
 
 _EASTERN = ("gb18030", "cp932", "big5", "cp949", "cp1251")
 _BLANKS = 1.02  # by how much blanks have to part the lines better than a mark
@@ -21,7 +22,7 @@ _NUMBER = {
     ",": r"[+-]?(?:\d++(?:,\d*+)?|,\d++)(?:[eE][+-]?\d++)?",
 }
 # what instruments write where a value should stand; and dates and times of day
-_INSTEAD = r"nan|[+-]?inf|null|n/?a|-{1,8}|[*#][*.#]*[a-zµμ]*!?|err\w*|over\w*|ovl|none"
+_INSTEAD = rf"nan|[+-]?inf|null|n/?a|-{{1,8}}|[*#][*.#]*[a-z{MICRO}]*!?|err\w*|over\w*|ovl|none"
 _MISSING = re.compile(rf"(?i){_INSTEAD}")
 _NO_NUMBER = re.compile(
     rf"(?i){_INSTEAD}|"
@@ -125,7 +126,7 @@ _SINGLE_BYTES = (
     *("latin-1", "cp1252", "cp1250", "iso8859-2", "cp1254", "cp1251", "koi8-r", "cp1253"),
     *("cp437", "cp852", "cp866", "mac-roman"),
 )
-_EASTERN_UNITS = re.compile(r"(?<!\w)(?:μm|\u2103)(?!\w)")  # where no word is known
+_EASTERN_UNITS = re.compile(rf"(?<!\w)(?:{MICRO[1]}m|\u2103)(?!\w)")  # where no word is known
 
 
 @functools.cache
