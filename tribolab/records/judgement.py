@@ -96,10 +96,7 @@ def why(run: Mapping[str, Any]) -> str:
     'spikes: 3 samples stand out (and 1 more)'
     """
     if run["status"] != "done":
-        told = str(run["reason"] or run["error"])
-        return next(
-            (told[len(f) + 2 :] for f in run.get("files", ()) if told.startswith(f"{f}: ")), told
-        )
+        return str(run["reason"] or run["error"])
     if run.get("kept"):
         return str(run["kept"])
     if run["quality"] in _BY_HAND:

@@ -300,6 +300,8 @@ def failed_run(run: PlannedRun, reason: str, error: str, seconds: float = 0.0) -
     """Return the outcome of a run without results; its files are named as reports name them."""
     for file, label in zip(run.files, run.labels, strict=True):
         reason = reason.replace(str(file), label)
+    if len(run.labels) == 1:
+        reason = reason.removeprefix(f"{run.labels[0]}: ")
     return RunOutcome(
         name=run.name,
         files=run.labels,
