@@ -1,4 +1,4 @@
-"""What `tribolab check` shows: findings of several files, for a person or for a program."""
+"""Findings of `tribolab check` for several files, as text or JSON."""
 
 from __future__ import annotations
 
@@ -47,22 +47,22 @@ _STYLES = {
 
 @dataclass(frozen=True)
 class Checked:
-    """One run or scan: its files, and what the checks found, or why it could not be read.
+    """Result of the checks of one run or scan, or the reason why it could not be read.
 
     Parameters
     ----------
     files
-        Of the run, or the scan.
+        Files of the run or scan.
     rows
-        Of `Findings`; none if it could not be read.
+        Rows of `Findings`; empty if it could not be read.
     status
-        The gravest status, or "unreadable".
+        The most severe status, or "unreadable".
     summary
-        In one line, without the name.
+        Summary in one line, without the name.
     error
-        Why it could not be read; "" if it could.
+        Reason why it could not be read; "" if it was read.
     kind
-        "run", "scan", "results" (of a roughness tester), or "file" if it is not known.
+        "run", "scan", "results" (of a roughness tester), or "file" if unknown.
     """
 
     files: tuple[Path, ...]
@@ -74,20 +74,20 @@ class Checked:
 
     @classmethod
     def of(cls, files: Iterable[Path], findings: Findings, kind: str = "run") -> Checked:
-        """Keep of findings what is shown."""
-        # a run of two logs is called by the first, not by both
+        """Return the findings to display."""
+        # a run of two logs is named after the first
         summary = findings.summary.removeprefix(findings.name).removeprefix(": ")
         return cls(tuple(files), tuple(findings.rows), findings.status, summary, kind=kind)
 
     @property
     def name(self) -> str:
-        """The name of the first file."""
+        """Name of the first file."""
         return self.files[0].name
 
 
 @dataclass(frozen=True)
 class CheckTask:
-    """Files to check together: a run, repeated scans with what testers said of them, or results."""
+    """Files to check together: a run, repeated scans with testers' results, or results."""
 
     kind: str
     files: tuple[Path, ...]
@@ -96,12 +96,12 @@ class CheckTask:
 
 
 def raw_files_of(paths: Sequence[Path]) -> list[tuple[list[Path], str | None]]:
-    """Return the raw files that are meant, with the instrument that a campaign file names for them.
+    """Return the raw files, grouped by the instrument that a campaign file names for them.
 
     Parameters
     ----------
     paths
-        Raw files, folders of them, and campaign files, which stand for their runs and scans.
+        Raw files, folders of raw files, and campaign files (for their runs and scans).
 
     Examples
     --------
@@ -130,12 +130,12 @@ def raw_files_of(paths: Sequence[Path]) -> list[tuple[list[Path], str | None]]:
 
 
 class Checks(Stage[CheckTask, "list[Checked]", "list[Checked]"]):
-    """The stage of `tribolab check`.
+    """Stage of `tribolab check`.
 
     Parameters
     ----------
     paths, instrument, repeats
-        As of `check_files`.
+        As for `check_files`.
     """
 
     name = "checks"
@@ -148,7 +148,7 @@ class Checks(Stage[CheckTask, "list[Checked]", "list[Checked]"]):
         self._repeats = repeats
 
     def plan(self) -> list[CheckTask]:
-        """Put together what is to be compared."""
+        """Return tasks with the files to be compared."""
         kinds = {
             group: _kind_of(group[0], self._instrument) if len(group) == 1 else "run"
             for group in self.groups
@@ -167,23 +167,23 @@ class Checks(Stage[CheckTask, "list[Checked]", "list[Checked]"]):
 
     @staticmethod
     def work(task: CheckTask) -> list[Checked]:
-        """Read and check what belongs together."""
+        """Read and check the files of a task."""
         return _WORK[task.kind](task)
 
     def failed(self, task: CheckTask, error: BaseException) -> list[Checked]:
-        """Return why files could not be checked."""
+        """Return the reason why files could not be checked."""
         if isinstance(error, ConfigError):
-            raise error  # a wrong instrument is wrong for every file
+            raise error  # a wrong instrument concerns every file
         groups = [task.files] if task.kind == "run" else [(file,) for file in task.files]
         return [Checked(files, error=_why(error), kind="file") for files in groups]
 
     def keep(self, task: CheckTask, place: int, record: list[Checked]) -> list[Checked]:
-        """Return what was found."""
+        """Return the record; nothing is stored."""
         return record
 
 
 def _why(error: BaseException) -> str:
-    """Say why a file cannot be read; of what nobody foresaw also where it happened."""
+    """Return why a file cannot be read; for unexpected errors with their location."""
     foreseen = isinstance(error, TribolabError | OSError)
     return told(error, "terminal") if foreseen else explain(error)[0]
 
@@ -201,26 +201,26 @@ def check_files(
     executor: Executor | None = None,
     progress: Progress | None = None,
 ) -> list[Checked]:
-    """Read and check runs, scans and results of roughness testers; a bad file stops no other.
+    """Read and check runs, scans and results of roughness testers; a bad file stops no others.
 
     Parameters
     ----------
     paths
         Raw files of any kind; the two logs of a run are one run.
     instrument
-        Their instrument; recognised by the content when not given.
+        Their instrument; by default recognised by content.
     repeats
-        Whether the scans are of one surface, to be compared with each other. By default those are
-        whose names differ in their last number only.
+        Whether the scans are of one surface and compared with each other. By default scans are
+        compared if only the last number of their names differs.
     executor
-        Where to work; without one everything is done here.
+        Executor; without one everything is done in this process.
     progress
         Called as ``progress(stage, done, total)``.
 
     Raises
     ------
     ConfigError
-        If there is no such instrument.
+        If the instrument does not exist.
     """
     # imported late for a quick start
     from tribolab.reading.scan_files import file_of
@@ -276,12 +276,12 @@ _WORK = {"run": _check_run, "scan": _check_scans, "results": _check_results}
 
 
 def _belongs(results: Path, scan: Path) -> bool:
-    """Whether results have the name of a scan beside them."""
+    """Whether results have the same folder and base name as a scan."""
     return results.parent == scan.parent and results.stem.casefold() == scan.stem.casefold()
 
 
 def code_of(checked: Sequence[Checked], fail_on: str) -> int:
-    """Exit code: 3 if a file is unreadable or a check crashed, 1 from `fail_on` on, else 0."""
+    """Exit code: 3 if a file is unreadable or a check crashed, 1 from `fail_on` upwards, else 0."""
     code = exit_code({c.status for c in checked if not c.error}, fail_on)
     return _UNREADABLE if any(c.error for c in checked) else code
 
@@ -289,7 +289,7 @@ def code_of(checked: Sequence[Checked], fail_on: str) -> int:
 def checked_table(
     rows: Iterable[Mapping[str, Any]], *, notes: bool = False, everything: bool = False
 ) -> Table:
-    """Return objections, graver ones first; notes, or all that was asked, where wanted."""
+    """Return a table of objections, most severe first, with notes or all checks on request."""
     table = Table(box=None, pad_edge=False, show_header=False)
     table.add_column(no_wrap=True)
     table.add_column(no_wrap=True)
@@ -301,9 +301,9 @@ def checked_table(
 
 
 def show(checked: Sequence[Checked], *, notes: bool = False, everything: bool = False) -> None:
-    """Print what the checks found on stdout, and on stderr why a file could not be read.
+    """Print the findings to stdout, and the reasons for unreadable files to stderr.
 
-    Of several files the last lines count them, and name those that need a look.
+    For several files the last lines count them by status, and name those with objections.
     """
     # imported late for a quick start
     from tribolab.app import terminal
@@ -323,7 +323,7 @@ def show(checked: Sequence[Checked], *, notes: bool = False, everything: bool = 
 
 
 def count_lines(checked: Sequence[Checked]) -> list[str]:
-    """Count what was checked, by status, and list what needs a look, the gravest first.
+    """Return counts of the checked files by status, and those with objections, worst first.
 
     Examples
     --------
@@ -346,7 +346,7 @@ def as_json(checked: Sequence[Checked], fail_on: str) -> str:
 
 
 def document(checked: Sequence[Checked], fail_on: str) -> Json:
-    """Return everything as one JSON document; what is not known is null."""
+    """Return everything as one JSON document; unknown values are null."""
     # imported late: looks up the installed package
     from tribolab.version import __version__
 

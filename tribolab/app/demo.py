@@ -1,4 +1,4 @@
-"""The demo: a simulated campaign, its results, and how far they are from the truth."""
+"""Demo: a simulated campaign, its results, and their deviation from the truth."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 def run_demo(
     folder: Path, *, jobs: int | None = None, progress: Progress | None = None
 ) -> tuple[Outcome, DemoComparison]:
-    """Simulate the reference campaign if it is not there yet, analyse it, and compare.
+    """Simulate the reference campaign unless it exists, analyse it, and compare it with the truth.
 
     Parameters
     ----------
     folder
-        The campaign's folder.
+        Folder of the campaign.
     jobs
         Number of processes; 1 does everything here. By default one per processor.
     progress
@@ -33,9 +33,9 @@ def run_demo(
     with workers(jobs, modules=SIMULATION + ANALYSIS) as pool:
         if isinstance(pool, LastingPool):
             pool.prepare()
-        # only now, what is needed last among them: workers import the same, at the same time
+        # imported only now, in parallel with the same imports of the workers
         with importing():
-            # late: the workers have been sent off
+            # imported late: the workers have started
             from tribolab.app import plain  # noqa: F401
             from tribolab.app.run import run_campaign
             from tribolab.app.truth.known import compare_with_known, write_comparison

@@ -1,4 +1,4 @@
-"""The first campaign file of raw files that have none: `tribolab run` on the files themselves."""
+"""First campaign file for raw files without one: `tribolab run` on the raw files."""
 
 from __future__ import annotations
 
@@ -39,21 +39,21 @@ def campaign_file(
     instrument: str | None = None,
     stated: Stated | None = None,
 ) -> tuple[Path, bool]:
-    """Return the campaign file that is meant; of raw files, one that is written for them.
+    """Return the campaign file of the given paths; for raw files write one.
 
     Parameters
     ----------
     paths
-        A campaign file; a folder that holds one, or raw files; or raw files: runs and scans, in
-        any folders. Without any, the folder where the command was given.
+        A campaign file; a folder with a campaign file or raw files; or raw files (runs and scans)
+        in any folders. If empty, the current folder.
     folder
-        Where a new one is written, unless a folder is named; one there that says the same is taken
-        as it is, one that was written for the same files without their instrument is replaced.
-        Next to one of other files it is named by its first file, as are its results.
+        Folder for a new file, unless `paths` is a folder. An equal file there is reused; one
+        written for the same files without their instrument is replaced. If there is one for other
+        files, the new file and its results are named after the first raw file.
     instrument
-        What the raw files are from: a name, or the file of a dialect.
+        Instrument of the raw files: a name, or the file of a dialect.
     stated
-        What the command line states of the raw files.
+        Amounts stated on the command line.
 
     Returns
     -------
@@ -63,8 +63,8 @@ def campaign_file(
     Raises
     ------
     ConfigError
-        If another campaign file of that name exists, or several are named, or there is no
-        such instrument, or a folder has no raw files.
+        If another campaign file of that name exists, several are given, the instrument does not
+        exist, or a folder has no raw files.
     """
     stated = stated or Stated()
     paths = paths or [Path()]
@@ -83,7 +83,7 @@ def campaign_file(
     described = described and instrument is not None
     whole = [path.resolve() for path in paths]
     file = folder / NAME
-    if file.exists() and not _names(file, whole):  # it is of other files
+    if file.exists() and not _names(file, whole):  # it is for other files
         file = folder / f"campaign_{safe_name(paths[0].stem)}.toml"
     results = results_of(file)
     lines = stated.run_lines(described=described)
@@ -91,7 +91,7 @@ def campaign_file(
     try:
         before = campaign_text(whole, folder.resolve(), results)
         if (instrument is not None or lines) and _says(file, before):
-            file.unlink()  # ours, of a try before; nobody has completed it
+            file.unlink()  # written by an earlier attempt, and unchanged
         with file.open("x", encoding="utf-8") as new:
             new.write(text)
     except FileExistsError:
@@ -108,7 +108,7 @@ def campaign_file(
 
 
 def _raw_files(paths: Sequence[Path], folder: Path) -> tuple[list[Path], Path, Path | None]:
-    """Return the raw files that are meant, where their campaign file lies, and it if it exists."""
+    """Return raw files, the folder for their campaign file, and that file if it exists."""
     if len(paths) == 1 and paths[0].is_dir() and not (paths[0] / NAME).exists():
         found = files_in(paths[0])
         if not found:
@@ -124,7 +124,7 @@ def _raw_files(paths: Sequence[Path], folder: Path) -> tuple[list[Path], Path, P
     raw = [path for path in left if path not in ours]
     whole = [path.resolve() for path in raw if may_hold_data(path)]
     own = [path for path in ours if path.suffix != ".toml" or _names_all(path, whole)]
-    if raw and len(own) == 1 and ours:  # `run *.*` again
+    if raw and len(own) == 1 and ours:  # `run *.*` repeated
         return [], folder, own[0]
     for path in left:
         if not path.is_file() or path in ours:
@@ -156,7 +156,7 @@ def results_of(file: Path) -> str:
 
 
 def _names(file: Path, paths: Sequence[Path]) -> bool:
-    """Whether a campaign file names any of the files; of one that cannot be read it is taken so."""
+    """Whether a campaign file names any of the files; an unreadable one counts as such."""
     try:
         campaign, runs = load_and_plan(file)
         named = [path for run in runs for path in run.files] + scan_files(campaign)
@@ -166,14 +166,14 @@ def _names(file: Path, paths: Sequence[Path]) -> bool:
 
 
 def withdraw(file: Path, results: Path | None = None) -> None:
-    """Take back a campaign file that was written for files of which none could be read.
+    """Remove a campaign file that was written for raw files of which none could be read.
 
     Parameters
     ----------
     file
         From `campaign_file`.
     results
-        Folder that was made for its results, with nothing but what failed in it.
+        Folder of its results, which contains failures only.
     """
     file.unlink(missing_ok=True)
     if results is not None and results.is_dir() and not Ledger.read(results).foreign():
@@ -181,7 +181,7 @@ def withdraw(file: Path, results: Path | None = None) -> None:
 
 
 def why_unread(paths: Sequence[Path], instrument: str | None = None) -> list[str]:
-    """Say why raw files cannot be read, in words for the command line; none where one can be.
+    """Return why raw files cannot be read, for the command line; empty if one can.
 
     Parameters
     ----------
@@ -229,11 +229,11 @@ def campaign_text(
     paths
         Raw files, absolute.
     folder
-        Where the campaign file lies, absolute.
+        Absolute folder of the campaign file.
     results
-        Its results folder, relative to it.
+        Results folder, relative to it.
     instrument, stated
-        What the raw files are from, and further lines of their [[run]].
+        Instrument of the raw files, and further lines of their [[run]].
     """
     from tribolab.reading.dialect.write import quoted  # imported late for a quick start
 
@@ -259,20 +259,20 @@ def campaign_text(
         named = as_pattern(kinds.runs, [path for path in paths if path not in kinds.runs], raw)
         files = ",\n    ".join(map(quoted, named))
         lines += ["", "[[run]]", f"files = [\n    {files},\n]", *stated]
-        lines += _said(instrument, folder)
+        lines += _instrument_line(instrument, folder)
     groups = repeats_by_name(kinds.scans)
     for group, title in zip(groups, surface_names(groups), strict=True):
         scans = [quoted(path.relative_to(raw).as_posix()) for path in group]
         shown = scans[0] if len(scans) == 1 else f"[{', '.join(scans)}]"
         lines += ["", "[[surface]]", f"name = {quoted(title)}", f"scans = {shown}"]
-        lines += _said(instrument, folder)
+        lines += _instrument_line(instrument, folder)
     return "\n".join(lines) + "\n"
 
 
 def surface_names(groups: Sequence[Sequence[Path]]) -> list[str]:
-    """Return the names of surfaces after their scans: without the number of the scan.
+    """Return names of surfaces from their scans, without the number of the scan.
 
-    Names that occur twice get that of their folder, else of their ending, else a number.
+    Equal names are extended by their folder, else by their suffix, else by a number.
 
     >>> surface_names([[Path("sb-r_1.csv"), Path("sb-r_2.csv")], [Path("roller.txt")]])
     ['sb-r', 'roller']
@@ -290,8 +290,8 @@ def surface_names(groups: Sequence[Sequence[Path]]) -> list[str]:
     return distinct(names)
 
 
-def _said(instrument: str | None, folder: Path) -> list[str]:
-    """Return the line that names an instrument; the file of a dialect relative to the campaign."""
+def _instrument_line(instrument: str | None, folder: Path) -> list[str]:
+    """Return the line that names the instrument; a dialect's path relative to the campaign."""
     if instrument is None:
         return []
     from tribolab.reading.dialect.write import quoted  # imported late for a quick start

@@ -1,4 +1,4 @@
-"""What the workers of commands import, by name: a pool has it imported once for all of them."""
+"""Names of modules that workers of the commands need; a pool imports them once for all."""
 
 FILES = (
     "tribolab.app.plain",
@@ -9,7 +9,7 @@ FILES = (
 
 SIMULATION = ("tribolab.app.plain", "tribolab.rig.campaign", "scipy.linalg")
 
-# the stages themselves, then what they import only where it is needed, in this order
+# the stages, then their late imports in this order
 ANALYSIS = (
     "tribolab.app.plain",
     "tribolab.campaign.pipeline",

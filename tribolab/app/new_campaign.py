@@ -1,4 +1,4 @@
-"""A commented campaign file to start from: `tribolab new`."""
+"""Template of a campaign file with comments: `tribolab new`."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ def write_new_campaign(folder: Path) -> Path:
     Parameters
     ----------
     folder
-        With raw files, or without any yet.
+        Folder with or without raw files.
 
     Raises
     ------
     ConfigError
-        If there is a campaign file already, or no such folder.
+        If a campaign file exists, or the folder does not.
     """
     if not folder.is_dir():
         raise ConfigError(f"{folder}: there is no such folder")

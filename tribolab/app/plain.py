@@ -1,4 +1,4 @@
-"""Imported first by a process that makes all of its datasets itself: `plain_arrays_only`."""
+"""Import this first in a process that creates all its datasets itself: `plain_arrays_only`."""
 
 from tribolab.app.quick import plain_arrays_only
 

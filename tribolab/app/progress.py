@@ -1,4 +1,4 @@
-"""Bars on a terminal that show how far a job is."""
+"""Progress bars on a terminal."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 
 @contextlib.contextmanager
 def progress_bars(quiet: bool) -> Iterator[Callable[[str, int, int], None] | None]:
-    """Show bars with the time left on a terminal; say nothing in a pipe."""
+    """Show progress bars with the remaining time on a terminal; show nothing in a pipe."""
     if quiet or not sys.stderr.isatty():
         yield None
         return

@@ -1,10 +1,10 @@
-"""Ranges in a line of the terminal."""
+"""Ranges as text for the terminal."""
 
 from __future__ import annotations
 
 
 def range_of(low: str, high: str) -> str:
-    """Return lowest to highest as written, once if they read the same.
+    """Return a range as text; a single value if both ends read the same.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The raw files of a folder: which hold runs, scans, moduli or results of a roughness tester."""
+"""Raw files of a folder by content: runs, scans, moduli or roughness testers' results."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ _NO_DATA = (
     *(".toml", ".py", ".ipynb", ".md", ".rst", ".pdf", ".doc", ".docx", ".ppt", ".pptx", ".html"),
     *(".png", ".jpg", ".jpeg", ".tif", ".tiff", ".svg", ".gif", ".mp4", ".avi", ".zip", ".sqlite"),
 )
-_MOST_FILES = 5000  # of a folder: a disk is no campaign
+_MOST_FILES = 5000  # most files in a folder; e.g. a whole disk is not a campaign
 
 
 class RawFiles(NamedTuple):
-    """Raw files by what they hold."""
+    """Raw files by content."""
 
     runs: list[Path]
     scans: list[Path]
@@ -31,8 +31,7 @@ class RawFiles(NamedTuple):
 def files_in(folder: Path) -> list[Path]:
     """Return the files of a folder and those below it that may hold data, in order of name.
 
-    Hidden files, results of `tribolab run`, and kinds of files that hold no measurement are left
-    out.
+    Hidden files, results of `tribolab run`, and types of files without measurements are left out.
     """
     found: list[Path] = []
     for path in sorted(folder.iterdir()):
@@ -46,26 +45,26 @@ def files_in(folder: Path) -> list[Path]:
 
 
 def may_hold_data(path: Path) -> bool:
-    """Whether files with such an ending hold measurements."""
+    """Whether files with this suffix may contain measurements."""
     return path.suffix.lower() not in _NO_DATA
 
 
 def is_results_folder(path: Path) -> bool:
-    """Whether a folder is what `tribolab run` left."""
+    """Whether a folder contains results of `tribolab run`."""
     return (path / "report.json").is_file() or bool(Ledger.read(path).files)
 
 
 def sorted_by_content(
     groups: Sequence[Sequence[Path]], instrument: str | None = None
 ) -> tuple[list[list[Path]], RawFiles]:
-    """Return the runs as groups of their logs, and all files by what they hold.
+    """Return the runs as groups of their logs, and all files by content.
 
     Parameters
     ----------
     groups
-        Files that make one run each, if they are runs.
+        Groups of files that belong together if they are runs.
     instrument
-        What the raw files are from: a name, or the file of a dialect.
+        Instrument of the raw files: a name, or the file of a dialect.
     """
     kinds = RawFiles([], [], [], [])
     runs: list[list[Path]] = []
@@ -96,11 +95,11 @@ def _kind(path: Path, instrument: str | None) -> str:
     except TribolabError:
         if instrument is not None:
             raise
-        return "run"  # the run says what is wrong with it
+        return "run"  # the run will report what is wrong
 
 
 def as_pattern(files: Sequence[Path], others: Iterable[Path], raw: Path) -> list[str]:
-    """Return patterns that stand for these files and no others, relative to a folder.
+    """Return patterns that match exactly these files, relative to a folder.
 
     Examples
     --------

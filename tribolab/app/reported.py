@@ -1,4 +1,4 @@
-"""What every command has: options, and errors told in one line with an exit code."""
+"""Common parts of all commands: options, and errors as one-line messages with exit codes."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ _Given = TypeVar("_Given")
 
 
 def leaving(name: str, instead: str) -> Any:
-    """Return an option that --help no longer shows: it works for one more release, and says so.
+    """Return a deprecated option, hidden in --help, that still works with a warning.
 
     Parameters
     ----------
     name
-        The option; a switch by both its names: ``--repeats/--no-repeats``.
+        Name of the option; of a switch both, e.g. ``--repeats/--no-repeats``.
     instead
-        What to write instead.
+        Replacement in words.
     """
 
     def warned(context: typer.Context, option: typer.CallbackParam, given: _Given) -> _Given:
@@ -56,7 +56,7 @@ def leaving(name: str, instead: str) -> Any:
 
 
 def renamed(command: Callable[..., None], old: str, new: str) -> Callable[..., None]:
-    """Return a command under its old name, which says the new one."""
+    """Return a command under its old name, which warns with the new name."""
 
     @functools.wraps(command)
     def under_old_name(**given: Any) -> None:
@@ -72,7 +72,7 @@ def _warn_of(old: str, instead: str) -> None:
 
 @contextlib.contextmanager
 def reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
-    """Turn an error into one short message on stderr, for who reads it, and an exit code."""
+    """Convert an error to a short message on stderr for the audience, and an exit code."""
     try:
         yield
     except (ConfigError, UnitError) as error:
@@ -86,7 +86,7 @@ def reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
         raise
     except typer.Abort:
         fail("stopped at a question without an answer: nothing is written", _INTERRUPTED, debug)
-    except Exception as error:  # a mistake of ours: said in one line, shown in full on demand
+    except Exception as error:  # a bug: one line, with a traceback on request
         # imported late for a quick start
         from tribolab.core.wording import explain
 
@@ -94,7 +94,7 @@ def reported(debug: bool, audience: str = "terminal") -> Iterator[None]:
 
 
 def fail(message: str, code: int, debug: bool) -> NoReturn:
-    """Say what went wrong on stderr and leave with an exit code."""
+    """Print an error message to stderr and exit with a code."""
     if debug:
         raise
     say(f"tribolab: {message}", to_stderr=True)

@@ -1,4 +1,4 @@
-"""The main job: a campaign file in, a folder of results out, whole or not at all."""
+"""Main workflow: from a campaign file to a complete results folder."""
 
 from __future__ import annotations
 
@@ -48,38 +48,37 @@ def run_campaign(
     Parameters
     ----------
     path_or_campaign
-        A campaign file, or what `load_campaign` made of it.
+        A campaign file, or a campaign from `load_campaign`.
     output
-        Results folder; by default the one that the campaign file names. What an earlier run
-        wrote there is replaced as a whole when everything is written; until then, and if
-        anything goes wrong, it stays. Other files in it are left there.
+        Results folder; by default that of the campaign file. Earlier results are replaced only
+        after everything is written; if anything fails, they are kept. Other files in it are kept.
     executor
         Any `concurrent.futures.Executor` to work in.
     jobs
-        Number of processes, if no executor is given; 1 does everything here. By default one
-        per processor.
+        Number of processes without executor; 1 uses this process only. By default one per
+        processor.
     scheduler
         Address of a Dask scheduler, instead of `jobs`.
     progress
         Called as ``progress(stage, done, total)``.
     figures
-        Which are drawn for publication: ``"curves"`` (measured curves), ``"all"`` or ``"none"``.
+        Figures drawn for publication: ``"curves"`` (measured curves), ``"all"`` or ``"none"``.
     pdf
-        Whether figures are written as PDF, too.
+        Whether to write figures also as PDF.
     tables
         Format of the tables next to CSV: ``"xlsx"`` (one workbook) or ``"parquet"``.
     verify
-        Whether raw files and results are recognised by their checksums only, each read anew; by
-        default raw files and large results by size, time and inode first.
+        Whether to compare checksums of all raw files and results; by default unchanged raw files
+        and large results are recognised by size, time and inode.
     outside
-        Whether ``output`` in the campaign file may lead out of the folder of that file.
+        Whether ``output`` in the campaign file may be outside the folder of that file.
     trust
-        Whether readers in Python that the campaign names by their files may run.
+        Whether Python readers named in the campaign file may run.
 
     Returns
     -------
     Outcome
-        One record per run and per curve; runs that failed are among them.
+        One record per run and curve, including failed runs.
 
     Raises
     ------
@@ -108,11 +107,11 @@ def run_campaign(
     else:
         campaign, runs = load_and_plan(path_or_campaign)
     if not trust:
-        _run_no_python(campaign)
+        _refuse_python_readers(campaign)
     place = resolved(campaign.output if output is None else output)
     if output is None and not outside:
-        _keep_inside(campaign, place)
-    _keep_apart(campaign, place)
+        _refuse_outside_folder(campaign, place)
+    _refuse_input_folder(campaign, place)
     if executor is not None and (jobs is not None or scheduler is not None):
         raise ConfigError("give either an executor, or jobs, or scheduler")
     options = {"figures": which, "pdf": pdf, "tables": form, "code": code_of_page()}
@@ -125,9 +124,9 @@ def run_campaign(
     with staged(place) as folder:
         given = contextlib.nullcontext(executor) if executor else workers(jobs, scheduler, ANALYSIS)
         with given as pool:
-            if isinstance(pool, LastingPool):  # its workers import the same, at the same time
+            if isinstance(pool, LastingPool):  # the workers import the same in parallel
                 pool.prepare()
-            # only now: where nothing has changed, nobody waits for it
+            # imported late: not needed if nothing has changed
             from tribolab.campaign.pipeline import process
             from tribolab.report.other_tables import write_other_tables
             from tribolab.report.results import write_report
@@ -157,14 +156,14 @@ def run_here_if_lost(
     scheduler: str | None,
     **options: Any,
 ) -> Outcome:
-    """Run a campaign on a cluster, or wholly here if the cluster is lost or does not answer.
+    """Run a campaign on a cluster, or in this process if the cluster is lost or does not answer.
 
     Parameters
     ----------
     path_or_campaign, scheduler, options
         As for `run_campaign`.
     say
-        Called with the reason before the campaign is run here.
+        Called with the reason before the campaign runs in this process.
     """
     try:
         return run_campaign(path_or_campaign, scheduler=scheduler, **options)
@@ -176,8 +175,8 @@ def run_here_if_lost(
     return run_campaign(path_or_campaign, **options)
 
 
-def _reached(campaign: Campaign, raw: Path, place: Path) -> bool:
-    """Whether a pattern of raw files could mean one in the results folder, the next time."""
+def _matches_results(campaign: Campaign, raw: Path, place: Path) -> bool:
+    """Whether a pattern of raw files could match files in the results folder."""
     depth = len(place.relative_to(raw).parts)
     patterns = [p for entry in campaign.run for p in entry.files]
     patterns += [p for surface in campaign.surface for p in surface.scans or ()]
@@ -185,8 +184,8 @@ def _reached(campaign: Campaign, raw: Path, place: Path) -> bool:
     return depth == 0 or any("**" in p or len(Path(p).parts) > depth for p in wild)
 
 
-def _run_no_python(campaign: Campaign) -> None:
-    """Refuse readers that come with the campaign: a file of others must not run programs here."""
+def _refuse_python_readers(campaign: Campaign) -> None:
+    """Raise if the campaign names Python readers: a foreign campaign file must not run programs."""
     for name in own_python(campaign):
         raise ConfigError(
             f"instrument = '{shown(name)}' is a program of the campaign's own, which runs only if "
@@ -200,8 +199,8 @@ def _run_no_python(campaign: Campaign) -> None:
         )
 
 
-def _keep_inside(campaign: Campaign, place: Path) -> None:
-    """Refuse a results folder outside of the campaign's: a file of others must not choose it."""
+def _refuse_outside_folder(campaign: Campaign, place: Path) -> None:
+    """Raise if the results folder is outside the campaign's folder (foreign campaign files)."""
     home = campaign.file.resolve().parent
     if not place.is_relative_to(home):
         raise ConfigError(
@@ -216,10 +215,10 @@ def _keep_inside(campaign: Campaign, place: Path) -> None:
         )
 
 
-def _keep_apart(campaign: Campaign, place: Path) -> None:
-    """Refuse a results folder that holds, or lies in, what the campaign reads."""
+def _refuse_input_folder(campaign: Campaign, place: Path) -> None:
+    """Raise if the results folder contains, or is inside, an input of the campaign."""
     raw = campaign.raw.resolve()
-    if place.is_relative_to(raw) and _reached(campaign, raw, place):
+    if place.is_relative_to(raw) and _matches_results(campaign, raw, place):
         raise ConfigError(
             f"{place}: results must lie apart from the raw files; choose another folder with "
             "--output"

@@ -1,4 +1,4 @@
-"""Running-in and steady friction of runs at one speed, as the terminal shows them."""
+"""Table of running-in and steady friction of runs at one speed, for the terminal."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _NONE = "–"
 
 
 def running_in_table(outcome: Outcome) -> Table | None:
-    """Return running-in, steady and mean friction of a few runs of which one runs in; else None."""
+    """Return running-in, steady and mean friction of a few runs, or None if none runs in."""
     found: list[tuple[str, RunningIn]] = []
     for run in outcome.runs[: _MOST_ROWS + 1]:
         entry = outcome.store.get("run", run.name, RunRecord)

@@ -1,4 +1,4 @@
-"""Output and signals of the command line: any terminal, any pipe, any way of being stopped."""
+"""Output and signals of the command line, for all terminals, pipes and interruptions."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ _PLAIN = str.maketrans(
 )
 _ERRORS = "tribolab_plain"
 _Hook = Callable[["sys.UnraisableHookArgs"], object]
-_AGAIN = 0.01  # s: by then the compiled code is left
+_AGAIN = 0.01  # s, until compiled code has returned
 _UNWRITABLE = 3  # exit code, as for results that cannot be written
 
 
 def say(text: str, *, to_stderr: bool = False) -> None:
-    """Write a line for a person; what a file or its name holds cannot steer the terminal."""
+    """Print a line with control characters escaped, so that it cannot steer the terminal."""
     print(harmless(text), file=sys.stderr if to_stderr else sys.stdout, flush=True)
 
 
 class Terminated(KeyboardInterrupt):
-    """SIGTERM or SIGHUP arrived: to be tidied up after as after Ctrl-C."""
+    """Raised on SIGTERM or SIGHUP, to clean up as after Ctrl-C."""
 
     def __init__(self, number: int) -> None:
         super().__init__(signal.Signals(number).name)
@@ -41,10 +41,10 @@ class Terminated(KeyboardInterrupt):
 
 
 class _Pipe(io.RawIOBase):
-    """A file descriptor for writing; when it takes no more, the rest goes nowhere.
+    """File descriptor for writing that ignores a closed pipe.
 
-    So ``| head -1`` changes what is shown, not what is done nor the exit code. What else went
-    wrong, a full disk say, is in `failed`.
+    So ``| head -1`` shortens the output, but changes neither the work nor the exit code. Other
+    errors, e.g. a full disk, are in `failed`.
     """
 
     def __init__(self, number: int) -> None:
@@ -73,7 +73,7 @@ class _Pipe(io.RawIOBase):
 
 
 def _plain(error: UnicodeError) -> tuple[str, int]:
-    """Say in ASCII what an encoding does not have; bytes of a file's name stay to be seen."""
+    """Replace characters missing in an encoding by ASCII; escape undecodable bytes."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     text = error.object[error.start : error.end].translate(_PLAIN)
@@ -82,13 +82,13 @@ def _plain(error: UnicodeError) -> tuple[str, int]:
 
 @contextlib.contextmanager
 def prepared() -> Iterator[None]:
-    """Have standard output and errors take every text, and SIGTERM and SIGHUP clean up.
+    """Configure stdout and stderr for all text, and clean up on SIGTERM and SIGHUP.
 
-    Standard output that could not be written, to a full disk say, is exit code 3 at the end.
-    Does nothing to streams that somebody else put in place, as tests and notebooks do.
+    If standard output could not be written, e.g. to a full disk, the exit code is 3. Streams
+    replaced by others, e.g. by tests and notebooks, are left unchanged.
     """
     codecs.register_error(_ERRORS, _plain)
-    # what arithmetic does with damaged numbers is found by checks, and told in words
+    # checks report damaged numbers in words
     warnings.filterwarnings("ignore", category=RuntimeWarning)
     warnings.formatwarning = lambda message, *_, **__: f"tribolab: {message}\n"
     pipes = {}
@@ -110,7 +110,7 @@ def prepared() -> Iterator[None]:
     ignored = sys.unraisablehook
     sys.unraisablehook = partial(_sent_again, ignored)
     for number in (signal.SIGTERM, signal.SIGHUP):
-        if signal.getsignal(number) is signal.SIG_DFL:  # nohup ignores SIGHUP, and means it
+        if signal.getsignal(number) is signal.SIG_DFL:  # nohup ignores SIGHUP on purpose
             before[number] = signal.signal(number, _stop)
     try:
         yield
@@ -127,12 +127,12 @@ def prepared() -> Iterator[None]:
 
 
 def _stop(number: int, frame: FrameType | None) -> NoReturn:
-    signal.signal(number, signal.SIG_IGN)  # once is enough: tidying up is not to be cut short
+    signal.signal(number, signal.SIG_IGN)  # a second signal must not interrupt the cleanup
     raise Terminated(number)
 
 
 def _sent_again(before: _Hook, unraisable: sys.UnraisableHookArgs) -> None:
-    """Send a signal once more that came where compiled code swallows exceptions."""
+    """Send a signal again that was raised where compiled code swallows exceptions."""
     error = unraisable.exc_value
     if not isinstance(error, KeyboardInterrupt):
         before(unraisable)
@@ -142,6 +142,6 @@ def _sent_again(before: _Hook, unraisable: sys.UnraisableHookArgs) -> None:
         number = signal.Signals(error.number)
         signal.signal(number, _stop)
     send: Callable[[], object] = partial(signal.raise_signal, number)
-    if hasattr(signal, "pthread_kill"):  # which wakes a thread that waits
+    if hasattr(signal, "pthread_kill"):  # wakes a waiting thread
         send = partial(signal.pthread_kill, threading.get_ident(), number)
     threading.Timer(_AGAIN, send).start()

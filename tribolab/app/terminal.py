@@ -1,4 +1,4 @@
-"""What the command line shows of results: short tables, and where to look next."""
+"""Output of results on the command line: short tables, and paths of the files."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
 
 _PIPED_WIDTH = 120
 _SHOWN, _HANDFUL = 10, 5
-_MOST_POINTS = 16  # more do not help in a terminal
+_MOST_POINTS = 16  # most rows in a terminal
 _NONE = "–"
 _COUNTS = ("load", "runs", "segments")
 
 
 def console() -> Console:
-    """Return a console on stdout that no text can steer; a pipe has no width of its own."""
+    """Return a console on stdout with escaped control characters; a pipe has a fixed width."""
     out = Console(highlight=False)
     if not out.is_terminal:
         out = Console(highlight=False, width=_PIPED_WIDTH)
@@ -47,7 +47,7 @@ def console() -> Console:
 
 
 class _Harmless(RenderHook):
-    """What is printed, with the marks of the console's own styles only."""
+    """Render hook that escapes control characters in all printed text except console styles."""
 
     def process_renderables(self, renderables: list[ConsoleRenderable]) -> list[ConsoleRenderable]:
         return [_Cleaned(part) for part in renderables]
@@ -64,16 +64,16 @@ class _Cleaned:
 
 
 def verdict_line(outcome: Outcome) -> str:
-    """Return the verdict in one word, and how many runs and scans can be used."""
+    """Return the verdict in one word, and the numbers of usable runs and scans."""
     word, counts = verdict_of(outcome.runs, outcome.surfaces)
     return f"{word:7s} {counts}"
 
 
 def outcome_table(outcome: Outcome) -> Table:
-    """Return one row per measured curve: what was measured, at what speeds, how much friction."""
+    """Return one row per measured curve: conditions, speeds and friction."""
     table = Table(box=None, pad_edge=False, header_style="bold")
     done = [curve for curve in outcome.curves if curve.done]
-    # where nothing is said of what was measured, the run's name tells rows apart
+    # without labels the run's name distinguishes rows
     nameless = any(not (curve.surface or curve.medium) for curve in done)
     for heading in (*(("run",) if nameless else ()), "surface", "medium"):
         table.add_column(heading)
@@ -92,7 +92,7 @@ def outcome_table(outcome: Outcome) -> Table:
 
 
 def points_table(outcome: Outcome) -> Table | None:
-    """Return the friction at each speed of the only curve, if it has a few; else None."""
+    """Return friction at each speed if there is only one curve with a few points; else None."""
     done = [curve for curve in outcome.curves if curve.done]
     rows = _points(done[0], outcome) if len(done) == 1 else ()
     known = [
@@ -127,7 +127,7 @@ def _numbers(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
     speed = [row["sliding_speed_m_s"] for row in points if row["sliding_speed_m_s"] is not None]
     mu = [v for row in points if (v := row["friction_coefficient"]) is not None]
     if not speed or not mu:
-        return _of_unknown_speed(curve, outcome)
+        return _segment_cells(curve, outcome)
     segments = sum(int(row.get("segments") or 0) for row in points)
     return (
         str(len(curve.run_names)),
@@ -151,8 +151,8 @@ def _error_of(points: Sequence[Row]) -> str:
     return f"{'at most ' if len(known) > 1 else ''}{max(known):.2g} {held}"
 
 
-def _of_unknown_speed(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
-    """Return the friction of the segments themselves: without a speed there is no curve."""
+def _segment_cells(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
+    """Return the friction of the segments; without a speed there is no curve."""
     entries = [outcome.store.get("run", name, RunRecord) for name in curve.run_names]
     rows = [row for entry in entries if entry for row in entry.record.facts.segments]
     known = [v for row in rows if (v := row.get("friction_coefficient")) is not None]
@@ -164,7 +164,7 @@ def _of_unknown_speed(curve: CurveOutcome, outcome: Outcome) -> tuple[str, ...]:
 
 
 def outcome_lines(outcome: Outcome) -> list[str]:
-    """Say how many runs were done, taken over and failed, and what is to be known of them."""
+    """Return lines on the numbers of runs done, reused and failed, with notes on them."""
     done = [run for run in outcome.runs if run.done]
     reused = sum(run.reused for run in done)
     line = f"{len(done)} of {Count(len(outcome.runs)):run|runs}"
@@ -176,19 +176,19 @@ def outcome_lines(outcome: Outcome) -> list[str]:
     lines = [line] if outcome.campaign.run else []
     for quality, what in (("error", "crashed"), ("fail", "failed"), ("suspect", "are suspect in")):
         runs = [run for run in outcome.runs if run.quality == quality]
-        # a campaign of hundreds of runs is not read again for a handful of lines
+        # read only the records that are named
         names = [f"{run.name}{_why(run, outcome)}" for run in runs[:_HANDFUL]]
         names += [run.name for run in runs[_HANDFUL:]]
         for surface in outcome.surfaces:
             if quality in surface.objections:
-                names.append(f"scans of {surface.name}{_because(surface.checks, quality)}")
+                names.append(f"scans of {surface.name}{_reasons(surface.checks, quality)}")
         lines += [f"checks {what}: {name}" for name in names[:_HANDFUL]]
         if len(names) > _HANDFUL:
             file = from_here(outcome.folder / "tables" / "checks.csv")
             lines.append(f"checks {what}: and {len(names) - _HANDFUL} more: see {file}")
     said = outcome.campaign.contradicting_viscosities()
     lines += [f"medium {name}: {text}" for name, text in said.items()]
-    lines += _told_of_runs(done, outcome)
+    lines += _run_notices(done, outcome)
     lines += _undecided(done, outcome)
     lines += _decisions(outcome)
     if known := [surface for surface in outcome.surfaces if surface.files]:
@@ -207,7 +207,7 @@ def outcome_lines(outcome: Outcome) -> list[str]:
 
 
 def where_to_look(outcome: Outcome) -> list[str]:
-    """Say in which files the results are."""
+    """Return lines with the paths of the results."""
     lines = []
     if any(curve.done for curve in outcome.curves):
         file = from_here(outcome.folder / "tables" / "stribeck.csv")
@@ -215,8 +215,8 @@ def where_to_look(outcome: Outcome) -> list[str]:
     return [*lines, f"report: {from_here(outcome.folder / 'report.html')}"]
 
 
-def _told_of_runs(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
-    """Say of a few runs which part of each stroke counts, and whether they ran in, or wore out."""
+def _run_notices(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
+    """Return notices on a few runs, e.g. on trimmed strokes, running-in and wear."""
     few = done if len(done) <= _HANDFUL else ()
     return [
         f"{run.name}: {'left out: ' * (notice.where == STROKE_ENDS)}{notice.message}"
@@ -228,7 +228,7 @@ def _told_of_runs(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
 
 
 def _undecided(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
-    """Return in a line how many segments may have a large trend or none."""
+    """Return a line with the number of segments whose trend is undecided."""
     # imported late for a quick start
     from tribolab.records.runs.trends import undecided_trends
 
@@ -239,13 +239,13 @@ def _undecided(done: Sequence[RunOutcome], outcome: Outcome) -> list[str]:
 
 
 def _is_uncalibrated(outcome: Outcome) -> bool:
-    """Whether the uncertainty of a curve holds nothing of its instrument's calibration."""
+    """Whether the uncertainty of a curve excludes the calibration of its instrument."""
     entries = [outcome.store.get("curve", c.name, CurveRecord) for c in outcome.curves if c.done]
     return any("statistical only" in entry.record.uncertainty_says for entry in entries if entry)
 
 
 def _decisions(outcome: Outcome) -> list[str]:
-    """Say in a line what a person decided, and where it stands."""
+    """Return a line on manual decisions, and where they are listed."""
     decided = [run for run in outcome.runs if run.quality_as_found]
     if not decided:
         return []
@@ -266,18 +266,18 @@ def _decisions(outcome: Outcome) -> list[str]:
 def _why(run: RunOutcome, outcome: Outcome) -> str:
     entry = outcome.store.get("run", run.name, RunRecord)
     rows = [] if entry is None else [asdict(row) for row in entry.record.facts.checks]
-    return _because(rows, run.quality)
+    return _reasons(rows, run.quality)
 
 
-def _because(rows: Iterable[Mapping[str, Any]], status: str) -> str:
-    """Return the checks that say so, and what they say."""
+def _reasons(rows: Iterable[Mapping[str, Any]], status: str) -> str:
+    """Return the checks with this status, and their messages."""
     mine = [row for row in rows if row["status"] == status and not row.get("decision")]
     said = [f"{row['check']}: {row.get('scan', '')} {row['message']}" for row in mine]
     return "".join(f": {' '.join(text.split())}" for text in ["; ".join(said)] if text)
 
 
 def _computed(outcome: Outcome) -> str:
-    """Say what is known of the surfaces."""
+    """Return the computed results of surfaces as a list in words."""
     words = {"psd": "spectrum", "contact": "contact", "adhesion": "adhesion"}
     parts = {part for surface in outcome.surfaces for part in surface.parts}
     return ", ".join(word for part, word in words.items() if part in parts) or (
@@ -286,7 +286,7 @@ def _computed(outcome: Outcome) -> str:
 
 
 def _roughness(outcome: Outcome) -> list[str]:
-    """Say the roughness of surfaces as drawings and instruments state it, with its cut-off."""
+    """Return the roughness of surfaces in the standard form, with its cut-off."""
     rows = []
     for surface in outcome.surfaces:
         entry = outcome.store.get("surface", surface.name, SurfaceRecord)
@@ -296,9 +296,9 @@ def _roughness(outcome: Outcome) -> list[str]:
 
 
 def _doubts(surface: SurfaceOutcome) -> list[str]:
-    """Return what may be otherwise with a surface's numbers, but for what checks say of its scans.
+    """Return suspect findings on a surface other than those of the checks of its scans.
 
-    Of form that is doubtful it is told, too: the roughness beside it stands and falls with it.
+    A doubtful form is included, because the roughness depends on it.
     """
     return [
         finding.message
@@ -308,7 +308,7 @@ def _doubts(surface: SurfaceOutcome) -> list[str]:
 
 
 def outside_lines(campaign: Campaign) -> list[str]:
-    """Name the files outside of the campaign's folders that were read, and what to do."""
+    """Return lines that name the files read outside the campaign's folders, and what to do."""
     files = inputs_outside(campaign)
     if not files:
         return []
@@ -320,7 +320,7 @@ def outside_lines(campaign: Campaign) -> list[str]:
 
 
 def foreign_lines(outcome: Outcome) -> list[str]:
-    """Name the files of the results that were damaged, and those that are not ours."""
+    """Return lines that name damaged results and foreign files."""
     lines = []
     if outcome.damaged:
         lines.append(
@@ -339,7 +339,7 @@ def _handful(names: Sequence[str]) -> str:
 
 
 def failure_lines(outcome: Outcome) -> list[str]:
-    """Say which runs, surfaces, scans and models failed and why, and what the file may say."""
+    """Return lines on failed runs, surfaces, scans and models, with reasons and advice."""
     # imported late for a quick start
     from tribolab.records.models.mode_record import condition
 
@@ -356,7 +356,7 @@ def failure_lines(outcome: Outcome) -> list[str]:
 
 
 def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
-    """Say how well the truth was found, where to look and what to do next."""
+    """Return lines on the agreement with the truth, and the next steps."""
     c, folder, results = compared.runs, compared.folder, outcome.folder
     rows = compared.surfaces
     lines = [
@@ -390,7 +390,7 @@ def truth_lines(compared: DemoComparison, outcome: Outcome) -> list[str]:
 
 
 def _not_described(results: Path) -> str:
-    """Say in brackets how many curves of which surface the model does not describe."""
+    """Return, in brackets, the number of curves that the model does not describe, by surface."""
     # imported late for a quick start
     from tribolab.records.models.model_words import is_described
     from tribolab.report import tables
@@ -406,12 +406,12 @@ def _not_described(results: Path) -> str:
 
 
 def paper_lines(folder: Path, table: pd.DataFrame) -> list[str]:
-    """Say how many of the paper's numbers hold, which differ, and where to look.
+    """Return lines on how many of the paper's numbers agree, and which differ.
 
     Parameters
     ----------
     folder
-        The results of `tribolab.paper.reproduce.reproduce`.
+        Folder of the results of `tribolab.paper.reproduce.reproduce`.
     table
         Published numbers beside computed ones.
     """
@@ -432,7 +432,7 @@ def paper_lines(folder: Path, table: pd.DataFrame) -> list[str]:
 
 
 def from_here(path: Path) -> str:
-    """Return a path as short as it can be said from here."""
+    """Return a path relative to the current folder, if it is inside."""
     try:
         return str(path.resolve().relative_to(Path.cwd()))
     except ValueError:

@@ -1,4 +1,4 @@
-"""Whether results are as they were written, and as the raw files give them."""
+"""Verification of results: unchanged since written, and reproducible from the raw files."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from tribolab.core.errors import ConfigError, OutputError, ReadError, brief
 from tribolab.reading.netcdf.netcdf import read_short
 from tribolab.version import __version__
 
-# what says when and where it was made, not what came out
+# entries that may differ: time and place of the computation
 _PASSING = frozenset({"made_at", "versions", "seconds", "history", "reused"})
-# the files of figures for publication, which are not drawn again
+# figure files, which are not drawn again
 _DRAWN = frozenset({"figures", "surface_figures", "model_figures", "sliding_figures"})
 
 
 def problems(results: Path) -> list[str]:
-    """Say what of a results folder or a packed file is not as it was written."""
+    """Return the changed or missing files of a results folder or archive."""
     if results.is_file():
         return problems_of(results)
     if not results.is_dir():
@@ -42,7 +42,7 @@ def mend(results: Path) -> None:
     Raises
     ------
     ConfigError
-        If it is no results folder, or nothing is lost.
+        If it is not a results folder, or the marker is not lost.
     """
     if not (results / CATALOGUE).is_file():
         raise ConfigError(f"{results}: no results folder: it has no {CATALOGUE}")
@@ -64,14 +64,14 @@ def recomputed(
     progress: Progress | None = None,
     trust: bool = False,
 ) -> list[str]:
-    """Compute results again from the raw files, and say which numbers differ.
+    """Compute results again from the raw files, and return the numbers that differ.
 
     Parameters
     ----------
     results
-        The folder.
+        The results folder.
     campaign
-        The campaign file, where it is not beside the results.
+        The campaign file, if it is not next to the results.
     jobs, progress, trust
         As in `run_campaign`.
 
@@ -80,7 +80,7 @@ def recomputed(
     ReadError
         If the report cannot be read.
     ConfigError
-        If the campaign file is not there, or has changed since; or if another version made them.
+        If the campaign file is missing or has changed, or if another version made the results.
     """
     folder = open_folder(results)
     version = folder.report["versions"].get("tribolab", "")
@@ -109,7 +109,7 @@ def _differing(there: Path, made: Path, name: str) -> list[str]:
     try:
         if there.suffix == ".json":
             pair = [json.loads(path.read_text("utf-8")) for path in (there, made)]
-            at = next(_unlike(pair[0], pair[1]), "")
+            at = next(_differing_entries(pair[0], pair[1]), "")
         elif there.suffix == ".csv":
             lines = [path.read_text("utf-8").splitlines() for path in (there, made)]
             rows = enumerate(zip_longest(*lines), 1)
@@ -123,14 +123,16 @@ def _differing(there: Path, made: Path, name: str) -> list[str]:
     return [f"{name}: not what the raw files give, first at {at}"] if at else []
 
 
-def _unlike(one: object, other: object, at: str = "") -> Iterator[str]:
-    """Name the entries in which two reports differ."""
+def _differing_entries(one: object, other: object, at: str = "") -> Iterator[str]:
+    """Yield the names of entries in which two reports differ."""
     if isinstance(one, dict) and isinstance(other, dict):
         for key in sorted({*one, *other} - _PASSING - _DRAWN):
-            yield from _unlike(one.get(key), other.get(key), f"{at}.{key}" if at else key)
+            yield from _differing_entries(
+                one.get(key), other.get(key), f"{at}.{key}" if at else key
+            )
     elif isinstance(one, list) and isinstance(other, list) and len(one) == len(other):
         for place, pair in enumerate(zip(one, other, strict=True)):
-            yield from _unlike(*pair, f"{at}[{place}]")
+            yield from _differing_entries(*pair, f"{at}[{place}]")
     elif one != other and not (one != one and other != other):
         yield at
 

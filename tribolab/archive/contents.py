@@ -16,8 +16,8 @@ from tribolab.core.untyped import Json
 from tribolab.reading.dialect.zero_reading import parse_zero
 from tribolab.report.campaign_tables import TABLES
 
-_RESULTS = "published"  # not in the results folder of `tribolab run`, which would be replaced
-_OWN = ("catalogue.sqlite",)  # cache of the next run; useless to others
+_RESULTS = "published"  # outside the results folder of `tribolab run`, which would be replaced
+_OWN = ("catalogue.sqlite",)  # cache for the next run
 _KINDS = {
     ".html": "text/html",
     ".json": "application/json",
@@ -47,7 +47,7 @@ def campaign_of(results: Path, report: Json, stated: Path | None = None) -> Camp
     Raises
     ------
     ConfigError
-        If its file is not next to them, or has changed since.
+        If the campaign file is not next to the results, or has changed since.
     """
     file = report["campaign"]["file"]
     places = [stated] if stated else [results.parent / file, results / file]

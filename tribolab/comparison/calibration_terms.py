@@ -24,15 +24,7 @@ _NOT_STATED = (
 
 @dataclass(frozen=True)
 class _Part:
-    """Input of one side; two sides with the same one share its error.
-
-    Parameters
-    ----------
-    name
-        Name of the input.
-    whose
-        Instrument and its calibration, or the mount; "" if it cannot be shared.
-    """
+    """Input of one side; two sides with the same input share its error."""
 
     name: str
     whose: str
@@ -71,11 +63,11 @@ def calibration_terms(
 
     Notes
     -----
-    sum_j (c_A - c_B)^2 u_j^2 over the inputs j that both share: what varies with the calibration
-    where instrument and calibration are the same, what varies with the mount where both are the
-    same sample in one mount of one campaign. Of what they do not share both count. What varies more
-    often is in the scatter of the runs, and what only one side states while both share it is not
-    known of the difference: it is left out.
+    The variance is sum_j (c_A - c_B)^2 u_j^2 over the shared inputs j: those that vary with the
+    calibration if instrument and calibration are the same, and those that vary with the mount if
+    both sides are one sample in one mount of one campaign. Inputs that are not shared add
+    separately. Inputs that vary more often are in the scatter of the runs. A shared input that only
+    one side states is left out.
     """
     size = condition.speeds.size
     if first is None or second is None:
@@ -104,7 +96,7 @@ def calibration_terms(
 
 
 def _rows(row: np.ndarray, size: int) -> np.ndarray:
-    """One term that is fully correlated between points, or one term for each point."""
+    """Return a term that is fully correlated between points, or one term per point."""
     return row.reshape(-1, size)
 
 
@@ -119,7 +111,7 @@ def _calibrations(folder: Folder, runs: RunNames) -> frozenset[str]:
 def _side_inputs(
     folder: Folder, runs: RunNames, speeds: np.ndarray, together: bool
 ) -> dict[_Part, np.ndarray]:
-    """Return the inputs of one side, each with the effect of one standard uncertainty (point)."""
+    """Return the inputs of one side with the effects of their standard uncertainties (point)."""
     table = folder.table("uncertainty_budget")
     if table is None or "varies" not in table:
         return {}
@@ -145,7 +137,7 @@ _EACH_POINT = tuple(map(part_words, EACH_POINT))
 
 
 def _origin(folder: Folder, runs: RunNames, together: bool) -> Mapping[str, str]:
-    """Return the calibration or mount that an input varies with."""
+    """Return the identity of the calibration or mount with which an input varies."""
     made = {}
     known = _calibrations(folder, runs)
     for whose in known:
@@ -160,7 +152,7 @@ def _origin(folder: Folder, runs: RunNames, together: bool) -> Mapping[str, str]
 
 
 def _values_at(rows: pd.DataFrame, speeds: np.ndarray) -> np.ndarray:
-    """Contributions at the speeds of a comparison; 0 where the curve has none."""
+    """Return contributions at the speeds of a comparison; 0 for speeds missing in the curve."""
     known = rows[SPEED_COLUMN].to_numpy(dtype=float)
     apart = np.abs(np.log(known[:, None] / speeds))
     nearest = apart.argmin(axis=0)
@@ -169,7 +161,7 @@ def _values_at(rows: pd.DataFrame, speeds: np.ndarray) -> np.ndarray:
 
 
 def terms_text(made: Sequence[CalibrationTerms]) -> str:
-    """Text on the errors included in addition to the scatter of the runs."""
+    """Return text on the errors included in addition to the scatter of the runs."""
     shared = tuple(dict.fromkeys(name for terms in made for name in terms.shared))
     own = tuple(dict.fromkeys(name for terms in made for name in terms.own if name not in shared))
     if not shared and not own:

@@ -92,8 +92,8 @@ def compare(
     Parameters
     ----------
     first, second
-        Results folders, what `read_results` returns of them, or tables of friction with the columns
-        ``run``, ``sliding_speed_m_s``, ``friction_coefficient`` and, where known, ``surface``,
+        Results folders, results from `read_results`, or tables of friction with the columns
+        ``run``, ``sliding_speed_m_s``, ``friction_coefficient`` and, if known, ``surface``,
         ``medium``, ``nominal_normal_force_N``. Without a second, two levels of the first are
         compared.
     by
@@ -103,29 +103,29 @@ def compare(
         The two levels, the reference first; by default the first two.
     margin
         Largest irrelevant difference of the coefficient, absolute (``"0.01"``) or relative to the
-        first (``"5 %"``); without one no point is called equivalent.
+        first (``"5 %"``); without a margin no point is called equivalent.
     pairs
         Number of comparisons made together, which share one error rate.
 
     Returns
     -------
     Comparison
-        See there.
+        The differences and their significance.
 
     Raises
     ------
     AnalysisError
         If the two have no condition and speed in common.
     UnitError
-        If the margin is no number and no share.
+        If the margin is neither a number nor a percentage.
 
     Notes
     -----
-    Runs from the same raw files are not two observations. If all runs of a condition are, its
-    verdict states whether the analysis changed the numbers, without a test. `differences_of_groups`
-    has the statistics. What results folders state of their calibration and the scatter of the runs
-    does not show is in the errors; what both share, such as the gain of one instrument, only as far
-    as it acts on them differently (`calibration_terms`).
+    Runs from the same raw files are not independent observations. If all runs of a condition are
+    from the same files, its verdict states whether the analysis changed the numbers, without a
+    test. `differences_of_groups` documents the statistics. The errors include stated calibration
+    uncertainties; those shared by both sides, e.g. the gain of one instrument, count only as far as
+    their effects differ (`calibration_terms`).
 
     Examples
     --------
@@ -281,12 +281,12 @@ def _rows(
 
 
 def margin_of(margin: str, values: np.ndarray) -> np.ndarray | None:
-    """Stated margin in absolute terms, from an absolute or relative value.
+    """Return the stated margin in absolute terms, from an absolute or relative value.
 
     Raises
     ------
     UnitError
-        If it is neither.
+        If the margin is neither a number nor a percentage.
     """
     if not margin:
         return None

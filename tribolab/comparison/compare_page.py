@@ -45,7 +45,7 @@ def comparison_verdict(compared: Comparison) -> str:
 
 
 def _open_to(compared: Comparison) -> str:
-    """Text on the largest possible difference if none was proved."""
+    """Return text on the largest possible difference if no difference was proved."""
     rows = compared.points[compared.points["verdict"] == OPEN]
     reach = rows[["low", "high"]].abs().max(axis=1) / rows["first"].abs()
     if not np.isfinite(reach).any():

@@ -90,7 +90,7 @@ class Folder:
         Raises
         ------
         AnalysisError
-            If there is none.
+            If there are no segments.
         """
         # imported late for a quick start
         import pandas as pd
@@ -100,7 +100,7 @@ class Folder:
         return pd.DataFrame(rows)
 
     def table(self, name: str) -> pd.DataFrame | None:
-        """Return a table by name; None if the results lack it."""
+        """Return a table by name; None if it does not exist."""
         # imported late for a quick start
         from tribolab.report import tables
 

@@ -161,7 +161,7 @@ def history(
     Returns
     -------
     History
-        See there.
+        The control charts of all instruments.
 
     Raises
     ------
@@ -218,7 +218,7 @@ def history_of(
     rules: Sequence[str] = DEFAULT_RULES,
     baseline: int | None = None,
 ) -> History:
-    """Control charts of observations; arguments as for `history`."""
+    """Return control charts of observations; arguments as for `history`."""
     groups: dict[tuple[str, str, str], list[Observation]] = {}
     for point in sorted(group_by_speed(points), key=lambda point: (point.when, point.folder)):
         groups.setdefault((point.instrument, point.quantity, point.unit), []).append(point)
@@ -268,7 +268,7 @@ def _fields(
 
 
 def _due(stated: CalibrationTable, charts: Sequence[InstrumentHistory], instrument: str) -> Due:
-    """Date of the next calibration of an instrument, from its interval or its reference's drift."""
+    """Return the date of the next calibration, from the stated interval or a reference's drift."""
     assert stated.date is not None
     interval = None if stated.interval is None else stated.interval / _DAY
     watched = [c for c in charts if c.instrument == instrument and c.quantity == GAIN]
@@ -288,7 +288,7 @@ def _due(stated: CalibrationTable, charts: Sequence[InstrumentHistory], instrume
 
 
 def expectations(chart: InstrumentHistory, rules: Sequence[str]) -> str:
-    """Text on the rate of false alarms and the delay of true ones."""
+    """Return text on the rate of false alarms and the delay of true ones."""
     if chart.chart is None:
         return chart.remark
     points, usual = chart.values.size - chart.baseline_points, chart.baseline_points

@@ -32,7 +32,7 @@ from tribolab.metrology.planning import (
 from tribolab.report.read_results import Results
 
 _ASSURANCE = 0.8
-_TEN = 10  # numbers of runs for which the precision is listed
+_TEN = 10  # number of runs for which the precision is listed
 LONGEST_STROKE = 20  # times the pilot's sliding time: longest stroke considered
 
 
@@ -43,11 +43,11 @@ class MeasuringPlan:
     Parameters
     ----------
     table
-        A row for each condition and speed: what the pilot told (``within_std``,
-        ``autocorrelation_time_s``, ``between_runs_std``, ``pilot_runs``), the ``runs`` that are as
-        likely as not to reach the goal at the pilot's ``sliding_time_s`` and the ``assured_runs``
-        that do with assurance, ``cheapest_sliding_time_s`` with ``cheapest_runs`` and
-        ``cheapest_assured_runs`` for it, and what each of these takes in all, ``time_s``,
+        A row for each condition and speed: results of the pilot (``within_std``,
+        ``autocorrelation_time_s``, ``between_runs_std``, ``pilot_runs``); the number of ``runs``
+        that reach the goal with a probability of 50 % at the pilot's ``sliding_time_s``, and of
+        ``assured_runs`` with the stated assurance; ``cheapest_sliding_time_s`` with
+        ``cheapest_runs`` and ``cheapest_assured_runs``; and the total time of each, ``time_s``,
         ``assured_time_s``, ``cheapest_time_s``, ``cheapest_assured_time_s``.
     goal
         Wanted precision, in words.
@@ -90,20 +90,21 @@ def measuring_plan(
     Returns
     -------
     MeasuringPlan
-        See there.
+        The plan, with one row per condition and speed.
 
     Raises
     ------
     AnalysisError
-        If not one precision is asked for, the assurance is no chance of a half or more, or no
-        condition has two runs.
+        If there is not exactly one goal, the assurance is not between 0.5 and 1, or no condition
+        has two runs.
 
     Notes
     -----
-    Strokes of a run at one speed count as one longer stroke. What runs differ by is their variance
-    less what their finite sliding explains. Both numbers of runs hold the error of the pilot's own
-    variance: a pilot of three may well have found half of what runs differ by
-    (`runs_for_standard_error`). The cheapest time is at most twenty times the pilot's.
+    Strokes of a run at one speed count as one longer stroke. The variance between runs is the
+    variance of their means minus that explained by finite sliding time. Both numbers of runs
+    include the error of the pilot's variance: a pilot of three runs can easily underestimate the
+    scatter by half (`runs_for_standard_error`). The cheapest time is at most twenty times the
+    pilot's.
 
     Examples
     --------
@@ -156,7 +157,7 @@ def measuring_plan(
 def _pilots(
     pilot: pd.DataFrame | Results | str | Path,
 ) -> list[tuple[str, float, pd.DataFrame]]:
-    """Condition, speed and runs for every combination with two runs or more."""
+    """Return condition, speed and runs for every combination with two or more runs."""
     if isinstance(pilot, pd.DataFrame):
         table, where = pilot, "table"
     else:
@@ -182,7 +183,7 @@ def _pilots(
 
 
 def _runs(segments: pd.DataFrame) -> pd.DataFrame:
-    """Mean, variance, memory and sliding time of each run at one speed."""
+    """Return mean, variance, correlation time and sliding time of each run at one speed."""
     known = pd.DataFrame(
         {
             "run": segments["run"],
@@ -197,7 +198,7 @@ def _runs(segments: pd.DataFrame) -> pd.DataFrame:
 
 
 def _scatter(runs: pd.DataFrame) -> tuple[Pilot, float, float]:
-    """Scatter of the runs, their sliding time, and their mean."""
+    """Return the scatter of the runs, their sliding time, and their mean."""
     within = math.sqrt(float(runs["variance"].mean()))
     memory = float(np.nan_to_num(runs["memory"].mean()))
     sliding = float(runs["time"].median())
@@ -208,7 +209,7 @@ def _scatter(runs: pd.DataFrame) -> tuple[Pilot, float, float]:
 
 
 def plan_text(plan: MeasuringPlan) -> str:
-    """Summary of a plan in one sentence."""
+    """Return the summary of a plan in one sentence."""
     table = plan.table
     beyond = int(table["runs"].isna().sum())
     if beyond:
@@ -225,7 +226,7 @@ def plan_text(plan: MeasuringPlan) -> str:
 
 
 def _missing(plan: MeasuringPlan) -> str:
-    """Text on the worst point, and the precision that ten runs reach there."""
+    """Return text on the worst point, and the precision that ten runs reach there."""
     rows = plan.table[plan.table["runs"].isna()].to_dict("records")
     scatter, worst = max(
         (
@@ -252,7 +253,7 @@ def _missing(plan: MeasuringPlan) -> str:
 
 
 def _span(runs: pd.Series) -> str:
-    """Smallest and largest number of runs, within the feasible range."""
+    """Return the smallest and largest feasible number of runs as text."""
     low, high = runs.min(), runs.max()
     if not math.isfinite(low):
         return "runs out of reach"

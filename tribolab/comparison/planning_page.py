@@ -71,5 +71,5 @@ def write_plan(plan: MeasuringPlan, heading: str, folder: Path) -> Path:
 
 
 def _count(runs: float) -> int | str:
-    """Return the number of runs as text, or "more than" the largest considered."""
+    """Return the number of runs, or "out of reach" if it is infinite."""
     return int(runs) if math.isfinite(runs) else "out of reach"

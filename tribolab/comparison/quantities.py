@@ -32,18 +32,18 @@ def quantity_rows(
     same
         Whether the raw data of each condition are the same; its difference then has no error.
     terms
-        Errors of the differences of each that scatter does not include (term, point).
+        Errors of each condition's differences that scatter does not include (term, point).
     first, second
         Tables of shear stresses and roughness, if any.
     by
-        Column by which the two differ on purpose.
+        Column in which the two sides are meant to differ.
 
     Returns
     -------
     pandas.DataFrame
-        A row for each: ``quantity``, ``of``, ``first``, ``second``, ``difference``,
-        ``standard_error``, ``low`` and ``high`` at 95 %, ``low_90`` and ``high_90``, all of it in
-        SI; ``basis`` says what the error holds.
+        A row for each quantity in SI: ``quantity``, ``of``, ``first``, ``second``, ``difference``,
+        ``standard_error``, ``low`` and ``high`` at 95 %, ``low_90`` and ``high_90``; ``basis``
+        states the components of the error.
     """
     rows = [_mean_friction(*each) for each in zip(conditions, same, terms, strict=True)]
     for name, make in (("shear_stress", _shear_stress), ("roughness", _roughness)):
@@ -80,7 +80,7 @@ def _row(
 
 
 def _mean_friction(condition: MatchedRuns, same: bool, terms: np.ndarray) -> list[object]:
-    """Mean friction of each run over the speeds that all runs have, or over its own."""
+    """Return the row of mean friction over the speeds common to all runs, or to each run."""
     means = [np.nanmean(values, axis=1)[:, None] for values in (condition.first, condition.second)]
     everywhere = terms.mean(axis=1, keepdims=True)
     compared = differences_of_groups([(means[0], means[1])], not_in_scatter=[everywhere])
@@ -96,7 +96,7 @@ def _mean_friction(condition: MatchedRuns, same: bool, terms: np.ndarray) -> lis
 def _matched_rows(
     first: pd.DataFrame, second: pd.DataFrame, keys: Sequence[str]
 ) -> list[tuple[pd.Series, pd.Series]]:
-    """Rows of two tables that agree in their common keys, each once."""
+    """Return pairs of rows of two tables that agree in their common keys, each once."""
     result = []
     for _, row in first.iterrows():
         for _, other in second.iterrows():

@@ -27,7 +27,7 @@ from tribolab.metrology.reml import variance_components
 from tribolab.report.read_results import Results
 
 _POOLED = "all speeds"
-FEW = 5  # levels of a factor below which its variance is hardly known
+FEW = 5  # levels of a factor below which its variance is very uncertain
 
 
 @dataclass(frozen=True)
@@ -40,9 +40,9 @@ class Repeatability:
         The factors.
     table
         A row for each speed and one for all of them: mean, standard deviations within
-        (``repeatability_std``) and between the levels of each factor (``between_..._std``), all of
-        them together (``reproducibility_std``), the limits r and R that two single runs differ by
-        at 95 % coverage, and ``runs``. The row of all speeds is relative to the mean.
+        (``repeatability_std``) and between the levels of each factor (``between_..._std``), their
+        total (``reproducibility_std``), the limits r and R of the difference of two single runs
+        with 95 % coverage, and ``runs``. The row of all speeds is relative to the mean.
     mandel
         A row for each level of the first factor and condition with two runs or more at each: h and
         k with their limits at 1 %.
@@ -68,32 +68,32 @@ def repeatability(
     ----------
     table
         Table of friction with a column for each factor, or a campaign file or results folder, whose
-        `[[run]]` entries say operator, mount, day, specimen or other labels.
+        `[[run]]` entries state operator, mount, day, specimen or other labels.
     by
-        The factors, as a list or separated by commas. A factor that has its own levels within
-        another (mounts of a day) is named with it: ``"day,day:mount"``.
+        The factors, as a list or separated by commas. A nested factor (mounts within a day) is
+        named with its parent: ``"day,day:mount"``.
     value
-        Column to look at.
+        Column to analyse.
 
     Returns
     -------
     Repeatability
-        See there.
+        The components of variance.
 
     Raises
     ------
     AnalysisError
-        If a factor is not known, has one level only, or cannot be told from another or from chance.
+        If a factor is unknown, has one level only, or is confounded with another or with the runs.
 
     Notes
     -----
-    One run is one observation, the mean of its strokes at a speed; conditions (surface, medium,
-    load) have means of their own, and what spreads their runs is relative to these. Where there is
-    one factor that is crossed with the conditions, with as many runs in each, it is the analysis of
-    variance with the interaction pooled where its p is above 0.25; else restricted maximum
-    likelihood (`variance_components`). ISO 5725-2:
-    s_R^2 = s_r^2 + s_L^2, r = 2.8 s_r, R = 2.8 s_R. For all speeds together variances relative to
-    the squared mean are averaged with the degrees of freedom as weights.
+    One run is one observation, the mean of its strokes at a speed; each condition (surface, medium,
+    load) has its own mean, to which the scatter of its runs is relative. For one factor crossed
+    with the conditions and equal numbers of runs, the method is analysis of variance, with the
+    interaction pooled if its p is above 0.25; otherwise it is restricted maximum likelihood
+    (`variance_components`). ISO 5725-2: s_R^2 = s_r^2 + s_L^2, r = 2.8 s_r, R = 2.8 s_R. For all
+    speeds together, variances relative to the squared mean are averaged, weighted by degrees of
+    freedom.
 
     Examples
     --------
@@ -130,7 +130,7 @@ def repeatability(
 
 
 def _per_run(segments: pd.DataFrame, names: Sequence[str]) -> pd.DataFrame:
-    """Mean of each run at each speed, with its condition and the levels of the factors."""
+    """Return the mean of each run at each speed, with its condition and factor levels."""
     known = segments.copy()
     wanted = dict.fromkeys(part for name in names for part in name.split(":"))
     for part in wanted:
@@ -256,7 +256,7 @@ def _pool_speeds(rows: Sequence[dict[str, object]], names: Sequence[str]) -> dic
 
 
 def _mandel(runs: pd.DataFrame, name: str) -> pd.DataFrame:
-    """Mandel's h and k of each level of a factor with two runs or more in a condition."""
+    """Return Mandel's h and k of each level of a factor with two or more runs in a condition."""
     rows = []
     conditions = runs[["condition", "level"]].drop_duplicates().sort_values(["condition", "level"])
     for condition, speed in conditions.itertuples(index=False, name=None):

@@ -26,7 +26,7 @@ def write_repeatability(told: Repeatability, heading: str, folder: Path) -> Path
     part = Part(
         "components",
         "Components of variance",
-        texts=_plainly(told),
+        texts=_explanations(told),
         figures=(drawn,),
         tables=(_components(told),),
         notes=(
@@ -47,8 +47,8 @@ def write_repeatability(told: Repeatability, heading: str, folder: Path) -> Path
     return page
 
 
-def _plainly(told: Repeatability) -> tuple[str, ...]:
-    """Text that explains r and R, and names factors with too few levels."""
+def _explanations(told: Repeatability) -> tuple[str, ...]:
+    """Return text that explains r and R, and names factors with too few levels."""
     last = told.table.iloc[-1]
     said = [
         f"Of two runs that were measured alike, 95 of 100 pairs differ by less than "

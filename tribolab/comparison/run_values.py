@@ -14,7 +14,7 @@ from tribolab.core.wording import force_text
 CONDITION = ["surface", "medium", "nominal_normal_force_N"]
 SPEED_COLUMN = "sliding_speed_m_s"
 VALUE = "friction_coefficient"
-TOLERANCE = 0.1  # relative distance of speeds that belong together, as in measured curves
+TOLERANCE = 0.1  # relative difference of speeds that count as one, as in measured curves
 
 
 @dataclass(frozen=True)
@@ -26,9 +26,9 @@ class MatchedRuns:
     condition
         Surface, medium and load in words.
     speeds
-        [m/s] (speed)
+        Common speeds [m/s] (speed).
     first, second
-        Mean friction coefficient of each run (run, speed), NaN where it has none.
+        Mean friction coefficient of each run (run, speed); NaN if missing.
     first_runs, second_runs
         Names of the runs.
     """
@@ -42,7 +42,7 @@ class MatchedRuns:
 
 
 def condition_text(surface: object, medium: object, load: float) -> str:
-    """Surface, medium and load as text.
+    """Return surface, medium and load as text.
 
     Examples
     --------
@@ -56,7 +56,7 @@ def condition_text(surface: object, medium: object, load: float) -> str:
 
 
 def segments_of(table: pd.DataFrame, where: object = "table") -> pd.DataFrame:
-    """Segments of a table of friction that have a speed and a coefficient.
+    """Return the segments of a table of friction with known speed and coefficient.
 
     Segments that a person rejected are left out.
 
@@ -77,7 +77,7 @@ def segments_of(table: pd.DataFrame, where: object = "table") -> pd.DataFrame:
 
 
 def speed_levels(speeds: np.ndarray) -> np.ndarray:
-    """Geometric mean [m/s] of the group that each speed belongs to.
+    """Return the geometric mean [m/s] of the group of each speed.
 
     Neighbouring speeds within 10 % of each other form a group.
 
@@ -110,7 +110,7 @@ def match_runs(
     Returns
     -------
     list of Matched
-        Conditions and speeds that both have, in the order of the first.
+        Common conditions and speeds, in the order of the first group.
     """
     keys = [_condition_keys(segments, by) for segments in (first, second)]
     result = []
@@ -145,7 +145,7 @@ def select_level(segments: pd.DataFrame, by: str, level: str) -> pd.DataFrame:
     Raises
     ------
     AnalysisError
-        If there is no such column or level.
+        If the column or level does not exist.
     """
     if by not in segments:
         raise AnalysisError(f"the table of friction has no column '{shown(by)}'")
@@ -167,6 +167,6 @@ def _condition_keys(segments: pd.DataFrame, by: Sequence[str]) -> pd.Series:
 
 
 def _per_run(segments: pd.DataFrame, levels: np.ndarray) -> pd.DataFrame:
-    """Mean coefficient of each run (row) at each speed (column)."""
+    """Return the mean coefficient of each run (row) at each speed (column)."""
     known = segments.assign(level=levels)
     return known.pivot_table(index="run", columns="level", values=VALUE, aggfunc="mean")

@@ -23,13 +23,13 @@ class Side:
     Parameters
     ----------
     name
-        Name for the reader.
+        Name in texts.
     segments
-        Its rows of the table of friction.
+        Its segments as rows of the table of friction.
     folder
-        Their results folder; None for a table.
+        Results folder; None for a table.
     tables
-        Those of shear stresses and roughness, where there are any.
+        Tables of shear stresses and roughness, if any.
     """
 
     name: str
@@ -41,7 +41,7 @@ class Side:
 def sides_of(
     first: Compared, second: Compared | None, by: str, levels: Sequence[str]
 ) -> tuple[Side, Side]:
-    """Sides of a comparison; arguments as for `compare`.
+    """Return the sides of a comparison; arguments as for `compare`.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def sides_of(
 
 
 def _distinct_names(alike: tuple[Side, Side]) -> tuple[Side, Side]:
-    """Return distinct names for two folders of the same name."""
+    """Return two sides with distinct names, for two folders of the same name."""
     names = [
         str(side.folder.path) if side.folder else f"{side.name} ({word})"
         for side, word in zip(alike, ("first", "second"), strict=True)

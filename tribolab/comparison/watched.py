@@ -35,7 +35,7 @@ _FRICTION = [
     "tilt_found_rad",
 ]
 SeriesColumns = dict[str, np.ndarray]
-_ALONE = arrow_csv.ReadOptions(use_threads=False)  # small tables: threads cost more than they save
+_ALONE = arrow_csv.ReadOptions(use_threads=False)  # threads slow down reading of small tables
 _SLIP = ["run", "sample_noise", "mains_amplitude"]
 
 
@@ -52,7 +52,7 @@ class Observation:
     folder
         The results folder.
     value
-        In that unit.
+        Value in that unit.
     speed
         Sliding speed [m/s]; NaN if not applicable.
     """
@@ -67,7 +67,7 @@ class Observation:
 
 
 def results_below(folders: Iterable[str | Path]) -> list[Path]:
-    """Results folders among the given folders and below them."""
+    """Return the results folders among the given folders and below them."""
     places: list[Path] = []
     for folder in map(Path, folders):
         own = (
@@ -79,7 +79,7 @@ def results_below(folders: Iterable[str | Path]) -> list[Path]:
 
 
 def observations_of(path: str | Path) -> tuple[list[Observation], Folder]:
-    """Observations of the instruments in a results folder, and the folder.
+    """Return the observations of the instruments in a results folder, and the folder.
 
     Raises
     ------
@@ -97,7 +97,7 @@ def observations_of(path: str | Path) -> tuple[list[Observation], Folder]:
         names = {run["name"] for run in runs}
         mine = _select_runs(friction, names)
         noise = None if slip is None else _select_runs(slip, names)
-        when = _began(runs, folder.made_at)
+        when = _start_time(runs, folder.made_at)
         for quantity, unit, value in _numbers(folder.campaign, runs, mine, noise):
             if np.isfinite(value):
                 made.append(Observation(name, quantity, unit, when, str(folder.path), value))
@@ -107,7 +107,7 @@ def observations_of(path: str | Path) -> tuple[list[Observation], Folder]:
 
 
 def _segments(folder: Folder) -> SeriesColumns:
-    """Return what is watched of the segments of all runs."""
+    """Return the monitored columns of the segments of all runs."""
     rows = folder.segments
     known = {name: [row.get(name) for row in rows] for name in _FRICTION}
     return {
@@ -117,7 +117,7 @@ def _segments(folder: Folder) -> SeriesColumns:
 
 
 def _table(folder: Folder, name: str, columns: Sequence[str]) -> SeriesColumns | None:
-    """Read some columns of a table, ten times faster than all of them."""
+    """Read some columns of a table, ten times faster than the whole table."""
     path = folder.path / "tables" / f"{name}.csv"
     if not path.is_file():
         return None
@@ -140,8 +140,8 @@ def _select_runs(table: SeriesColumns, names: Collection[str]) -> SeriesColumns:
     return {name: column[mine] for name, column in table.items()}
 
 
-def _began(runs: Iterable[Json], otherwise: dt.datetime) -> dt.datetime:
-    """Return the start of the first run, without time zone, or else the time of analysis."""
+def _start_time(runs: Iterable[Json], otherwise: dt.datetime) -> dt.datetime:
+    """Return the start of the first run, without time zone; by default the time of analysis."""
     known = []
     for run in runs:
         try:
@@ -157,11 +157,11 @@ def _numbers(
     friction: SeriesColumns,
     slip: SeriesColumns | None,
 ) -> Iterable[tuple[str, str, float]]:
-    """Yield quantity, unit and value."""
+    """Yield quantity, unit and value of each monitored number."""
     column = friction
-    yield "zero of the friction force", "N", _middle(column["friction_force_offset_N"])
-    yield "zero of the normal force", "N", _middle(column["normal_force_offset_N"])
-    tilt = _middle(column["tilt_found_rad"])
+    yield "zero of the friction force", "N", _finite_mean(column["friction_force_offset_N"])
+    yield "zero of the normal force", "N", _finite_mean(column["normal_force_offset_N"])
+    tilt = _finite_mean(column["tilt_found_rad"])
     if not np.isfinite(tilt):
         tilt = _tilt(column["friction_force_offset_N"], column["normal_force_N"])
     yield _TILT, "rad", tilt
@@ -170,18 +170,22 @@ def _numbers(
         ("load", "normal_force_N", "nominal_normal_force_N"),
     ):
         ratio = column[value] / np.where(column[wanted] > 0, column[wanted], np.nan)
-        yield f"set-point error of the {what}", "1", _middle(ratio) - 1
+        yield f"set-point error of the {what}", "1", _finite_mean(ratio) - 1
     if slip is not None:
-        yield "noise of friction", "1", _middle(slip["sample_noise"])
-        yield "hum of the mains", "1", _middle(slip["mains_amplitude"])
+        yield "noise of friction", "1", _finite_mean(slip["sample_noise"])
+        yield "hum of the mains", "1", _finite_mean(slip["mains_amplitude"])
     shifts = [run.get("clock_shift_s") for run in runs]
-    yield "clock shift", "s", _middle(np.array([s for s in shifts if s is not None], dtype=float))
+    yield (
+        "clock shift",
+        "s",
+        _finite_mean(np.array([s for s in shifts if s is not None], dtype=float)),
+    )
     if campaign is not None:
         yield GAIN, "1", _gain(campaign, runs, friction)
 
 
 def _gain(campaign: Campaign, runs: Sequence[Json], friction: SeriesColumns) -> float:
-    """Return the gain by a dead weight from runs on the reference, or else from their load."""
+    """Return the gain by a dead weight, from runs on the reference, or else from their load."""
     mine = _reference_runs(campaign, runs)
     gains = [run.get("dead_weight_gain") for run in runs if run["name"] in mine]
     if told := [float(gain) for gain in gains if gain is not None]:
@@ -189,11 +193,11 @@ def _gain(campaign: Campaign, runs: Sequence[Json], friction: SeriesColumns) -> 
     weight = campaign.reference.dead_weight
     if weight is None:
         return float("nan")
-    return _middle(_select_runs(friction, mine)["normal_force_N"]) / weight
+    return _finite_mean(_select_runs(friction, mine)["normal_force_N"]) / weight
 
 
 def _reference_runs(campaign: Campaign, runs: Sequence[Json]) -> set[str]:
-    """Names of the runs on a reference sample."""
+    """Return the names of the runs on a reference sample."""
     files = campaign.reference.files
     if files is None:
         return set()
@@ -215,7 +219,7 @@ def _reference_friction(
         return
     levels = speed_levels(speed[known])
     for level in np.unique(levels).tolist():
-        yield _middle(value[known][levels == level]), level
+        yield _finite_mean(value[known][levels == level]), level
 
 
 def group_by_speed(points: Sequence[Observation]) -> list[Observation]:
@@ -244,14 +248,14 @@ def group_by_speed(points: Sequence[Observation]) -> list[Observation]:
     return made
 
 
-def _middle(values: np.ndarray) -> float:
-    """Mean of the finite values; NaN without any."""
+def _finite_mean(values: np.ndarray) -> float:
+    """Return the mean of the finite values; NaN without any."""
     known = values[np.isfinite(values)]
     return float(known.mean()) if known.size else float("nan")
 
 
 def _tilt(offset: np.ndarray, load: np.ndarray) -> float:
-    """Angle between the axes of force cell and load, from the increase of the offset with load.
+    """Return the angle between force cell and load axis, from the increase of the offset with load.
 
     NaN with only one load: zero and tilt cannot be separated then.
     """

@@ -1,1 +1,1 @@
-"""Figures: one description per subject, drawn for papers and for the page."""
+"""Figures: one description per subject, drawn for publications and for the page."""

@@ -1,4 +1,4 @@
-"""What of an axis is seen at first, and where its ticks stand: as `assets/chart.js` has it."""
+"""Initial range and ticks of an axis, in agreement with `assets/chart.js`."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from dataclasses import dataclass, replace
 
 from tribolab.figures.spec import Axis, Panel, Series
 
-_ROOM = 0.06  # of the span, on both sides
-_SAME = 1e-5  # of the size, or decades: values that differ by less are one
-_LEAST_DECADES = 0.1  # that a logarithmic axis shows
-_LEAST_SHARE = 0.02  # of the size, that a linear axis shows
-_BELOW = 20  # on a logarithmic axis a bar is followed down to its value over this
+_ROOM = 0.06  # margin at both sides, as share of the span
+_SAME = 1e-5  # relative difference, or decades, below which values are equal
+_LEAST_DECADES = 0.1  # smallest range of a logarithmic axis
+_LEAST_SHARE = 0.02  # smallest range of a linear axis, as share of the values
+_BELOW = 20  # on a logarithmic axis error bars extend the range down to the value divided by this
 
 
 @dataclass(frozen=True)
 class Scale:
-    """The part of an axis that is seen, in its own numbers: of a logarithmic one, the logarithms.
+    """Visible range of an axis; on a logarithmic axis the logarithms of its ends.
 
-    `names` has the rows of an axis of names, the lowest first; it is empty for an axis of numbers.
+    `names` are the rows of a categorical axis, lowest first; empty for an axis of numbers.
     """
 
     low: float
@@ -28,7 +28,7 @@ class Scale:
     names: tuple[str, ...] = ()
 
     def place(self, value: object) -> float | None:
-        """Return where a value stands, from 0 at the low end to 1; None where there is no place."""
+        """Return the relative position of a value, from 0 at the low end to 1, or None."""
         if self.names:
             known = isinstance(value, str) and value in self.names
             return self._share(self.names.index(str(value))) if known else None
@@ -43,14 +43,14 @@ class Scale:
 
 
 def scales(panel: Panel, number: int, series: Sequence[Series]) -> tuple[Scale, Scale]:
-    """Return what is seen of a panel at first: all points and lines, and of bands what they reach.
+    """Return the initial ranges of a panel: all points, lines and error bars, but not bands.
 
     Parameters
     ----------
     panel, number
-        The panel, and its place in the figure.
+        The panel, and its number in the figure.
     series
-        What is shown of the figure.
+        Visible series of the figure.
     """
     mine = [curve for curve in series if curve.panel == number]
     x = _scale(panel.x, _along(mine, panel.x), level=False)
@@ -61,7 +61,7 @@ def scales(panel: Panel, number: int, series: Sequence[Series]) -> tuple[Scale, 
 
 
 def comparable(panels: Sequence[tuple[Panel, Sequence[Series]]]) -> Panel:
-    """Return a panel whose axes at first show what is in any of some figures of one panel each."""
+    """Return a panel whose initial ranges contain the data of several single-panel figures."""
     alike = panels[0][0]
     along = [x for panel, series in panels for x in _along(series, panel.x)]
     x = replace(alike.x, include=_ends(along, alike.x))
@@ -101,14 +101,14 @@ def _up(series: Iterable[Series], axis: Axis, x: Scale) -> Iterator[float]:
 
 
 def bar_lengths(curve: Series) -> tuple[list[float], list[float]]:
-    """Return the half lengths of the bars upward and downward; 0 where there is none."""
+    """Return the half lengths of the error bars upward and downward; 0 without one."""
     above = [_known(e) for e in curve.error] if len(curve.error) else [0.0] * len(curve.y)
     below = [_known(e) for e in curve.error_below] if len(curve.error_below) else above
     return above, below
 
 
 def _known(value: object) -> float:
-    """Return the half length of an error bar; 0 where it is unknown."""
+    """Return the half length of an error bar; 0 if it is unknown."""
     return float(value) if isinstance(value, int | float) and math.isfinite(value) else 0.0
 
 
@@ -132,7 +132,7 @@ def _scale(axis: Axis, values: Iterator[float], *, level: bool) -> Scale:
 
 
 def _apart(low: float, high: float, log: bool) -> tuple[float, float]:
-    """Return the ends of what is seen, so far apart that no noise in a last digit fills it."""
+    """Return the ends of a range, wide enough that rounding noise does not fill it."""
     largest = max(abs(low), abs(high))
     alone = high - low <= (_SAME if log else _SAME * largest)
     least = 0.6 if log else largest or 1.0

@@ -1,4 +1,4 @@
-"""One colour and marker for each surface, in every figure: on paper and on the page."""
+"""Colour and marker of each surface, the same in every figure and on the page."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from collections.abc import Iterable
 from tribolab.core.wording import is_dry
 from tribolab.figures.spec import Style
 
-# Okabe and Ito's palette, which people with any common colour deficiency tell apart
-# (Color Universal Design, 2008); `assets/drawing.js` and `still.css` have the same, also for dark.
+# Okabe and Ito's palette, distinguishable with any common colour deficiency (Color Universal
+# Design, 2008); also in `assets/drawing.js` and `still.css`, there with dark variants.
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#6B6B6B", "#000000")
 MARKERS = ("o", "s", "D", "^", "v", "p", "h", "*")  # one per colour; for loads, by rank
 BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, GREY, BLACK = range(8)
-# The colours of the reference study: Smooth green, Sb-S blue, Sb-R red.
+# colours of the reference study: Smooth green, Sb-S blue, Sb-R red
 _REFERENCE = {"smooth": GREEN, "sb-s": BLUE, "sb-r": VERMILLION}
 _ORDER = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BLACK, GREY)
 _DARKEST, _LIGHTEST = -0.35, 0.45  # share of black or white in the shades of loads
 
 
 def surface_colours(surfaces: Iterable[str]) -> dict[str, int]:
-    """Return the place of each surface in the palette: the order decides.
+    """Return the index of each surface in the palette, by order.
 
     The surfaces of the reference study keep the colours of the paper.
 

@@ -1,4 +1,4 @@
-"""A long trace drawn with few points and no spike lost."""
+"""Reduction of a long trace to few points without losing spikes."""
 
 from __future__ import annotations
 
@@ -22,14 +22,13 @@ def envelope(x: np.ndarray, y: np.ndarray, columns: int = 400) -> tuple[np.ndarr
     Returns
     -------
     x, y
-        Points of the trace in their order, at most two a column; a column with nothing but NaN
-        keeps one NaN, so that the line breaks there. A trace that is short already is returned
-        as it is.
+        Points of the trace in order, at most two per column; a column of NaN keeps one NaN as a
+        gap. A short trace is returned unchanged.
 
     Notes
     -----
-    A mean or a stride per column would let a spike of one sample vanish or appear by chance
-    (aliasing); the extremes of every column are what a plot of all points would cover.
+    Means or strides would lose single-sample spikes or show them by chance (aliasing); the extremes
+    of every column cover the same area as a plot of all points.
 
     Examples
     --------
@@ -46,7 +45,7 @@ def envelope(x: np.ndarray, y: np.ndarray, columns: int = 400) -> tuple[np.ndarr
 
 
 def envelope_index(x: np.ndarray, y: np.ndarray, columns: int = 400) -> np.ndarray:
-    """Return which points of a trace `envelope` keeps, in their order.
+    """Return the indices of the points that `envelope` keeps, in order.
 
     Parameters
     ----------
@@ -71,9 +70,9 @@ def envelope_index(x: np.ndarray, y: np.ndarray, columns: int = 400) -> np.ndarr
 
 
 def _starts(x: np.ndarray, columns: int) -> np.ndarray:
-    """Index of the first point of each column that has any."""
+    """Return the index of the first point of each nonempty column."""
     edges = np.arange(1, columns) / columns
-    if x[-1] > x[0]:  # of the two ends' shares, which are finite for any span
+    if x[-1] > x[0]:  # shares of the two ends remain finite for any span
         starts = np.searchsorted(x, x[0] * (1 - edges) + x[-1] * edges)
     else:
         starts = np.ceil(edges * (x.size - 1)).astype(np.int64)
@@ -82,7 +81,7 @@ def _starts(x: np.ndarray, columns: int) -> np.ndarray:
 
 
 def _extremes(y: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """Index of the first smallest and the first largest point of each column."""
+    """Return the indices of the first minimum and first maximum of each column."""
     ends = np.append(starts[1:], y.size)
     lowest, highest = (
         _first_at(y, extreme.reduceat(y, starts), starts, ends) for extreme in (np.fmin, np.fmax)
@@ -92,7 +91,7 @@ def _extremes(y: np.ndarray, starts: np.ndarray) -> np.ndarray:
 
 
 def _first_at(y: np.ndarray, level: np.ndarray, starts: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """Index of the first point of each column that is as high; its own first where none is."""
+    """Return the index of the first point of each column equal to its level, else of its first."""
     hits = np.append(np.flatnonzero(y == np.repeat(level, ends - starts)), y.size)
     first = hits[np.searchsorted(hits, starts)]
-    return np.where(first < ends, first, starts)  # NaN equals nothing
+    return np.where(first < ends, first, starts)  # NaN is unequal to everything

@@ -1,4 +1,4 @@
-"""Error bars of friction: the expanded uncertainty, or the reference study's standard deviation."""
+"""Error bars of friction: expanded uncertainty, or standard deviation of the reference study."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from scipy import special
 from tribolab.core.errors import AnalysisError, shown
 
 ErrorBars = Literal["U95", "std"]
-COVERAGE = float(special.ndtri(0.975))  # standard errors in a 95 % interval, many freedoms
+COVERAGE = float(special.ndtri(0.975))  # half width of a 95 % interval in standard errors
 
 
 def error_bar(data: xr.Dataset, name: str, kind: ErrorBars = "U95") -> np.ndarray:
@@ -22,7 +22,7 @@ def error_bar(data: xr.Dataset, name: str, kind: ErrorBars = "U95") -> np.ndarra
     data
         A measured curve or a friction result.
     name
-        Of the variable, e.g. ``"friction_coefficient"``.
+        Name of the variable, e.g. ``"friction_coefficient"``.
     kind
         ``"U95"``: the expanded uncertainty (95 % coverage). ``"std"``: the standard deviation while
         sliding, the error bar of the reference study.
@@ -30,13 +30,13 @@ def error_bar(data: xr.Dataset, name: str, kind: ErrorBars = "U95") -> np.ndarra
     Returns
     -------
     numpy.ndarray
-        In the unit and with the dims of the variable; NaN where it is not known. If the data have
-        a standard error but no expanded uncertainty, U95 is 1.96 standard errors.
+        In the unit and with the dims of the variable; NaN if unknown. If the data have a standard
+        error but no expanded uncertainty, U95 is 1.96 standard errors.
 
     Raises
     ------
     AnalysisError
-        If there is no such kind of error bar.
+        If the kind of error bar does not exist.
 
     Examples
     --------

@@ -21,16 +21,16 @@ def by_label(
     Parameters
     ----------
     results
-        Label to a result; or a result, also over further dims; or a list of results.
+        Results by label; or one result, also over further dims; or a list of results.
     labels
-        What tells the results of a list apart, one label for each; by default their number.
+        Labels of the results in a list, one for each; by default their numbers.
     known
-        The dim that one result has.
+        The dim of a single result.
 
     Raises
     ------
     AnalysisError
-        If there is not one label for each result of a list.
+        If a list does not have one label per result.
 
     Examples
     --------
@@ -55,14 +55,14 @@ def by_label(
 
 
 def parts(results: xr.Dataset, known: str) -> dict[str, xr.Dataset]:
-    """Return what a dataset holds along its further dims, by their labels; itself if it has none.
+    """Return the parts of a dataset along its further dims by label; itself without any.
 
     Parameters
     ----------
     results
-        With ``waveform`` over `known` and further dims.
+        Dataset with ``waveform`` over `known` and further dims.
     known
-        The dim that one result has.
+        The dim of a single result.
     """
     dims = [dim for dim in results["waveform"].dims if dim != known]
     named = {}
@@ -74,14 +74,14 @@ def parts(results: xr.Dataset, known: str) -> dict[str, xr.Dataset]:
     return named
 
 
-# Datasets by the surface's name, or one with the dim ``surface``.
+# datasets by name of the surface, or one with the dim ``surface``
 SurfaceOrSeveral = Mapping[str, xr.Dataset] | xr.Dataset
 
 
 def by_surface(data: SurfaceOrSeveral) -> dict[str, xr.Dataset]:
-    """Return datasets by the surface's name, also from one that has a dim ``surface``.
+    """Return datasets by name of the surface, also from one with the dim ``surface``.
 
-    Surfaces with different wavenumbers keep their own.
+    Each surface keeps its own wavenumbers.
     """
     if not isinstance(data, xr.Dataset):
         return dict(data)

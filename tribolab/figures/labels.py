@@ -1,4 +1,4 @@
-"""Words on figures and tables: axis labels with SI units, speeds, columns, names made harmless."""
+"""Texts on figures and tables: axis labels with SI units, speeds, columns, escaped names."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def symbol(name: str) -> str:
 
 
 def plain_symbol(name: str) -> str:
-    """Return the quantity's symbol as plain text; "" if it has an index, which needs mathtext.
+    """Return the quantity's symbol as plain text; "" if it has an index (mathtext only).
 
     Examples
     --------
@@ -53,7 +53,7 @@ _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def unit(name: str) -> str:
-    """Return the quantity's unit as it stands on an axis, ``""`` for a pure number.
+    """Return the quantity's unit as mathtext, ``""`` for a pure number.
 
     Examples
     --------
@@ -83,7 +83,7 @@ def label(name: str, long_name: str | None = None) -> str:
 
 @functools.lru_cache(maxsize=256)
 def column(name: str) -> str:
-    """Return the name of a table's column: the variable's with its unit.
+    """Return the name of a table column: the variable with its unit.
 
     Examples
     --------
@@ -105,10 +105,9 @@ def _known_characters() -> frozenset[int]:
 
 
 def plain(text: object, longest: int = 40) -> str:
-    r"""Make a name from a user's file safe to draw: no mathtext, no unknown letters, one line.
+    r"""Return a user's text that is safe to draw: one line without mathtext or missing glyphs.
 
-    A letter that the figures' font does not have is drawn as a box; the page beside the figure
-    has the name in full.
+    Characters missing in the font are drawn as boxes; the page shows the full name.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Turn a function that describes a figure into one that draws it, as `tribolab.plot` offers it."""
+"""Decorator that turns a function describing a figure into one that draws it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _SEVERAL = """axes
 
 
 class Plot(Protocol[P]):
-    """A function of `tribolab.plot`: it draws a figure; `spec` only describes it."""
+    """Function of `tribolab.plot` that draws a figure; its `spec` only describes it."""
 
     spec: Callable[P, FigureSpec]
     __name__: str
@@ -44,8 +44,8 @@ class Plot(Protocol[P]):
 def plotted(*, panels: int = 1) -> Callable[[Callable[P, FigureSpec]], Plot[P]]:
     """Return a decorator for a function that describes a figure.
 
-    The drawing function takes what the describing one takes, and `title`, `ax` (`axes` if there are
-    several panels) and `width`.
+    The drawing function has the parameters of the describing one, and `title`, `ax` (`axes` if
+    there are several panels) and `width`.
 
     Examples
     --------
@@ -91,7 +91,7 @@ def plotted(*, panels: int = 1) -> Callable[[Callable[P, FigureSpec]], Plot[P]]:
 
 
 def _completed(text: str, ax: str) -> str:
-    """Return a docstring with the parameters that all figures have, after its own."""
+    """Return a docstring with the common parameters of figures added."""
     common = _PARAMETERS.format(ax=ax)
     before, found, after = text.partition("\n\n    Notes\n")
     if not found:

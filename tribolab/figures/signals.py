@@ -1,4 +1,4 @@
-"""What the figures of a run draw: one signal, and how far each stroke has come."""
+"""Signals for the figures of a run: friction, and the strokes with their distance."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from tribolab.core.errors import AnalysisError
 if TYPE_CHECKING:
     import xarray as xr
 
-# Below this share of the load the ratio F_x/F_N is noise over nothing.
+# share of the load below which F_x/F_N is noise
 _LOADED = 0.2
 
 
-# what `main_signal` looks at, where it is there
+# variables that `main_signal` uses if available
 LOOKED_AT = ("friction_force", "normal_force", "friction_coefficient")
 
 
 class Signal(NamedTuple):
-    """Name of the quantity, its values (time), and what was removed, in words."""
+    """Name of a signal, its values (time), and the removed offset in words."""
 
     name: str
     values: np.ndarray
@@ -31,7 +31,7 @@ class Signal(NamedTuple):
 
 
 def offset_of(friction: xr.Dataset | None, name: str) -> float:
-    """Return the offset that the analysis removed (median over the segments), 0 if none."""
+    """Return the offset that the analysis removed (median over the segments), 0 without one."""
     if friction is None or name not in friction:
         return 0.0
     values = np.asarray(friction[name], float)
@@ -41,18 +41,18 @@ def offset_of(friction: xr.Dataset | None, name: str) -> float:
 
 def _without(data: xr.DataArray, offset: float) -> np.ndarray:
     values = np.asarray(data, float)
-    return lowered(values, offset) if offset else values  # a long record is not copied for nothing
+    return lowered(values, offset) if offset else values  # avoid copying long records
 
 
 def main_signal(run: xr.Dataset, friction: xr.Dataset | None = None) -> Signal:
-    """Return the friction coefficient over time, or the force where no load was recorded.
+    """Return the friction coefficient over time, or the force without a recorded load.
 
     Parameters
     ----------
     run
         A run (time).
     friction
-        Its friction result; the offsets it removed are removed here too.
+        Its friction result, whose offsets are removed from the signal.
 
     Returns
     -------
@@ -81,8 +81,8 @@ def main_signal(run: xr.Dataset, friction: xr.Dataset | None = None) -> Signal:
 
 
 def _ratio(force: np.ndarray, force_zero: float, load: np.ndarray, load_zero: float) -> np.ndarray:
-    """Return the ratio of two signals without their zeros, where there is a load."""
-    least = _LOADED * _usual(load, load_zero)
+    """Return the ratio of two signals without their zeros; NaN without load."""
+    least = _LOADED * _usual_load(load, load_zero)
     ratio = room(load.size)
     for first, last in pieces(0, load.size):
         pressing = load[first:last] - load_zero
@@ -93,8 +93,8 @@ def _ratio(force: np.ndarray, force_zero: float, load: np.ndarray, load_zero: fl
     return ratio
 
 
-def _usual(load: np.ndarray, zero: float) -> float:
-    """Return what 95 % of the readings above a zero do not exceed."""
+def _usual_load(load: np.ndarray, zero: float) -> float:
+    """Return the 95 % quantile of the load above its zero."""
 
     def above(first: int, last: int) -> np.ndarray:
         some = load[first:last] - zero
@@ -105,7 +105,7 @@ def _usual(load: np.ndarray, zero: float) -> float:
 
 
 class Stroke(NamedTuple):
-    """One segment of a run: its samples, how far it has come, and where it was trimmed."""
+    """One segment of a run: its samples, distance slid, and trimmed part."""
 
     number: int
     samples: slice
@@ -118,8 +118,8 @@ class Stroke(NamedTuple):
 def strokes_of(run: xr.Dataset, segments: xr.Dataset) -> list[Stroke]:
     """Return the samples of each segment with the distance slid since its start [m].
 
-    The distance comes from the position, else the speed, else (both unknown) it is the time
-    [s] since the start. It never decreases: what a noisy sensor goes back is not slid.
+    The distance comes from the position, else the speed, else (both unknown) it is the time [s]
+    since the start. It never decreases, even if a noisy sensor does.
     """
     time = np.asarray(run["time"], float)
     first = np.searchsorted(time, np.asarray(segments["start"], float), "left")

@@ -1,7 +1,7 @@
-"""What a figure shows: axes with quantity and unit, series, marks, words; three renderers draw it.
+"""Description of a figure: axes with quantity and unit, series, marks and texts.
 
-A function of this package turns results into a `FigureSpec`. `look.draw` draws it for papers and
-notebooks, `page.still` for the page before its script runs, `assets/chart.js` on the live page.
+A function of this package turns results into a `FigureSpec`. `look.draw` draws it for publications
+and notebooks, `page.still` for the page before its script runs, `assets/chart.js` on the live page.
 """
 
 from __future__ import annotations
@@ -19,34 +19,34 @@ from tribolab.units.quantities import quantity
 Style = Literal["points", "line", "dashed", "dotted", "dashdot", "longdash", "band", "bars", "heat"]
 Width = Literal["card", "half", "whole"]
 Values = Sequence[Any] | np.ndarray
-_MAX_CARD_LABELS = 8  # in the legend of a card, as in `assets/picture.js`
-_DIGITS = 6  # more than any screen resolves
+_MAX_CARD_LABELS = 8  # most labels in the legend of a card, as in `assets/picture.js`
+_DIGITS = 6  # exceeds the resolution of screens
 _NOT_ON_PAGE = frozenset({"columns", "keys", "paper", "column", "across", "name", "pale", "thin"})
 
 
 @dataclass(frozen=True)
 class Axis:
-    """One side of a panel: its quantity and unit, and which part of it is seen at first.
+    """Axis of a panel: its quantity and unit, and its initial range.
 
     Parameters
     ----------
     label, unit
         Name of the quantity and the unit in which it is drawn.
     log
-        Whether it is logarithmic at first.
+        Whether it is initially logarithmic.
     decades
-        How many decades below the highest value are seen at first; 0 shows all.
+        Decades initially visible below the highest value; 0 shows all.
     least
         Smallest possible value: error bars end there.
     include
-        Values that are seen at first whatever is drawn.
+        Values always included in the initial range.
     view
-        Its ends at first, whatever is drawn.
+        Fixed ends of the initial range.
     paper, column
         Label for papers, with the symbol as mathtext, and name of the column in `figure_data`; by
         default both follow from `label`.
     linear_below
-        Of an axis that is logarithmic on both sides of zero: where it is linear.
+        Absolute value below which an axis with logarithmic scales on both sides of zero is linear.
     """
 
     label: str
@@ -79,7 +79,7 @@ def axis_of(name: str, words: str = "", unit: str = "", **more: Any) -> Axis:
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes, with words above it, its relative height, and its name in `figure_data`."""
+    """Pair of axes with a title, its relative height, and its name in `figure_data`."""
 
     x: Axis
     y: Axis
@@ -95,43 +95,43 @@ class Series:
     Parameters
     ----------
     label
-        In the legend; series with the same label are switched together.
+        Text in the legend; series with the same label are switched together.
     x, y
-        In the units of the panel's axes; None or NaN where a value is unknown.
+        Values in the units of the panel's axes; None or NaN if unknown.
     style
-        How it is drawn. Of a "band", `y` is the lower edge and `high` the upper one; of "bars",
-        `y` has names and `x` the lengths; of "heat", `high` has the colours.
+        Style. For a "band", `y` is the lower edge and `high` the upper one; for "bars", `y` are
+        names and `x` the lengths; for "heat", `high` are the colour values.
     colour
-        Place in the palette: that of the surface in comparisons, else in the order of appearance.
+        Index in the palette: of the surface in comparisons, else by order of appearance.
     panel
         Number of the panel, from 0.
     surface, medium, load
-        What is shown, for the choice of loads and the filters; ``""`` and None apply to all.
+        Labels for the choice of loads and the filters; ``""`` and None apply to all.
     error
         Half lengths of the error bars, in the unit of `y` (of `x` if `y` has names).
     error_below
-        Half lengths downward where they differ from those upward.
+        Half lengths downward if they differ from those upward.
     hover
-        What the pointer shows: a text for each point, or one for all of them.
+        Tooltips: one text for each point, or one for all.
     runs
-        Names of the runs in it: it is hidden when all of them are.
+        Names of its runs: it is hidden if all of them are.
     link
-        The run that a click on a point opens; one for all points, or one for each.
+        Run that a click on a point opens; one for all points, or one for each.
     open
-        Whether its markers are open, as those of dry runs are.
+        Whether its markers are open, as for dry runs.
     joined
         Whether a thin line joins the points.
     shade
         Darker (below 0) or lighter (above 0) than the colour of the palette: the rank of the load.
     marker
-        Its marker; None for that of the colour.
+        Index of its marker; None for that of the colour.
     sizes
-        Area of each marker relative to the usual one.
+        Area of each marker relative to the default.
     pale, thin
-        Wide pale error bars (a standard deviation, no uncertainty); a thin line (a long trace).
+        Wide pale error bars (for a standard deviation); thin line (for a long trace).
     columns, name
-        Numbers and name for `figure_data`, by column with the unit in its name; by default what is
-        drawn, under its label.
+        Numbers and name for `figure_data`, by column with the unit in its name; by default the
+        drawn values under the label.
     """
 
     label: str
@@ -161,7 +161,7 @@ class Series:
 
 
 class SeriesLabels(TypedDict, total=False):
-    """What several series show: fields of `Series`."""
+    """Common labels of several series: fields of `Series`."""
 
     surface: str
     medium: str
@@ -172,9 +172,9 @@ class SeriesLabels(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class Mark:
-    """A straight line across a panel at a value, or a shaded stretch from `value` to `until`.
+    """Straight line across a panel at a value, or shaded interval from `value` to `until`.
 
-    `text` is its entry in the legend; `above` stands at the upper end, if there is room.
+    `text` is its entry in the legend; `above` is its label at the upper end, if there is room.
     """
 
     side: Literal["x", "y"]
@@ -190,7 +190,7 @@ class Mark:
 
 @dataclass(frozen=True)
 class Key:
-    """An entry of a paper's legend that explains a style used by all surfaces, in grey."""
+    """Entry of a publication's legend that explains a style of all surfaces, in grey."""
 
     label: str
     style: Style = "line"
@@ -201,26 +201,26 @@ class Key:
 
 @dataclass(frozen=True)
 class FigureSpec:
-    """A figure, independent of what draws it.
+    """Figure, independent of its renderer.
 
     Parameters
     ----------
     title, note, alt
-        What it shows; how to read it; and what it shows in words for who does not see it.
+        Title; explanation; and alternative text for screen readers.
     panels, series, marks, keys
-        What is drawn.
+        Content of the figure.
     id
-        Its address on the page, and the name of its files.
+        Anchor on the page, and name of its files.
     section
-        Section of the page, or card of the answer, that it belongs to.
+        Section of the page or view in which it appears.
     one_load
-        Whether the page shows one load at a time, the lowest at first.
+        Whether the page shows one load at a time, initially the lowest.
     width
-        Whether it fits a card, half the page or the whole width; on paper "whole" is 178 mm.
+        Width on the page: a card, half or whole; on paper "whole" is 178 mm.
     height
-        Of its panel on the page [px]; 0 is as usual.
+        Height of its panel on the page [px]; 0 is the default.
     rows
-        Whether names are listed along the ordinate, so that it cannot be made lower.
+        Whether names are listed along the ordinate, which fixes its height.
     across
         Number of panels in a row on paper.
     """
@@ -242,34 +242,34 @@ class FigureSpec:
 
     @property
     def loads(self) -> list[float]:
-        """Loads among which one is chosen, the lowest first; none where all are shown at once."""
+        """Selectable loads, lowest first; empty if all are shown at once."""
         if not self.one_load:
             return []
         return sorted({curve.load for curve in self.series if curve.load is not None})
 
     @property
     def surface(self) -> str:
-        """Surface that all of it is of; "" where there are several."""
+        """Common surface of all series; "" for several."""
         return only({curve.surface for curve in self.series})
 
     @property
     def medium(self) -> str:
-        """Medium that all of it is of; "" where there are several."""
+        """Common medium of all series; "" for several."""
         return only({curve.medium for curve in self.series})
 
 
 def only(names: set[str]) -> str:
-    """Return the name that there is; "" where there are several."""
+    """Return the only name; "" for several or none."""
     return min(names) if len(names) == 1 else ""
 
 
 def written_labels(figure: FigureSpec, labels: Collection[str]) -> int:
-    """Return how many labels the legend shows: a card has no room for many, points say theirs."""
+    """Return the number of labels in the legend; 0 for a card with too many."""
     return 0 if figure.width == "card" and len(labels) > _MAX_CARD_LABELS else len(labels)
 
 
 def legend(series: Iterable[Series]) -> dict[str, Series]:
-    """Return the series of each label: a full line or points; a band only if alone, and last."""
+    """Return the series that represents each label, lines and points before bands."""
     named: dict[str, Series] = {}
     ranks = {"line": 0, "points": 0, "bars": 0, "heat": 0, "band": 2}
     for curve in series:
@@ -282,7 +282,7 @@ def legend(series: Iterable[Series]) -> dict[str, Series]:
 
 
 def plain_data(value: Any) -> Any:
-    """Return a figure as plain data, without what is as usual and with the digits that are seen."""
+    """Return a figure as plain data, without defaults and with rounded numbers."""
     if is_dataclass(value) and not isinstance(value, type):
         values = {field.name: getattr(value, field.name) for field in fields(value)}
         usual = {field.name: field.default for field in fields(value)}
@@ -307,7 +307,7 @@ def _seen(value: float) -> float | None:
 
 
 def thinned(count: int, most: int = 400) -> np.ndarray:
-    """Return which of so many points of a smooth curve are kept, both ends among them.
+    """Return evenly spaced indices of a long smooth curve, including both ends.
 
     Examples
     --------
@@ -320,7 +320,7 @@ def thinned(count: int, most: int = 400) -> np.ndarray:
 
 
 def places(names: Iterable[str]) -> dict[str, int]:
-    """Return the place of each name in the palette, in the order of appearance.
+    """Return the palette index of each name, in the order of appearance.
 
     Examples
     --------
@@ -331,7 +331,7 @@ def places(names: Iterable[str]) -> dict[str, int]:
 
 
 def safe(text: str) -> str:
-    """Return text as a part of an address or a file's name.
+    """Return text in a form that is safe in anchors and file names.
 
     Examples
     --------

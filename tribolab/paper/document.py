@@ -1,4 +1,4 @@
-"""Content of the page: published numbers by section, and how many are reproduced."""
+"""Content of the page: published numbers by section, with their status."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ _MARKS = {
     ),
 }
 _BODY = "paper/section.html.j2"
-# Key, heading, and the words of "where a number is printed" that belong to it.
+# key, heading, and the texts for "where a number is printed" that belong to it
 _PARTS = (
     ("theory", "2 Theory of mixed lubrication", ("Sec. 2",)),
     ("setup", "3 Experiment", ("Sec. 3",)),
@@ -96,7 +96,7 @@ _ABOUT = {
     "dry": "The drawing of bonds in the contact is left out.",
     "discussion": "The drawing of a Schallamach wave is left out.",
 }
-# Word added to names of quantities that are unclear alone.
+# word added to names of quantities that are ambiguous alone
 _WORDS = {
     "hertz_contact_width": "2a of a smooth cylinder",
     "contact_area_ratio": "real over nominal area, A/A₀",

@@ -49,7 +49,7 @@ class PlannedFigure:
     name
         Name of its file.
     section
-        Key of the section of the paper that has it.
+        Key of its section of the paper.
     title
         Title.
     kinds

@@ -13,7 +13,7 @@ from tribolab.studies import xu2026
 from tribolab.surface.self_affine import SelfAffine, moment
 
 _SLOPE = 3  # q^3 C: the integrand of the mean square slope
-_ENDLESS = 1e30  # 1/m
+_ENDLESS = 1e30  # 1/m; practically infinite
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class SteepSpectrum:
     Parameters
     ----------
     surface
-        Its name.
+        Name of the surface.
     hurst
         Exponent H [1].
     half_slope_wavelength
@@ -43,7 +43,7 @@ class SteepSpectrum:
 
 
 def steep_spectra() -> list[Json]:
-    """Return the record on the page for each stand-in spectrum with H above 1.
+    """Return a record for the page on each stand-in spectrum with H above 1.
 
     Examples
     --------

@@ -25,12 +25,12 @@ _FOLDER = "simulated"
 
 @dataclass(frozen=True)
 class Laboratory:
-    """Programme of the virtual rig, by default that of the paper, each condition once.
+    """Programme of the virtual rig; by default that of the paper, each condition once.
 
     Parameters
     ----------
     loads
-        Normal forces [N] in glycerol; dry the lowest of them.
+        Normal forces [N] in glycerol; dry runs use the lowest.
     speeds
         Sliding speeds [m/s]; 3 um/s is included because the paper shows traces at it.
     scans
@@ -65,7 +65,7 @@ def simulate_laboratory(
 def analyse_laboratory(
     campaign: Campaign, folder: Path, executor: Executor | None, progress: Progress
 ) -> tuple[Outcome, tuple[PlannedSurface, ...]]:
-    """Analyse the raw files of the virtual rig by the usual pipeline.
+    """Analyse the raw files of the virtual rig with the normal pipeline.
 
     Returns
     -------

@@ -147,7 +147,7 @@ def simulate_campaign(
         for room in ("raw/friction", "raw/profiles", "truth"):
             (aside / room).mkdir(parents=True)
         work = list(_jobs(aside, seed, rig, names, conditions, n_repeats, n_scans))
-        work = _deal([faults] if isinstance(faults, str) else faults, work)
+        work = _assign_faults([faults] if isinstance(faults, str) else faults, work)
         pool = contextlib.nullcontext(executor) if executor else _processes(jobs)
         with pool as working:
             facts = _run_all(work, working, progress)
@@ -183,8 +183,8 @@ def _jobs(
         yield _Job(folder, seed, rig, _Condition(name, "", 0.0), 0, n_scans, _date(made))
 
 
-def _deal(faults: Sequence[str], work: list[_Job]) -> list[_Job]:
-    """Assign each fault to a run or surface, those with the fewest choices first."""
+def _assign_faults(faults: Sequence[str], work: list[_Job]) -> list[_Job]:
+    """Assign each fault to a run or surface, faults with the fewest choices first."""
     for name in faults:
         fault = fault_of_campaign(name)
         able = [k for k, job in enumerate(work) if _can_have(job, fault)]
@@ -208,7 +208,7 @@ def _can_have(job: _Job, fault: Fault | ScanFault) -> bool:
 
 
 def _date(made: int) -> dt.datetime:
-    """Start of a run; there are eight a day."""
+    """Return the start time of a run; there are eight runs a day."""
     day, turn = divmod(made, 8)
     return FIRST_DAY + dt.timedelta(days=day, minutes=52 * turn, seconds=17 * turn)
 
@@ -340,7 +340,7 @@ def campaign_text(names: Sequence[str], conditions: Sequence[_Condition]) -> str
 
 
 def _range(medium: str) -> str:
-    """Text of the bounds of the work of adhesion, from literature values of surface energies."""
+    """Return the bounds of the work of adhesion as text, from literature surface energies."""
     spread = work_of_adhesion_spread(PDMS_PMMA_GLYCEROL, samples=2).sel(medium=medium)
     ends = (1e3 * float(spread[f"work_of_adhesion_{end}"]) for end in ("low", "high"))
     return "work_of_adhesion_range = [{}]\n".format(", ".join(f'"{x:.1f} mJ/m^2"' for x in ends))

@@ -128,7 +128,7 @@ def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | Str
     surface, medium
         ``"Smooth"``, ``"Sb-S"``, ``"Sb-R"``; ``"glycerol"`` or ``"dry"``.
     normal_force
-        [N]
+        Normal force [N].
 
     Returns
     -------
@@ -153,7 +153,7 @@ def friction_law(surface: str, medium: str, normal_force: float) -> DryLaw | Str
         raise AnalysisError(f"the rig has no medium '{medium}'{nearest(medium, _MEDIA)}")
     s, known = xu2026.system, xu2026.surface(surface)
     pressure = s.nominal_pressure(normal_force)
-    # adhesion pulls Smooth into nearly full contact at every load; else area grows with load
+    # adhesion makes the contact of Smooth nearly full at every load; else area grows with load
     reference = pressure if known.name == "Smooth" else s.nominal_pressure(s.loads[0])
     if medium == "dry":
         level = _DRY_SHEAR_STRESS[known.name] * known.area_ratio_dry / reference

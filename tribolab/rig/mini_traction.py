@@ -1,4 +1,4 @@
-"""A simulated mini traction machine: a ball that rolls and slides on a disc, with known truth."""
+"""Simulated mini traction machine, a ball rolling and sliding on a disc, with known truth."""
 
 from __future__ import annotations
 
@@ -19,32 +19,33 @@ _HEADER = (
     "ECR (%)\tRolling Speed (mm/s)\tSliding Speed (mm/s)\tSRR (%)\tTraction Force (N)\t"
     "Traction Coeff (-)"
 )
-_RANGE = (1e-6, 0.08)  # N/m, viscosity times entrainment speed: beyond, the strips are no theory
-_SECONDS = 10.0  # from one row to the next
+_RANGE = (1e-6, 0.08)  # N/m, viscosity times entrainment speed: validity range of the strip theory
+_SECONDS = 10.0  # s between rows
 
 
 @dataclass(frozen=True)
 class MiniTraction:
-    """A steel ball on a rubber disc in a liquid, and what the machine gets wrong.
+    """Steel ball on a rubber disc in a liquid, with the errors of the machine.
 
     Parameters
     ----------
     surface
-        Rough surface of `studies.xu2026` that the ball has.
+        Rough surface of the ball, from `studies.xu2026`.
     radius, youngs_modulus, normal_force
-        Of the ball [m], of the disc [Pa], and the load [N].
+        Radius of the ball [m], modulus of the disc [Pa], and load [N].
     viscosity, shear_stress
-        Of the liquid [Pa s] at the first temperature, and in the real contact area [Pa].
+        Viscosity of the liquid [Pa s] at the first temperature, and shear stress in the real
+        contact area [Pa].
     slide_roll, speeds
         Slide-roll ratio and entrainment speeds [m/s] of the Stribeck step.
     traction_speed, traction_ratios
         Entrainment speed [m/s] and slide-roll ratios of the traction step; () for none.
     temperature
-        Of the liquid [K] at the beginning and at the end.
+        Temperature of the liquid [K] at the beginning and at the end.
     temperature_coefficient
-        By how much the viscosity falls with each kelvin [1/K].
+        Relative decrease of the viscosity per kelvin [1/K].
     noise, level
-        Relative standard deviation [1] of a row, and of what all rows of a run share.
+        Relative standard deviations [1] of each row, and of the factor common to a run.
 
     Examples
     --------
@@ -71,9 +72,9 @@ class MiniTraction:
     level: float = 0.03
 
     def friction(self, speed: np.ndarray, slide_roll: float, viscosity: float) -> np.ndarray:
-        """Friction coefficient at entrainment speeds [m/s], without what the machine gets wrong.
+        """Return friction coefficients at entrainment speeds [m/s], without the machine's errors.
 
-        It is that of the reduced theory of a ball, as fits and bands use it.
+        It follows the reduced theory of a ball, as used for fits and bands.
         """
         stated = (self.surface, self.radius, self.youngs_modulus, self.normal_force)
         known = _parts(*stated, slide_roll)
@@ -86,7 +87,7 @@ class MiniTraction:
 def _parts(
     surface: str, radius: float, youngs_modulus: float, normal_force: float, slide_roll: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return ln of viscosity times speed [N/m], of the liquid's friction, and of the real area."""
+    """Return ln of viscosity times speed [N/m], liquid friction, and friction per shear stress."""
     # imported late for a quick start
     from tribolab.contact.geometry import PointContact
     from tribolab.lubrication.parameters import Interface, Solver
@@ -108,7 +109,7 @@ def _parts(
 
 
 def mini_traction_text(machine: MiniTraction, seed: int = 0) -> str:
-    """Return what the machine's program writes of one run.
+    """Return the text that the machine's program writes for one run.
 
     Examples
     --------
@@ -152,9 +153,9 @@ def simulate_mini_traction(
     Parameters
     ----------
     folder
-        Where to; made if it is not there.
+        Target folder, created if missing.
     seed
-        Of noise and roughness.
+        Seed of noise and roughness.
     machine
         `MiniTraction`; None is the default.
     repeats

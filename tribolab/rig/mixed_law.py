@@ -12,7 +12,7 @@ from scipy.interpolate import PchipInterpolator
 from tribolab.core.errors import AnalysisError, Cure
 from tribolab.studies import xu2026
 
-# The set speeds themselves, so that the truth there needs no interpolation.
+# the set speeds are nodes, so that the truth there needs no interpolation
 _SPEEDS = tuple(sorted({1e-9, 1e-8, 1e-7, *xu2026.SPEEDS, 3e-2, 1e-1}))
 
 
@@ -25,7 +25,7 @@ class MixedLaw:
     surface
         Name of the surface, whose stand-in spectrum the model uses.
     normal_force
-        [N]
+        Normal force [N].
     shear_stress
         sigma_f [Pa] in the real contact area.
     speeds, friction
@@ -75,7 +75,7 @@ def mixed_law(surface: str, normal_force: float) -> MixedLaw:
     surface
         ``"Sb-S"`` or ``"Sb-R"``.
     normal_force
-        [N]
+        Normal force [N].
 
     Notes
     -----

@@ -64,7 +64,7 @@ def simulate_run(
     surface, medium
         ``"Smooth"``, ``"Sb-S"``, ``"Sb-R"``; ``"glycerol"`` or ``"dry"``.
     normal_force
-        [N], or text with a unit.
+        Normal force [N], or text with a unit.
     number
         Number of the repeat; part of the name only.
     seed

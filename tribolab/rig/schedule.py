@@ -16,9 +16,9 @@ class Schedule:
     Parameters
     ----------
     start, duration
-        [s] on the force clock.
+        Times [s] on the force clock.
     position, velocity, acceleration
-        At the phase's start [m], [m/s]; constant over it [m/s2].
+        Values at the start of the phase [m], [m/s], [m/s2]; the acceleration is constant.
     load_start, load_stop
         Load relative to the set load; linear in between.
     set_speed
@@ -26,7 +26,7 @@ class Schedule:
     stroke
         Number of the stroke; at rest that of the last stroke, -1 before the first.
     sliding
-        1 where the speed is constant, 0 in ramps, -1 at rest.
+        1 at constant speed, 0 in ramps, -1 at rest.
     """
 
     start: np.ndarray
@@ -50,7 +50,7 @@ class Schedule:
         return np.clip(np.searchsorted(self.start, time, side="right") - 1, 0, None)
 
     def motion(self, time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Position [m] and velocity [m/s] at each time, exactly."""
+        """Return the exact position [m] and velocity [m/s] at each time."""
         i = self.phase(time)
         passed, a = time - self.start[i], self.acceleration[i]
         velocity = self.velocity[i] + a * passed

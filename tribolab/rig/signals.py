@@ -124,7 +124,7 @@ def make_signals(
     law, slip
         Friction coefficient at speeds [m/s], and stick-slip.
     normal_force
-        [N]
+        Normal force [N].
     factor
         This run's friction relative to the law.
     rng

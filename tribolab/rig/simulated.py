@@ -61,8 +61,8 @@ def on_one_clock(run: SimulatedRun) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        ``friction_force`` and ``normal_force`` [N] as the force log has them, and
-        ``sliding_velocity`` [m/s], over ``time``.
+        ``friction_force`` and ``normal_force`` [N] of the force log, and ``sliding_velocity``
+        [m/s], over ``time``.
 
     Examples
     --------

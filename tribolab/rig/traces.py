@@ -63,8 +63,8 @@ def simulate_trace(
     Returns
     -------
     xarray.Dataset
-        A run: ``friction_coefficient`` and ``sliding_velocity`` on ``time``. Attributes ``form``,
-        and as the draw of this stroke turned out, ``wavelength_m`` and ``drop`` (NaN if none).
+        A run: ``friction_coefficient`` and ``sliding_velocity`` on ``time``. Attributes: ``form``,
+        and the actual ``wavelength_m`` and ``drop`` of this stroke (NaN if none).
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Comparison of the paper's numbers with computed ones."""
+"""Comparison of the paper's numbers with computed numbers."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _OWN: dict[str, Callable[[Published], Own | None]] = {
 
 
 def compare_with_paper(rows: Sequence[Published] = xu2026.published) -> pd.DataFrame:
-    """Compute the published numbers of the paper, and compare.
+    """Compute the published numbers of the paper, and compare them.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def _numbers(row: Published, computed: Computed | Measured) -> dict[str, str | f
         )
         difference = computed.value / row.si - 1 if row.si else math.nan
         tolerance = computed.tolerance
-        # a bound is met or not; a relative difference has no meaning
+        # a bound is met or not; a relative difference would be meaningless
         if row.relation.startswith(BOUNDS):
             difference = math.nan
     return {

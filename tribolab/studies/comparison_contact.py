@@ -39,7 +39,7 @@ def _rms_slope(row: Published, theory: Theory) -> Computed:
     return Computed(theory.slope(row.surface), 0.005, given=_SPECTRUM_HAS_IT)
 
 
-# Quantities to which an input was fitted: see `tribolab.studies.xu2026` on the spectra.
+# quantities to which an input was fitted: see `tribolab.studies.xu2026` on the spectra
 _SPECTRUM_HAS_IT = "the stand-in spectrum was made to have it"
 _EXPONENT = "the stand-in's exponent H was chosen for the areas with adhesion"
 _PRESSURE = "its pressure is not printed, and 0.1 MPa was chosen for the areas without adhesion"
@@ -157,7 +157,7 @@ def _own_half_width(row: Published) -> Own:
 
 
 def _area_ratio(surface: str, above: str, below: str) -> tuple[float, float, str]:
-    """Range of the ratio of two published areas, given their last digits."""
+    """Return the range of the ratio of two published areas within rounding."""
     p = "0.042 MPa; "
     first, second = (
         find_published(xu2026.published, "contact_area_ratio", surface, p + which)

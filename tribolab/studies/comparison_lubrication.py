@@ -74,7 +74,7 @@ COMPUTE_LUBRICATION: dict[str, Callable[[Published, Theory], Computed | Measured
 
 
 def _own_stress(row: Published) -> Own | None:
-    """Stress of Sb-R from that of Sb-S and the printed ratio; either may be wrong."""
+    """Return the stress of Sb-R from that of Sb-S and the printed ratio; either may be wrong."""
     if row.surface != _ROUGH:
         return None
     ratio = find_published(xu2026.published, "corrected_shear_stress_ratio", "Sb-R / Sb-S")
@@ -90,7 +90,7 @@ def _own_stress(row: Published) -> Own | None:
 
 
 def _own_ratio(row: Published) -> Own:
-    """Ratio at the load where the paper's own numbers deviate most from it."""
+    """Return the ratio at the load where the paper's own numbers deviate most from it."""
     low, high = _growth_ratio()
     every = []
     for load in _loads():
@@ -122,7 +122,7 @@ def _loads() -> list[str]:
 
 
 def _growth_ratio() -> tuple[float, float]:
-    """Ratio of the growth of area by adhesion of Sb-R and Sb-S, within rounding."""
+    """Return the ratio of the growth of area by adhesion of Sb-R and Sb-S, within rounding."""
     areas = {
         (surface, which): _rounding_range(
             find_published(xu2026.published, "contact_area_ratio", surface, f"0.1 MPa; {which}")
@@ -139,7 +139,7 @@ def _growth_ratio() -> tuple[float, float]:
 
 
 def _rounding_range(row: Published) -> tuple[float, float]:
-    """Range of numbers that round to the printed one [SI]."""
+    """Return the range of numbers that round to the printed one [SI]."""
     low, high = row.ends
     return low - row.last_digit / 2, high + row.last_digit / 2
 

@@ -104,7 +104,7 @@ def verdict_on(row: Published, computed: Computed | Measured, own: Own | None = 
     if agrees and computed.given:
         reasons.append(f"by construction: {computed.given}")
     if status == WIDE:
-        reasons.append(f"agrees only within {room_text(_room(row, computed))}")
+        reasons.append(f"agrees only within {room_text(_tolerance(row, computed))}")
     if agrees and not row.relation and low == high:
         if abs(computed.value - row.si) > computed.tolerance * abs(row.si):
             reasons.append("agrees within the last digit that is printed")
@@ -128,10 +128,10 @@ def _grade(row: Published, computed: Computed) -> str:
         return BY_CONSTRUCTION
     printed = row.last_digit / 2 / abs(row.si) if row.si else 0.0
     rounding = printed if printed <= _COARSE and not row.relation.startswith(BOUNDS) else 0.0
-    return REPRODUCED if _off(row, computed) <= max(NARROW, rounding) else WIDE
+    return REPRODUCED if _relative_distance(row, computed) <= max(NARROW, rounding) else WIDE
 
 
-def _off(row: Published, computed: Computed) -> float:
+def _relative_distance(row: Published, computed: Computed) -> float:
     """Relative distance of a computed number, or of a range, from the printed one [1]."""
     if row.relation == ">" or not row.si:
         return 0.0
@@ -141,8 +141,8 @@ def _off(row: Published, computed: Computed) -> float:
     return max(0.0, low - row.ends[1], row.ends[0] - high) / abs(row.si)
 
 
-def _room(row: Published, computed: Computed) -> float:
-    """Tolerance of a number [1]: stated, or half of the last digit."""
+def _tolerance(row: Published, computed: Computed) -> float:
+    """Return the tolerance of a number [1]: stated, or half of the last digit."""
     if row.relation.startswith(BOUNDS):
         return computed.tolerance
     return max(computed.tolerance, row.last_digit / 2 / abs(row.si))

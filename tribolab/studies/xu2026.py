@@ -4,8 +4,8 @@ R. Xu, C. Spies, M. Scaraggi, B. N. J. Persson, "Adhesion-controlled sliding and
 curve in hydrophobic soft contacts" (2026). Section and equation numbers below are that paper's.
 
 The power spectra are **stand-ins**: the measured ones are published as a picture only. Each is a
-plateau and a power law whose roughness and slope are the paper's, and whose exponent H was chosen
-to reproduce the paper's adhesive contact areas. All results based on them say so.
+plateau and a power law with the paper's roughness and slope; its exponent H was chosen to reproduce
+the paper's adhesive contact areas. All results based on them state this.
 """
 
 from __future__ import annotations
@@ -42,11 +42,11 @@ class ReferenceSystem:
     Parameters
     ----------
     radius, length
-        Of the cylinder [m].
+        Radius and length of the cylinder [m].
     youngs_modulus, poisson_ratio
         E [Pa] and nu [1] of the rubber.
     viscosity
-        Of glycerol [Pa s].
+        Viscosity of glycerol [Pa s].
     loads
         Normal forces [N].
     lowest_speed, highest_speed
@@ -89,7 +89,7 @@ class Profilometer:
     Parameters
     ----------
     tip_radius, pitch, scan_length
-        Of the stylus, between points, and of a scan [m].
+        Radius of the stylus, distance of points, and length of a scan [m].
     scans
         Number of scans of a cylinder.
 

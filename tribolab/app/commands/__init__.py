@@ -1,1 +1,1 @@
-"""The commands: their words, options and exit codes. What they do lies beside them."""
+"""Commands with their help texts, options and exit codes."""

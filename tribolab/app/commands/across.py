@@ -1,4 +1,4 @@
-"""The commands that set results beside each other."""
+"""Commands that compare results."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The commands that make a campaign, analyse it, and reproduce the paper."""
+"""Commands that make a campaign, analyse it, and reproduce the paper."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def demo(
 
         with progress_bars(quiet) as progress:
             outcome, compared = run_demo(folder, jobs=jobs, progress=progress)
-        from tribolab.app.terminal import truth_lines  # after workers have begun
+        from tribolab.app.terminal import truth_lines  # after the workers have started
 
         code = show_outcome(outcome, debug)
         for line in truth_lines(compared, outcome):
@@ -184,7 +184,7 @@ def run(
         stated = Stated.of(load, radius, speed, rate)
         raw = all(path.is_file() and path.suffix != ".toml" for path in campaign)
         if raw and instrument is None and not any(stated):
-            # late: a campaign file or a folder leaves no question
+            # imported late: a campaign file or a folder raises no questions
             from tribolab.app.info.describing import describe_by_questions
 
             if described := describe_by_questions(campaign, keep=True):
@@ -205,17 +205,17 @@ def run(
                     tables=tables,
                     verify=verify,
                     outside=i_know,
-                    trust=trust or written,  # then it was named on the command line
+                    trust=trust or written,  # if written, the command line named the instrument
                 )
         except BaseException:
             if written:
                 withdraw(file)
             raise
-        # late: with what the analysis needs, it is loaded by now
+        # imported late: its imports were already needed for the analysis
         from tribolab.app import terminal
 
         if new_folder and not any(part.done for part in (*outcome.runs, *outcome.surfaces)):
-            withdraw(file, place)  # a next try starts anew
+            withdraw(file, place)  # so that the next attempt starts afresh
             for line in why_unread(campaign, instrument) or terminal.failure_lines(outcome):
                 say(f"tribolab: {line}", to_stderr=True)
             raise typer.Exit(UNREADABLE)
@@ -310,7 +310,7 @@ def simulate(
 
 
 def show_outcome(outcome: Outcome, debug: bool) -> int:
-    """Show what a campaign came to, with the tracebacks of crashes if `debug`; return exit code."""
+    """Print the outcome of a campaign, with tracebacks of crashes if `debug`; return exit code."""
     # imported late for a quick start
     from tribolab.app import terminal
     from tribolab.app.running_in_table import running_in_table
@@ -338,7 +338,7 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
         say(crash, to_stderr=True)
     nothing = bool(outcome.campaign.run) and not outcome.segments
     nothing = nothing and not any(run.ramp for run in outcome.runs)
-    if nothing and len(outcome.failed) < len(outcome.runs):  # else it is told why none was read
+    if nothing and len(outcome.failed) < len(outcome.runs):  # else failure_lines has reasons
         say(
             "tribolab: no run contains a segment of constant speed; in [segments], `drift` and "
             "`min_samples` define constant, and `stroke_middle = 0.5` takes the middle half of "
@@ -355,5 +355,5 @@ def show_outcome(outcome: Outcome, debug: bool) -> int:
     statuses = {run.quality for run in outcome.runs}
     statuses.update(*(surface.objections for surface in outcome.surfaces))
     if outcome.failed_models:
-        statuses.add("fail")  # as the findings call it
+        statuses.add("fail")  # as in the findings
     return exit_code(statuses, outcome.campaign.qc.fail_on)

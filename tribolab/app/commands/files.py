@@ -1,4 +1,4 @@
-"""The commands that look at raw files."""
+"""Commands that inspect raw files."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from tribolab.app.streams import say
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-_MANY = 12  # files, from which on it pays to start other processes
+_MANY = 12  # number of files above which other processes are worthwhile
 
 
 def check(
@@ -87,7 +87,7 @@ def check(
         parts = checks.raw_files_of(files)
         files = [file for part, _ in parts for file in part]
         instrument = instrument or describe_with(stated, files)
-        code = checks.code_of([], fail_on)  # a wrong level is told before the work
+        code = checks.code_of([], fail_on)  # report a wrong level before the work
         with progress_bars(quiet) as progress, _pool(jobs, files) as pool:
             checked = [
                 one
@@ -200,7 +200,7 @@ def dialect(
 def _pool(
     jobs: int | None, files: Sequence[Path]
 ) -> contextlib.AbstractContextManager[Executor | None]:
-    """Return processes to look at files in; a few files are looked at here, which is sooner."""
+    """Return worker processes for many files; a few files are read faster in this process."""
     # imported late for a quick start
     from tribolab.app.needed import FILES
     from tribolab.campaign.engine.executor import workers

@@ -1,4 +1,4 @@
-"""The commands that pack results for others, and check results and what was packed."""
+"""Commands that pack results for others, and verify results and archives."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tribolab.app.reported import UNREADABLE, Debug, Jobs, Quiet, reported
 from tribolab.app.streams import say
 from tribolab.core.errors import ConfigError
 
-_MOST_SAID = 50  # files that are named
+_MOST_SAID = 50  # most files named
 
 
 def pack(

@@ -1,1 +1,1 @@
-"""What `tribolab info` says of a file of runs or scans."""
+"""Output of `tribolab info` on a file of runs or scans."""

@@ -1,4 +1,4 @@
-"""Describe the instrument of unknown files: in a terminal by questions, else by what they say."""
+"""Description of unknown instruments: with questions in a terminal, else from the files only."""
 
 from __future__ import annotations
 
@@ -27,18 +27,18 @@ from tribolab.reading.unknown.proposal.show import print_draft, print_next, prin
 def describe(
     files: Sequence[Path], target: Path | None, name: str | None, *, force: bool, ask: bool | None
 ) -> None:
-    """Describe the instrument that wrote some files, try that on them and say what comes next.
+    """Describe the instrument of some files, try the description, and print the next steps.
 
     Parameters
     ----------
     files
-        Of one instrument.
+        Files of one instrument.
     target, name
-        The file of the description, and the name in it; by default after the first file.
+        File of the description, and the name in it; by default after the first file.
     force
-        Whether to replace a description that is there.
+        Whether to replace an existing description.
     ask
-        Whether to ask what the files do not say; None: in a terminal.
+        Whether to ask for missing information; None asks in a terminal.
     """
     draft = draft_dialect(files[0], name)
     target = target or Path(f"{draft.name}.toml")
@@ -59,19 +59,19 @@ def describe(
 
 
 def describe_by_questions(files: Sequence[Path], *, keep: bool) -> Path | None:
-    """Ask in a terminal what unknown files leave open, and write the answers as a description.
+    """Ask in a terminal for information missing in unknown files, and write a description.
 
     Parameters
     ----------
     files
         Raw files.
     keep
-        Whether the description is written without asking where to.
+        Whether to write the description without asking for its path.
 
     Returns
     -------
     Path or None
-        Of the description; None if there is no terminal, nothing is open, or it is not to be kept.
+        Path of the description; None without a terminal, without open questions, or if not wanted.
     """
     if not is_terminal() or not files or not all(map(_leaves_open, files)):
         return None
@@ -92,7 +92,7 @@ def describe_by_questions(files: Sequence[Path], *, keep: bool) -> Path | None:
 
 
 def is_terminal() -> bool:
-    """Whether somebody can be asked."""
+    """Whether questions can be asked in a terminal."""
     return sys.stdin.isatty() and sys.stdout.isatty()
 
 

@@ -1,4 +1,4 @@
-"""What `tribolab info` says of a raw file of any kind: a run, a scan, or results."""
+"""Output of `tribolab info` on a raw file: a run, a scan, or results."""
 
 from __future__ import annotations
 
@@ -35,22 +35,22 @@ if TYPE_CHECKING:
 
 _PROVENANCE = {"source", "source_sha256", "tribolab_version", "history", "Conventions"}
 _PROVENANCE |= {"drafted_layout"}
-_MAX_TEXT = 300  # letters of what a file says of itself
+_MAX_TEXT = 300  # characters of a file's own text
 _TOLD_ABOVE = {"instrument", "pitch_m", "length_m", "x_origin_m"}
 _TOLD_OF_SCAN = {"tip_radius_m", "stated_length_m", "stated_pitch_m", "stated_points", "doubtful"}
 _INSTALL = "install it: pip install 'tribolab[formats]'"
-_ROUNDING = 1e-6  # of a step: positions that deviate by less are even
+_ROUNDING = 1e-6  # share of a step: positions with smaller deviations are evenly spaced
 
 
 def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
-    """Say how a raw file is understood: a run, a scan, or the results of a roughness tester.
+    """Return how a raw file is interpreted: a run, a scan, or a roughness tester's results.
 
     Raises
     ------
     ReadError
         If the file cannot be read.
     ConfigError
-        If there is no such instrument.
+        If the instrument does not exist.
     """
     kind = kind_of(path, instrument)
     if kind == "unknown" and holds_modulus(path):
@@ -67,7 +67,7 @@ def file_lines(path: Path, instrument: str | Path | None = None) -> list[str]:
 
 
 def _modulus_lines(path: Path) -> list[str]:
-    """Describe a table of storage and loss modulus, and say where its name goes."""
+    """Return lines on a table of storage and loss modulus, and how to use it in a campaign."""
     name = f'name it as modulus_file = "{shown(path.name)}" in [contact] of a campaign file'
     try:
         table = read_modulus_table(path)
@@ -86,7 +86,7 @@ def _modulus_lines(path: Path) -> list[str]:
 
 @dataclass(frozen=True)
 class Described:
-    """A file, what is said of it, and why it could not be read."""
+    """File, its description in lines, and the reason why it could not be read."""
 
     file: Path
     lines: tuple[str, ...] = ()
@@ -94,7 +94,7 @@ class Described:
 
 
 class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]):
-    """The stage of `tribolab info`: files, each as it is understood."""
+    """Stage of `tribolab info`: files and their interpretation."""
 
     name = "files"
 
@@ -103,7 +103,7 @@ class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]
         self._instrument = instrument
 
     def plan(self) -> list[tuple[Path, str | Path | None]]:
-        """Return the files and their instrument."""
+        """Return the files with their instrument."""
         return [(file, self._instrument) for file in self._files]
 
     @staticmethod
@@ -112,21 +112,21 @@ class Descriptions(Stage[tuple[Path, "str | Path | None"], Described, Described]
         return Described(task[0], tuple(file_lines(*task)))
 
     def failed(self, task: tuple[Path, str | Path | None], error: BaseException) -> Described:
-        """Return why a file could not be described; a wrong instrument is wrong for all."""
+        """Return why a file could not be described; raise for a wrong instrument."""
         if isinstance(error, TribolabError) and not isinstance(error, ReadError):
             raise error
-        read = isinstance(error, ReadError)  # the other files want to be seen too
+        read = isinstance(error, ReadError)  # other files are still described
         return Described(task[0], error=told(error, "terminal") if read else explain(error)[0])
 
     def keep(
         self, task: tuple[Path, str | Path | None], place: int, record: Described
     ) -> Described:
-        """Return what is said."""
+        """Return the record; nothing is stored."""
         return record
 
 
 def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, Any]:
-    """Read the traces of a scan; what turns out to be none is told about as a run would be."""
+    """Read the traces of a scan; a file that is no scan gives the error of a run."""
     # imported late for a quick start
     from tribolab.reading.scan_files import read_traces
     from tribolab.reading.scans.formats.profilometers import NotSaidError
@@ -135,15 +135,15 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
     try:
         return read_traces(path, instrument)
     except ReadError as error:
-        if _is_told(path, error):
+        if _is_explained(path, error):
             raise
         if instrument is None and kind_of(path) == "unknown" and _is_text(path):
-            # a map or profile, but for its units
+            # a map or profile that lacks units only
             bare = isinstance(error, NotSaidError) and not holds_run(path, by_name=False)
             draft = draft_of(path)
             named = draft is not None and draft.kind == "table"
             try:
-                known_log(path) if bare and not named else read_log(path)  # says what is missing
+                known_log(path) if bare and not named else read_log(path)  # raises a specific error
             except ReadError as as_run:
                 if bare:
                     what = f"{as_run.what}; taken for a profile or map, {error.what}"
@@ -158,8 +158,8 @@ def read_scan(path: Path, instrument: str | Path | None = None) -> dict[Path, An
         raise
 
 
-def _is_told(path: Path, error: ReadError) -> bool:
-    """Whether an error says of a scan, and of nothing else, what is wrong with it."""
+def _is_explained(path: Path, error: ReadError) -> bool:
+    """Whether an error explains completely what is wrong with a scan."""
     # imported late for a quick start
     from tribolab.reading.scans.extent import RefusedScanError
     from tribolab.reading.scans.formats.undescribed import is_own_text
@@ -168,12 +168,12 @@ def _is_told(path: Path, error: ReadError) -> bool:
     if isinstance(error, RefusedError):
         return True
     if isinstance(error, GuessedError | RefusedScanError):
-        return isinstance(error, RefusedScanError)  # the other is told again
+        return isinstance(error, RefusedScanError)  # other errors are explained again
     try:
         check_regular(path)
         if is_own_text(path):
             return True
-    except ReadError:  # which the error says
+    except ReadError:  # the error explains it
         return True
     except OSError:
         return False
@@ -252,13 +252,13 @@ def _said(value: object) -> str:
 
 
 def _titled(name: str, instrument: str | Path | None) -> str:
-    """Name of a dialect with what it is; as it is where another library read the file."""
+    """Return a dialect's name with its title; the bare name if another library read the file."""
     known = instrument or (name if name in known_dialects() else None)
     return f"{name} ({load_dialect(known).title})" if known else name
 
 
 def run_lines(facts: FileFacts) -> list[str]:
-    """Say how a raw file of a run is understood.
+    """Return how the raw file of a run is interpreted.
 
     Parameters
     ----------
@@ -292,19 +292,19 @@ def run_lines(facts: FileFacts) -> list[str]:
 
 
 def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[str]:
-    """Say what a run that has a force lacks for a friction coefficient over the sliding speed.
+    """Return which inputs a run with a force lacks for friction over sliding speed.
 
     Parameters
     ----------
     facts
         From `tribolab.reading.runs.file_facts.file_facts`.
     columns
-        The signals themselves, by quantity.
+        Signals by quantity.
     """
     names = set(facts["columns"])
     forces = {"friction_force", "friction_coefficient", "shear_stress", "normal_force"}
     if not names & forces:
-        return []  # of a log of the motion nothing else is expected
+        return []  # a motion log needs nothing else
     if "set_speed_m_s" in facts["metadata"]:
         names.add("set_speed")
     if facts["not_used"] and not names & {"sliding_velocity", "position", "set_speed"}:
@@ -313,14 +313,14 @@ def missing_lines(facts: FileFacts, columns: Mapping[str, np.ndarray]) -> list[s
 
         if any(is_stroke_frequency(*split_name(label)) for label in facts["not_used"]):
             names.add("frequency")
-    rig = {"crank"} if "drive" in facts["metadata"] else set()  # where what turns is a crank
+    rig = {"crank"} if "drive" in facts["metadata"] else set()  # if a crank turns
     if "friction_force" in columns and reversals(columns["friction_force"]):
         rig.add("reversals")
     return [f"  missing: {lack}" for lack in missing_inputs(names, rig)]
 
 
 def _doubts(signals: Mapping[str, np.ndarray]) -> list[str]:
-    """Say what cannot be: forces whose ratio is no friction coefficient, or such a coefficient."""
+    """Return a line on forces or coefficients that are physically implausible."""
     doubt = ""
     if "friction_coefficient" in signals and "friction_force" not in signals:
         doubt = doubt_about_coefficient(signals["friction_coefficient"])
@@ -330,7 +330,7 @@ def _doubts(signals: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def companion_lines(told: CompanionFacts) -> list[str]:
-    """Say whether a run's second log was found, and how its clock was matched.
+    """Return whether a run's second log was found, and how its clock was matched.
 
     Parameters
     ----------

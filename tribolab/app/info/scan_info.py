@@ -1,4 +1,4 @@
-"""What `tribolab info` says of a scan's roughness, and what its file states of the trace."""
+"""Output of `tribolab info` on the roughness of a scan, and on settings stated in its file."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from tribolab.core.wording import many
 if TYPE_CHECKING:
     import xarray as xr
 
-_LARGEST_MAP = 20_000_000  # of which a form can be taken off at once
-_LARGEST = 2_000_000  # heights of a scan whose roughness is told at once
-_OTHER_FORM = 0.02  # of the roughness, from which on it matters which form was taken off
+_LARGEST_MAP = 20_000_000  # points of the largest map from which a form is removed at once
+_LARGEST = 2_000_000  # points of the largest scan whose roughness is computed at once
+_OTHER_FORM = 0.02  # relative change of roughness above which the choice of form matters
 
 
 def stated_lines(attrs: Mapping[str, Any]) -> list[str]:
-    """Say what the file states of the trace besides its heights."""
+    """Return the settings of the trace that the file states."""
     told = [
         f"{name} {scale * float(attrs[key]):.6g}{unit}"
         for key, name, scale, unit in (
@@ -33,7 +33,7 @@ def stated_lines(attrs: Mapping[str, Any]) -> list[str]:
 
 
 def areal_lines(scan: xr.Dataset) -> list[str]:
-    """Say how rough a map is as a whole."""
+    """Return the areal roughness of a map."""
     # imported late for a quick start
     from tribolab.surface.areal_roughness import areal_roughness
     from tribolab.surface.form import remove_form
@@ -42,7 +42,7 @@ def areal_lines(scan: xr.Dataset) -> list[str]:
         return []
     try:
         said, level = (areal_roughness(remove_form(scan, form)) for form in ("polynomial", "tilt"))
-    except AnalysisError:  # a check of the scan says why
+    except AnalysisError:  # reported by a check of the scan
         return []
     sq, sa, level_sq = (1e6 * float(value.mean()) for value in (said.Sq, said.Sa, level.Sq))
     beside = ""
@@ -58,7 +58,7 @@ def areal_lines(scan: xr.Dataset) -> list[str]:
 
 
 def roughness_lines(scan: xr.Dataset) -> list[str]:
-    """Say how rough it is: with the cut-off that instruments apply, and with none."""
+    """Return the roughness of a scan, with the usual cut-off and without one."""
     # imported late for a quick start
     import numpy as np
 
@@ -78,7 +78,7 @@ def roughness_lines(scan: xr.Dataset) -> list[str]:
         iso = roughness_parameters(flat)
         tilted = remove_form(scan, "tilt")
         level = 1e6 * float(primary_roughness(tilted).mean())
-    except AnalysisError:  # a check of the scan says why
+    except AnalysisError:  # reported by a check of the scan
         return []
     told = {name: f"{1e6 * float(iso[name].mean()):.3g} um" for name in ("Rq", "Ra")}
     all_waves = 1e6 * float(primary_roughness(flat).mean())
@@ -121,7 +121,7 @@ def roughness_lines(scan: xr.Dataset) -> list[str]:
 
 
 def _mean_deviation(flat: xr.Dataset) -> float:
-    """Return Pa [um]: the mean distance of a profile's heights from their mean, of all profiles."""
+    """Return Pa [um]: mean absolute deviation of the heights, averaged over all profiles."""
     # imported late for a quick start
     import numpy as np
 

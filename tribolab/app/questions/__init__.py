@@ -1,1 +1,1 @@
-"""Questions about a file, and the answers typed or stated on the command line."""
+"""Questions about a file, and answers typed or stated on the command line."""

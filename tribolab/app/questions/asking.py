@@ -1,4 +1,4 @@
-"""What `tribolab info FILE --write` asks: which column is what, and what no column holds."""
+"""Questions of `tribolab info FILE --write`: meaning of columns, and missing quantities."""
 
 from __future__ import annotations
 
@@ -54,35 +54,35 @@ _SCAN = {"x": "the coordinate along the profile", "height": "the height"}
 
 
 class Ask(Protocol):
-    """How a question is asked: it returns what was typed, or the default."""
+    """Function that asks a question and returns the answer, or the default."""
 
     def __call__(self, question: str, default: str) -> str:
-        """Ask."""
+        """Ask a question."""
 
 
 Say = Callable[[str], None]
 
 
 def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
-    """Ask a person which column is what, in which unit, and what no column holds.
+    """Ask for the quantity and unit of columns, and for quantities without a column.
 
     Parameters
     ----------
     draft
-        What was understood; its guesses are the defaults.
+        Draft of the description; its guesses are the defaults.
     ask
-        How to ask.
+        Function that asks.
     say
-        How to say why an answer cannot be taken; it is then asked for again.
+        Function that prints why an answer is invalid, before it is asked again.
 
     Returns
     -------
     Draft
-        The draft with the answers in it, which are no guesses any more.
+        The draft with the answers, which are no longer guesses.
     """
     if draft.layout is None or draft.understood is None:
         return draft
-    alone = len(draft.understood.columns) == 1  # one column of numbers is no run
+    alone = len(draft.understood.columns) == 1  # one column of numbers cannot be a run
     if draft.kind == "table" and (alone or draft.unsaid):
         return _ask_for_pitch(draft, ask, say)
     if draft.kind == "scan":
@@ -107,21 +107,25 @@ def ask_about(draft: Draft, ask: Ask, say: Say) -> Draft:
     )
     question += "the sliding speed itself: 6 mm/min, 8 rpm at 20 mm radius; or reversing strokes: "
     question += f"8 mm at 2 Hz; {_NONE} for none)"
-    if not _told_by_settings(draft):
+    if not _has_speed_from_settings(draft):
         draft = _ask_for(draft, _MOTION, question, ask, say, amount="speed")
     return _ask_for_motion(draft, ask, say) if draft.kind == "run" else draft
 
 
-def _told_by_settings(draft: Draft) -> bool:
-    """Whether what is stated tells the speed, and no column had to be guessed for it."""
-    if draft.layout is None or draft.understood is None or _held(draft, _MOTION) is not None:
+def _has_speed_from_settings(draft: Draft) -> bool:
+    """Whether stated settings give the speed, without a guessed column."""
+    if (
+        draft.layout is None
+        or draft.understood is None
+        or _column_of_any(draft, _MOTION) is not None
+    ):
         return False
     speed = what_follows(draft.layout, draft.understood).speed
     return speed is not None and speed.source != "none"
 
 
 def _ask_for_motion(draft: Draft, ask: Ask, say: Say) -> Draft:
-    """Ask for what the speed follows from, if that is all that is missing."""
+    """Ask for the settings that give the speed, if only these are missing."""
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
         return draft
@@ -136,7 +140,7 @@ def _ask_for_motion(draft: Draft, ask: Ask, say: Say) -> Draft:
 def _ask_for_lengths(
     draft: Draft, layout: Layout, understood: Understood, ask: Ask, say: Say
 ) -> Draft:
-    """Ask for the radius of the track, where the file does not say it, and for a stated zero."""
+    """Ask for the radius of the track, unless the file states it, and for a stated zero."""
     follows = what_follows(layout, understood)
     lacks = {lack.member for lack in lacking(understood, follows)}
     if follows.zero_in_doubt is not None:
@@ -154,7 +158,7 @@ def _ask_for_lengths(
         likely = amount_of(value)
         guess = _YES[0] if likely and guess == _NONE else guess
         radius = _ask_amount(question, "radius", "m", guess, ask, say, likely)
-        if radius and value is not None and radius == likely:  # as the file has it
+        if radius and value is not None and radius == likely:  # the value in the file
             agreed = (*understood.agreed, ("radius", value.text))
             understood = understood._replace(agreed=agreed)
         else:
@@ -163,7 +167,7 @@ def _ask_for_lengths(
 
 
 def _ask_for_pitch(draft: Draft, ask: Ask, say: Say) -> Draft:
-    """Ask how far heights lie apart that stand in a file without positions."""
+    """Ask for the pitch of heights in a file without positions."""
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
         return draft
@@ -181,7 +185,7 @@ def _ask_for_pitch(draft: Draft, ask: Ask, say: Say) -> Draft:
 
 
 def _height_unit(understood: Understood, pitch: str, ask: Ask, say: Say) -> str:
-    """Return the unit of heights: as the file states it, as its numbers tell, or as is typed."""
+    """Return the unit of heights: from the file, from plausible numbers, or as typed."""
     column = understood.columns[0]
     unit = column.read_unit
     if unit is None and pitch:
@@ -197,7 +201,7 @@ def _height_unit(understood: Understood, pitch: str, ask: Ask, say: Say) -> str:
 def _ask_amount(
     question: str, name: str, si_unit: str, guess: str, ask: Ask, say: Say, likely: str = ""
 ) -> str:
-    """Ask for a number with a unit until it is one, or "yes" to `likely`; "" if not known."""
+    """Ask until a valid number with a unit is typed, or "yes" to `likely`; "" if unknown."""
     while True:
         agree = f"yes: {likely}; " if likely else ""
         typed = ask(f"{question} ({agree}{_NONE}: not known)", guess).strip()
@@ -214,8 +218,8 @@ def _ask_amount(
 def _ask_for(
     draft: Draft, names: Sequence[str], question: str, ask: Ask, say: Say, amount: str = ""
 ) -> Draft:
-    """Ask which column holds one of several quantities, or for an amount in place of a column."""
-    held = _held(draft, names)
+    """Ask which column contains one of several quantities, or for an amount instead."""
+    held = _column_of_any(draft, names)
     said, stated = _said_amount(draft, amount), _stated_amount(draft, amount)
     lines, value = ("", None) if held or said else _may_say(draft, amount)
     likely = amount_of(value)
@@ -227,24 +231,24 @@ def _ask_for(
         if stated and typed == stated:
             return draft
         if typed == _NONE:
-            return draft if held is None else _without(draft, names)
+            return draft if held is None else _remove_quantities(draft, names)
         if value is not None and typed.lower() in (*_YES, likely):
-            return _with_line(_without(draft, names), amount, value)
+            return _confirm_line(_remove_quantities(draft, names), amount, value)
         try:
             if amount == "load" and _SUM.match(typed):
-                return _with_sum(_without(draft, names), typed, ask)
+                return _add_sum(_remove_quantities(draft, names), typed, ask)
             strokes = as_strokes(typed) if amount == "speed" and not turning(typed) else None
             if strokes:
-                return _with_strokes(_without(draft, names), strokes)
+                return _with_strokes(_remove_quantities(draft, names), strokes)
             if amount and (text := as_amount(typed, amount)):
-                return _with_amount(_without(draft, names), amount, text)
+                return _with_amount(_remove_quantities(draft, names), amount, text)
             column = _column(draft, typed)
             if held and column.place == held.place and not held.guessed and not held.fill_in:
                 return draft
             known = held if held and column.place == held.place else None
-            worth = _ask_worth(column, names, known, ask)
+            worth = _ask_unit(column, names, known, ask)
             sign = _ask_sign(draft, column, worth.name, ask)
-            draft = _without(draft, names, but=worth.name)
+            draft = _remove_quantities(draft, names, but=worth.name)
             draft = corrected(
                 draft, worth.name, column.place, worth.unit or None, sign, scale=worth.scale
             )
@@ -253,8 +257,8 @@ def _ask_for(
             say(str(error.what))
 
 
-def _held(draft: Draft, names: Sequence[str]) -> DraftColumn | None:
-    """Return the column that holds the first of the quantities that any holds."""
+def _column_of_any(draft: Draft, names: Sequence[str]) -> DraftColumn | None:
+    """Return the column of the first quantity that has one."""
     columns = draft.understood.columns if draft.understood else ()
     for name in names:
         by_name = {TORQUE: torque_of, ANGLE: angle_of}.get(name)
@@ -264,8 +268,8 @@ def _held(draft: Draft, names: Sequence[str]) -> DraftColumn | None:
     return None
 
 
-def _without(draft: Draft, names: Sequence[str], but: str = "") -> Draft:
-    """Return a draft in which no column holds any of the quantities, but one."""
+def _remove_quantities(draft: Draft, names: Sequence[str], but: str = "") -> Draft:
+    """Return a draft without columns for any of the quantities except one."""
     for name in names:
         if name != but and (name not in QUANTITIES or column_of(draft, name) is not None):
             draft = corrected(draft, name, None)
@@ -286,13 +290,13 @@ def _with_strokes(draft: Draft, strokes: tuple[str, str]) -> Draft:
     return draft
 
 
-def _with_sum(draft: Draft, typed: str, ask: Ask) -> Draft:
-    """Return a draft in which several columns add up to the load: 4 + 5."""
+def _add_sum(draft: Draft, typed: str, ask: Ask) -> Draft:
+    """Return a draft in which several columns add up to the load, e.g. 4 + 5."""
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
         return draft
     wanted = [_column(draft, place.strip()) for place in typed.split("+")]
-    said = {column.place: _ask_worth(column, _LOAD[:1], None, ask) for column in wanted}
+    said = {column.place: _ask_unit(column, _LOAD[:1], None, ask) for column in wanted}
     columns = [
         c._replace(
             quantity=None,
@@ -322,7 +326,7 @@ def _said_amount(draft: Draft, amount: str) -> str:
 
 
 def _stated_amount(draft: Draft, amount: str) -> str:
-    """Return the load that the file states without any guess; "" if that is not one number."""
+    """Return the load that the file states with certainty; "" if it is not one number."""
     layout, understood = draft.layout, draft.understood
     if amount != "load" or layout is None or understood is None or understood.load:
         return ""
@@ -332,8 +336,8 @@ def _stated_amount(draft: Draft, amount: str) -> str:
     return amount_of(told[0]) if told and not told[0].guess else ""
 
 
-def _with_line(draft: Draft, amount: str, value: Amount) -> Draft:
-    """Return a draft in which a line of the file states the load or the speed, as a person said."""
+def _confirm_line(draft: Draft, amount: str, value: Amount) -> Draft:
+    """Return a draft in which a line of the file states the load or speed, as confirmed."""
     layout, understood = draft.layout, draft.understood
     if layout is None or understood is None:
         return draft
@@ -343,7 +347,7 @@ def _with_line(draft: Draft, amount: str, value: Amount) -> Draft:
 
 
 def _may_say(draft: Draft, amount: str) -> tuple[str, Amount | None]:
-    """Quote the lines of the file that may state an amount, and return what they state."""
+    """Return the lines of the file that may state an amount, and that amount."""
     layout, understood = draft.layout, draft.understood
     lack = {"load": "normal_force", "speed": "sliding_velocity"}.get(amount, "")
     if layout is None or understood is None or not lack:
@@ -369,7 +373,7 @@ def _with_amount(draft: Draft, amount: str, text: str) -> Draft:
 
 
 def _column(draft: Draft, typed: str) -> DraftColumn:
-    """Return the column that was named by its number or by its name."""
+    """Return the column with the typed number or name."""
     columns = draft.understood.columns if draft.understood else ()
     for column in columns:
         if typed.strip() in (str(column.place), column.label, column.name):
@@ -377,12 +381,12 @@ def _column(draft: Draft, typed: str) -> DraftColumn:
     raise TribolabError(f"there is no column '{shown(typed)}': type a number from 1 on")
 
 
-def _ask_worth(
+def _ask_unit(
     column: DraftColumn, names: Sequence[str], held: DraftColumn | None, ask: Ask
 ) -> Worth:
-    """Ask what one number of a column is; where the file says its unit and that fits, it is that.
+    """Ask for the unit of a column, unless the file states a suitable unit.
 
-    Of a column that is known to hold a quantity, only the unit is asked.
+    For a column with known quantity, only the unit is asked.
     """
     name = next((name for name in names if held is not None and held.quantity == name), "")
     asked = (name,) if name else tuple(names)
@@ -419,7 +423,7 @@ def _unit_guess(column: DraftColumn, name: str) -> str:
 
 
 def _ask_sign(draft: Draft, column: DraftColumn, name: str, ask: Ask) -> int:
-    """Ask how a force is counted whose numbers are on one side of zero only, the wrong one."""
+    """Ask for the sign of a force whose values all have the unexpected sign."""
     if name != "normal_force" or draft.understood is None:
         return 1
     values = draft.understood.numbers[:, column.place - 1]
@@ -433,7 +437,7 @@ def _ask_sign(draft: Draft, column: DraftColumn, name: str, ask: Ask) -> int:
 
 
 def _ask_zero(draft: Draft, column: DraftColumn, worth: Worth, ask: Ask, say: Say) -> Draft:
-    """Ask what a column reads without contact, if its numbers are a converter's."""
+    """Ask for the reading of a force column without contact, if it has a calibration factor."""
     layout, understood = draft.layout, draft.understood
     forces = {*_FRICTION, *_LOAD}
     if worth.scale == 1 or worth.name not in forces or layout is None or understood is None:

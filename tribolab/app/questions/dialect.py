@@ -1,4 +1,4 @@
-"""Try a dialect that `tribolab info FILE --write` has written on its files."""
+"""Test of a dialect written by `tribolab info FILE --write` on its own files."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 
 def try_on(files: Sequence[Path], dialect: Path, kind: str) -> list[str]:
-    """Read files with a dialect and say what comes of it: mu of the segments, or what is missing.
+    """Read files with a dialect and return the friction of their segments, or what is missing.
 
     Parameters
     ----------
     files
-        The files that it was drafted from.
+        Files from which it was drafted.
     dialect
         The TOML file.
     kind
@@ -74,7 +74,7 @@ def _run_said(file: Path, dialect: Path) -> str:
 
 
 def _coefficients(friction: xr.Dataset) -> str:
-    """Say the friction coefficient: of segments at one speed their mean, else that of each."""
+    """Return friction in words: the mean of segments at one speed, else of each segment."""
     # imported late for a quick start
     from tribolab.friction.stribeck import measured_stribeck_curve
     from tribolab.records.wording import error_text
@@ -101,7 +101,7 @@ def _coefficients(friction: xr.Dataset) -> str:
 
 
 def _undirected(run: xr.Dataset, segments: xr.Dataset) -> bool:
-    """Whether nothing tells which way it slid; a set-point that turns over does."""
+    """Whether the direction of sliding is unknown; a signed set-point gives it."""
     unknown = bool(segments["sliding_speed"].isnull().any())
     by_set_speed = segments.attrs["velocity_source"] == "set speed"
     signed = "set_speed" in run and bool((run["set_speed"] < 0).any())

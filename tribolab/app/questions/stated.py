@@ -1,4 +1,4 @@
-"""What the command line states of raw files that do not: load, radius, speed, rate."""
+"""Amounts stated on the command line for raw files: load, radius, speed, rate."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ RateOption = Annotated[
 
 
 class Stated(NamedTuple):
-    """Amounts that the command line states, as numbers with a unit; None for what it does not."""
+    """Amounts stated on the command line, as numbers with a unit; None if not stated."""
 
     load: str | None = None
     radius: str | None = None
@@ -44,12 +44,12 @@ class Stated(NamedTuple):
     def of(
         cls, load: str | None, radius: str | None, speed: str | None, rate: str | None
     ) -> Stated:
-        """Check the options.
+        """Return the stated amounts after checking the options.
 
         Raises
         ------
         ConfigError
-            If one is no such amount.
+            If an option is not a valid amount.
         """
         if speed is not None and radius is not None:
             speed = turning(f"{_spaced(speed)} at {_spaced(radius)} radius") or speed
@@ -68,11 +68,11 @@ class Stated(NamedTuple):
 
     @property
     def is_empty(self) -> bool:
-        """Whether nothing is stated."""
+        """Whether no amount is stated."""
         return all(value is None for value in self)
 
     def run_lines(self, *, described: bool) -> list[str]:
-        """Return the lines of a [[run]]; without the speed that a description states."""
+        """Return the lines of a [[run]]; without the speed if a description states it."""
         said = {"normal_force": self.load, "sliding_speed": None if described else self.speed}
         return [f'{key} = "{value}"' for key, value in said.items() if value is not None]
 
@@ -81,7 +81,7 @@ _UNITS = {"load": "N", "radius": "m", "speed": "m/s", "rate": "Hz"}
 
 
 def _spaced(text: str) -> str:
-    """Return a number with a unit with a blank between them.
+    """Return a number with a unit, separated by a blank.
 
     >>> _spaced("20N"), _spaced("1.5e3 mm/s")
     ('20 N', '1.5e3 mm/s')
@@ -97,21 +97,21 @@ def _spaced(text: str) -> str:
 
 
 def describe_with(stated: Stated, files: Sequence[Path], folder: Path | None = None) -> str | None:
-    """Write the description of an unknown instrument with the amounts that are stated.
+    """Write a description of an unknown instrument that includes the stated amounts.
 
     Parameters
     ----------
     stated
-        From the command line.
+        Amounts from the command line.
     files
-        Raw files; the first that no instrument is known for is described.
+        Raw files; the first with unknown instrument is described.
     folder
-        Where the description is written, as ``instrument_NAME.toml``; without it a temporary place.
+        Folder for the description ``instrument_NAME.toml``; by default a temporary folder.
 
     Returns
     -------
     str or None
-        The file; None if the files' instruments are known, or nothing is stated.
+        The file; None if all instruments are known, or nothing is stated.
     """
     if stated.is_empty:
         return None

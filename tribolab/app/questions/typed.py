@@ -1,4 +1,4 @@
-"""What a person types for an amount: a number with a unit, a weight, strokes, turns."""
+"""Interpretation of typed amounts: number with unit, weight, strokes, turns."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from tribolab.units.conversion import positive
 from tribolab.units.reciprocals import reciprocal
 from tribolab.units.spellings import WEIGHTS
 
-_COMMA = re.compile(r"^(\d+),(\d{1,2}|\d{4,})(?=\D)")  # no mark of thousands
+_COMMA = re.compile(r"^(\d+),(\d{1,2}|\d{4,})(?=\D)")  # decimal comma, not a thousands separator
 _WEIGHT = re.compile(rf"^(\s*[\d.]+(?:[eE][+-]?\d+)?\s*)({'|'.join(WEIGHTS)})\s*$")
 _TIMES = re.compile(r"^(\d+(?:[.,]\d+)?)\s*[x×*·]\s*(?=\d)")  # a weight on a lever: 10 x 5 kg
 _AMOUNT = re.compile(  # "8 mm at 2 Hz"
     r"(?<![\w.,])(?P<number>\d+(?:[.,]\d+)?)\s*(?P<unit>[^\W\d_][^\s,;]*)"
 )
 NUMBER = re.compile(r"^[+-]?\d+(?:[.,]\d+)?(?:[eE][+-]?\d+)?$")
-DECIMAL = re.compile(r"^[+-]?\d+[.,]\d+$")  # no place of a column
+DECIMAL = re.compile(r"^[+-]?\d+[.,]\d+$")  # not a column number
 _RADIUS = re.compile(r"\b(radius|diameter)\b", re.IGNORECASE)
 _EXAMPLE = {"load": "20 N", "speed": "6 mm/min", "rate": "100 Hz"}
 _USUAL = {"m": "mm", "N": "N", "m/s": "mm/s", "Hz": "Hz", "s": "s"}
@@ -26,7 +26,7 @@ _AMOUNTS = {"load": ("N",), "speed": ("m/s",), "rate": ("Hz", "s")}
 
 
 def as_amount(typed: str, amount: str) -> str:
-    """Return what was typed as a number with a unit; "" if it names a column."""
+    """Return typed text as a number with a unit; "" if it names a column."""
     if DECIMAL.match(typed):
         raise ReadError(f"{typed} has no unit: type it with one, such as {_EXAMPLE[amount]}")
     if NUMBER.match(typed) or not typed[0].isdigit():
@@ -44,12 +44,12 @@ def as_amount(typed: str, amount: str) -> str:
 
 
 def amount_typed(typed: str, name: str, si_unit: str) -> str:
-    """Return a number with a unit as a dialect takes it; a weight is the force of it."""
+    """Return a typed number with a unit for a dialect; a weight is converted to its force."""
     if NUMBER.match(typed):
         raise ReadError(f"{typed} has no unit: type it with one, such as {typed} {_USUAL[si_unit]}")
     times = _TIMES.match(typed) if si_unit == "N" else None
     text = typed[times.end() :] if times else typed
-    text = _COMMA.sub(r"\1.\2", text)  # as the file may write it
+    text = _COMMA.sub(r"\1.\2", text)  # as in many files
     if si_unit == "N" and (weight := _WEIGHT.match(text)):
         text = f"{weight[1].strip()} {WEIGHTS[weight[2]]}"
     if times:
@@ -60,7 +60,7 @@ def amount_typed(typed: str, name: str, si_unit: str) -> str:
 
 
 def as_strokes(typed: str) -> tuple[str, str] | None:
-    """Return length and frequency of strokes as they were typed, None if neither was.
+    """Return typed length and frequency of strokes; None if both are missing.
 
     >>> as_strokes("stroke 6 mm, 1.5 Hz"), as_strokes("2 Hz"), as_strokes("6 mm/min")
     (('6 mm', '1.5 Hz'), ('', '2 Hz'), None)
@@ -75,7 +75,7 @@ def as_strokes(typed: str) -> tuple[str, str] | None:
 
 
 def turning(typed: str) -> str:
-    """Return the speed [m/s] of turns on a track whose radius or diameter is typed; "" of no such.
+    """Return the speed [m/s] from typed rotation and radius or diameter; "" if incomplete.
 
     >>> turning("8 rpm at 22.5 mm radius"), turning("8 mm at 2 Hz")
     ('0.0188496 m/s', '')
@@ -89,7 +89,7 @@ def turning(typed: str) -> str:
 
 
 def turns_alone(rate: str) -> bool:
-    """Whether a rate is one of turns by its unit: rpm, U/min; of Hz nobody can tell.
+    """Whether the unit of a rate means turns, e.g. rpm or U/min; Hz is ambiguous.
 
     >>> turns_alone("8 rpm"), turns_alone("2 Hz")
     (True, False)

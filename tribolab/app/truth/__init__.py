@@ -1,1 +1,1 @@
-"""Results of a simulated campaign beside what the rig was given."""
+"""Comparison of a simulated campaign's results with the inputs of the virtual rig."""

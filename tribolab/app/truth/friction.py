@@ -1,4 +1,4 @@
-"""What was found against what is true, for a simulated campaign."""
+"""Comparison of segments and friction with the truth of a simulated campaign."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _HALF = 0.5
-# columns beside the true ones, with the results that they show
+# columns next to the true ones, and the variables that they show
 _READ = {
     "start_s": "start",
     "stop_s": "stop",
@@ -32,17 +32,17 @@ _READ = {
 
 @dataclass(frozen=True)
 class TruthComparison:
-    """How well the truth was found.
+    """Agreement of segments and friction with the truth.
 
     Parameters
     ----------
     table
-        One row per true segment, and one per segment that was found where none is.
+        One row per true segment, and one per extra segment.
     true, found, missed, extra
         Numbers of segments.
     within_1, within_3
-        Share of the found segments whose true friction coefficient lies within one and within
-        three standard errors of the measured one; NaN where there is none.
+        Share of the found segments whose true friction coefficient is within one and three standard
+        errors of the measured one; NaN without any.
     """
 
     table: pd.DataFrame
@@ -62,22 +62,22 @@ def compare_with_truth(
     Parameters
     ----------
     outcome
-        Results whose data files lie in ``outcome.folder``.
+        Results with data files in ``outcome.folder``.
     folder
         The simulated campaign's folder.
     executor
-        Where the runs are compared; without one it is done here.
+        Executor for the runs; without one they are compared in this process.
 
     Returns
     -------
     TruthComparison
-        A true segment counts as found if one of the same direction covers more than half of
-        it; of a run that failed all segments are missed.
+        A true segment counts as found if one of the same direction covers more than half of it; all
+        segments of a failed run are missed.
 
     Raises
     ------
     AnalysisError
-        If the truth knows nothing of a run.
+        If there is no truth for a run.
     """
     truth = read_truth(folder)
     for run in outcome.runs:
@@ -91,7 +91,7 @@ def compare_with_truth(
 
 
 def _compared_file(name: str, true: pd.DataFrame, file: Path | None) -> pd.DataFrame:
-    """Compare a run by its data file; None for a run that failed."""
+    """Compare a run with the truth; a run without data file has failed."""
     if file is None:
         return compare_run(name, true, None, 0.0)
     only = {"friction": _READ.values()}
@@ -136,7 +136,7 @@ def compare_run(
     cover = np.where(same, overlap, -np.inf) / (stop - start)[:, None]
     best = cover.argmax(axis=1) if size else np.zeros(len(true), dtype=int)
     hit = cover.max(axis=1, initial=-np.inf) > _HALF
-    # a segment that swallows two true ones is found once; the other is missed
+    # a segment that covers two true ones counts for one; the other is missed
     order = np.argsort(-cover.max(axis=1, initial=-np.inf), kind="stable")
     taken: dict[int, int] = {}
     for row in order[hit[order]]:
@@ -159,7 +159,7 @@ def compare_run(
 
 
 def summary(table: pd.DataFrame) -> TruthComparison:
-    """Count what was found, missed and extra, and how often the truth lies within the error."""
+    """Count found, missed and extra segments, and the share with the truth within errors."""
     status = table["status"]
     errors = table["error_in_standard_errors"].abs()[status == "found"].dropna()
     return TruthComparison(

@@ -50,11 +50,11 @@ def compare_with_known(
     Parameters
     ----------
     outcome
-        Results whose data files lie in ``outcome.folder``.
+        Results with data files in ``outcome.folder``.
     folder
         The simulated campaign's folder.
     executor
-        Where the runs are compared; without one it is done here.
+        Executor for the runs; without one they are compared in this process.
     """
     runs = compare_with_truth(outcome, folder, executor)
     surfaces, stresses = compare_surfaces(outcome, folder), compare_shear_stress(outcome, folder)

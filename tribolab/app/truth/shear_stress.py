@@ -1,4 +1,4 @@
-"""Shear stresses fitted to a simulated campaign, against those that the rig was given."""
+"""Comparison of fitted shear stresses with those of the virtual rig."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def compare_shear_stress(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
     Parameters
     ----------
     outcome
-        Results whose tables lie in ``outcome.folder``.
+        Results with tables in ``outcome.folder``.
     folder
         The simulated campaign's folder.
 
@@ -35,7 +35,7 @@ def compare_shear_stress(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
     -------
     pandas.DataFrame
         A row per fit whose curve follows the model in the rig: found with its 95 % interval, true,
-        relative difference, and 1 where the truth lies within the interval.
+        relative difference, and 1 if the truth is within the interval.
     """
     path = Path(outcome.folder) / "tables" / "shear_stress.csv"
     if not path.is_file():

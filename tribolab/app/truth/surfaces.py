@@ -1,4 +1,4 @@
-"""Roughness and contact as found from simulated scans, against the surfaces they were made of."""
+"""Comparison of roughness and contact with the surfaces from which scans were simulated."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def compare_surfaces(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
     Parameters
     ----------
     outcome
-        Results whose data files lie in ``outcome.folder``.
+        Results with data files in ``outcome.folder``.
     folder
         The simulated campaign's folder.
 
@@ -44,7 +44,7 @@ def compare_surfaces(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
     pandas.DataFrame
         A row per surface and quantity: rms_roughness_m and rms_slope of the whole spectrum,
         contact_area_ratio without adhesion at each load; `found` with its bounds, `true`, the
-        relative difference, and 1 where the truth lies within the bounds.
+        relative difference, and 1 if the truth is within the bounds.
     """
     facts = read_truth(folder).facts
     rows: list[Row] = []
@@ -83,12 +83,12 @@ def compare_surfaces(outcome: Outcome, folder: str | Path) -> pd.DataFrame:
 
 
 def _with_bounds(column: str) -> list[str]:
-    """Return a column and those of its bounds; the unit stays at the end of a name."""
+    """Return the names of a column and of its bounds; the unit remains at the end."""
     name, unit = (column.removesuffix("_m"), "_m") if column.endswith("_m") else (column, "")
     return [f"{name}{end}{unit}" for end in ("", "_low", "_high")]
 
 
 def _known(row: Row, column: str) -> float:
-    """Return a number of a row; NaN, which lies within no bounds, where it is not known."""
+    """Return a number of a row; NaN if unknown."""
     value = number_of(row, column)
     return float("nan") if value is None else value

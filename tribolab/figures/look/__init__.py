@@ -1,1 +1,1 @@
-"""The look of all figures: sizes, colours, words, ticks, and the axes that they share."""
+"""Common style of all figures: sizes, colours, texts, ticks and layout."""

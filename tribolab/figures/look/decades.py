@@ -1,7 +1,7 @@
-"""Ticks of logarithmic axes, drawn quickly: plain text for the decades, one mark for the rest.
+"""Fast ticks for logarithmic axes: plain text for decades, one marker for minor ticks.
 
-Matplotlib sets every ``10^-3`` as a formula, and makes five artists of every small tick: over many
-decades that is most of the time of a figure.
+Matplotlib typesets every ``10^-3`` as a formula, and makes five artists of every minor tick: over
+many decades this takes most of the time of a figure.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def few_ticks(axis: Axis, low: float, high: float, decades: int = 8, *, small: bool = True) -> None:
-    """Give a logarithmic axis at most so many decades with a number, and `small` ticks between.
+    """Limit the numbered decades of a logarithmic axis, with `small` ticks between them.
 
-    Over many decades the ticks at 2 to 9 would be a black bar, and slow to draw: then there is one
-    per decade.
+    Over many decades, ticks at 2 to 9 would merge and be slow to draw: then there is one per
+    decade.
     """
     axis.set_major_locator(LogLocator(numticks=decades))
     axis.set_major_formatter(FuncFormatter(power_of_ten))
@@ -49,10 +49,10 @@ def few_ticks(axis: Axis, low: float, high: float, decades: int = 8, *, small: b
 
 
 def symlog(axes: Axes, linear_below: float, low: float, high: float) -> None:
-    """Scale an ordinate logarithmically on both sides of zero, linearly below a value."""
+    """Scale an ordinate logarithmically on both sides of zero, and linearly near zero."""
     first = int(np.floor(np.log10(linear_below) + 1e-9))
     largest = max(abs(low), abs(high), linear_below)
-    last = max(first, int(np.ceil(np.log10(largest) - 0.1)))  # a little overshoot needs no decade
+    last = max(first, int(np.ceil(np.log10(largest) - 0.1)))  # a small overshoot needs no decade
     axes.set_yscale("symlog", linthresh=10.0**first, linscale=0.8)
     step = max(1, -(-(last - first) // 2))
     # the lowest decade would overlap the zero
@@ -69,7 +69,7 @@ def _signed_decade(value: float, place: int | None = None) -> str:
 
 
 def power_of_ten(value: float, place: int | None = None) -> str:
-    """Write a decade as the label of a tick, another value as a number.
+    """Return the label of a tick: decades as powers of ten, other values as numbers.
 
     Examples
     --------
@@ -85,16 +85,16 @@ def power_of_ten(value: float, place: int | None = None) -> str:
 
 
 class SmallTicks(Artist):
-    """The ticks without a number of an axis, all of them two marks: one for each side of the frame.
+    """Minor ticks of an axis, drawn with only two markers: one per side of the frame.
 
-    Made inside `paper_style()`, whose minor ticks they look like.
+    Create it inside `paper_style()`, whose style of minor ticks it uses.
 
     Parameters
     ----------
     axis
-        Whose ticks they are.
+        Axis of the ticks.
     locator
-        Where they stand.
+        Locator of their positions.
     """
 
     def __init__(self, axis: Axis, locator: Locator) -> None:
@@ -122,7 +122,7 @@ class SmallTicks(Artist):
         self.set_zorder(axis.get_zorder())
 
     def draw(self, renderer: RendererBase) -> None:
-        """Draw them where they stand now."""
+        """Draw the ticks at their current positions."""
         if not self.get_visible() or not self.axis.get_visible():
             return
         low, high = sorted(self.axis.get_view_interval())

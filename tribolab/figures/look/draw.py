@@ -1,4 +1,4 @@
-"""Draw a figure with matplotlib: in a figure of its own or in given axes."""
+"""Draw a figure with matplotlib: as a new figure or in given axes."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ _LINES: dict[str, LineStyleType] = {
     "line": "-", "dashed": "--", "dotted": (0, (1, 1.2)), "dashdot": "-.", "longdash": (0, (8, 2)),
 }  # fmt: skip
 _RAMP = "cividis"
-_MAX_WITH_SMALL_TICKS = 6  # panels: in smaller ones, ticks between those with a number are a bar
-_MAX_LEGEND_ENTRY = 64  # letters of an entry of the legend
-_LEVELS = 0.3, 3.0  # log10 of the ratios in a map, as on the page
+_MAX_WITH_SMALL_TICKS = 6  # in more panels, minor ticks would merge
+_MAX_LEGEND_ENTRY = 64  # characters of a legend entry
+_LEVELS = 0.3, 3.0  # log10 of the ratios at the ends of a map's colours, as on the page
 
 
 def draw(
@@ -41,18 +41,18 @@ def draw(
     Parameters
     ----------
     spec
-        What it shows.
+        Description of the figure.
     title
         Text above it.
     ax
-        Axes to draw in, one for each panel; they keep their look. Without them a figure is made.
+        Axes to draw in, one for each panel; they keep their style. By default a figure is made.
     width
-        Of a figure of its own [mm]: 86 (one column) or 178 (two); 0 leaves it to the figure.
+        Width of a new figure [mm]: 86 (one column) or 178 (two); 0 uses that of the description.
 
     Raises
     ------
     AnalysisError
-        If there is nothing to draw, or the number of axes is not that of the panels.
+        If there is nothing to draw, or the numbers of axes and panels differ.
 
     Examples
     --------
@@ -86,7 +86,7 @@ def draw(
 
 
 def plain_values(series: Series) -> Series:
-    """Return a series with lists of plain numbers, which limits are found from."""
+    """Return a series with lists of plain numbers, for finding limits."""
     names = ("x", "y", "high", "error", "error_below", "sizes")
     numbers = {name: np.asarray(getattr(series, name)).tolist() for name in names}
     return replace(series, **numbers, columns=_columns_of(series))
@@ -117,12 +117,12 @@ def _fill(spec: FigureSpec, sheet: Sheet) -> None:
         for mark in spec.marks:
             if mark.panel == number:
                 _mark(axes, mark)
-        _words_above(
+        _write_labels_above(
             axes, [mark for mark in spec.marks if mark.panel == number], _shared(spec, number, seen)
         )
         if any(series.style == "heat" for series in mine):
             _colour_bar(axes)
-        axes.set_xlim(limits[0])  # bars move them
+        axes.set_xlim(limits[0])  # error bars change them
         axes.set_ylim(limits[1])
         axes.set_xlabel(_label(panel.x) if _is_last(spec, number) else "")
         if not y.names and _is_first(spec, number):
@@ -144,7 +144,7 @@ def _is_first(spec: FigureSpec, number: int) -> bool:
 
 
 def _shared(spec: FigureSpec, number: int, seen: Sequence[tuple[Scale, Scale]]) -> Scale:
-    """Return what is seen along a panel: the same for panels with the same abscissa."""
+    """Return the range of a panel's abscissa, shared by panels with the same abscissa."""
     own = spec.panels[number].x
     alike = [x for panel, (x, _) in zip(spec.panels, seen, strict=True) if panel.x == own]
     return replace(alike[0], low=min(x.low for x in alike), high=max(x.high for x in alike))
@@ -170,7 +170,7 @@ def _scale_axis(axes: Axes, name: str, axis: Any, seen: Scale, small: bool) -> N
     elif seen.log:
         limits(10.0**low, 10.0**high)
         few_ticks(own, 10.0**low, 10.0**high, small=small)
-        _name_parts(own, low, high)
+        _label_parts(own, low, high)
     elif axis.unit == "date":
         _dates(axes)
         limits(low, high)
@@ -182,15 +182,15 @@ def _scale_axis(axes: Axes, name: str, axis: Any, seen: Scale, small: bool) -> N
             axes.add_artist(SmallTicks(own, AutoMinorLocator()))
 
 
-def _name_parts(axis: Any, low: float, high: float) -> None:
-    """Name 1, 2 and 5 of each decade where a logarithmic axis shows hardly more than one."""
+def _label_parts(axis: Any, low: float, high: float) -> None:
+    """Label 1, 2 and 5 of each decade if a logarithmic axis covers little more than one."""
     if high - low < 1.7:
         axis.set_major_locator(_parts_locator(high - low))
         axis.set_major_formatter(FuncFormatter(_part_of_decade))
 
 
 def _part_of_decade(value: float, place: int | None = None) -> str:
-    """Return 0.02 or 5·10⁻⁶ as the label of a tick between decades."""
+    """Return the label of a tick between decades, e.g. 0.02 or 5·10⁻⁶."""
     if 1e-3 <= value < 1e4 or power_of_ten(value).startswith("10"):
         return f"{value:g}" if 1e-3 <= value < 1e4 else power_of_ten(value)
     exponent = int(np.floor(np.log10(value) + 1e-9))
@@ -217,13 +217,13 @@ def _wrapped(text: str) -> str:
     # imported late: needed for long names only
     import textwrap
 
-    apart = str(text).replace("_", "_ ")  # a long name breaks at its underscores
+    apart = str(text).replace("_", "_ ")  # allows line breaks after underscores
     lines = textwrap.wrap(apart, 25, max_lines=3, placeholder=" …") or [""]
     return "\n".join(plain(line.replace("_ ", "_")) for line in lines)
 
 
 def colour_of(series: Series | Mark | Key) -> str:
-    """Return the colour of a series: that of the palette in the shade of its load."""
+    """Return the colour of a series: the palette colour in the shade of its load."""
     base = PALETTE[series.colour % len(PALETTE)]
     shade = getattr(series, "shade", 0.0)
     if not shade:
@@ -304,7 +304,7 @@ def _points(
 
 
 def _colour_bar(axes: Axes) -> None:
-    """Explain the colours of a map inside its panel, where they hide least."""
+    """Draw the colour scale of a map inside its panel."""
     maps = [drawn for drawn in axes.collections if drawn.get_array() is not None]
     inset = axes.inset_axes((0.04, 0.93, 0.3, 0.035))
     whole_figure(axes).colorbar(maps[-1], cax=inset, orientation="horizontal", ticks=[0.5, 1, 2, 3])
@@ -312,10 +312,10 @@ def _colour_bar(axes: Axes) -> None:
     inset.set_xlabel("log₁₀ of the ratio", fontsize=6, labelpad=1)
 
 
-def _words_above(axes: Axes, marks: Sequence[Mark], seen: Scale) -> None:
-    """Write the words of stretches above them in two rows, those that have room."""
+def _write_labels_above(axes: Axes, marks: Sequence[Mark], seen: Scale) -> None:
+    """Write the labels of marks above them in two rows, if there is room."""
     width = 25.4 * axes.get_window_extent().width / whole_figure(axes).dpi  # mm
-    ends = [6.0, 0.0]  # mm up to which each of the two rows is taken; the letter stands in one
+    ends = [6.0, 0.0]  # mm occupied in each of the two rows; the first contains the panel letter
     for mark in marks:
         at = seen.place(mark.value + ((mark.until or mark.value) - mark.value) / 2)
         if not mark.above or at is None:
@@ -361,7 +361,7 @@ def _key(axes: Axes, key: Key) -> None:
 
 
 def _keep(figure: Figure, spec: FigureSpec, series: Series) -> None:
-    """Remember the numbers of a series for `figure_data`."""
+    """Store the numbers of a series for `figure_data`."""
     columns, panel = series.columns or {}, spec.panels[series.panel]
     if "" in columns:
         x, y, high, error = columns[""]

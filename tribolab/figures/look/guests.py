@@ -1,4 +1,4 @@
-"""Draw in axes of the user, which keep their look and what they show."""
+"""Drawing in the user's axes, which keep their style and content."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from tribolab.core.errors import AnalysisError
 
-# Several axes, as `plt.subplots` returns them or as a list.
+# several axes, as returned by `plt.subplots` or as a list
 Panels = Sequence[Axes] | NDArray[np.object_]
 
 
 def name_all(axes: Axes) -> None:
-    """Set a legend with everything in the axes that has a name, each name once."""
+    """Set a legend with every labelled item in the axes, each label once."""
     handles, texts = axes.get_legend_handles_labels()
     named = dict(zip(reversed(texts), reversed(handles), strict=True))
     if named:
@@ -26,7 +26,7 @@ def name_all(axes: Axes) -> None:
 
 
 def whole_figure(part: Axes | SubFigure) -> Figure:
-    """Return the whole figure that axes, or a part of it, are in."""
+    """Return the whole figure that contains axes or a subfigure."""
     figure = part.figure
     while isinstance(figure, SubFigure):
         figure = figure.figure
@@ -37,18 +37,20 @@ def whole_figure(part: Axes | SubFigure) -> Figure:
 
 @contextlib.contextmanager
 def guests(panels: Iterable[Axes]) -> Iterator[None]:
-    """Draw into the user's axes: what was in sight stays so, what comes later is brought so."""
+    """Draw into the user's axes: extend their limits to new data without hiding old data."""
     before = [(ax, ax.has_data(), ax.get_xlim(), ax.get_ylim()) for ax in panels]
     yield
     for ax, had, old_x, old_y in before:
         x, y = ax.get_xlim(), ax.get_ylim()
         if had:
-            ax.set_xlim(_wider(x, old_x, ax.get_xscale()))
-            ax.set_ylim(_wider(y, old_y, ax.get_yscale()))
+            ax.set_xlim(_merged_limits(x, old_x, ax.get_xscale()))
+            ax.set_ylim(_merged_limits(y, old_y, ax.get_yscale()))
         ax.set_autoscale_on(True)
 
 
-def _wider(new: tuple[float, float], old: tuple[float, float], scale: str) -> tuple[float, float]:
-    """Return limits that hold both; on a logarithmic axis only what is above zero."""
+def _merged_limits(
+    new: tuple[float, float], old: tuple[float, float], scale: str
+) -> tuple[float, float]:
+    """Return limits that contain both; on a logarithmic axis only positive ones."""
     ends = [end for end in old if scale != "log" or end > 0]
     return min([new[0], *ends]), max([new[1], *ends])

@@ -1,4 +1,4 @@
-"""Knobs to turn beside a figure in a notebook, which stays there as a picture when it is saved."""
+"""Interactive controls for a figure in a notebook, which is saved with the notebook."""
 
 from __future__ import annotations
 
@@ -14,26 +14,25 @@ from tribolab.core.untyped import Arguments
 from tribolab.figures.look.style import PaperFigure
 
 Draw = TypeVar("Draw", bound=Callable[..., Figure])
-_FINE = 2  # pixels of the picture for one on the screen
+_FINE = 2  # pixels of the picture per pixel on the screen
 
 
 def knobs(**ranges: Any) -> Callable[[Draw], Draw]:
-    """Show a figure with a knob for each parameter of the function that draws it.
+    """Show a figure with a control for each parameter of the function that draws it.
 
-    The picture is an ordinary output of the cell, drawn anew when a knob is turned. So it is there
-    in a notebook that was saved, exported to HTML or is read without a kernel, at the place to
-    which the knobs were turned last; `ipywidgets.interact` leaves nothing.
+    The picture is an ordinary output of the cell, drawn again after each change. Unlike with
+    `ipywidgets.interact`, it remains in a saved or exported notebook, with the last settings.
 
     Parameters
     ----------
     **ranges
-        By the name of the parameter, as for `ipywidgets.interact`: ``(lowest, highest, step)``, a
-        list to choose from, or a widget. Knobs start at the parameters' defaults.
+        Ranges by name of the parameter, as for `ipywidgets.interact`: ``(lowest, highest, step)``,
+        a list to choose from, or a widget. Controls start at the parameters' defaults.
 
     Returns
     -------
     callable
-        Decorator of a function that returns a figure, of matplotlib's or of `tribolab.plot`'s.
+        Decorator of a function that returns a figure of matplotlib or `tribolab.plot`.
 
     Examples
     --------
@@ -96,14 +95,14 @@ def _controls(ranges: Arguments, defaults: Arguments) -> Arguments:
         control = interactive.widget_from_abbrev(given, default)
         control.description = control.description or name.replace("_", " ")
         if hasattr(control, "continuous_update"):
-            control.continuous_update = False  # a picture for each place, not for each pixel
+            control.continuous_update = False  # draw after the control is released
         control.style.description_width = "initial"
         controls[name] = control
     return controls
 
 
 def _box(controls: Arguments) -> Arguments:
-    """Return what a notebook shows of the knobs, and what stands for them where none runs."""
+    """Return the notebook output of the controls, with text for notebooks without a kernel."""
     # imported late: ipywidgets loads slowly
     from ipywidgets import VBox
 
@@ -113,7 +112,7 @@ def _box(controls: Arguments) -> Arguments:
 
 
 def _picture(figure: Figure) -> tuple[dict[str, bytes], Arguments]:
-    """Return a figure as PNG, and how wide it is shown; pyplot forgets it."""
+    """Return a figure as PNG with its display width, and close it in pyplot."""
     if isinstance(figure, PaperFigure):
         return {"image/png": figure._repr_png_()}, {}
     buffer = io.BytesIO()

@@ -1,4 +1,4 @@
-"""The page of a figure for papers: its size, its panels, the legend and the title above them."""
+"""Layout of a figure for publication: size, panels, legend and title."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from tribolab.figures.look.style import DOUBLE_MM, SINGLE_MM, new_figure, tidy
 from tribolab.figures.spec import FigureSpec
 
 _RIGHT, _BOTTOM, _PANEL = 3.0, 10.5, 50.0  # mm
-_SHARED_GAP, _OWN_GAP = 3.0, 13.0  # mm between panels above each other
-_ROW = 5.2  # mm of a name along the ordinate
-_LETTER = 1.38  # mm, mean width of a letter of 7 pt
+_SHARED_GAP, _OWN_GAP = 3.0, 13.0  # mm between panels in a column
+_ROW = 5.2  # mm per row of a categorical ordinate
+_LETTER = 1.38  # mm, mean width of a 7 pt character
 _LEGEND_ROW, _TITLE_ROW = 3.8, 4.5  # mm
-_LINE_LENGTH = 7.5  # mm that an entry of the legend needs besides its letters
-_NAMES = 42.0  # mm, the widest margin for names
+_LINE_LENGTH = 7.5  # mm of a legend entry in addition to its text
+_NAMES = 42.0  # mm, widest margin for names
 
 
 class Sheet(NamedTuple):
-    """A figure, its panels, its size and left margin [mm], and whether panels share abscissae."""
+    """Figure with its panels, size and left margin [mm], and whether panels share abscissae."""
 
     figure: Figure
     panels: list[Axes]
@@ -35,7 +35,7 @@ class Sheet(NamedTuple):
 
 
 def new_sheet(spec: FigureSpec, title: str = "", width: float = 0.0) -> Sheet:
-    """Return an empty figure with the panels of a figure, laid out in mm."""
+    """Return an empty figure with the panels of a description, laid out in mm."""
     width = width or (DOUBLE_MM if spec.width == "whole" or spec.across > 1 else SINGLE_MM)
     count, across = len(spec.panels), min(spec.across, len(spec.panels))
     shared = count > 1 and len({panel.x for panel in spec.panels}) == 1
@@ -62,7 +62,7 @@ def new_sheet(spec: FigureSpec, title: str = "", width: float = 0.0) -> Sheet:
 
 
 def _height(spec: FigureSpec, number: int) -> float:
-    """Return the height of a panel [mm]: of rows of names as many as there are."""
+    """Return the height of a panel [mm]; with names, it depends on their number."""
     names = {y for s in spec.series if s.panel == number for y in s.y if isinstance(y, str)}
     if names:
         lines = sum(1 + (len(name) > 25) for name in names)
@@ -78,7 +78,7 @@ def _left(spec: FigureSpec) -> float:
 
 
 def entries(spec: FigureSpec) -> list[str]:
-    """Return the words of the legend, in their order."""
+    """Return the texts of the legend in order."""
     words = [s.label for s in spec.series] + [m.text for m in spec.marks]
     words = list(dict.fromkeys([*words, *(key.label for key in spec.keys)]))
     return [word for word in words if word] if len([w for w in words if w]) > 1 else []
@@ -95,7 +95,7 @@ def _legend_rows(spec: FigureSpec, width: float) -> int:
 
 
 def finish(spec: FigureSpec, sheet: Sheet) -> None:
-    """Set letters, titles and the legend above the panels."""
+    """Add panel letters, titles and the legend above the panels."""
     for number, (axes, panel) in enumerate(zip(sheet.panels, spec.panels, strict=True)):
         if panel.title:
             axes.set_title(plain(panel.title, 48), fontsize=7, loc="left", pad=3)

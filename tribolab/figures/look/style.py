@@ -1,4 +1,4 @@
-"""The one look of all figures: sizes, fonts, colours, markers, and how a figure is saved."""
+"""Common style of all figures: sizes, fonts, colours, markers, and saving of figures."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ from matplotlib.mathtext import MathTextParser
 from matplotlib.textpath import TextToPath
 
 if TYPE_CHECKING:
-    from matplotlib.typing import RcKeyType  # newer than the oldest matplotlib that will do
+    from matplotlib.typing import RcKeyType  # not in the oldest supported matplotlib
 
 SINGLE_MM = 86.0
 DOUBLE_MM = 178.0
 
 _RC: dict[RcKeyType, Any] = {
-    "font.family": "DejaVu Sans",  # comes with matplotlib, so every machine draws the same
+    "font.family": "DejaVu Sans",  # part of matplotlib, so every computer draws the same
     "mathtext.fontset": "dejavusans",
     "font.size": 7.5,
     "axes.labelsize": 8,
     "axes.titlesize": 8,
-    "axes.titley": 1.0,  # else the ticks above the frame are measured to keep clear of them
+    "axes.titley": 1.0,  # otherwise the space above the frame is computed from its ticks
     "xtick.labelsize": 7,
     "ytick.labelsize": 7,
     "legend.fontsize": 7,
@@ -62,10 +62,10 @@ _RC: dict[RcKeyType, Any] = {
     "figure.facecolor": "white",
     "savefig.facecolor": "white",
     "figure.dpi": 100,
-    # Letters as outlines: the figure looks the same wherever it is opened, with no font to fetch.
+    # letters as outlines look the same everywhere and need no font
     "svg.fonttype": "path",
     "svg.hashsalt": "tribolab",
-    # TrueType: journals refuse the Type 3 fonts that are matplotlib's default.
+    # TrueType: journals reject matplotlib's default Type 3 fonts
     "pdf.fonttype": 42,
     "ps.fonttype": 42,
     "path.simplify": True,
@@ -73,13 +73,13 @@ _RC: dict[RcKeyType, Any] = {
 
 
 class PaperFigure(Figure):
-    """A matplotlib Figure that a notebook shows by itself.
+    """Matplotlib figure that a notebook shows by itself.
 
-    Made without pyplot, so no global state is touched and nothing has to be closed.
+    It is made without pyplot, so there is no global state and nothing to close.
     """
 
     def _ipython_display_(self) -> None:
-        # the inline backend of pyplot would show any Figure at half this resolution
+        # pyplot's inline backend would halve this resolution
         from IPython.display import display
 
         display({"image/png": self._repr_png_()}, raw=True)
@@ -91,11 +91,11 @@ class PaperFigure(Figure):
         return buffer.getvalue()
 
 
-_NUMBERS = "_tribolab_numbers"  # attribute of a figure, which goes with it wherever it goes
+_NUMBERS = "_tribolab_numbers"  # attribute of a figure with its numbers
 
 
 def keep(figure: Figure, panel: str, series: str, **columns: np.ndarray) -> None:
-    """Remember the numbers that were drawn in a figure; `figure_data` hands them out."""
+    """Store the numbers drawn in a figure for `figure_data`."""
     vars(figure).setdefault(_NUMBERS, []).append({"panel": panel, "series": series, **columns})
 
 
@@ -105,13 +105,13 @@ def figure_data(figure: Figure) -> pd.DataFrame:
     Parameters
     ----------
     figure
-        What one of the functions of `tribolab.plot` returned, or drew in.
+        Figure returned by a function of `tribolab.plot`, or drawn in by it.
 
     Returns
     -------
     pandas.DataFrame
-        A row per drawn point; `panel` and `series` say where it stands, the other columns carry
-        their unit in the name (``sliding_speed_m_s``).
+        A row per drawn point: `panel`, `series`, and columns with their unit in the name
+        (``sliding_speed_m_s``).
 
     Examples
     --------
@@ -131,7 +131,7 @@ def figure_data(figure: Figure) -> pd.DataFrame:
 
 @contextlib.contextmanager
 def paper_style() -> Iterator[None]:
-    """Draw in the package's style; what was set before is back afterwards.
+    """Apply the package's style temporarily.
 
     Examples
     --------
@@ -143,7 +143,7 @@ def paper_style() -> Iterator[None]:
     True
     """
     with mpl.rc_context():
-        # from matplotlib's own defaults, not the user's matplotlibrc: the same look for everybody
+        # start from matplotlib's defaults instead of the user's matplotlibrc, for equal figures
         defaults = {k: v for k, v in mpl.rcParamsDefault.items() if k not in _KEEP}
         mpl.rcParams.update(defaults)
         mpl.rcParams.update(_RC)
@@ -159,7 +159,7 @@ def new_figure(width_mm: float, height_mm: float) -> PaperFigure:
 
 
 def tidy(axes: Axes, letter: str = "") -> None:
-    """Give the panel its letter, as papers do."""
+    """Add the letter of a panel."""
     if letter:
         axes.annotate(
             f"({letter})",
@@ -185,24 +185,24 @@ def _rounded(match: re.Match[str]) -> str:
     return f"{float(match[0]):.2f}".rstrip("0").rstrip(".")
 
 
-def _shorter(match: re.Match[str]) -> str:
-    """Write a path shorter: two decimals, and no `L` where SVG takes it as understood."""
+def _shorten_path(match: re.Match[str]) -> str:
+    """Shorten a path: two decimals, and no `L` where SVG implies it."""
     path = " ".join(_DECIMALS.sub(_rounded, match[1]).split())
     if _POLYLINE.fullmatch(path):  # after M, pairs of numbers are lines
         path = path.replace(" L ", " ")
     return f' d="{path}"'
 
 
-_PLACE = re.compile(r' [xy]="[^"]*"|translate\([^)]*\)')  # never a scale
+_PLACE = re.compile(r' [xy]="[^"]*"|translate\([^)]*\)')  # positions, but no scales
 _GROUP_ID = re.compile(r'<g id="[^"]*"')
 _SYMBOL = re.compile(r'<path id="([^"]+)"[^>]*? style="([^"]*)"')
 _USE = re.compile(r'<use xlink:href="#([^"]+)"([^>]*?) style="([^"]*)"/>')
 _BARE_GROUP = re.compile(r"<g>\n(<use[^>]*/>)\n</g>")
 
 
-def _smaller(text: str) -> str:
-    """Leave out what the drawing does not need: decimals, indents, ids, styles said twice."""
-    text = _DRAWN.sub(_shorter, _COMMENT.sub("", text))
+def _shorten_svg(text: str) -> str:
+    """Shorten an SVG: fewer decimals, no indents, ids and repeated styles."""
+    text = _DRAWN.sub(_shorten_path, _COMMENT.sub("", text))
     text = _PLACE.sub(lambda match: _DECIMALS.sub(_rounded, match[0]), text)
     styles = dict(_SYMBOL.findall(text))
 
@@ -211,13 +211,13 @@ def _smaller(text: str) -> str:
         return match[0] if styles.get(name) != own else f'<use xlink:href="#{name}"{place}/>'
 
     text = re.sub(r"\n\s*", "\n", _GROUP_ID.sub("<g", _USE.sub(use, text)))
-    for _ in range(2):  # a bare group around one symbol
+    for _ in range(2):  # unwrap groups around one symbol
         text = _BARE_GROUP.sub(r"\1", text)
     return text
 
 
 class _KnownTexts(TextToPath):
-    """Sets a formula, and measures a text, once and not once in every figure."""
+    """Text renderer that typesets a formula and measures a text only once for all figures."""
 
     _formulas = MathTextParser("path")
 
@@ -240,9 +240,9 @@ def _measured(
 
 @contextlib.contextmanager
 def _texts_set_once() -> Iterator[None]:
-    """Have renderers share what they know of texts.
+    """Let all renderers share one cache of texts.
 
-    Every renderer has a parser and a memory of its own, which go with it.
+    By default every renderer has its own parser and cache.
     """
     own = vars(mpl_text)["TextToPath"]
     vars(mpl_text)["TextToPath"] = _KnownTexts
@@ -253,9 +253,9 @@ def _texts_set_once() -> Iterator[None]:
 
 
 def svg(figure: Figure) -> str:
-    """Return the figure as SVG text: no date, no random ids, so equal data give equal bytes.
+    """Return the figure as SVG text without date and random ids: equal data give equal bytes.
 
-    Coordinates are rounded to 0.01 pt (4 um on paper), which makes a trace less than half as long.
+    Coordinates are rounded to 0.01 pt (4 um on paper), which halves the size of a trace.
 
     Examples
     --------
@@ -270,18 +270,18 @@ def svg(figure: Figure) -> str:
     buffer = io.StringIO()
     with paper_style(), _texts_set_once():
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "tribolab"})
-    return _smaller(buffer.getvalue())
+    return _shorten_svg(buffer.getvalue())
 
 
 def save(figure: Figure, path: str | Path) -> Path:
-    """Write the figure as SVG, or as any format that matplotlib knows by the file's ending.
+    """Write the figure as SVG, or in any matplotlib format given by the file extension.
 
     Parameters
     ----------
     figure
-        What one of the functions of `tribolab.plot` returned.
+        Figure returned by a function of `tribolab.plot`.
     path
-        The file; its folder must be there.
+        The file; its folder must exist.
 
     Examples
     --------

@@ -1,1 +1,1 @@
-"""Figures on the page: what is seen at first, and the picture shown until the script has drawn."""
+"""Figures on the page: initial view, and the picture shown until the script has drawn."""

@@ -1,4 +1,4 @@
-"""Shapes of a still figure: markers, lines, bands and bars as SVG paths, colours by class."""
+"""Shapes of a static figure: markers, lines, bands and bars as SVG paths, colours by class."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from tribolab.figures.spec import Series, Style
 
 PlacedPoint = tuple[float, float]
-_HUES = 8  # of the palette, as in `assets/report.css`
+_HUES = 8  # number of palette colours, as in `assets/report.css`
 _DASHES: dict[Style, str] = {
     "dashed": "6 4",
     "dotted": "2 3",
@@ -18,20 +18,20 @@ _DASHES: dict[Style, str] = {
     "longdash": "10 3",
 }
 _MARKER = 3.6  # half the width of a marker [px]
-_SEEN = 0.3  # how far a line may pass from a point of it [px]
+_SEEN = 0.3  # largest distance of a simplified line from its points [px]
 _LEVELS = 5  # colours of a heat map
-_LOW, _HIGH = 0.3, 3.0  # its ends, as in `assets/chart.js`
-# corners of the markers that are no circles, and where the first one stands [turns from the top]
+_LOW, _HIGH = 0.3, 3.0  # ends of the colour scale, as in `assets/chart.js`
+# number of corners of each marker (0: circle), and angle of the first one [turns from the top]
 _CORNERS = ((0, 0.0), (4, 0.125), (4, 0.0), (3, 0.0), (3, 0.5), (5, 0.0), (6, 0.25), (5, 0.0))
 
 
 def hue(colour: int) -> str:
-    """Return the class of a place in the palette."""
+    """Return the CSS class of a palette index."""
     return f"h{colour % _HUES}"
 
 
 def coordinate(value: float) -> str:
-    """Return a length [px] with the digits that are seen.
+    """Return a length [px] with visible digits only.
 
     Examples
     --------
@@ -42,7 +42,7 @@ def coordinate(value: float) -> str:
 
 
 def path(points: Iterable[PlacedPoint | None]) -> str:
-    """Return a line through points, broken where there is none.
+    """Return a line through points as SVG path, interrupted at None.
 
     Examples
     --------
@@ -60,7 +60,7 @@ def path(points: Iterable[PlacedPoint | None]) -> str:
 
 
 def straightened(points: Sequence[PlacedPoint | None]) -> Iterator[PlacedPoint | None]:
-    """Give a line without the points that nobody would miss.
+    """Yield a line without the points that have no visible effect.
 
     Examples
     --------
@@ -78,7 +78,7 @@ def straightened(points: Sequence[PlacedPoint | None]) -> Iterator[PlacedPoint |
 
 
 def _straight(part: Sequence[PlacedPoint]) -> Iterator[PlacedPoint]:
-    """Give the points of one piece after Ramer, Douglas and Peucker."""
+    """Yield the points of one piece kept by the Ramer-Douglas-Peucker algorithm."""
     x, y = np.array(part, float).T
     kept = {0, len(part) - 1}
     spans = [(0, len(part) - 1)]
@@ -96,7 +96,7 @@ def _straight(part: Sequence[PlacedPoint]) -> Iterator[PlacedPoint]:
 
 
 def markers(points: Sequence[PlacedPoint], marker: int, sizes: Iterable[float]) -> str:
-    """Return the outline of a marker of a size [px] at each point."""
+    """Return the SVG path of a marker of given size [px] at each point."""
     corners, turn = _CORNERS[marker % _HUES]
     return "".join(
         _marker(*at, size, corners, turn) for at, size in zip(points, sizes, strict=True)
@@ -117,7 +117,7 @@ def _marker(x: float, y: float, size: float, corners: int, turn: float) -> str:
 def error_bars(
     bars: Iterable[tuple[float, float, float]], cap: float, *, lying: bool = False
 ) -> str:
-    """Return bars with caps, each at x from one y to another [px]; `lying` ones at y along x."""
+    """Return the SVG path of error bars with caps [px]: vertical, or horizontal if `lying`."""
     parts = []
     for at, low, high in bars:
         lines = [[(at, low), (at, high)]]
@@ -129,7 +129,7 @@ def error_bars(
 def drawn_points(
     points: Sequence[PlacedPoint], series: Series, bars: str = "", areas: Sequence[float] = ()
 ) -> Iterator[str]:
-    """Give the markers of a series, of the relative `areas`, and its error bars before them."""
+    """Yield the error bars of a series and its markers of relative `areas`."""
     if bars:
         kind = "bar pale" if series.pale else "bar"
         yield f'<path class="{_hue(series)} {kind}" d="{bars}"/>'
@@ -140,7 +140,7 @@ def drawn_points(
 
 
 def drawn_line(points: Sequence[PlacedPoint | None], series: Series) -> Iterator[str]:
-    """Give the line of a series."""
+    """Yield the line of a series."""
     dash = _DASHES.get(series.style)
     look = f' stroke-dasharray="{dash}"' if dash else ""
     kind = "line thin" if series.thin else "line"
@@ -148,7 +148,7 @@ def drawn_line(points: Sequence[PlacedPoint | None], series: Series) -> Iterator
 
 
 def _hue(series: Series) -> str:
-    """Return the classes of a colour and its shade, which `still.css` mixes with ink or paper."""
+    """Return the CSS classes of a colour and its shade, as defined in `still.css`."""
     tenths = round(10 * series.shade)
     shade = f" {'dark' if tenths < 0 else 'pale'}{abs(tenths)}" if tenths else ""
     return hue(series.colour) + shade
@@ -157,14 +157,14 @@ def _hue(series: Series) -> str:
 def drawn_band(
     low: Sequence[PlacedPoint], high: Sequence[PlacedPoint], series: Series
 ) -> Iterator[str]:
-    """Give the area between two lines."""
+    """Yield the area between two lines."""
     if low and high:
         around = straightened([*low, *reversed(high)])
         yield f'<path class="{_hue(series)} band" d="{path(around)}z"/>'
 
 
 def drawn_heat(points: Sequence[tuple[PlacedPoint, float]]) -> Iterator[str]:
-    """Give dots whose colour is a level, equal ones together."""
+    """Yield dots coloured by level, grouped by colour."""
     by_level: dict[int, list[PlacedPoint]] = {}
     for point, value in points:
         share = (value - _LOW) / (_HIGH - _LOW)

@@ -1,8 +1,8 @@
-"""A live figure as it stands in the page until a script draws it: an SVG, for paper as well.
+"""Static SVG of a live figure, shown until a script draws it, and for print.
 
-It shows the first view, so the first screen is whole at once, a page that is printed before its
-scripts are done has its figures, and so has one whose scripts do not run. Colours are classes of
-`assets/still.css`, for light and dark.
+It shows the initial view. So the first screen is complete immediately, and pages have figures if
+they are printed early or scripts do not run. Colours are classes of `assets/still.css`, for light
+and dark mode.
 """
 
 from __future__ import annotations
@@ -31,19 +31,19 @@ from tribolab.figures.spec import (
     written_labels,
 )
 
-_WIDTHS: dict[Width, int] = {"card": 340, "half": 400, "whole": 680}  # [px], as on paper or so
+_WIDTHS: dict[Width, int] = {"card": 340, "half": 400, "whole": 680}  # [px], about as on paper
 _HEIGHTS = (300, 430, 580)  # of figures of one, two and three panels
-_LETTER = 6.6  # mean width of a letter [px]
-_LINE = 18  # height of a row of the legend
+_LETTER = 6.6  # mean width of a character [px]
+_LINE = 18  # height of a legend row [px]
 _TOP, _RIGHT, _BOTTOM = 8, 12, 42
-_BETWEEN = 16  # panels
-_MOST = 240  # points of a line
+_BETWEEN = 16  # distance between panels [px]
+_MOST = 240  # most points of a line
 _MOST_HEAT = 400
 
 
 @dataclass(frozen=True)
 class _Box:
-    """Where the axes of one panel stand [px], and what they show."""
+    """Box of one panel [px], and the ranges of its axes."""
 
     left: float
     top: float
@@ -53,7 +53,7 @@ class _Box:
     y: Scale
 
     def at(self, x: object, y: object) -> PlacedPoint | None:
-        """Return where a point stands within the box, far outside at most by its own size."""
+        """Return the position of a point in the box, clipped to one box size outside."""
         across, up = self.x.place(x), self.y.place(y)
         if across is None or up is None:
             return None
@@ -65,7 +65,7 @@ def _near(share: float) -> float:
 
 
 def still(figure: FigureSpec) -> str:
-    """Return a figure as SVG: of one load at a time the lowest."""
+    """Return a figure as SVG; with selectable loads it shows the lowest."""
     width = _WIDTHS[figure.width]
     series, seen = first_view(figure)
     labels = legend(series)
@@ -84,17 +84,17 @@ def still(figure: FigureSpec) -> str:
 
 
 def first_view(figure: FigureSpec) -> tuple[list[Series], list[tuple[Scale, Scale]]]:
-    """Return the series of a figure before anything was chosen, and what is seen of each panel."""
+    """Return the initially visible series of a figure, and the ranges of each panel."""
     series = first_series(figure)
     seen = [scales(panel, place, series) for place, panel in enumerate(figure.panels)]
-    if len(seen) > 1:  # panels below each other share what lies along them
+    if len(seen) > 1:  # panels in a column share their abscissa
         low, high = min(x.low for x, _ in seen), max(x.high for x, _ in seen)
         seen = [(replace(x, low=low, high=high), y) for x, y in seen]
     return series, seen
 
 
 def first_series(figure: FigureSpec) -> list[Series]:
-    """Return what is seen at first, its values as plain numbers."""
+    """Return the initially visible series, with values as plain numbers."""
     shown = []
     for curve in figure.series:
         other = figure.one_load and curve.load is not None and curve.load != figure.loads[0]
@@ -126,7 +126,7 @@ def _legend(labels: dict[str, Series], width: int) -> Iterator[str]:
 def _boxes(
     seen: Sequence[tuple[Scale, Scale]], width: int, top: float, height: float
 ) -> list[_Box]:
-    """Return the panels below each other, with room for what stands left of them."""
+    """Return the boxes of panels in a column, with room for labels on the left."""
     names = max((len(name) for _, y in seen for name in y.names), default=0)
     left = min(names * _LETTER + 12, 0.45 * width) if names else 58
     count = len(seen)
@@ -158,7 +158,7 @@ def _panel(figure: FigureSpec, place: int, box: _Box, series: Sequence[Series]) 
 
 
 def _line(mark: Mark, box: _Box) -> str:
-    """Return a line across a panel at a value, or a shaded stretch of it."""
+    """Return a line across a panel at a value, or a shaded interval."""
     scale, size = (box.x, box.width) if mark.side == "x" else (box.y, box.height)
     ends = [scale.place(value) for value in (mark.value, mark.until) if value is not None]
     at = [size * (_near(e) if mark.side == "x" else 1 - _near(e)) for e in ends if e is not None]
@@ -204,7 +204,7 @@ def _drawn(curve: Series, box: _Box, axis: Axis) -> Iterator[str]:
 
 
 def _above(value: Any, box: _Box) -> Any:
-    """Return the lower edge of a band, which on a logarithmic axis may lie at or below zero."""
+    """Return the lower edge of a band; below the range if it is not positive on a log axis."""
     if box.y.log and value is not None and not value > 0:
         return 10.0 ** (box.y.low - (box.y.high - box.y.low))
     return value
@@ -227,7 +227,7 @@ def _bars(curve: Series, box: _Box, axis: Axis) -> Iterator[tuple[float, float, 
 
 
 def _rows(curve: Series, box: _Box, every: Sequence[Series]) -> Iterator[str]:
-    """Give the bars of a series, which share a row with those of others that have its names."""
+    """Yield the bars of a series, which share rows with other series of the same names."""
     every = [one for one in every if set(one.y) & set(curve.y)]
     thick = 0.8 * box.height / len(box.y.names) / len(every)
     below = next(k for k, other in enumerate(every) if other is curve) - 0.5 * len(every)
@@ -275,7 +275,7 @@ def _named(axis: Axis) -> str:
 
 
 def _tick(value: float, log: bool, unit: str) -> str:
-    """Return a tick as the live figure has it: powers of ten where the axis has a unit."""
+    """Return the label of a tick as in the live figure: powers of ten if the axis has a unit."""
     text = number(value, 6)
     power = math.log10(value) if log else 0.0
     if not (log and unit or "e" in text) or power != round(power) or power in (0, 1):

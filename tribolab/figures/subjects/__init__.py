@@ -1,1 +1,1 @@
-"""What each figure shows: a module per subject."""
+"""Descriptions of the figures: one module per subject."""

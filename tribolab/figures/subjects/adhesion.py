@@ -32,8 +32,7 @@ def adhesive_area(
     contacts
         As for `contact_area`.
     adhesions
-        ``contact_area_ratio`` (medium, pressure), with ``_low`` and ``_high`` if known, by the
-        surface's name.
+        ``contact_area_ratio`` (medium, pressure), with ``_low`` and ``_high`` if known, by surface.
     loads, surfaces
         As for `contact_area`.
 

@@ -1,4 +1,4 @@
-"""Campaigns compared, and an instrument over time."""
+"""Figures that compare campaigns, and an instrument over time."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Key, Mark, Panel, Series, Style
 from tribolab.figures.subjects.curves import SPEED_AXIS
 
-_MANIFOLD = 300.0  # %: larger differences are drawn on a logarithmic scale
-_SPREAD = 0.06  # by which points of several conditions at one speed are set apart
+_MANIFOLD = 300.0  # %: threshold for a logarithmic scale
+_SPREAD = 0.06  # offset of points of several conditions at one speed
 
 
 @plotted()
 def differences(points: pd.DataFrame) -> FigureSpec:
     """Draw the relative difference of two measured curves over speed.
 
-    Bars contain all differences together with 95 % probability; filled points differ. Values are
-    relative to the first.
+    Bars: simultaneous 95 % intervals of all differences; filled points differ. Values are relative
+    to the first curve.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ _WORDS = {
 
 @plotted()
 def forest(quantities: pd.DataFrame, *, names: Sequence[str] = ("first", "second")) -> FigureSpec:
-    """Draw the numbers of two campaigns as relative differences, a row each: a forest plot.
+    """Draw the relative differences of two campaigns as a forest plot, one row each.
 
     Thin bars: 95 %; thick pale ones: 90 %, the level at which equivalence is decided.
 
@@ -106,7 +106,7 @@ def forest(quantities: pd.DataFrame, *, names: Sequence[str] = ("first", "second
         As in `tribolab.comparison.compare.Comparison`: ``quantity``, ``of``, ``first``,
         ``difference``, ``low`` and ``high`` of 95 %, ``low_90`` and ``high_90``.
     names
-        Of the two, for the axis.
+        Names of the two campaigns, for the axis.
 
     Raises
     ------
@@ -174,9 +174,9 @@ def control(table: pd.DataFrame) -> FigureSpec:
     Parameters
     ----------
     table
-        Of one chart, as `tribolab.comparison.history.InstrumentHistory` gives: ``when``, ``value``,
-        ``quantity``, ``unit``, ``baseline``, ``low``, ``high``, ``smoothed``, ``smoothed_low``,
-        ``smoothed_high`` and ``signal``.
+        Data of one chart, as `tribolab.comparison.history.InstrumentHistory` gives: ``when``,
+        ``value``, ``quantity``, ``unit``, ``baseline``, ``low``, ``high``, ``smoothed``,
+        ``smoothed_low``, ``smoothed_high`` and ``signal``.
 
     Raises
     ------
@@ -223,7 +223,7 @@ def control(table: pd.DataFrame) -> FigureSpec:
                 Series(label, days[part], column["value"][part], "points", columns={}, **own)
             )
     quantity, unit = str(table["quantity"].iloc[0]), str(table["unit"].iloc[0])
-    # a single campaign has no interval to divide
+    # one campaign has a zero range of days
     room = 0.06 * np.ptp(days) or 1.0
     date = Axis("date", "date", view=(float(days.min() - room), float(days.max() + room)))
     y = Axis(quantity, "" if unit == "1" else unit)

@@ -27,8 +27,8 @@ from tribolab.figures.subjects.surfaces import shaded_loads
 _MPA, _MM, _UM = 1e-6, 1e3, 1e6
 _MAX_NAMED_LOADS = 5
 PRESSURE_AXIS = axis_of("pressure", unit="MPa", log=True)
-AREA_AXIS = axis_of("contact_area_ratio", log=True, decades=4)  # less is no contact to speak of
-_MAX_POINTS = 200  # of a line at each of several loads
+AREA_AXIS = axis_of("contact_area_ratio", log=True, decades=4)  # smaller areas are negligible
+_MAX_POINTS = 200  # points per line with several loads
 
 
 @plotted()
@@ -132,7 +132,7 @@ def gaps(distributions: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()) -> Fi
     colours = surface_colours([*surfaces, *distributions])
     series = []
     for name, data in distributions.items():
-        smallest = data.attrs.get("cutoff_m", 0.0)  # a smaller gap is smaller than an atom
+        smallest = data.attrs.get("cutoff_m", 0.0)  # smaller gaps are below atomic size
         for load, line in by_load(data):
             u = line["gap"].values
             share = u * line["gap_density"].values

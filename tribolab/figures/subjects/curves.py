@@ -18,9 +18,9 @@ from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, SeriesLabels, axis_of
 
 Scale = Literal["auto", "log", "linear"]
-MIN_RATIO_FOR_LOG = 5.0  # of the highest to the lowest µ: less shows its minimum on a linear axis
-_DRAWN = ("friction_coefficient", "half_loop", "friction_force")  # the first that is known
-# Coordinates of a dataset with several curves, and the attributes that say the same of one.
+MIN_RATIO_FOR_LOG = 5.0  # highest to lowest µ; below it a linear axis shows the minimum
+_DRAWN = ("friction_coefficient", "half_loop", "friction_force")  # the first available one is drawn
+# coordinates of a dataset with several curves, and the equivalent attributes of one curve
 _ATTRIBUTES = {
     "surface": "surface",
     "medium": "medium",
@@ -61,8 +61,8 @@ def stribeck(
         The error bars: ``"U95"``, the expanded uncertainty of the mean (95 % coverage), or
         ``"std"``, the standard deviation while sliding (the error bar of the reference study).
     scale
-        Of the friction coefficient; ``"auto"`` is logarithmic if the highest value is more than
-        5 times the lowest, so that the minimum can be read.
+        Scale of the friction coefficient; ``"auto"`` is logarithmic if the highest value is more
+        than 5 times the lowest, so that the minimum can be read.
 
     Raises
     ------
@@ -126,11 +126,11 @@ def _listed(curves: MeasuredCurves) -> list[xr.Dataset]:
 
 
 def _each(curves: xr.Dataset) -> list[xr.Dataset]:
-    """Return the curves of a dataset with several, named after their coordinates."""
+    """Return the curves of a dataset with several curves, labelled by their coordinates."""
     varying = {dim for name in _DRAWN if name in curves for dim in curves[name].dims}
     along = [dim for dim in ("surface", "medium", "normal_force", "run") if dim in varying]
     if not along:
-        return [curves.copy(deep=False)]  # a curve given twice is drawn twice
+        return [curves.copy(deep=False)]  # copied, as a curve given twice is drawn twice
     parts = []
     for place in range(curves.sizes[along[0]]):
         part = curves.isel({along[0]: place})
@@ -166,7 +166,7 @@ def _load(curve: xr.Dataset) -> float | None:
 
 
 class CurveLook(NamedTuple):
-    """How a curve is drawn: its label, colour, shade, marker, and what it shows."""
+    """Style of a curve: label, colour, shade, marker and series labels."""
 
     label: str
     colour: int
@@ -176,7 +176,7 @@ class CurveLook(NamedTuple):
 
 
 def curve_looks(curves: Sequence[xr.Dataset], surfaces: Sequence[str] = ()) -> list[CurveLook]:
-    """Return how each curve of a figure is drawn: colour by surface, shade and marker by load.
+    """Return the style of each curve of a figure: colour by surface, shade and marker by load.
 
     Parameters
     ----------

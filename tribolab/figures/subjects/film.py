@@ -1,4 +1,4 @@
-"""The film: profiles across the contact, flow and friction factors."""
+"""Figures of the film: profiles across the contact, flow and friction factors."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ _PANELS = (
     ),
     ("fluid_pressure", 1e-6, Axis("p liquid", "MPa", paper=r"fluid pressure $p_{\mathrm{fluid}}$")),
 )
-_NOTHING = 1e-3  # of the highest pressure: beyond, a profile shows nothing
-_WIDEST_GAP = 100.0  # times the narrowest one that is drawn
-_MAX_POINTS = 160  # of a profile
+_NOTHING = 1e-3  # share of the highest pressure below which a profile ends
+_WIDEST_GAP = 100.0  # ratio of the largest to the smallest gap drawn
+_MAX_POINTS = 160  # points of a profile
 _ACROSS = Axis("across the contact", "mm", paper="coordinate $x$")
 _FACTORS: tuple[tuple[str, str, Style, int], ...] = (
     ("pressure_flow_factor", "pressure flow factor", "line", 0),
@@ -73,7 +73,7 @@ def film_profiles(profiles: xr.Dataset | Sequence[xr.Dataset]) -> FigureSpec:
         kept = inside[thinned(inside.size, _MAX_POINTS)]
         for panel, (name, factor, _) in enumerate(_PANELS):
             x, y = 1e3 * profile["x"].values[kept], factor * profile[name].values[kept]
-            if name == "separation":  # which grows without limit outside the contact
+            if name == "separation":  # it grows without limit outside the contact
                 y = np.where(y <= _WIDEST_GAP * y.min(), y, np.nan)
             series.append(Series(label, x, y, colour=number, panel=panel))
     return FigureSpec(

@@ -1,4 +1,4 @@
-"""All loads in one fit, and what moves a model most."""
+"""Figures of the joint fit of all loads, and of a model's sensitivity."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from tribolab.figures.subjects.curves import SPEED_AXIS
 
 
 class FittedCurves(Protocol):
-    """What is drawn of a `JointFit`: its points and its curves."""
+    """Protocol of a `JointFit`: its points and its curves."""
 
     @property
     def points(self) -> xr.Dataset:
@@ -82,7 +82,7 @@ def joint_fit(fit: FittedCurves, *, surface: str = "", surfaces: Sequence[str] =
 def _looks(curves: xr.Dataset, surface: str, surfaces: Sequence[str]) -> list[Arguments]:
     """Return colour, shade and marker of each curve: the colour of the surface, dark at low load.
 
-    A dry curve has the colour of the wet one at its load, and another marker.
+    A dry curve has the colour of the wet one at its load, but another marker.
     """
     own = [str(name) or surface for name in curves["surface"].values]
     colours = surface_colours([*surfaces, *own])
@@ -92,7 +92,7 @@ def _looks(curves: xr.Dataset, surface: str, surfaces: Sequence[str]) -> list[Ar
     for name, load in zip(own, loads, strict=True):
         of_surface = np.unique(loads[[other == name for other in own]])
         rank = int(np.searchsorted(of_surface, load))
-        again = seen.count((name, load))  # measured dry at a load that was measured wet, too
+        again = seen.count((name, load))  # also measured wet at this load
         seen.append((name, load))
         shade = shade_of(rank, of_surface.size)
         marker = rank + again * of_surface.size
@@ -127,7 +127,7 @@ def _of_load(name: str, points: xr.Dataset, curve: xr.Dataset, look: Arguments) 
 def model_sensitivity(
     uncertainty: xr.Dataset, *, surface: str = "", surfaces: Sequence[str] = ()
 ) -> FigureSpec:
-    """Draw the band of a model curve, and how far each unknown moves the curve.
+    """Draw the band of a model curve, and its sensitivity to each uncertain input.
 
     Bars: the largest change of mu over all speeds, up and down, relative to the peak of the curve,
     for the low and the high end of each range; the longest on top.

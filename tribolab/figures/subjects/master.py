@@ -1,4 +1,4 @@
-"""The master curve: friction in several liquids over viscosity times speed, with its regimes."""
+"""Master curve: friction in several liquids over viscosity times speed, with regimes."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ def master_curve(
     curves
         ``friction_coefficient`` (sliding_speed or entrainment_speed) of each liquid.
     viscosity
-        Of each liquid [Pa s].
+        Viscosity of each liquid [Pa s].
     names
-        Of the liquids.
+        Names of the liquids.
     collapse
         From `tribolab.collapse_test`: its common curve and p-value.
     model
@@ -82,13 +82,13 @@ def _speed(curve: xr.Dataset) -> np.ndarray:
 
 
 def _reduced(curve: xr.Dataset, viscosity: float) -> tuple[np.ndarray, np.ndarray]:
-    """Viscosity times speed [N/m] and friction, at rest left out."""
+    """Viscosity times speed [N/m] and friction, without points at rest."""
     speed = _speed(curve)
     return viscosity * speed[speed > 0], curve["friction_coefficient"].values[speed > 0]
 
 
 def _regimes(at: np.ndarray, film: np.ndarray) -> tuple[Mark, ...]:
-    """Mark where the film ratio passes the ends of mixed lubrication."""
+    """Mark the boundaries of mixed lubrication on the axis."""
     return tuple(
         Mark("x", float(np.exp(np.interp(np.log(limit), np.log(film), np.log(at)))),
              style="dotted", above=text)

@@ -62,7 +62,7 @@ def mixed_curve(
     errors
         ``"U95"`` or ``"std"``, as for `tribolab.plot.stribeck`.
     scale
-        Of the friction coefficient.
+        Scale of the friction coefficient.
 
     Examples
     --------
@@ -214,7 +214,7 @@ def shear_stress(table: pd.DataFrame, *, surfaces: Sequence[str] = ()) -> Figure
     )
 
 
-_UNITS = ("_N", "_Pa")  # of the columns that `figure_data` gives
+_UNITS = ("_N", "_Pa")  # units of the columns of `figure_data`
 
 
 @plotted()
@@ -232,7 +232,7 @@ def friction_factor_effect(
         ``friction_coefficient`` and ``friction_without_factors`` (sliding_speed) by the surface's
         name.
     scale
-        Of the friction coefficient; the sliding speed is always on a logarithmic one.
+        Scale of the friction coefficient; that of the sliding speed is always logarithmic.
     surfaces
         As for `mixed_curve`.
 

@@ -1,4 +1,4 @@
-"""How well a number is known: parts of its uncertainty, repeatability, runs needed."""
+"""Figures of precision: parts of the uncertainty, repeatability, runs needed."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from tribolab.figures.spec import Axis, FigureSpec, Key, Panel, Series
 from tribolab.figures.subjects.curves import SPEED_AXIS
 from tribolab.metrology.budget_result import UncertaintyBudget
 
-_SMALL = 1e-3  # of the largest part: less is no bar
-_SPREAD = 0.06  # by which points of one speed are set apart
+_SMALL = 1e-3  # share of the largest part below which a part has no bar
+_SPREAD = 0.06  # offset of points at one speed
 
 
 @plotted()
@@ -67,7 +67,7 @@ _ASSURED = {"runs": "assured_runs", "cheapest_runs": "cheapest_assured_runs"}
 
 @plotted()
 def runs_needed(table: pd.DataFrame) -> FigureSpec:
-    """Draw how many runs reach a precision at each speed.
+    """Draw the number of runs that reaches a precision at each speed.
 
     Filled: runs that slide as long as those of the pilot; open: runs of the cheapest sliding time;
     bars up to the number of runs that reaches the precision with assurance.

@@ -1,4 +1,4 @@
-"""The signals of a run as they were recorded."""
+"""Figure of the recorded signals of a run."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ from tribolab.friction.oscillation.slip_curve import one_curve
 from tribolab.friction.oscillation.waveform import CLASSES, NOT_CLEAR
 
 _COLUMNS = 500
-_GAP = 0.25  # between stacked traces, of the tallest one's height
+_GAP = 0.25  # gap between stacked traces, as share of the highest trace
 _MAX_EVENTS = 300  # points of a distribution
 _LOOKS: dict[str, Arguments] = {
     CLASSES[0]: {"colour": GREY, "marker": 0, "open": True},
@@ -61,7 +61,7 @@ def slip_traces(
 ) -> FigureSpec:
     """Draw friction against sliding distance, stroke above stroke, each shifted to be seen.
 
-    Every trace has the same scale; the legend gives its shift, up or down, a round number.
+    Every trace has the same scale; the legend states its shift.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def slip_traces(
     surfaces
         All surfaces of the study in order, for the colours.
     longest
-        Distance up to which is drawn [m]; by default that of the shortest stroke.
+        Largest distance drawn [m]; by default that of the shortest stroke.
 
     Raises
     ------
@@ -128,13 +128,13 @@ def slip_traces(
 
 
 def _round_up(shift: float, gap: float) -> float:
-    """Next larger shift with one digit at the place of the gap's first."""
+    """Return the next larger shift, rounded to the leading digit of the gap."""
     digits = -math.floor(math.log10(gap)) if gap > 0 else 2
     return round(math.ceil(round(shift * 10.0**digits, 6)) / 10.0**digits, max(digits, 0))
 
 
 def _shift_text(shift: float) -> str:
-    """Say how far, and which way, a trace was shifted.
+    """Return the shift of a trace in words.
 
     Examples
     --------
@@ -145,7 +145,7 @@ def _shift_text(shift: float) -> str:
 
 
 def _distance(trace: Trace) -> tuple[np.ndarray, np.ndarray]:
-    """Distance within the trimmed part of a stroke [m], friction positive as resistance."""
+    """Return distance in the trimmed part of a stroke [m], and friction, positive as resistance."""
     signal = main_signal(trace.run, trace.friction)
     time = trace.run["time"].values
     row = trace.segments.isel(segment=int(trace.segment))
@@ -159,9 +159,9 @@ def _distance(trace: Trace) -> tuple[np.ndarray, np.ndarray]:
 
 @plotted(panels=3)
 def slip_events(slips: OneOrSeveral, **labels: Sequence[RunLabel]) -> FigureSpec:
-    """Draw how drops, recurrence distances and durations of the events are distributed.
+    """Draw cumulative distributions of drops, recurrence distances and durations of events.
 
-    Cumulative shares: no bins to choose.
+    Cumulative shares need no choice of bins.
 
     Parameters
     ----------
@@ -205,7 +205,7 @@ def slip_events(slips: OneOrSeveral, **labels: Sequence[RunLabel]) -> FigureSpec
 
 
 def cumulative(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return sorted values, and the share of all that are at most as large; some of very many.
+    """Return sorted values and cumulative shares, thinned if there are very many.
 
     Examples
     --------
@@ -242,7 +242,7 @@ def _event_columns(slip: xr.Dataset) -> list[tuple[Axis, np.ndarray]]:
 
 @plotted()
 def waveform_map(curves: Mapping[str, xr.Dataset] | xr.Dataset) -> FigureSpec:
-    """Draw the class of waveform of every condition at every speed, and how large the drops are.
+    """Draw the waveform class and the drop of every condition at every speed.
 
     Marker and colour: the class; area: the drop.
 
@@ -301,7 +301,7 @@ def waveform_map(curves: Mapping[str, xr.Dataset] | xr.Dataset) -> FigureSpec:
 
 
 def _each(curves: xr.Dataset) -> dict[str, xr.Dataset]:
-    """Return the curves of a dataset with several by their labels, the last one first."""
+    """Return the curves of a dataset by label, the last one first."""
     named = {label: one_curve(part) for label, part in parts(curves, "sliding_speed").items()}
     return {label: part for label, part in reversed(named.items()) if part.sizes["sliding_speed"]}
 

@@ -1,4 +1,4 @@
-"""Spectra of stick-slip over frequency, and over frequency and speed."""
+"""Figures of stick-slip spectra over frequency, and over frequency and speed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, Style
 from tribolab.figures.subjects.curves import SPEED_AXIS
 
-_LOUDEST, _QUIETEST = 3.0, 0.3  # log10 of power over noise: below, a map shows nothing
+_LOUDEST, _QUIETEST = 3.0, 0.3  # log10 of power over noise: highest and lowest level of a map
 Slips = Mapping[str, tuple[xr.Dataset, int]] | xr.Dataset | Sequence[xr.Dataset]
 
 
@@ -30,7 +30,7 @@ def slip_spectra(slips: Slips, *, segment: int = 0, **labels: Sequence[RunLabel]
         Label to a result of `stick_slip` and the number of its segment; or such a result, also over
         further dims; or a list of them.
     segment
-        The number of the segment of results that come without one.
+        Number of the segment for results without one.
     **labels
         Labels that distinguish the results of a list, one for each, e.g. ``run=["dry", "wet"]``.
 
@@ -88,7 +88,7 @@ def slip_spectra(slips: Slips, *, segment: int = 0, **labels: Sequence[RunLabel]
 
 
 def _heading(label: str, row: xr.Dataset) -> str:
-    """Return a label, and the waveform with the dominant frequency in words."""
+    """Return a label with waveform and dominant frequency in words."""
     words = " ".join(filter(None, (str(row["regularity"].item()), str(row["waveform"].item()))))
     own = row["dominant_frequency"].item()
     return f"{label}: {words}" + (f", {own:.3g} Hz" if np.isfinite(own) else "")
@@ -98,7 +98,7 @@ def _heading(label: str, row: xr.Dataset) -> str:
 def slip_spectrogram(slips: Mapping[str, xr.Dataset]) -> FigureSpec:
     """Draw the power over that of noise, at every speed and frequency, a panel for each run.
 
-    Only what is at least twice the noise is drawn. Crosses: the dominant oscillation.
+    Only power of at least twice the noise is drawn. Crosses: dominant oscillation.
 
     Parameters
     ----------

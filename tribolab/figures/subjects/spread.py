@@ -1,4 +1,4 @@
-"""Friction without its curve: half loops by pair, error bars over speed."""
+"""Figures of the scatter of friction: half loops by pair, error bars over speed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The start of sliding, and friction from cycle to cycle."""
+"""Figures of the start of sliding, and of friction from cycle to cycle."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from tribolab.figures.labels import column
 from tribolab.figures.plotted import plotted
 from tribolab.figures.spec import Axis, FigureSpec, Panel, Series, axis_of
 
-_WIDE = 10.0  # ratio of the longest to the shortest rest from which their axis is logarithmic
-_TREND = 0.01  # probability of chance below which a linear trend is drawn
+_WIDE = 10.0  # ratio of longest to shortest rest above which the axis is logarithmic
+_TREND = 0.01  # p-value below which a linear trend is drawn
 
 
 @plotted()

@@ -19,9 +19,9 @@ from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series
 from tribolab.figures.subjects.trace import MEAN, SHADES, Span, friction_axis
 
 _LINES = {1: BLACK, -1: ORANGE, 0: SKY}
-_MAX_PANELS, _MAX_LINES = 24, 6  # of strokes; lines per direction and panel
+_MAX_PANELS, _MAX_LINES = 24, 6  # strokes; lines per direction and panel
 _POINTS = 1700  # pixel columns in all panels, which keeps the figure below 150 kB
-_TOLERANCE = 0.05  # relative, of speeds that are one
+_TOLERANCE = 0.05  # largest relative difference of speeds that count as one
 _Item = TypeVar("_Item")
 
 
@@ -31,10 +31,10 @@ def strokes(
 ) -> FigureSpec:
     """Draw every segment over its own sliding distance, one panel per speed, slowest first.
 
-    A run that takes 1000 s at 1 um/s and a second at 1 cm/s cannot be judged on one time axis;
-    here every speed has the same room. Forward and backward strokes overlap, both counted positive
-    in their own direction; the trimmed ends are grey. Of many strokes at one speed evenly chosen
-    ones are drawn, and the panel says so.
+    A run that takes 1000 s at 1 um/s and 1 s at 1 cm/s cannot be judged on one time axis; here
+    every speed has the same width. Forward and backward strokes overlap, both positive in their own
+    direction; the trimmed ends are grey. Of many strokes at one speed a regular selection is drawn,
+    as the panel states.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def strokes(
     segments
         Its segments (segment).
     friction
-        Its friction result (segment): adds the means, and removes the offset that was found.
+        Its friction result (segment), for the means and the offset to remove.
 
     Raises
     ------
@@ -101,7 +101,7 @@ def strokes(
 def _strokes_of_speed(
     group: list[Stroke], signal: Signal, friction: xr.Dataset | None, budget: int, panel: int
 ) -> tuple[list[Series], str, Span]:
-    """Return the strokes of one speed, their mean in words, and the part that counts."""
+    """Return the strokes of one speed, their mean in words, and the range between trimmed ends."""
     series, ends = [], []
     for part in _chosen(group):
         length = part.distance[-1] or 1.0
@@ -124,7 +124,7 @@ def _strokes_of_speed(
 
 
 def _view(series: Sequence[Series], ends: Span) -> Span:
-    """Return limits that fit the part of the strokes that counts."""
+    """Return limits that fit the strokes between their trimmed ends."""
     inside = []
     for one in series:
         x, y = np.asarray(one.x, float), np.asarray(one.y, float)
@@ -165,7 +165,7 @@ def _chosen(group: list[Stroke]) -> list[Stroke]:
 
 
 def _sign(part: Stroke, signal: Signal, friction: xr.Dataset | None) -> float:
-    """Sign that makes ordinary friction positive; an instrument may have rectified already."""
+    """Return the sign that makes ordinary friction positive; some instruments rectify."""
     if friction is not None and "friction_coefficient" in friction:
         values = signal.values[part.samples]
         values = values[np.isfinite(values)]

@@ -1,4 +1,4 @@
-"""Surfaces and their rubber: profiles, power spectra, modulus, viscoelastic friction."""
+"""Figures of surfaces and rubber: profiles, spectra, modulus, viscoelastic friction."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from tribolab.figures.spec import Axis, FigureSpec, Key, Panel, Series, Style, a
 from tribolab.surface.form import remove_form
 
 _MEASURED = 0
-_COLUMNS = 600  # of a profile, each with its lowest and its highest point
-_BETWEEN = 0.1  # of a profile's heights, between it and the next
+_COLUMNS = 600  # pixel columns of a profile, each with its minimum and maximum
+_BETWEEN = 0.1  # gap between profiles, as share of a profile's height range
 
 
 @plotted()
@@ -76,7 +76,7 @@ def profiles(
 
 @plotted()
 def spectra(psds: SurfaceOrSeveral, *, surfaces: Sequence[str] = ()) -> FigureSpec:
-    """Draw two-dimensional power spectra with their bands, measured and extrapolated parts apart.
+    """Draw two-dimensional power spectra with bands; extrapolated parts are dashed.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def _spectrum(name: str, psd: xr.Dataset, colour: int) -> list[Series]:
         (origin != _MEASURED, "dashed"),
     )
     for part, style in styles:
-        # a stretch begins where the one before it ends, so that no gap is seen
+        # parts overlap by one point, so that there is no gap
         joined = part | (np.roll(part, 1) & (np.arange(q.size) > 0) & (style == "dashed"))
         joined |= np.roll(part, -1) & (np.arange(q.size) < q.size - 1) & (style == "dashed")
         if part.any():
@@ -186,7 +186,7 @@ def modulus(table: xr.Dataset) -> FigureSpec:
     surface = str(table.attrs.get("surface", ""))
     values = {name: table[f"{name}_modulus"].values / 1e6 for name in ("storage", "loss")}
     kept = {name: np.where(value > 0, value, np.nan) for name, value in values.items()}
-    # one rubber: the lines differ by what they are, not by the surface
+    # one rubber: lines differ by quantity, not by surface
     return FigureSpec(
         title="Modulus of the rubber",
         panels=(Panel(axis_of("angular_frequency", log=True), Axis("modulus", "MPa", log=True)),),

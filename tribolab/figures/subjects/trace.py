@@ -1,4 +1,4 @@
-"""The trace of a run over time and distance."""
+"""Figure of a run over time and distance."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from tribolab.figures.spec import Axis, FigureSpec, Mark, Panel, Series, axis_of
 
 _COLUMNS = 420  # pixel columns of a double-column panel: two to a typographic point
 _MOTION = {"sliding_velocity": "velocity", "set_speed": "set speed", "position": "position"}
-# The direction of a stroke is no surface, so it has other colours.
+# colours of directions, distinct from those of surfaces
 SHADES = {1: (GREY, "forward"), -1: (ORANGE, "backward"), 0: (SKY, "direction unknown")}
 MEAN = VERMILLION
-_MAX_MARKED = 60  # segments that are shaded: more cannot be told apart
-_ROOM = 0.2  # of the range of a trace, above it
+_MAX_MARKED = 60  # most segments that are shaded one by one
+_ROOM = 0.2  # space above a trace, as share of its range
 
 
 def friction_axis(name: str) -> Axis:
@@ -40,8 +40,8 @@ def trace(
     """Draw a run over time and over sliding distance, with its segments shaded.
 
     Panels: friction coefficient (or force, if no load was recorded) over time; sliding velocity
-    (else set speed, else position) over time; friction over the distance slid in the segments. What
-    was not recorded, or is constant, has no panel.
+    (else set speed, else position) over time; friction over the distance slid in the segments.
+    Missing or constant signals have no panel.
 
     Parameters
     ----------
@@ -51,8 +51,8 @@ def trace(
         Its segments (segment); the trimmed ends are shaded more lightly. None for the signals
         alone.
     friction
-        Its friction result (segment): the mean of every segment is drawn, and the offset that
-        was found is removed from the trace.
+        Its friction result (segment): the mean of every segment is drawn, and the offset is removed
+        from the trace.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def trace(
     time_axis = axis_of("time", "time")
     motion = next((n for n in _MOTION if n in run and np.ptp(np.asarray(run[n], float)) != 0), "")
     y = friction_axis(signal.name)
-    if parts:  # room for the speeds above the trace
+    if parts:  # space for the speeds above the trace
         low, high = np.nanmin(signal.values), np.nanmax(signal.values)
         y = replace(y, include=(float(high + _ROOM * (high - low)),))
     panels = [Panel(time_axis, y, name="time")]
@@ -140,9 +140,9 @@ def _stretch(number: int, segments: xr.Dataset) -> tuple[Span, Span]:
 def _shaded(
     parts: Sequence[Stroke], places: Sequence[tuple[Span, Span]], panel: int, *, named: bool
 ) -> list[Mark]:
-    """Return the shades of the segments: the part that counts dark, the trimmed ends light.
+    """Return the shading of the segments: dark, with light trimmed ends.
 
-    Of very many segments, neighbours of one direction are shaded together.
+    With very many segments, neighbours of one direction are shaded together.
     """
     marks = []
     last = ""
@@ -170,7 +170,7 @@ def _means(
     parts: Sequence[Stroke], spans: Sequence[Span], signal: Signal, friction: xr.Dataset | None,
     panel: int,
 ) -> list[Series]:  # fmt: skip
-    """Return the mean of each segment with the sign of the stroke, as the trace runs."""
+    """Return the mean of each segment with the sign of its stroke."""
     if friction is None or signal.name not in friction or not parts:
         return []
     mean = np.asarray(friction[signal.name], float)[[part.number for part in parts]]
