@@ -1,1 +1,1 @@
-"""One clock for a run, or two that are matched."""
+"""Clock of a run, and alignment of two clocks."""

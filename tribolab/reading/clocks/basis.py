@@ -1,4 +1,4 @@
-"""What a motion log shows of all that moves the friction force, as columns of a fit."""
+"""Basis functions of the friction force, computed from a motion log, for a linear fit."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from tribolab.reading.clocks.motion import Motion
 
 Ways = Array | NDArray[np.int64]  # -1 backward, 0 at rest, 1 forward
 
-_STOP_LENGTHS = 9  # stops
-_SHORTEST_STOP = 1e-4  # of the longest stroke: length of the shortest stop
+_STOP_LENGTHS = 9  # number of stop lengths
+_SHORTEST_STOP = 1e-4  # shortest stop length, as share of the longest stroke
 _LONGEST_STOP = 0.3
-_SPEED_FUNCTIONS = 6  # hat functions of the speed, at most
-_RELAXATION_TIMES = (0.1, 0.5, 3.0)  # of the usual rest, for which the force relaxes
-_RECOVERY_LENGTHS = (1e-4, 3e-3)  # of the longest stroke, within which it is back
-_ROUNDING_OF_SPEED = 1e-6  # of the fastest speed: what is left of a number that should be zero
-_MAX_ROWS = 300_000  # of a motion log, looked at
-SLACK_LENGTHS = (0.003, 0.01, 0.03)  # of the longest stroke
+_SPEED_FUNCTIONS = 6  # most hat functions of the speed
+_RELAXATION_TIMES = (0.1, 0.5, 3.0)  # relaxation times of the force, as multiples of the usual rest
+_RECOVERY_LENGTHS = (1e-4, 3e-3)  # recovery lengths after a rest, as share of the longest stroke
+_ROUNDING_OF_SPEED = 1e-6  # rounding error of zero speed, as share of the fastest
+_MAX_ROWS = 300_000  # most rows used of a motion log
+SLACK_LENGTHS = (0.003, 0.01, 0.03)  # share of the longest stroke
 
 
 class Basis:
-    """Functions of the motion that make up the force, on the motion log's clock."""
+    """Basis functions of the force, on the motion log's clock."""
 
     def __init__(self, time: Array, motion: Motion):
         self.time, self.averaged, self._motion = time, motion.averaged, motion
@@ -38,7 +38,7 @@ class Basis:
         strokes = np.abs(np.diff(self._path[change]))
         self.longest = float(strokes.max())
         self.shortest = float(strokes[strokes > 0.01 * self.longest].min())
-        # a slow start tells the moment badly, and its friction is another
+        # slow starts have an imprecise time and different friction
         speed = np.abs(motion.velocity)
         fastest = np.maximum.reduceat(speed, change[:-1])
         fast = fastest > limits.MIN_SPEED_OF_STROKE.value * np.percentile(speed, 99.5)
@@ -57,17 +57,17 @@ class Basis:
 
     @cached_property
     def models(self) -> list[tuple[str, Array]]:
-        """Name and table (column, row) of each model of how the force follows the motion."""
+        """Name and table (column, row) of each model: slack values, and force before motion."""
         table, models = Play(self._path), []
         for slack in (0.0, *SLACK_LENGTHS):
             driven = table.followed(0.5 * min(slack * self.longest, limits.MAX_SLACK.value))
             velocity = np.gradient(driven, self.time) if slack else self._motion.velocity
-            models.append((f"slack {slack:g}", self._after(velocity, driven)))
-        models.append(("before", self._before(*self._motion[:2], self._path)))
+            models.append((f"slack {slack:g}", self._following_functions(velocity, driven)))
+        models.append(("before", self._leading_functions(*self._motion[:2], self._path)))
         return models
 
-    def _after(self, velocity: Array, path: Array) -> Array:
-        """List what happens to the force once the table has moved."""
+    def _following_functions(self, velocity: Array, path: Array) -> Array:
+        """Return the basis functions of a force that follows the motion."""
         lengths = self.longest * np.geomspace(_SHORTEST_STOP, _LONGEST_STOP, _STOP_LENGTHS)
         moved = Play(path)
         stops = ((path - moved.followed(r)) / r for r in lengths)
@@ -75,29 +75,29 @@ class Basis:
             np.abs(velocity) > _ROUNDING_OF_SPEED * np.abs(velocity).max(), np.sign(velocity), 0.0
         )
         last = way[np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))]
-        return self._table(chain([last], stops, self._more(velocity, way, last)))
+        return self._table(chain([last], stops, self._speed_rest_and_inertia(velocity, way, last)))
 
-    def _before(self, velocity: Array, way: NDArray[np.int64], path: Array) -> Array:
-        """List what happens to the force before the sample moves."""
+    def _leading_functions(self, velocity: Array, way: NDArray[np.int64], path: Array) -> Array:
+        """Return the basis functions of a force that rises before the log shows motion."""
         last = way[np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))]
         lengths = self.longest * np.geomspace(_SHORTEST_STOP, _LONGEST_STOP, _STOP_LENGTHS)
         ramps = (self._ramps(velocity, way, last, r) for r in lengths)
         stop = (path - Play(path).followed(lengths[-3])) / lengths[-3]
-        return self._table(chain(ramps, [stop], self._more(velocity, way, last)))
+        return self._table(chain(ramps, [stop], self._speed_rest_and_inertia(velocity, way, last)))
 
     def _table(self, columns: Iterable[Array | Ways]) -> Array:
-        """Put columns below one another, each at most 1."""
+        """Stack columns, each scaled to a maximum of 1."""
         kept = (np.asarray(column[self._kept], float) for column in columns)
         return np.stack([k / max(k.max(), -k.min(), 1e-300) for k in kept])
 
-    def _more(self, velocity: Array, way: Ways, last: Ways) -> Iterator[Array]:
-        """Give what goes with the speed, what relaxes at rest, and the inertia."""
+    def _speed_rest_and_inertia(self, velocity: Array, way: Ways, last: Ways) -> Iterator[Array]:
+        """Yield the functions of speed, relaxation at rest, and inertia."""
         yield from _speeds(velocity, last)
         yield from self._relaxed(velocity, way, last)
         yield np.gradient(velocity, self.time)
 
     def _relaxed(self, velocity: Array, way: Ways, last: Ways) -> Iterator[Array]:
-        """Give what the force loses at rest, and gets back within a distance."""
+        """Yield the loss of force at rest, with its recovery over a distance."""
         stops = np.flatnonzero((way == 0) & (np.roll(way, 1) != 0))
         stops = stops[stops > 0]
         if not len(stops):
@@ -115,7 +115,7 @@ class Basis:
             slid[first:start] = 0.0
             held[part] = last[first]
         usual = float(median(rested[np.minimum(ends, len(way)) - 1]))
-        if usual <= 0.0:  # rests of one sample: nothing relaxes in them
+        if usual <= 0.0:  # no relaxation in rests of one sample
             return
         for tau in _RELAXATION_TIMES:
             for length in _RECOVERY_LENGTHS:
@@ -125,7 +125,7 @@ class Basis:
     def _ramps(
         self, velocity: Array, way: NDArray[np.int64], last: NDArray[np.int64], length: float
     ) -> Array:
-        """Way of the last motion, turning before a motion is seen, as far as the stage moves."""
+        """Return the direction of the last motion, with ramps before the log shows a start."""
         out = last.astype(float)
         starts = [k for k in self.events if way[k] != 0]
         for k, after in zip(starts, [*starts, len(way) - 1][1:], strict=True):
@@ -143,9 +143,9 @@ def _path(time: Array, velocity: Array) -> Array:
 
 
 def _kept(count: int, events: NDArray[np.int64]) -> NDArray[np.int64] | slice:
-    """Rows of a motion log that are looked at: of a long one all near events, some of the others.
+    """Return the rows of a motion log to use: all near events, and a selection of the others.
 
-    A table of all would take a hundred times the memory of the log itself.
+    A table of all rows would need a hundred times the memory of the log.
     """
     if count <= _MAX_ROWS:
         return slice(None)
@@ -159,7 +159,7 @@ def _kept(count: int, events: NDArray[np.int64]) -> NDArray[np.int64] | slice:
 
 
 def _speeds(velocity: Array, last: Ways) -> Iterator[Array]:
-    """Hat functions of log |v| times the way; held at rest."""
+    """Yield hat functions of log |v| times the direction; at rest the last value is held."""
     speed = np.abs(velocity)
     moving = speed > 0
     level = np.log10(speed[moving])
@@ -175,7 +175,7 @@ def _speeds(velocity: Array, last: Ways) -> Iterator[Array]:
 
 
 class Play:
-    """Follows a position with slack: what is driven stays within half of it of the driver.
+    """Play operator: the output follows a position within half the slack.
 
     >>> Play(np.array([0.0, 3.0, 1.0, -3.0])).followed(1.0).tolist()
     [0.0, 2.0, 2.0, -2.0]
@@ -183,15 +183,15 @@ class Play:
 
     def __init__(self, position: Array):
         self.position = position
-        # a turning point still belongs to the way that led to it
+        # a turning point still belongs to the stroke before it
         turns = np.flatnonzero(np.diff(np.sign(np.diff(position))) != 0) + 2
         self._first = np.concatenate([[0], turns])
         self._ends = position[np.append(turns, len(position)) - 1].tolist()
 
     def followed(self, half: float) -> Array:
-        """Return the position of what is driven with so much slack on either side."""
+        """Return the output position for a given half slack."""
         last, before = float(self.position[0]), []
-        for end in self._ends:  # one way from turn to turn: the ends tell all
+        for end in self._ends:  # the turning points determine monotonic motion
             before.append(last)
             last = min(max(last, end - half), end + half)
         out = np.repeat(before, np.diff(self._first, append=len(self.position)))

@@ -1,10 +1,10 @@
-"""Which of several shifts of two clocks it is, where the motion repeats or friction comes late.
+"""Choice between several candidate shifts of two clocks, for repeated motion or late friction.
 
-Classes of velocity explain a force that comes late, through slack or over a distance, better a
-stroke or a period off than at the true shift. A fit by all that the motion does
-(`clocks.joint`) is not deceived so: where the record begins and ends, and where strokes
-differ, it leaves more unexplained. One shift is taken for another only if the likelihood, with as
-many independent residuals as there are, says so decisively.
+Friction is delayed by slack or builds up over a distance. Velocity classes may then explain it
+better one stroke or period away from the true shift. A fit of all effects of the motion
+(`clocks.joint`) avoids this error: at a wrong shift the ends of the record and differences
+between strokes increase the residual. Another shift replaces the first one only if the likelihood
+ratio, for the number of independent residuals, is decisive.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from tribolab.reading.clocks import limits
 from tribolab.reading.clocks.basis import Basis
 from tribolab.reading.clocks.joint import fit_jointly, sampling
 
-_FITTED_SPAN = 0.3  # of it, in which each is fitted
+_FITTED_SPAN = 0.3  # share of the stroke duration in which each candidate is fitted
 
 
 class Candidate(NamedTuple):
-    """A shift that may be the true one [s], what a fit leaves unexplained, and its freedom.
+    """Candidate shift [s], the unexplained share of the variance, and degrees of freedom.
 
-    `changes` is how many changes of the motion lie in the force log: of few, any model explains
-    much. `unexplained` is NaN where they are too few for a fit.
+    `changes` is the number of changes of motion within the force log; any model explains a few of
+    them well. `unexplained` is NaN if they are too few for a fit.
     """
 
     shift: float
@@ -34,7 +34,7 @@ class Candidate(NamedTuple):
     changes: int
 
     def beats(self, other: Candidate) -> bool:
-        """Whether this one is decisively likelier than another.
+        """Whether this candidate is decisively more likely than another.
 
         >>> Candidate(0.0, 0.01, 100.0, 8).beats(Candidate(9.0, 0.05, 80.0, 7))
         True
@@ -52,10 +52,10 @@ class Candidate(NamedTuple):
         )
 
     def clears(self, other: Candidate) -> bool:
-        """Whether another one, not chosen, leaves no doubt about this one.
+        """Whether this candidate excludes another one.
 
-        It does not if it is beaten, nor if it is worse though fewer changes lie in the force log:
-        where the record begins and ends tells the two apart.
+        It does if it is decisively more likely, or if the other one is worse although it has fewer
+        changes of motion within the force log.
 
         >>> Candidate(0.0, 0.02, 200.0, 12).clears(Candidate(14.0, 0.05, 160.0, 10))
         True
@@ -66,7 +66,7 @@ class Candidate(NamedTuple):
         return bool(ends_tell or self.beats(other))
 
     def surpasses(self, other: Candidate) -> bool:
-        """Whether this one is much likelier than another, if not as much as to be taken for it.
+        """Whether this candidate is much more likely than another (weaker than `beats`).
 
         >>> Candidate(0.0, 0.06, 130.0, 12).surpasses(Candidate(1.7, 0.16, 67.0, 12))
         True
@@ -78,13 +78,13 @@ class Candidate(NamedTuple):
         )
 
     def _against(self, other: Candidate) -> tuple[float, float]:
-        """Tell how many times more another leaves unexplained, and the log likelihood ratio."""
+        """Return the ratio of unexplained shares, and the log likelihood ratio."""
         more = other.unexplained / max(self.unexplained, 1e-12)
         freedom = min(self.freedom, other.freedom)
         return more, 0.5 * freedom * float(np.log(max(more, 1e-12)))
 
     def outdoes(self, other: Candidate) -> bool:
-        """Whether this one leaves less unexplained of as many changes of the motion.
+        """Whether this candidate explains more, with at least as many changes of motion.
 
         >>> Candidate(0.0, 0.04, 90.0, 5).outdoes(Candidate(9.0, 0.12, 70.0, 5))
         True
@@ -95,16 +95,16 @@ class Candidate(NamedTuple):
 
 
 def candidates(force_time: Array, force: Array, basis: Basis, shifts: Array) -> list[Candidate]:
-    """Fit the force by all that the motion does, around each of several shifts.
+    """Fit the force by all basis functions of the motion, around each of several shifts.
 
     Parameters
     ----------
     force_time, force
         Force log: its own clock [s] and the friction force.
     basis
-        What the motion log shows.
+        Basis functions of the motion log.
     shifts
-        Shifts [s], `MIN_DISTANCE_OF_SHIFTS` of a fast stroke's duration from one another.
+        Shifts [s], at least `MIN_DISTANCE_OF_SHIFTS` of a fast stroke's duration apart.
     """
     return [_fitted(force_time, force, basis, shift) for shift in map(float, shifts)]
 
@@ -121,7 +121,7 @@ def _fitted(force_time: Array, force: Array, basis: Basis, shift: float) -> Cand
 
 
 def likeliest(candidates: list[Candidate]) -> Candidate:
-    """Return the first, or the one that beats all others.
+    """Return the first candidate, or the best one if it beats the first decisively.
 
     >>> likeliest([Candidate(0.0, 0.2, 70.0, 8), Candidate(4.5, 0.003, 180.0, 8)]).shift
     4.5

@@ -1,13 +1,13 @@
-"""How far apart two clocks are, roughly: how well classes of velocity explain the friction force.
+"""Coarse shift between two clocks, from the friction force explained by velocity classes.
 
 Shift the motion log by s, sort the samples of the friction force into classes of velocity
-(sign and third of a decade), and ask how much of the force's variance the classes explain:
+(sign and third of a decade), and compute the share of variance that the classes explain:
 
     R^2(s) = [sum_k S_k^2 / N_k - S^2 / N] / [Q - S^2 / N],
 
 with N_k, S_k number and sum of the force samples in class k, and N, S, Q number, sum and sum of
-squares of all; every s of a grid at once by FFT, as each term is a cross-correlation. It is late,
-for friction builds up over a distance after each start and stays on at rest.
+squares of all. As each term is a cross-correlation, FFT gives all s of a grid at once. The result
+is late, because friction builds up over a distance after each start and remains at rest.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ from tribolab.reading.clocks import limits
 
 _GRID_CELLS = 1 << 14  # cells of the coarse grid over the longer log
 _CLASSES_PER_DECADE = 3  # classes per decade
-_MAX_RIVALS = 8  # other peaks, at most
-# of a cell: a sample so near to the next one is in it, whatever its last bit says
+_MAX_RIVALS = 8  # most other peaks
+# share of a cell: tolerance for rounding at its edge
 _CELL_EDGE = 1e-6
-_CHANGES_PER_CLASS = 12  # times as many changes as classes: then these are summed as they last
+_CHANGES_PER_CLASS = 12  # ratio of changes to classes above which the FFT is used
 
 
 class Coarse(NamedTuple):
-    """Shift [s], half the width in which the true one lies [s], and others that may do [s]."""
+    """Shift [s], half width of its uncertainty [s], and rival shifts [s]."""
 
     shift: float
     half: float
@@ -41,11 +41,13 @@ class Coarse(NamedTuple):
 
 
 def motion_classes(velocity: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Classes of velocity, a rest by what was before it, and the way (-1, 0, 1)."""
+    """Return classes of velocity, with rests by the motion before, and the direction (-1, 0, 1)."""
     classes = velocity_classes(velocity)
     way = np.sign(classes - _CLASSES_PER_DECADE * limits.DECADES_TO_REST.value)
     return np.where(
-        way == 0, _CLASSES_PER_DECADE * limits.DECADES_TO_REST.value * 2 + 2 + _last(way), classes
+        way == 0,
+        _CLASSES_PER_DECADE * limits.DECADES_TO_REST.value * 2 + 2 + _last_direction(way),
+        classes,
     ), way
 
 
@@ -59,7 +61,7 @@ def velocity_classes(velocity: Array) -> NDArray[np.int64]:
     fastest = speed.max()
     rank = np.zeros(len(speed), dtype=np.int64)
     moving = speed > fastest * 10.0**-limits.DECADES_TO_REST.value * (1.0 + 1e-9)
-    # the middle of a class is at the fastest speed, so that its noise stays in one class
+    # the fastest speed is in the middle of a class, so that its noise stays in one class
     level = np.round(_CLASSES_PER_DECADE * np.log10(speed[moving] / fastest)).astype(np.int64)
     rank[moving] = np.maximum(level + _CLASSES_PER_DECADE * limits.DECADES_TO_REST.value, 1)
     return (
@@ -68,8 +70,8 @@ def velocity_classes(velocity: Array) -> NDArray[np.int64]:
     )
 
 
-def _last(way: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Direction of the last motion; each has its own class of rest, as friction stays on."""
+def _last_direction(way: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the direction of the last motion, as friction remains at rest."""
     moved = np.maximum.accumulate(np.where(way != 0, np.arange(len(way)), 0))
     return way[moved]
 
@@ -82,7 +84,7 @@ def coarse_shift(
     expected: float,
     apart: float = 0.0,
 ) -> Coarse | None:
-    """Best shift on a grid, the half width in which the true one lies, and others `apart` [s]."""
+    """Return the best shift on a grid, its half width, and rivals at least `apart` [s] away."""
     spans = force_time[-1] - force_time[0], motion_time[-1] - motion_time[0]
     cell = max(spans) / _GRID_CELLS
     cells = [int(span / cell + _CELL_EDGE) + 1 for span in spans]
@@ -92,7 +94,7 @@ def coarse_shift(
     grid = motion_time[0] + cell * (np.arange(cells[1]) + 0.5)
     on_grid = classes[np.clip(np.searchsorted(motion_time, grid) - 1, 0, None)]
 
-    lags, (number, whole, squares), by_class = _by_lag(sums, on_grid)
+    lags, (number, whole, squares), by_class = _sums_by_lag(sums, on_grid)
     between = np.zeros(len(lags))
     for n_k, s_k in by_class:
         between += np.where(n_k > 0.5, s_k**2 / np.maximum(n_k, 0.5), 0.0)
@@ -115,7 +117,7 @@ def coarse_shift(
     )
     good = shifts[peak & (explained >= tie)]
     chosen = float(good[np.argmin(np.abs(good - expected))])
-    # the same motion again and again fits at other shifts too, though fewer samples overlap
+    # repeated motion also fits at other shifts, although fewer samples overlap
     may = np.flatnonzero(peak & (explained > usual + 0.5 * (best - usual)))
     may = may[np.argsort(-explained[may])]
     rivals: list[float] = []
@@ -127,28 +129,28 @@ def coarse_shift(
     return Coarse(chosen, 2.0 * cell, np.array(rivals))
 
 
-def _by_lag(
+def _sums_by_lag(
     sums: list[Array], classes: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], list[Array], Iterator[tuple[Array, Array]]]:
-    """Sum what lies below a grid of classes that is shifted by so many cells.
+    """Sum samples by class of a second grid, for every shift between the two grids.
 
     Parameters
     ----------
     sums
-        Number of the samples, their sum and that of their squares (cell).
+        Number, sum and sum of squares of the samples (cell).
     classes
-        On the other grid (cell).
+        Class on the second grid (cell).
 
     Returns
     -------
     lags, whole, by_class
-        All shifts [cells], the three sums below the whole grid (lag), and number and sum below
+        All shifts [cells], the three sums over the whole second grid (lag), and number and sum for
         each of its classes (lag).
 
     Notes
     -----
-    A class that lasts is a difference of two cumulative sums; where the classes change all the
-    time, it is a cross-correlation by FFT.
+    For long intervals of one class, sums are differences of cumulative sums; for frequent changes
+    they are cross-correlations by FFT.
     """
     wide, cells = len(classes), len(sums[0])
     lags = np.arange(-wide, cells)
@@ -177,7 +179,7 @@ def _by_lag(
 def _correlated_classes(
     sums: list[Array], classes: NDArray[np.int64], lags: NDArray[np.int64]
 ) -> Iterator[tuple[Array, Array]]:
-    """Give number and sum below each class (lag), by FFT."""
+    """Yield number and sum for each class (lag), by FFT."""
     length = _power_of_two(len(sums[0]) + len(classes))
     count, total = (rfft(s, length) for s in sums)
     for k in np.unique(classes):
@@ -186,7 +188,7 @@ def _correlated_classes(
 
 
 def _power_of_two(least: int) -> int:
-    """Length of a fast transform: to ask scipy for a shorter one takes longer than to do it."""
+    """Return a power of two for a fast FFT; finding a shorter fast length would take longer."""
     return 1 << (least - 1).bit_length()
 
 
@@ -209,14 +211,14 @@ class Classes:
         )
 
     def _parts(self, shift: float) -> tuple[Array, Array, Array]:
-        """Places of the changes among the samples; number and sum of the samples by class."""
+        """Return positions of the class changes among the samples, and number and sum by class."""
         at = np.interp(self._moments + shift, self._time, self._edges[:-1] + 0.5)
         number = np.bincount(self._classes, weights=np.diff(at))
         total = np.bincount(self._classes, np.diff(np.interp(at, self._edges, self._sum)))
         return at, np.asarray(number, dtype=float), np.asarray(total, dtype=float)
 
     def explained(self, shift: float) -> float:
-        """Explained sum of squares; the overlap hardly changes any more, so it needs no norm."""
+        """Return the explained sum of squares, for shifts with nearly equal overlap."""
         return float(_explained(*(part[None] for part in self._parts(shift)[1:]))[0])
 
     def _residual(self, shift: float) -> Array:
@@ -227,11 +229,11 @@ class Classes:
         return inside - np.repeat(means[self._classes], np.diff(places))
 
     def ratio(self, shift: float) -> float:
-        """Part of the variance that is explained."""
+        """Return the explained share of the variance."""
         return float(self.ratios(np.array([shift]))[0])
 
     def ratios(self, shifts: Array) -> Array:
-        """Part of the variance that is explained at each of several shifts."""
+        """Return the explained share of the variance at each of several shifts."""
         at = np.interp(self._moments + shifts[:, None], self._time, self._edges[:-1] + 0.5)
         number = self._by_class(np.diff(at))
         total = self._by_class(np.diff(np.interp(at, self._edges, self._sum)))
@@ -240,28 +242,28 @@ class Classes:
         return _explained(number, total) / np.maximum(whole, 1e-12)
 
     def _by_class(self, values: Array) -> Array:
-        """Sum of what lies between two changes, by class (shift, class)."""
+        """Sum values of intervals between changes by class (shift, class)."""
         rows, classes = len(values), int(self._classes.max()) + 1
         place = self._classes + classes * np.arange(rows)[:, None]
         sums = np.bincount(place.ravel(), values.ravel(), rows * classes)
         return np.asarray(sums, dtype=float).reshape(rows, classes)
 
     def significance(self, shift: float) -> float:
-        """F ratio: variance explained per class against the residual's, correlation allowed for."""
+        """Return the F ratio of explained to residual variance, corrected for correlation."""
         ratio = self.ratio(shift)
-        independent = len(self._force) / _correlated(self._residual(shift))
+        independent = len(self._force) / _correlation_length(self._residual(shift))
         classes = len(np.unique(self._classes)) - 1
         return ratio / classes * independent / max(1.0 - ratio, 1e-12)
 
     def uncertainty(self, shift: float) -> float:
-        """Shift at which the explained sum of squares falls by more than chance allows."""
+        """Return the distance at which the explained sum of squares drops significantly."""
         residual = self._residual(shift)
         if not residual.size:
             return np.inf
         variance = float(residual.var())
         if variance == 0.0:
             return 0.5 * self.period
-        allowed = 4.0 * variance * _correlated(residual)
+        allowed = 4.0 * variance * _correlation_length(residual)
         top = self.explained(shift)
         step = 0.5 * self.period
         while step < 1e6 * self.period:
@@ -273,7 +275,7 @@ class Classes:
 
 
 def _explained(number: Array, total: Array) -> Array:
-    """Sum of squares that classes explain, from number and sum of the samples of each (class)."""
+    """Return the sum of squares explained by classes, from number and sum of samples (class)."""
     full = number > 0
     between = np.where(full, total**2 / np.where(full, number, 1.0), 0.0).sum(axis=-1)
     whole = np.where(full.any(axis=-1), number.sum(axis=-1), 1.0)
@@ -281,8 +283,8 @@ def _explained(number: Array, total: Array) -> Array:
     return np.where(full.any(axis=-1), between - total.sum(axis=-1) ** 2 / whole, 0.0)
 
 
-def _correlated(residual: Array) -> float:
-    """Count samples that hang together: 1 + 2 sum of the autocorrelation up to its first zero."""
+def _correlation_length(residual: Array) -> float:
+    """Return the correlation length in samples, from autocorrelation up to its first zero."""
     if not residual.size:
         return 1.0
     block = -(-len(residual) // _GRID_CELLS)

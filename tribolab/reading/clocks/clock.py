@@ -1,12 +1,12 @@
-"""One clock for a run: parts that start anew are joined, and time strictly increases.
+"""Clock of a run: joining of parts that restart, and repair of times that do not increase.
 
-Rules, stated once. Time has to increase from row to row; a run in which it does not is refused,
-with the row, unless the dialect says what to do. ``[time] restart = "continue"`` joins steps, files
-and parts of one table whose clock starts anew: by the moments at which they started where the file
-says so, else each begins where the one before it ended, one interval later. A fall by what a
-counter holds (65.536 s, ``wrap``) is a wrap: exactly that much is added. ``on_repeat = "drop"``
-leaves out rows that are not later than all rows before them, ``"interpolate"`` keeps them and
-gives them times evenly between their neighbours'. What is left out is counted, with the reason.
+Time has to increase strictly from row to row; otherwise the run is refused with the row, unless
+the dialect states a remedy. ``[time] restart = "continue"`` joins steps, files and parts of one
+table whose clock restarts: by their start times if the file states them, else each part begins one
+interval after the end of the previous one. A decrease by the range of a counter (65.536 s,
+``wrap``) is a wrap: exactly that much is added. ``on_repeat = "drop"`` leaves out rows that are not
+later than all rows before them, ``"interpolate"`` keeps them with evenly interpolated times. Rows
+left out are counted by reason.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from tribolab.units.conversion import to_si
 
 
 class Mended(NamedTuple):
-    """A strictly increasing time, the rows that are kept (None: all), and what was done."""
+    """Strictly increasing time, mask of the rows kept (None: all), and the repairs."""
 
     time: np.ndarray
     keep: np.ndarray | None = None
@@ -39,14 +39,14 @@ class Mended(NamedTuple):
 
 
 def set_time(content: Content, dialect: Dialect) -> None:
-    """Give pieces a time from intervals, a rate, a way and its speed, or from the row numbers."""
+    """Set the time of pieces from intervals, a rate, position and speed, or row numbers."""
     if dialect.time.source == "column":
         return
     if dialect.time.source == "period":
-        _sum_up(content, dialect)
+        _accumulate_intervals(content, dialect)
         return
     if dialect.time.source == "position":
-        _by_way(content, dialect)
+        _set_time_from_position(content, dialect)
         return
     steps = [stated_interval(content, dialect, piece) for piece in content.pieces]
     start = 0.0
@@ -58,12 +58,12 @@ def set_time(content: Content, dialect: Dialect) -> None:
 
 
 def recorded_at(started: dt.datetime | None, origin: float, dialect: Dialect) -> dt.datetime | None:
-    """Return when a run began: as the file says, or by a clock that counts from a date.
+    """Return the start time of a run: from the file, or from a clock that counts from a date.
 
     Parameters
     ----------
     started
-        What the text before the table says.
+        Start time stated before the table.
     origin
         First time of the clock [s].
     dialect
@@ -81,8 +81,8 @@ def recorded_at(started: dt.datetime | None, origin: float, dialect: Dialect) ->
     return moment
 
 
-def _sum_up(content: Content, dialect: Dialect) -> None:
-    """Sum intervals: what a row states has passed since the row before."""
+def _accumulate_intervals(content: Content, dialect: Dialect) -> None:
+    """Convert intervals to times; each row states the time since the row before."""
     past = 0.0
     for piece in content.pieces:
         time = piece.columns["time"]
@@ -103,8 +103,8 @@ def _sum_up(content: Content, dialect: Dialect) -> None:
             past = 0.0
 
 
-def _by_way(content: Content, dialect: Dialect) -> None:
-    """Take the way that a machine has gone at its speed for a clock: each piece begins anew."""
+def _set_time_from_position(content: Content, dialect: Dialect) -> None:
+    """Compute time from a position and the stated speed; each piece starts at zero."""
     pace = stated_pace(content, dialect)
     for piece in content.pieces:
         position = piece.columns["position"]
@@ -119,13 +119,13 @@ def _even(start: float, rows: int, step: float) -> np.ndarray:
 
 
 def join_clocks(contents: list[Content], dialect: Dialect) -> dict[str, np.ndarray | str]:
-    """Shift times so that parts and pieces follow one another, where the dialect says so.
+    """Shift times so that parts and pieces follow each other, if the dialect requests it.
 
     Returns
     -------
     dict
-        ``part``: number of the part, from 1, of each row of the run, where a clock starts anew
-        inside a table; ``joined``: in words, where it did or wrapped. Empty where neither is so.
+        ``part``: number of the part, from 1, of each row of the run, if a clock restarts inside a
+        table; ``joined``: restarts and wraps in words. Empty without any.
     """
     wrap = _wrap(dialect)
     pieces = [piece for content in contents for piece in content.pieces]
@@ -176,13 +176,13 @@ def _times(count: int) -> str:
 
 
 def _join_pieces(pieces: list[Piece], dialect: Dialect) -> None:
-    """Let tables follow one another: by their stamps, else one begins where another ended."""
+    """Join tables in time: by their start times, else each after the end of the previous one."""
     stamps = [piece.started for piece in pieces]
     times = [piece.columns["time"] for piece in pieces]
     ends = zip(times, times[1:], strict=False)
     dated = None not in stamps
     if not dated and all(later[0] > earlier[-1] for earlier, later in ends):
-        return  # the clock went on
+        return  # the clock is continuous
     first, end = stamps[0], None
     for time, stamp in zip(times, stamps, strict=True):
         if dated and first is not None and stamp is not None:
@@ -195,7 +195,7 @@ def _join_pieces(pieces: list[Piece], dialect: Dialect) -> None:
 
 
 def _resolution(stamp: dt.datetime, dialect: Dialect) -> float:
-    """How coarse the moments are at which steps start [s]: they are often cut to the second."""
+    """Return the resolution [s] of start times, which are often rounded to seconds."""
     form = dialect.time.start_format or ""
     return 1.0 if any(code in form for code in ("%S", "%T", "%X", "%c")) else 60.0
 
@@ -205,12 +205,12 @@ def _interval(time: np.ndarray) -> float:
 
 
 def mended_time(time: np.ndarray, where: str, dialect: Dialect) -> Mended:
-    """Make time strictly increase as the dialect says.
+    """Make time strictly increasing as the dialect states.
 
     Parameters
     ----------
     time
-        [s] (time), its parts joined.
+        Time [s] (time), with joined parts.
     where
         The file, for messages.
     dialect
@@ -219,7 +219,7 @@ def mended_time(time: np.ndarray, where: str, dialect: Dialect) -> Mended:
     Raises
     ------
     ReadError
-        If time does not increase and the dialect does not say what to do.
+        If time does not increase and the dialect states no remedy.
     """
     row = first_fault(time)
     if row is None:
@@ -238,7 +238,7 @@ def mended_time(time: np.ndarray, where: str, dialect: Dialect) -> Mended:
 
 
 def _interpolated(time: np.ndarray, good: np.ndarray) -> np.ndarray:
-    """Give the other rows times evenly between those of the good ones."""
+    """Interpolate the times of bad rows evenly between those of good rows."""
     rows = np.flatnonzero(good)
     if rows.size < 2:
         return time[rows[0]] + np.arange(len(time)) - rows[0]
@@ -251,7 +251,7 @@ def _interpolated(time: np.ndarray, good: np.ndarray) -> np.ndarray:
 
 
 def _reasons(time: np.ndarray, good: np.ndarray, faults: Faults) -> dict[str, int]:
-    """How many rows are left out for which reason."""
+    """Return the number of rows left out, by reason."""
     lost = ~good
     counts = {"without a time": int(np.count_nonzero(lost & faults.missing))}
     lost &= ~faults.missing
@@ -268,7 +268,7 @@ def _reasons(time: np.ndarray, good: np.ndarray, faults: Faults) -> dict[str, in
 
 
 def _refusal(time: np.ndarray, row: int, faults: Faults, where: str, dialect: Dialect) -> str:
-    """Say at which row time does not increase, and what the dialect can say about it."""
+    """Return the message for a row at which time does not increase, with possible remedies."""
     if faults.starts:
         row = min(row, faults.starts[0].row)
     if np.isinf(time[row]):

@@ -1,9 +1,9 @@
-"""What is wrong with a clock, row by row: it starts anew, wraps, goes astray, stands still.
+"""Faults of a clock, row by row: restarts, wraps, stray stamps, stops.
 
-A clock that falls back and goes on from there starts anew (or wraps, if it fell by as much as
-counters do); one that falls by no more than its own scatter jitters; where a fall and a jump undo
-each other, the stamps between them are astray, and the clock went on. Rows that are not later than
-all before them in their part, without such a reason, stand still or jitter.
+A clock that falls back and continues from there restarts (or wraps, if it fell by the range of a
+counter). A fall within its own scatter is jitter. If a fall and a jump cancel each other, the
+stamps between them are stray, and the clock was continuous. Other rows that are not later than all
+before them in their part are stops or jitter.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from tribolab.arrays.medians import median
 from tribolab.arrays.scratch import room
 from tribolab.reading.clocks import limits
 
-# samples looked at in one go, so that no second array of full length is made
+# samples per block, to save memory
 _BLOCK_SAMPLES = 1 << 18
 
 _COUNTER_TICKS = [10.0**k for k in range(-9, 1)]
-# what counters hold: bits of ticks, and a day; a clock that falls by one of them has wrapped
+# ranges of counters: bits of ticks, and a day; a fall by one of them is a wrap
 _COUNTERS = tuple(
     sorted(
         {
@@ -35,22 +35,22 @@ _COUNTERS += (43_200.0, 86_400.0)
 
 
 class Start(NamedTuple):
-    """A row at which the clock begins anew; `ahead` is what it lags behind from there on [s]."""
+    """Row at which the clock restarts; `ahead` is the offset to add from there on [s]."""
 
     row: int
     ahead: float
-    period: float  # of the counter that wrapped; 0 if none did
+    period: float  # period of the counter that wrapped; 0 without a wrap
 
 
 class Faults(NamedTuple):
-    """Rows at which the clock begins anew, and which stamps are astray or missing (time)."""
+    """Rows at which the clock restarts, and masks of stray and missing stamps (time)."""
 
     starts: tuple[Start, ...]
     astray: np.ndarray
     missing: np.ndarray
 
     def offsets(self) -> np.ndarray:
-        """Return what has to be added to each row's time for the clock to go on [s] (time)."""
+        """Return the offset to add to each row's time for a continuous clock [s] (time)."""
         edges = [0, *(start.row for start in self.starts), self.astray.size]
         ahead = np.concatenate([[0.0], np.cumsum([start.ahead for start in self.starts])])
         result = room(self.astray.size)
@@ -60,12 +60,12 @@ class Faults(NamedTuple):
 
 
 def first_fault(time: np.ndarray) -> int | None:
-    """Row (from 0) of the first time that is missing or not later than the one before it."""
+    """Return the row (from 0) of the first time that is missing or does not increase."""
     for start, _ in pieces(0, len(time), _BLOCK_SAMPLES):
         part = time[max(start - 1, 0) : start + _BLOCK_SAMPLES]
         if start == 0 and not np.isfinite(part[0]):
             return 0
-        with np.errstate(invalid="ignore"):  # from one infinite time to the next
+        with np.errstate(invalid="ignore"):  # between two infinite times
             bad = ~(np.diff(part) > 0) | ~np.isfinite(part[1:])
         if bad.any():
             return max(start - 1, 0) + int(np.argmax(bad)) + 1
@@ -73,14 +73,14 @@ def first_fault(time: np.ndarray) -> int | None:
 
 
 def find_faults(time: np.ndarray, wrap: float = 0.0) -> Faults:
-    """Tell a clock's new starts and wraps from stray stamps and jitter.
+    """Distinguish restarts and wraps of a clock from stray stamps and jitter.
 
     Parameters
     ----------
     time
-        [s] (time), as it stands in one table.
+        Time [s] (time) of one table.
     wrap
-        Period of the counter [s], if it is known: a fall by more than half of it is a wrap.
+        Period of the counter [s], if known: a fall by more than half of it is a wrap.
 
     Examples
     --------
@@ -104,14 +104,14 @@ def find_faults(time: np.ndarray, wrap: float = 0.0) -> Faults:
 
 
 def rows_at_fault(time: np.ndarray, faults: Faults) -> np.ndarray:
-    """Which rows have no time of their own: missing, astray, or not later than all before.
+    """Return a mask of rows whose time is missing, stray, or not later than all before.
 
     Parameters
     ----------
     time
-        [s] (time), its parts joined.
+        Time [s] (time), with joined parts.
     faults
-        What is wrong with it.
+        Faults of this clock.
     """
     good = ~(faults.missing | faults.astray)
     highest = np.nan
@@ -124,7 +124,7 @@ def rows_at_fault(time: np.ndarray, faults: Faults) -> np.ndarray:
 
 
 def _usual_and_spread(steps: np.ndarray) -> tuple[float, float]:
-    """Median of the steps forward, and their median distance from it."""
+    """Return the median of the positive steps, and their median absolute deviation."""
     rising = chosen(steps, steps > 0)
     if not rising.size:
         return 1.0, 0.0
@@ -135,7 +135,7 @@ def _usual_and_spread(steps: np.ndarray) -> tuple[float, float]:
 
 
 class _Search:
-    """Goes through the falls of a clock, which are few, in their order."""
+    """Search through the falls of a clock in order."""
 
     def __init__(self, time: np.ndarray, wrap: float):
         self.time, self.wrap = time, wrap
@@ -150,25 +150,25 @@ class _Search:
         self.starts: list[Start] = []
 
     def run(self) -> None:
-        """Judge every fall."""
+        """Classify every fall."""
         falls = np.flatnonzero(self.steps < 0) + 1
         size = -self.steps[falls - 1]
         if np.count_nonzero(size <= self.small) > limits.MAX_BACKWARD_STEPS.value:
             falls = falls[size > self.small]
-        self.first, self.top = 0, -np.inf  # of the present part: its first row, its latest time
-        done = 0  # rows judged so far
+        self.first, self.top = 0, -np.inf  # first row and latest time of the current part
+        done = 0  # rows classified so far
         for row in falls.tolist():
             if row < done:
                 continue
             good = self.time[done:row][~self.astray[done:row]]
             self.top = max(self.top, float(good.max(initial=-np.inf)))
             done = row
-            if self.time[row] > self.top:  # back from stamps that were astray
+            if self.time[row] > self.top:  # back from stray stamps
                 continue
-            if (stop := self._astray_below(row)) is not None:
+            if (stop := self._end_of_fall(row)) is not None:
                 self.astray[row:stop] = True
                 done = stop
-            elif (start := self._astray_above(row)) is not None:
+            elif (start := self._start_of_jump(row)) is not None:
                 self.astray[start:row] = True
                 part = slice(self.first, start)
                 self.top = float(self.time[part][~self.astray[part]].max())
@@ -179,8 +179,8 @@ class _Search:
     def _fall(self, row: int) -> float:
         return self.top - float(self.time[row])
 
-    def _astray_below(self, row: int) -> int | None:
-        """Row at which a fall is undone, the clock being where it would be had it gone on."""
+    def _end_of_fall(self, row: int) -> int | None:
+        """Return the row at which a jump cancels a fall; None without one."""
         ahead = self.time[row : row + self.reach + 1]
         back = np.flatnonzero(ahead > self.top)
         if not back.size:
@@ -188,10 +188,10 @@ class _Search:
         count = int(back[0])
         jump = float(ahead[count] - ahead[count - 1])
         lag = float(ahead[count]) - self.top - (count + 1) * self.usual
-        return row + count if self._undone(self._fall(row), jump, lag, count) else None
+        return row + count if self._cancels(self._fall(row), jump, lag, count) else None
 
-    def _astray_above(self, row: int) -> int | None:
-        """First of the rows before a fall that had jumped ahead of the clock."""
+    def _start_of_jump(self, row: int) -> int | None:
+        """Return the first of the rows before a fall that had jumped ahead; else None."""
         begin = max(self.first, row - self.reach - 1)
         below = (self.time[begin:row] < self.time[row]) & ~self.astray[begin:row]
         below = np.flatnonzero(below)
@@ -201,15 +201,15 @@ class _Search:
         count = row - 1 - last
         jump = float(self.time[last + 1] - self.time[last])
         lag = float(self.time[row] - self.time[last]) - (count + 1) * self.usual
-        return last + 1 if self._undone(self._fall(row), jump, lag, count) else None
+        return last + 1 if self._cancels(self._fall(row), jump, lag, count) else None
 
-    def _undone(self, fall: float, jump: float, lag: float, count: int) -> bool:
-        """Whether a jump undoes a fall: as large, and the clock then where it ought to be."""
+    def _cancels(self, fall: float, jump: float, lag: float, count: int) -> bool:
+        """Whether a jump cancels a fall and the clock is then continuous."""
         slack = 3 + 0.1 * count if fall > self.small else 0.5 * (count + 1)
         return jump >= max(0.5 * fall, 1.5 * self.usual) and abs(lag) <= slack * self.usual
 
     def _is_start(self, row: int) -> bool:
-        """Whether a fall is more than jitter: a large one, or one back to where the part began."""
+        """Whether a fall exceeds jitter: a large one, or one back to the start of the part."""
         begin = float(self.time[self.first])
         back = self.time[row] <= begin + 0.5 * self.usual and self.top - begin >= 1.5 * self.usual
         return bool((back and self._fall(row) > self.scatter) or self._fall(row) > self.small)
@@ -226,16 +226,16 @@ class _Search:
         self.first, self.top = row, float(self.time[row])
 
     def _interval(self, row: int) -> float:
-        """Usual interval of the rows before a fall."""
+        """Return the usual interval of the rows before a fall."""
         before = self.steps[max(self.first, row - 10) : row - 1]
         before = before[before > 0]
         return float(median(before)) if before.size else self.usual
 
     def _settle_wraps(self) -> None:
-        """Let a clock either wrap or start anew.
+        """Decide whether the falls of a clock are wraps or restarts.
 
-        A clock that starts anew falls to where it began, once in a while by what a counter holds; a
-        counter always falls by that much, or, where rows are missing at its wrap, lands ahead.
+        A clock that restarts falls to its start, occasionally by the range of a counter. A counter
+        always falls by its range, or by less if rows are missing at the wrap.
         """
         periods = {start.period for start in self.starts} - {0.0}
         if not periods or self.wrap:

@@ -1,17 +1,17 @@
-"""How far apart two clocks are, from one fit of the friction force by all that the motion does.
+"""Shift between two clocks from one fit of the friction force by all effects of the motion.
 
 At a trial shift the force is a sum, linear in its amplitudes, of
 
-    what rises with the distance moved since the way turned: stops S_r(x) = x - play_r(x) with
-        lengths r on a grid (a stick is a stop, slack a difference of two, hysteresis a sum);
-    what goes with the speed: sign(v) times hat functions of log |v|;
-    the inertia of what hangs on the sensor: dv/dt;
-    a slow drift: hat functions of time.
+    functions of the distance since the last reversal: stops S_r(x) = x - play_r(x) with
+        lengths r on a grid (sticking is a stop, slack a difference of two, hysteresis a sum);
+    functions of the speed: sign(v) times hat functions of log |v|;
+    inertia of the mass on the sensor: dv/dt;
+    slow drift: hat functions of time.
 
-The residual as a function of the shift is its profile likelihood. Where the motion log shows the
+The residual as a function of the shift is its profile likelihood. If the motion log records the
 sample and not the stage, the force rises elastically before the log shows motion: in a second
-model the turns of the force are ramps that end where motion begins, as long as the distance takes
-that the stage goes. The answers of both models are weighed by how well they fit.
+model the reversals of the force are ramps that end at the start of motion and last as long as the
+stage needs for the distance. The results of both models are weighted by their fit.
 """
 
 from __future__ import annotations
@@ -26,23 +26,23 @@ from tribolab.core.aliases import Array
 from tribolab.reading.clocks import limits
 from tribolab.reading.clocks.basis import SLACK_LENGTHS, Basis
 
-_FITTED_SAMPLES = 2000  # of the force, looked at in one fit
-_CANCELLATION = 1e-6  # of the whole: a difference of sums that is smaller is summed itself
-_DRIFT_FUNCTIONS = 8  # hat functions of time, at most
-_POWER_RANGE = 2.0, 8.0  # of what a model leaves unexplained: how much less it counts
-_POWER_PER_RESIDUAL = 0.01  # of the independent residuals
-# how likely it is beforehand that force leads; else any slack is as likely
+_FITTED_SAMPLES = 2000  # force samples used in one fit
+_CANCELLATION = 1e-6  # relative size below which a difference of sums is computed directly
+_DRIFT_FUNCTIONS = 8  # most hat functions of time
+_POWER_RANGE = 2.0, 8.0  # range of the exponent that weights models by their unexplained share
+_POWER_PER_RESIDUAL = 0.01  # exponent per independent residual
+# prior probability that the force leads; all slack values share the rest equally
 _PRIOR_FORCE_LEADS = 0.5
 _MAX_EVENTS = 60
 _RIDGE_PENALTY = 1e-7
-_GRID_SHIFTS = 17  # on a grid
-_REFINED_SHIFTS = 13  # of a grid about what the one before found: one to each standard error
+_GRID_SHIFTS = 17  # shifts of the first grid
+_REFINED_SHIFTS = 13  # shifts of a refined grid, about one per standard error
 
 
 class JointShift(NamedTuple):
-    """Shift [s], its standard deviation [s], the mean moment it refers to [s], each model's answer.
+    """Shift [s], standard deviation [s], mean time it refers to [s], and result of each model.
 
-    `stroke` is the duration of the shortest of the fast strokes [s].
+    `stroke` is the duration of the shortest fast stroke [s].
     """
 
     shift: float
@@ -53,14 +53,14 @@ class JointShift(NamedTuple):
 
     @property
     def unexplained(self) -> float:
-        """Part of the force that the best model leaves unexplained."""
+        """Share of the force variance unexplained by the best model."""
         return min(answer.unexplained for answer in self.answers)
 
 
 class Answer(NamedTuple):
-    """What one model says: shift [s], its error [s], the parts left unexplained and of inertia.
+    """Result of one model: shift [s], its error [s], and shares of residual and inertia.
 
-    `freedom` is the number of independent residuals, `prior` how likely the model is beforehand.
+    `freedom` is the number of independent residuals, `prior` the prior probability of the model.
     """
 
     model: str
@@ -80,22 +80,22 @@ def told_by_motion(
     span: float,
     least: float = 0.0,
 ) -> JointShift | None:
-    """Tell the shift by fitting the force by the motion, around a first estimate.
+    """Estimate the shift by a fit of the force by the motion, around a first estimate.
 
     Parameters
     ----------
     force_time, force
         Force log: its own clock [s] and the friction force.
     basis
-        What the motion log shows, on its clock.
+        Basis functions on the clock of the motion log.
     shift, span
-        Where to begin, and how far on either side of it to look [s]: no further than half of a
-        fast stroke, but for at least `least` [s].
+        Start and half width of the search [s]: at most half of a fast stroke, but at least `least`
+        [s].
 
     Returns
     -------
     JointShift or None
-        None if too few samples lie around the changes of the motion, or nothing is explained.
+        None if there are too few samples around the changes of motion, or nothing is explained.
     """
     period = sampling(force_time, basis, shift)
     span = min(span, max(least, 0.5 * basis.stroke))
@@ -118,7 +118,7 @@ def sampling(force_time: Array, basis: Basis, shift: float) -> float:
 
 
 def _interval(time: Array, basis: Basis, shift: float) -> float:
-    """Tell the sampling interval [s] after the starts of the motion."""
+    """Return the sampling interval [s] after the starts of motion."""
     at = np.searchsorted(time, basis.time[basis.begins] + shift)
     at = np.clip(at[:, None] + np.arange(1, 12), 0, len(time) - 1)
     return float(median(np.diff(time[at], axis=1)))
@@ -127,20 +127,20 @@ def _interval(time: Array, basis: Basis, shift: float) -> float:
 def fit_jointly(
     force_time: Array, force: Array, basis: Basis, shift: float, span: float, finest: float
 ) -> list[Answer]:
-    """Ask each model; `finest` is the sampling interval [s] that limits it."""
+    """Return the result of each model; `finest` is the sampling interval [s] that limits it."""
     first = _samples(force_time, force, basis, shift, span)
     models = []
     for name, table in basis.models:
-        told = _one(force_time, force, basis, table, shift, span, finest, first)
+        told = _shift_of_model(force_time, force, basis, table, shift, span, finest, first)
         if told is not None:
             models.append((name, table, told))
     if not models:
         return []
     shifts = np.array([told[0] for _, _, told in models])
-    # the same samples for all, so that their residuals can be compared
+    # the same samples for all models, so that residuals are comparable
     half = 0.5 * float(np.ptp(shifts)) + finest
     used = _samples(force_time, force, basis, 0.5 * float(shifts.min() + shifts.max()), half)
-    if not used.force.size:  # the models' shifts lie so far apart that no sample serves all
+    if not used.force.size:  # the shifts are too far apart for common samples
         return []
     answers = []
     for name, table, (at, error) in models:
@@ -157,10 +157,10 @@ def fit_jointly(
 
 
 def mixture(answers: list[Answer]) -> tuple[float, float]:
-    """Mean and standard deviation of the answers of all models, by how well they fit."""
+    """Return mean and standard deviation of all models' results, weighted by their fit."""
     unexplained = np.array([answer.unexplained for answer in answers])
     best = int(np.argmin(unexplained))
-    # what is left is noise if it hangs together little; else no model is quite right
+    # uncorrelated residuals are noise; otherwise no model is quite right
     power = np.clip(_POWER_PER_RESIDUAL * answers[best].freedom, *_POWER_RANGE)
     weight = np.array([answer.prior for answer in answers])
     weight *= (unexplained / unexplained[best]) ** -power
@@ -173,7 +173,7 @@ def mixture(answers: list[Answer]) -> tuple[float, float]:
     )
 
 
-def _one(
+def _shift_of_model(
     force_time: Array,
     force: Array,
     basis: Basis,
@@ -183,7 +183,7 @@ def _one(
     finest: float,
     samples: _Samples,
 ) -> tuple[float, float] | None:
-    """Shift and its error by one model; the range narrows as they become known."""
+    """Return shift and error of one model by successively narrower grids; None if it diverges."""
     at, half = shift, span
     for narrowed in range(12):
         if narrowed:
@@ -202,30 +202,32 @@ def _one(
         if half <= max(6.0 * error, finest):
             break
         half = max(6.0 * error, 0.15 * half, 0.5 * finest)
-    # it has wandered off: this model tells nothing
+    # outside the search range: no result
     return None if abs(mean - shift) > 1.2 * span else (mean, error)
 
 
-def _chosen(force_time: Array, basis: Basis, shift: float, half: float) -> NDArray[np.int64]:
-    """Choose samples of the force around the changes of the motion, closer the nearer to one."""
+def _samples_near_changes(
+    force_time: Array, basis: Basis, shift: float, half: float
+) -> NDArray[np.int64]:
+    """Return indices of force samples around the changes of motion, denser near them."""
     events = basis.time[basis.events] + shift
     inside = (events > force_time[0] + half) & (events < force_time[-1] - half)
     inside[inside] = np.arange(inside.sum()) % (1 + inside.sum() // _MAX_EVENTS) == 0
     events, around = events[inside], basis.around[inside] + shift
     if not len(events):
         return np.zeros(0, dtype=np.int64)
-    each = max(20, _FITTED_SAMPLES // len(events)) // 2  # before, and after
+    each = max(20, _FITTED_SAMPLES // len(events)) // 2  # before and after each
     k = np.searchsorted(force_time, events)
     a, b = np.searchsorted(force_time, around.T)
     count = np.stack([b - k, k - a])  # (after or before, event)
-    # evenly within the span, more and more thinly beyond it
+    # evenly within the span, then increasingly sparse
     flat = np.searchsorted(force_time, events + 2.0 * half) - k
     scale = np.maximum(np.minimum(flat, count), 4)
     u = np.linspace(0.0, np.arcsinh(np.maximum(count, 1) / scale), each, axis=-1)
     thinned, all_of_few = (scale[:, :, None] * np.sinh(u)).astype(np.int64), np.arange(each)
     many = (count > each)[:, :, None]
     places = k[:, None] + np.array([1, -1])[:, None, None] * np.where(many, thinned, all_of_few)
-    chosen = _each_once(np.sort(places[many | (all_of_few < count[:, :, None])]))
+    chosen = _without_repeats(np.sort(places[many | (all_of_few < count[:, :, None])]))
     good = (chosen >= 0) & (chosen < len(force_time))
     chosen = chosen[good]
     first = max(basis.time[0] + shift + half, force_time[0])
@@ -233,15 +235,15 @@ def _chosen(force_time: Array, basis: Basis, shift: float, half: float) -> NDArr
     return chosen[(force_time[chosen] >= first) & (force_time[chosen] <= last)]
 
 
-def _each_once(increasing: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Leave out repeats; `numpy.unique` would hash what is sorted already."""
+def _without_repeats(increasing: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return a sorted array without repeats, faster than `numpy.unique`."""
     if not len(increasing):
         return increasing
     return increasing[np.diff(increasing, prepend=-1 - abs(int(increasing[0]))) != 0]
 
 
 class _Samples(NamedTuple):
-    """Samples of the force around the changes of the motion: what a slow drift leaves of them."""
+    """Samples of the force around the changes of motion, without slow drift."""
 
     time: Array
     force: Array
@@ -250,7 +252,7 @@ class _Samples(NamedTuple):
 
 
 def _samples(force_time: Array, force: Array, basis: Basis, shift: float, half: float) -> _Samples:
-    used = _chosen(force_time, basis, shift, half)
+    used = _samples_near_changes(force_time, basis, shift, half)
     time, force = force_time[used], force[used]
     if not len(time):
         return _Samples(
@@ -265,7 +267,7 @@ def _samples(force_time: Array, force: Array, basis: Basis, shift: float, half: 
 
 
 class _Fit:
-    """The force at trial shifts as a sum of what a model's table holds (column, motion's row)."""
+    """Linear fit of the force at trial shifts by a model's table (column, motion row)."""
 
     def __init__(self, samples: _Samples, motion_time: Array, table: Array, shifts: Array):
         self.samples, self.shifts = samples, shifts
@@ -278,17 +280,17 @@ class _Fit:
         self._columns, self._begin = np.empty(shape), np.empty(shape)
 
     def columns(self, shift: float) -> Array:
-        """Return what the motion would have the force show: the table at the samples' times.
+        """Return the table of basis functions at the samples' times.
 
-        The next call writes over it: this is done hundreds of times a run, and fresh memory, which
-        no cache holds, would take half of its time.
+        The next call overwrites it: for hundreds of calls per run, new memory would take half of
+        the time.
         """
         at = self.samples.time - shift
-        i = self.motion_time[1:-1].searchsorted(at)  # the first interval or the last beyond the log
+        i = self.motion_time[1:-1].searchsorted(at)  # clipped to the ends of the log
         at -= self.motion_time.take(i)
         at /= self.step.take(i)
         part = np.clip(at, 0.0, 1.0, out=at)
-        # where places are clipped, and none is, it is written without a copy between
+        # mode "clip" avoids a copy; no index is out of range
         self.change.take(i, axis=0, out=self._columns, mode="clip")
         self._columns *= part[:, None]
         self.table.take(i, axis=0, out=self._begin, mode="clip")
@@ -296,18 +298,18 @@ class _Fit:
         return self._columns
 
     def squares(self) -> tuple[Array, Array, Array]:
-        """Return the sums of squares that are left, amplitudes, and shares of inertia (shift)."""
+        """Return residual sums of squares, amplitudes, and shares of inertia (shift)."""
         normals, told = [], []
         for shift in self.shifts:
             columns = self.columns(shift)
-            # a drift is taken out of the products: out of the columns it would take longer
+            # removing the drift from the products is faster than from the columns
             along = self.samples.both @ columns
             normals.append(columns.T @ columns - along[:-1].T @ along[:-1])
             told.append(along[-1])
         normal, right = np.stack(normals), np.stack(told)[:, :, None]
         own = np.einsum("sii->si", normal)
         ridge = _RIDGE_PENALTY * own + 1e-12 * own.sum(axis=1, keepdims=True)
-        ridge = np.maximum(ridge, np.finfo(float).tiny)  # of a motion that explains nothing
+        ridge = np.maximum(ridge, np.finfo(float).tiny)  # for motion that explains nothing
         ridged = normal + ridge[:, :, None] * np.eye(own.shape[1])
         amplitudes = np.linalg.solve(ridged, right)
         explained = amplitudes * (2.0 * right - normal @ amplitudes)
@@ -320,14 +322,14 @@ class _Fit:
         return left, amplitudes, inertia / np.sqrt(self.whole)
 
     def residual(self, shift: float, amplitudes: Array) -> Array:
-        """Return what the motion leaves of the force."""
+        """Return the residual of the force."""
         explained = self.columns(shift) @ amplitudes
         drift = self.samples.drift
         left: Array = self.samples.force - explained + drift @ (drift.T @ explained)
         return left
 
     def profile(self) -> tuple[Array, float, float, float]:
-        """Return the log likelihood (shift), and of the best shift what `Answer` tells."""
+        """Return log likelihoods (shift), and residual, inertia and freedom of the best."""
         squares, amplitudes, inertia = self.squares()
         best = int(np.argmin(squares))
         residual = self.residual(self.shifts[best], amplitudes[best])
@@ -344,7 +346,7 @@ class _Fit:
 
 
 def _rows_between(motion_time: Array, first: Array, last: Array) -> NDArray[np.int64]:
-    """Rows of a motion log that lie about increasing intervals of time, each once."""
+    """Return the rows of a motion log in increasing time intervals, each row once."""
     ends = len(motion_time) - 2
     low = np.clip(np.searchsorted(motion_time, first) - 1, 0, ends)
     high = np.clip(np.searchsorted(motion_time, last) - 1, 0, ends) + 1

@@ -1,4 +1,4 @@
-"""Numbers that decide how the clocks of two logs are matched, and whether a clock is believed."""
+"""Limits for the alignment of two logs' clocks, and for the validity of a clock."""
 
 from tribolab.core.limit import Count, Limit
 

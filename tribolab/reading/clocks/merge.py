@@ -1,4 +1,4 @@
-"""Two logs with two clocks become one run on the clock of the force log."""
+"""Merging of two logs with separate clocks into one run on the clock of the force log."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ _STEPWISE = {
     "set_normal_force",
     "step",
     "cycle",
-}  # between two samples the first holds
+}  # held constant between samples
 
 
 def merge(run: Signals, motion: Signals, clock_shift: float | None = None) -> Signals:
-    """Bring a companion log's signals onto a run's clock.
+    """Merge a companion log's signals into a run, on the run's clock.
 
     Parameters
     ----------
@@ -30,20 +30,21 @@ def merge(run: Signals, motion: Signals, clock_shift: float | None = None) -> Si
     motion
         The companion log.
     clock_shift
-        Motion clock + shift = force clock [s]; estimated when not given.
+        Motion clock + shift = force clock [s]; estimated by default.
 
     Returns
     -------
     Signals
-        The part of the run that both logs cover, with the companion's signals linearly
-        interpolated (set-points and step numbers: held). ``clock_shift_s``, its source
-        ("estimated", "given", or "none" where the signals do not tell) and its uncertainty are
-        attributes. An estimated shift is that in the middle of the companion log; where the
-        signals tell that one clock is faster, ``clock_rate`` is not zero, and force clock =
-        motion clock + ``clock_shift_s`` + ``clock_rate`` (motion clock - its middle).
+        The part of the run that both logs cover, with the companion's signals linearly interpolated
+        (set-points and step numbers: held). ``clock_shift_s``, its source ("estimated", "given", or
+        "none" if the signals do not determine it) and its uncertainty are attributes. An estimated
+        shift applies to the middle of the companion log; if the signals show that one clock is
+        faster, ``clock_rate`` is not zero, and force clock = motion clock + ``clock_shift_s`` +
+        ``clock_rate`` (motion clock - its middle).
 
-        Where the signals leave it open, the source is "none", ``clock_shift_refused`` says why,
-        and ``clock_shift_s`` is a guess. ``clock_shift_ways`` holds what each way tells.
+        If the signals do not determine it, the source is "none", ``clock_shift_refused`` is the
+        reason, and ``clock_shift_s`` is a guess. ``clock_shift_ways`` contains the result of each
+        method.
 
     Raises
     ------
@@ -74,7 +75,7 @@ def merge(run: Signals, motion: Signals, clock_shift: float | None = None) -> Si
         for name, values in motion.columns.items()
         if name not in run.columns
     }
-    attrs = run.attrs | _joined(run, motion) | attrs
+    attrs = run.attrs | _joined_provenance(run, motion) | attrs
     attrs |= {"time_origin_s": float(clock[0])}
     attrs |= {"clock_shift_s": shift, "clock_shift_source": source}
     return Signals(clock - clock[0], columns, attrs)
@@ -97,7 +98,7 @@ def _shift(
 ) -> tuple[float, str, Json]:
     if given is not None:
         return float(given), "given", {"clock_shift_uncertainty_s": 0.0, "clock_rate": 0.0}
-    apart = _recorded_apart(run, motion)
+    apart = _start_difference(run, motion)
     gap = 0.0 if apart is None else _gap(apart, force_clock, motion_clock)
     if gap > limits.MAX_GAP_BETWEEN_LOGS.value:
         raise ReadError(
@@ -139,7 +140,7 @@ def _shift(
 
 
 def _gap(apart: float, force_clock: np.ndarray, motion_clock: np.ndarray) -> float:
-    """Seconds between the end of one log and the begin of the other, by their dates."""
+    """Return the seconds between the end of one log and the start of the other, by their dates."""
     return max(apart - float(np.ptp(force_clock)), -apart - float(np.ptp(motion_clock)), 0.0)
 
 
@@ -151,12 +152,12 @@ def _velocity(motion: Signals, clock: np.ndarray) -> np.ndarray | None:
     return None
 
 
-def _recorded_apart(run: Signals, motion: Signals) -> float | None:
-    """Seconds from the start of the run to that of the companion, if both files say when."""
+def _start_difference(run: Signals, motion: Signals) -> float | None:
+    """Return the seconds from the start of the run to that of the companion, if both are stated."""
     try:
         begins = [dt.datetime.fromisoformat(data.attrs["recorded_at"]) for data in (run, motion)]
         return (begins[1] - begins[0]).total_seconds()
-    except (KeyError, TypeError, ValueError):  # not said, or not as a date that can be compared
+    except (KeyError, TypeError, ValueError):  # missing, or not comparable as dates
         return None
 
 
@@ -166,8 +167,8 @@ def _resampled(name: str, values: np.ndarray, clock: np.ndarray, wanted: np.ndar
     return np.interp(wanted, clock, values)
 
 
-def _joined(run: Signals, motion: Signals) -> Json:
-    """Provenance of both logs."""
+def _joined_provenance(run: Signals, motion: Signals) -> Json:
+    """Return the joined provenance of both logs."""
     attrs: Json = {
         key: f"{run.attrs[key]}; {motion.attrs[key]}" for key in ("source", "source_sha256")
     }

@@ -1,9 +1,9 @@
-"""When a table moves and which way, from a velocity with noise, steps or jitter in it.
+"""Detection of motion and its direction, from a velocity with noise, steps or jitter.
 
-A velocity reads a little more than zero at rest: noise of a tachometer, steps of an encoder. It is
-averaged over as few samples as bring that noise below a fiftieth of the fastest speed; what still
-lies within the noise, or leads nowhere, is rest. A stroke so slow that an encoder counts only now
-and then is a stroke: between two counts it moves at the speed that they tell.
+A velocity reading at rest is not exactly zero: tachometer noise, encoder steps. It is averaged over
+as few samples as bring the noise below a fiftieth of the fastest speed; intervals within the noise
+or without displacement are rest. A stroke so slow that an encoder counts only occasionally is still
+a stroke: between two counts it moves at their mean speed.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 from tribolab.core.aliases import Array
 from tribolab.reading.clocks import limits
 
-_MAX_HALF_WIDTH = 64  # samples on either side, at most, in an average
-_NOISE_BLOCK = 16  # samples, in which noise is looked at
-_REST_PERCENTILE = 3.0  # percentile of the noise in blocks that is taken for that at rest
-_TOP_PERCENTILE = 99.0  # percentile of the speed that is called the fastest
+_MAX_HALF_WIDTH = 64  # most samples on either side of an average
+_NOISE_BLOCK = 16  # samples per block for estimating noise
+_REST_PERCENTILE = 3.0  # percentile of the noise in blocks that counts as noise at rest
+_TOP_PERCENTILE = 99.0  # percentile of the speed that counts as the fastest
 
 
 class Motion(NamedTuple):
-    """Velocity [m/s] that is 0 at rest, the way (-1, 0, 1), and the time averaged over [s]."""
+    """Velocity [m/s], 0 at rest, direction (-1, 0, 1), and averaging time [s]."""
 
     velocity: Array
     way: NDArray[np.int64]
@@ -31,7 +31,7 @@ class Motion(NamedTuple):
 
 
 def clean_motion(time: Array, velocity: Array) -> Motion:
-    """Tell motion from rest.
+    """Separate motion from rest.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def clean_motion(time: Array, velocity: Array) -> Motion:
     ([0], [1])
     """
     path = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(time) * (velocity[1:] + velocity[:-1]))])
-    velocity = _between_counts(time, velocity, path)
+    velocity = _fill_between_counts(time, velocity, path)
     half, smooth = 0, velocity
     noise = _noise(velocity, 1)
     while noise > limits.MAX_NOISE_OF_SPEED.value * _fastest(smooth) and half < min(
@@ -59,23 +59,23 @@ def clean_motion(time: Array, velocity: Array) -> Motion:
         if left > 0.8 * noise:
             break
         half, smooth, noise = wider, tried, left
-    way = _way(smooth, noise)
-    way = _without_short(path, way)
-    plain = _way(velocity, 0.0)
-    # it is quiet at rest: nothing has to be done
+    way = _directions(smooth, noise)
+    way = _without_short_motion(path, way)
+    plain = _directions(velocity, 0.0)
+    # quiet at rest: no averaging needed
     if _turns(plain) <= limits.MAX_CHANGES_OF_NOISE.value * _turns(way):
         return Motion(np.where(plain != 0, velocity, 0.0), plain, 0.0)
     interval = float(np.percentile(np.diff(time), 5))
     return Motion(np.where(way != 0, smooth, 0.0), way, 2 * half * interval)
 
 
-def _between_counts(time: Array, velocity: Array, path: Array) -> Array:
-    """Give the time between an encoder's counts the speed that they tell.
+def _fill_between_counts(time: Array, velocity: Array, path: Array) -> Array:
+    """Fill the time between an encoder's counts with their mean speed.
 
-    Counts follow each other one way, evenly: those of a table that trembles at rest turn back, and
-    the rest between two strokes lasts longer than what lies between two counts.
+    Only evenly spaced counts in one direction are joined: vibration at rest reverses direction, and
+    the rest between two strokes is longer than the time between two counts.
     """
-    way = _way(velocity, 0.0)  # without the dust of rounding
+    way = _directions(velocity, 0.0)  # without rounding errors
     edges = np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way)]])
     first, last = edges[:-1][way[edges[:-1]] != 0], edges[1:][way[edges[:-1]] != 0]
     if len(first) < limits.MIN_COUNTS_OF_STROKE.value:
@@ -85,7 +85,7 @@ def _between_counts(time: Array, velocity: Array, path: Array) -> Array:
     usual = np.minimum(np.append(gap[1:], np.inf), np.concatenate([[np.inf], gap[:-1]]))
     bridged = (way[first[1:]] == way[first[:-1]]) & (first[1:] > last[:-1])
     bridged &= gap < limits.MAX_INTERVAL_OF_COUNTS.value * usual
-    # as many of them in a row as make a stroke
+    # at least as many counts in a row as in a stroke
     number = np.concatenate([[0], np.cumsum(~bridged)])
     bridged &= np.bincount(number)[number[1:]] >= limits.MIN_COUNTS_OF_STROKE.value
     out, between = velocity.copy(), np.append(bridged, False)
@@ -105,14 +105,14 @@ def _fastest(velocity: Array) -> float:
 
 
 def _averaged(time: Array, path: Array, half: int) -> Array:
-    """Mean velocity between `half` samples before and after."""
+    """Return the mean velocity over `half` samples before and after."""
     at = np.arange(len(time))
     first, last = np.maximum(at - half, 0), np.minimum(at + half, len(time) - 1)
     return (path[last] - path[first]) / (time[last] - time[first])
 
 
 def _noise(velocity: Array, apart: int) -> float:
-    """Noise where it is least, from second differences of values that share no samples."""
+    """Return the noise at rest, from second differences of values without common samples."""
     second = np.diff(velocity[:: max(apart, 1)], 2)
     blocks = len(second) // _NOISE_BLOCK
     if blocks < 4:
@@ -123,8 +123,8 @@ def _noise(velocity: Array, apart: int) -> float:
     return float(np.percentile(rms, _REST_PERCENTILE))
 
 
-def _way(velocity: Array, noise: float) -> NDArray[np.int64]:
-    """Sign of what rises well above the noise, from where it leaves it to where it enters it."""
+def _directions(velocity: Array, noise: float) -> NDArray[np.int64]:
+    """Return the sign of intervals well above the noise, each with its full extent."""
     speed = np.abs(velocity)
     least = 10.0**-limits.DECADES_TO_REST.value * float(speed.max())
     above = speed > max(noise, least)
@@ -141,8 +141,8 @@ def _turns(way: NDArray[np.int64]) -> int:
     return int(np.count_nonzero(np.diff(way)))
 
 
-def _without_short(path: Array, way: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Take what leads nowhere for rest."""
+def _without_short_motion(path: Array, way: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Treat motion without displacement as rest."""
     edges = np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way)]])
     moved = np.abs(path[np.minimum(edges[1:], len(path) - 1)] - path[edges[:-1]])
     short = moved < limits.MIN_DISTANCE_OF_MOTION.value * moved.max(initial=0.0)

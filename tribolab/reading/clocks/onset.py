@@ -1,12 +1,12 @@
-"""The fine adjustment of two clocks, by the moments at which sliding sets in.
+"""Fine adjustment of two clocks by the onsets of sliding.
 
-Friction does not turn over at once when a stroke begins, but within a distance: sorted by velocity
-alone, force samples seem to come late. So each stroke's beginning is fitted by
+Friction does not reverse immediately at the start of a stroke, but over a distance: sorted by
+velocity only, force samples seem to be late. So the start of each stroke is fitted by
 
     F(t) = a + b exp(-s(t - shift) / d),
 
-with s the distance moved since the stroke began (0 before it), a and b free, and d the best of a
-few distances. All strokes share the shift; a stroke counts as much as its fit gets worse beside it:
+with s the distance since the start of the stroke (0 before it), a and b free, and d the best of a
+few distances. All strokes share the shift, with the log likelihood
 
     L(shift) = sum_i n_i / 2 log RSS_i(shift).
 """
@@ -21,14 +21,14 @@ from tribolab.arrays.medians import median
 from tribolab.core.aliases import Array
 from tribolab.reading.clocks import limits
 
-_COMPARED_PART = 0.05  # of a stroke's length is looked at, and as long before it
-_STICK_DISTANCES = 1e-6 * 2.0 ** np.arange(17)  # d, in lengths of the stroke
-_SEARCHED_TIME = 0.3  # of a fast stroke's (or rest's) duration, within which the shift is sought
-_MAX_SAMPLES = 5000  # most samples of one beginning; one that lasts longer is too slow to tell
+_COMPARED_PART = 0.05  # share of a stroke's length that is used, with equal length before it
+_STICK_DISTANCES = 1e-6 * 2.0 ** np.arange(17)  # d, in units of the stroke length
+_SEARCHED_TIME = 0.3  # share of the duration of fast strokes (or rests) that is searched
+_MAX_SAMPLES = 5000  # most samples of one start; slower ones are not informative
 
 
 class Sharpened(NamedTuple):
-    """Shift [s], its uncertainty [s], and the mean moment [s, motion clock] that it refers to."""
+    """Shift [s], its uncertainty [s], and the mean time [s, motion clock] to which it refers."""
 
     shift: float
     uncertainty: float
@@ -36,7 +36,7 @@ class Sharpened(NamedTuple):
 
 
 class Onset(NamedTuple):
-    """The beginning of one stroke: force samples, and the distance moved by the motion clock."""
+    """Start of one stroke: force samples, and distance over the motion clock."""
 
     time: Array
     force: Array
@@ -53,7 +53,7 @@ def refine_by_onsets(
     shift: float,
     period: float,
 ) -> Sharpened | None:
-    """Refine the shift between two clocks by the beginnings of strokes.
+    """Refine the shift between two clocks by the starts of strokes.
 
     Parameters
     ----------
@@ -64,13 +64,12 @@ def refine_by_onsets(
     shift
         First estimate: motion clock + shift = force clock [s].
     period
-        Sample period [s] of the fastest region: neither log can tell less than half of it.
+        Sampling interval [s] of the fastest region, of which half limits the resolution.
 
     Returns
     -------
     Sharpened or None
-        None if no beginning of a stroke can be made out, or the shift
-        does not lie near the first estimate.
+        None if no start of a stroke is found, or the shift is far from the first estimate.
     """
     onsets, half_width = _onsets(force_time, force, motion_time, velocity, shift)
     if not onsets:
@@ -99,7 +98,7 @@ def refine_by_onsets(
 def _onsets(
     force_time: Array, force: Array, motion_time: Array, velocity: Array, shift: float
 ) -> tuple[list[Onset], float]:
-    """Beginnings of the fast strokes, and how far from `shift` they can tell it."""
+    """Return the starts of fast strokes, and the half width [s] of the search around `shift`."""
     speed = np.abs(np.nan_to_num(velocity))
     moving = speed > 1e-5 * speed.max()
     edges = np.flatnonzero(np.diff(np.concatenate([[0], moving.astype(np.int8), [0]])))
@@ -142,7 +141,7 @@ def _onsets(
 
 
 def _misfit(onsets: list[Onset], shifts: Array) -> Array:
-    """L at each shift."""
+    """Return L at each shift."""
     total = np.zeros(len(shifts))
     for onset in onsets:
         way = np.interp(onset.time - shifts[:, None], onset.motion_time, onset.distance)

@@ -1,18 +1,18 @@
-"""How far apart two clocks are, told from the signals: friction answers to motion, never before.
+"""Shift between two clocks, from signals: friction responds to motion and never precedes it.
 
-Several ways tell it, each with its own error:
+Several methods determine it, each with its own error:
 
-classes
-    how well classes of velocity explain the force (`clocks.classes`): robust, late;
-starts
-    when the force begins to change at each start of motion (`clocks.starts`), sharpened
-    by the fast strokes' beginnings (`tribolab.reading.clocks.onset`);
-motion
-    one fit of the force by distance, speed and acceleration, with slack or a stick before the
-    motion (`tribolab.reading.clocks.joint`).
+    classes
+        explained variance of the force by classes of velocity (`clocks.classes`): robust, late;
+    starts
+        first change of the force at each start of motion (`clocks.starts`), refined
+        by the starts of fast strokes (`tribolab.reading.clocks.onset`);
+    motion
+        one fit of the force by distance, speed and acceleration, with slack or sticking before
+        the motion (`tribolab.reading.clocks.joint`).
 
-What the ways cannot tell apart (a stick, slack) is in the uncertainty. Where they contradict one
-another, none is sharp, or the motion repeats so that another shift fits as well, no shift is told.
+Effects that no method can separate (sticking, slack) are in the uncertainty. The shift is refused
+if methods contradict each other, none is precise, or repeated motion fits equally at another shift.
 """
 
 from __future__ import annotations
@@ -39,23 +39,23 @@ from tribolab.reading.clocks.starts import (
     shift_from_starts,
 )
 
-# N, m/s: what lies beyond is a damaged number, and its square would overflow
+# N, m/s: larger values are damaged, and their squares would overflow
 _MAX_POSSIBLE_VALUE = 1e12
 
 
 class Told(NamedTuple):
-    """What one way tells: shift in the middle of the motion log [s], standard deviation [s]."""
+    """Result of one method: shift in the middle of the motion log [s], standard deviation [s]."""
 
     shift: float
     uncertainty: float
 
 
 class ShiftEstimate(NamedTuple):
-    """Motion clock + shift = force clock [s] in the middle of the motion log, and how well known.
+    """Estimate: motion clock + shift = force clock [s] in the middle of the motion log.
 
-    Away from the middle, `rate` times the time since then on the motion clock is added.
-    `explained` is the part of the force's variance that the classes of velocity explain, `ways`
-    what each way tells, and `refused` why the shift cannot be relied on ("" if it can).
+    Away from the middle, `rate` times the time since then on the motion clock is added. `explained`
+    is the share of the force's variance explained by velocity classes, `ways` the result of each
+    method, and `refused` the reason why the shift is unreliable ("" if it is not).
     """
 
     shift: float
@@ -84,7 +84,7 @@ def estimate_clock_shift(
     motion_time, velocity
         Motion log: its own clock [s] and the signed velocity [m/s].
     expected
-        Shift [s] that is preferred where several explain the force equally well.
+        Shift [s] that is preferred if several explain the force equally well.
     dated
         Whether `expected` is known, from the dates in both logs.
 
@@ -95,10 +95,10 @@ def estimate_clock_shift(
 
     Notes
     -----
-    The uncertainty is a standard deviation and holds the sampling of both logs, the noise, the
-    clocks' rates as far as the starts leave them open (10 ppm if they tell nothing), and by how
-    much the ways differ: friction that rises before the sample slides, or only after slack is
-    taken up, moves the shift by what that lasts.
+    The uncertainty is a standard deviation. It includes the sampling of both logs, the noise, the
+    uncertain ratio of the clock rates (10 ppm if the starts do not determine it), and the
+    difference between methods: friction that rises before the sample slides, or only after slack is
+    taken up, shifts the result by that duration.
     """
     with one_thread():
         return _estimated(force_time, force, motion_time, velocity, expected, dated)
@@ -125,7 +125,7 @@ def _estimated(
         return None
     force = (force - force.mean()) / force.std()
     basis = Basis(motion_time, motion)
-    if not len(basis.begins):  # it moves from the first sample to the last, or ends moving
+    if not len(basis.begins):  # moving from the first to the last sample
         return None
     apart = limits.MIN_DISTANCE_OF_SHIFTS.value * basis.stroke
     coarse = coarse_shift(force_time, force, motion_time, classes, expected, apart)
@@ -133,8 +133,8 @@ def _estimated(
         return None
     fit = Classes(force_time, force, motion_time, classes)
     may = [Candidate(coarse.shift, np.nan, 0.0, 0)]
-    # strokes of so different speeds do not repeat; a rest only looks like the stroke before
-    wide = _wide(motion, way)
+    # strokes of very different speeds are not interchangeable
+    wide = _has_different_speeds(motion, way)
     if len(coarse.rivals) and not wide:
         shifts = np.concatenate([[coarse.shift], coarse.rivals])
         if dated and abs(coarse.shift - expected) < limits.MAX_ERROR_OF_DATES.value:
@@ -145,7 +145,7 @@ def _estimated(
     significance = fit.significance(shift)
     if significance < limits.MIN_F_RATIO_WITH_FIT.value:
         return None
-    # a drift is explained by any classes that follow one another, but no shift fits it sharply
+    # any sequence of classes explains a drift, but no shift fits it precisely
     uncertainty = fit.uncertainty(shift)
     sharp = (
         limits.MAX_UNCERTAINTY_OF_SHIFT.value * float(np.ptp(motion_time)) / len(np.unique(classes))
@@ -156,7 +156,7 @@ def _estimated(
     if vague and (weak or not wide):
         return None
     ways = {"classes": Told(shift, uncertainty)}
-    # late by up to a rest, as the force stays on
+    # friction remains at rest, so the shift may be late by up to a rest
     span = max(8.0 * coarse.half, 1.25 * float(median(np.diff(motion_time[changes(way)]))))
     logs = Logs(force_time, force, motion_time, motion.velocity, way)
     ratio = fit.ratio(shift)
@@ -176,19 +176,19 @@ def _estimated(
     starts, onsets, agree = estimate, estimate, True
     if estimate.rate == 0.0:
         onsets = _sharpened(estimate, force_time, force, motion_time, motion.velocity, fit)
-        # of two methods that agree, the sharper one is kept
+        # of two consistent methods, the more precise one is kept
         agree = (
             abs(onsets.shift - starts.shift)
             <= limits.MAX_ERRORS_OF_AGREEMENT.value * starts.uncertainty
         )
         vaguer = agree and onsets.uncertainty > starts.uncertainty
         estimate = starts if told is not None and vaguer else onsets
-    # slack or a stick would delay the slow starts, which only the first of them sees, by more
+    # slack or sticking would delay slow starts more, which only the first method uses
     twice = wide and not weak and told is not None and onsets is not starts
     twice = twice and _alike(starts, onsets, basis.stroke)
     if vague and not twice:
         return None
-    # starts that know so little were looked for at a wrong place
+    # starts with a large error were searched at a wrong position
     if not twice and estimate.uncertainty > limits.MAX_ERROR_OF_STARTS.value * uncertainty:
         anew = ShiftEstimate(shift, uncertainty, ratio)
         anew = _sharpened(anew, force_time, force, motion_time, motion.velocity, fit)
@@ -223,11 +223,11 @@ def _estimated(
     )
     if twice and _contradicted(ways, stroke):
         other = onsets if estimate is starts else starts
-        combined, part = _late(ways["starts"], Told(*other[:2])), limits.MIN_ERROR_OF_SHIFT.value
+        combined, part = _widened(ways["starts"], Told(*other[:2])), limits.MIN_ERROR_OF_SHIFT.value
     elif wide and known and "motion" in ways and _agree(ways["starts"], ways["motion"]):
         combined, part = ways["starts"], limits.MIN_ERROR_OF_SHIFT.value
         if abs(combined.shift - ways["motion"].shift) > ways["motion"].uncertainty:
-            combined = _late(combined, ways["motion"])
+            combined = _widened(combined, ways["motion"])
     elif sharp_fit:
         first = ways["classes"]
         if known:
@@ -235,10 +235,10 @@ def _estimated(
                 ways["motion"].uncertainty
                 > limits.MAX_ERROR_OF_CONFIRMATION.value * ways["starts"].uncertainty
             )
-            first = _late(ways["starts"], ways["classes"]) if vague else ways["starts"]
+            first = _widened(ways["starts"], ways["classes"]) if vague else ways["starts"]
         combined, part = _combined(first, ways["motion"]), limits.ERROR_WITHOUT_FIT.value
     elif "starts" in ways and _confirmed(ways["starts"], ways["classes"], stroke):
-        combined, part = _late(ways["starts"], ways["classes"]), limits.ERROR_WITHOUT_FIT.value
+        combined, part = _widened(ways["starts"], ways["classes"]), limits.ERROR_WITHOUT_FIT.value
     else:
         return estimate._replace(ways=ways, refused="no two ways tell it")
     error = float(np.hypot(combined.uncertainty, part * stroke))
@@ -257,7 +257,7 @@ def _estimated(
 
 
 def _doubt_of_moved(may: list[Candidate], stroke: float) -> str:
-    """Say why the first of shifts, that starts moved far from what classes tell, may be wrong."""
+    """Return why a shift moved far from the velocity classes by the starts may be wrong."""
     for rival in may[1:]:
         if rival.outdoes(may[0]) and abs(rival.shift - may[0].shift) > 0.5 * stroke:
             return (
@@ -267,15 +267,15 @@ def _doubt_of_moved(may: list[Candidate], stroke: float) -> str:
     return ""
 
 
-def _wide(motion: Motion, way: NDArray[np.int64]) -> bool:
-    """Whether strokes differ so much in speed that what delays a slow start shows in the starts."""
+def _has_different_speeds(motion: Motion, way: NDArray[np.int64]) -> bool:
+    """Whether strokes differ enough in speed that delays of slow starts are visible."""
     change = changes(way)[:-1]
     fastest = np.maximum.reduceat(np.abs(motion.velocity), change)[way[change] != 0]
     return bool(fastest.max() > limits.MAX_SPEED_RATIO.value * fastest.min())
 
 
 def _alike(starts: ShiftEstimate, onsets: ShiftEstimate, stroke: float) -> bool:
-    """Whether starts at all speeds and those of fast strokes of a duration [s] tell the same."""
+    """Whether starts at all speeds and those of fast strokes of a duration [s] agree."""
     sharp = (
         max(starts.uncertainty, onsets.uncertainty) < limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
     )
@@ -287,10 +287,10 @@ def _alike(starts: ShiftEstimate, onsets: ShiftEstimate, stroke: float) -> bool:
 
 
 def _contradicted(ways: dict[str, Told], stroke: float) -> bool:
-    """Whether starts, which two methods found alike, rule out the fit by the motion.
+    """Whether starts, confirmed by two methods, exclude the fit by the motion.
 
-    It is ruled out if it lies further away than errors of either allow, and than is left open by
-    strokes of a duration [s]: what is nearer may be right.
+    It is excluded if the difference exceeds the errors of both and the tolerance for the duration
+    of a stroke [s].
     """
     starts, motion = ways["starts"], ways.get("motion")
     if motion is None or motion.uncertainty > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke:
@@ -301,31 +301,31 @@ def _contradicted(ways: dict[str, Told], stroke: float) -> bool:
 
 
 def _agree(first: Told | ToldByStarts, second: Told) -> bool:
-    """Whether two ways lie no further apart than their errors allow."""
+    """Whether two results agree within their errors."""
     error = np.hypot(first.uncertainty, second.uncertainty)
     return bool(abs(first.shift - second.shift) <= limits.MAX_ERRORS_OF_AGREEMENT.value * error)
 
 
 def _confirmed(starts: Told, classes: Told, stroke: float) -> bool:
-    """Whether classes of speed confirm what the starts of strokes of a duration [s] tell."""
+    """Whether velocity classes confirm the result of the starts, for a stroke duration [s]."""
     return (
         _agree(starts, classes)
         or abs(starts.shift - classes.shift) < limits.MAX_DELAY_OF_CLASSES.value * stroke
     )
 
 
-def _late(starts: Told, other: Told) -> Told:
-    """Widen what starts tell by half of what lies between them and another way.
+def _widened(starts: Told, other: Told) -> Told:
+    """Increase the uncertainty of starts by half the difference from another method.
 
-    Where friction takes its time to follow the speed, classes of speed are late, and the starts
-    may be; where the stage sticks, a fit may be nearer to the truth.
+    If friction follows the speed slowly, velocity classes are late, and starts may be; if the stage
+    sticks, a fit may be closer to the truth.
     """
     apart = 0.5 * (starts.shift - other.shift)
     return starts._replace(uncertainty=float(np.hypot(starts.uncertainty, apart)))
 
 
 def _refined(fit: Classes, shift: float, around: float) -> float:
-    """Shift near a coarse one at which the classes explain most."""
+    """Return the shift near a coarse one at which the classes explain most."""
     while around > 0.2 * fit.period:
         shifts = shift + around * np.linspace(-1.0, 1.0, 33)
         shift = float(shifts[np.argmax([fit.explained(s) for s in shifts])])
@@ -334,7 +334,7 @@ def _refined(fit: Classes, shift: float, around: float) -> float:
 
 
 def _combined(first: Told, second: Told) -> Told:
-    """Mean of two ways and its standard deviation, which holds how far they lie apart."""
+    """Return the mean of two results; its standard deviation includes their difference."""
     apart = second.shift - first.shift
     weights = np.array([1.0 / (told.uncertainty**2 + apart**2) for told in (first, second)])
     share = float(weights[1] / weights.sum())
@@ -353,7 +353,7 @@ def _doubt(
     chosen: Candidate,
     rivals: list[Candidate],
 ) -> str:
-    """Why a shift cannot be relied on; empty if it can. Strokes last `stroke` [s]."""
+    """Return why a shift is unreliable, "" if it is not; strokes last `stroke` [s]."""
     if (
         estimate.uncertainty > limits.MAX_UNCERTAINTY_OF_SHIFT.value * stroke
         and "motion" in estimate.ways
@@ -374,7 +374,7 @@ def _doubt(
         as_good = (
             1.0 - ratio < left and ratio > limits.MIN_EXPLAINED_OF_RIVAL.value * estimate.explained
         )
-        # a fit that explains far less than the classes do says nothing against what they tell
+        # a fit that explains far less than the classes does not contradict them
         fitted = (
             chosen.unexplained
             < limits.MAX_MISFIT_OF_FIT.value * (1.0 - estimate.explained)
@@ -395,16 +395,16 @@ def _sharpened(
     velocity: Array,
     fit: Classes,
 ) -> ShiftEstimate:
-    """Sharpen an estimate by the fast strokes' beginnings taken together."""
+    """Refine an estimate by the starts of all fast strokes."""
     onsets = refine_by_onsets(force_time, force, motion_time, velocity, estimate.shift, fit.period)
     if onsets is None:
         return estimate
     apart = abs(onsets.shift - estimate.shift)
-    # known where the fast strokes are; the clocks' rates leave it open elsewhere
+    # the shift is known at the fast strokes; elsewhere the clock rates add uncertainty
     middle = 0.5 * (motion_time[0] + motion_time[-1])
     error = float(
         np.hypot(onsets.uncertainty, limits.CLOCK_RATE_ERROR.value * (onsets.time - middle))
     )
-    if apart > 3.0 * estimate.uncertainty:  # the two ways disagree, and neither can be trusted more
+    if apart > 3.0 * estimate.uncertainty:  # the methods disagree: neither is trusted more
         error = max(error, apart)
     return ShiftEstimate(onsets.shift, error, fit.ratio(onsets.shift))

@@ -1,14 +1,14 @@
-"""How far apart two clocks are, told by starts of motion: force changes only once the table moves.
+"""Shift between two clocks from the starts of motion: force changes only after the table moves.
 
-Before a start, at t_0 on the motion clock, the friction force only relaxes; after it, it is a
-function of the distance d slid, of unknown shape, for friction builds up over a distance:
+Before a start, at t_0 on the motion clock, the friction force only relaxes; after it, it is an
+unknown function of the sliding distance d, since friction builds up over a distance:
 
     F = a + b u + c u^2 + sum_j A_j [1 - exp(-d(t - s) / l_j)],   u = min(t - s - t_0, 0),
 
-with lengths l_j from the distance slid within a few samples to that within the window. How the
-residual grows as the shift s is moved tells how sharply that start sees s: a fast one to a
-millisecond, a slow one hardly. The starts are put together robustly. Stops are not used: friction
-follows the velocity while the table slows down, and stays on when it is at rest.
+with lengths l_j from the distance within a few samples to that within the window. The increase of
+the residual with the shift s gives the error of each start: a millisecond for a fast one, large for
+a slow one. The starts are combined robustly. Stops are not used: friction follows the velocity
+while the table decelerates, and remains when it is at rest.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from tribolab.core.aliases import Array
 from tribolab.reading.clocks import limits
 
 _MAX_STARTS = 64
-_COMPARED_SAMPLES = 200  # samples after a start that are looked at, and at most as many before it
-_THINNED_SAMPLES = 160  # of them, when all would be more
-_FIRST_SAMPLES = 0.5  # samples: the distance slid within them is the shortest length
-_CURVE_TERMS = 8  # exponentials that make up a start's curve
+_COMPARED_SAMPLES = 200  # samples used after a start, and at most as many before it
+_THINNED_SAMPLES = 160  # samples kept of more
+_FIRST_SAMPLES = 0.5  # samples: the distance within them is the shortest length
+_CURVE_TERMS = 8  # number of exponentials in a start's curve
 
 
 class ToldByStarts(NamedTuple):
-    """Shift in the middle of the motion log [s] and rate, each with its standard deviation."""
+    """Shift in the middle of the motion log [s] and rate, with their standard deviations."""
 
     shift: float
     uncertainty: float
@@ -40,13 +40,13 @@ class ToldByStarts(NamedTuple):
 
 
 class _Start(NamedTuple):
-    """A start of motion: when on the motion clock, and how far to look before and after it [s]."""
+    """Start of motion: time on the motion clock, and window before and after it [s]."""
 
     time: float
     before: float
     after: float
-    few: float  # s, some samples of the force
-    sampling: float  # s, how finely the two logs see it
+    few: float  # s, duration of some force samples
+    sampling: float  # s, resolution of the two logs
 
 
 class _Curve(NamedTuple):
@@ -57,7 +57,7 @@ class _Curve(NamedTuple):
 
 
 class Logs:
-    """The two logs, and what is derived from them once: integrals over time."""
+    """The two logs, with their integrals over time."""
 
     def __init__(
         self,
@@ -76,7 +76,7 @@ class Logs:
         self._curves: dict[_Start, _Curve] = {}
 
     def slid(self, start: _Start, since: Array) -> Array:
-        """Distance [m] since the start, at times since then."""
+        """Return the distance [m] since the start, at times since then."""
         return np.maximum(self._path(start.time + since) - self._curve(start).begin, 0.0)
 
     def _curve(self, start: _Start) -> _Curve:
@@ -90,9 +90,9 @@ class Logs:
         return self._curves[start]
 
     def _path(self, time: Array) -> Array:
-        """Path [m]; the velocity is linear between two samples, so the path is a parabola."""
+        """Return the path [m]; with linear velocity between samples, it is a parabola."""
         time = np.clip(time, self.motion_time[0], self.motion_time[-1])
-        # looked up in the part that is needed
+        # searched only in the part that is needed
         ends = np.searchsorted(self.motion_time, [time.min(), time.max()], "right")
         first, last = np.minimum(ends, len(self.path) - 1) - 1
         part = slice(first, last + 2)
@@ -106,7 +106,7 @@ class Logs:
         return way
 
     def shapes(self, start: _Start, since: Array) -> Array:
-        """Functions of the time since the start that make up the force (..., function, time)."""
+        """Return the functions of time that compose the force (..., function, time)."""
         lengths = self._curve(start).lengths
         out = np.empty((*since.shape[:-1], 3 + _CURVE_TERMS, since.shape[-1]))
         out[..., 0, :] = 1.0
@@ -125,12 +125,12 @@ def _integral(time: Array, values: Array) -> Array:
 
 
 def changes(way: NDArray[np.int64]) -> NDArray[np.int64]:
-    """First samples of rests and strokes, and the last sample."""
+    """Return the first samples of rests and strokes, and the last sample."""
     return np.concatenate([[0], np.flatnonzero(np.diff(way)) + 1, [len(way) - 1]])
 
 
 def _starts(logs: Logs, shift: float) -> list[_Start]:
-    """Find the starts, also by reversal, that both logs see."""
+    """Return the starts, including reversals, that both logs cover."""
     change = changes(logs.way)
     moving = logs.way[change[1:-1]] != 0
     numbers = np.flatnonzero(moving & (np.diff(change[1:]) >= 8)) + 1
@@ -142,7 +142,7 @@ def _starts(logs: Logs, shift: float) -> list[_Start]:
     ):
         begin = float(logs.motion_time[first - 1])
         at = int(np.searchsorted(logs.force_time, begin + shift))
-        # some way off, as the shift is not yet known
+        # at some distance, as the shift is not yet known
         after = np.diff(logs.force_time[at + 20 : at + 80])
         ahead = np.diff(logs.force_time[max(at - 12, 0) : max(at - 1, 0)])
         if len(after) < 20 or len(ahead) < 5:
@@ -165,28 +165,28 @@ def _starts(logs: Logs, shift: float) -> list[_Start]:
 def shift_from_starts(
     logs: Logs, shift: float, span: float, allowed: Callable[[Array], NDArray[np.bool_]]
 ) -> ToldByStarts | None:
-    """Shift that the starts of motion tell.
+    """Estimate the shift from the starts of motion.
 
     Parameters
     ----------
     logs
         Both logs.
     shift, span
-        Where to begin, and how far on either side of it to look [s].
+        Start and half width of the search [s].
     allowed
-        Which of several shifts [s] are possible otherwise; `shift` itself must be.
+        Function that tests whether shifts [s] are otherwise possible; `shift` itself must be.
 
     Returns
     -------
     ToldByStarts or None
-        None where no start tells.
+        None if no start determines it.
     """
-    for width in (span, 0.5 * span):  # what is around a start depends on the shift
+    for width in (span, 0.5 * span):  # the samples around a start depend on the shift
         starts = _starts(logs, shift)
         if not starts:
             return None
         shifts = shift + width * np.linspace(-1.0, 1.0, 161)
-        shift = _together(logs, starts, shifts[allowed(shifts)])
+        shift = _best_common_shift(logs, starts, shifts[allowed(shifts)])
     middle = 0.5 * (logs.motion_time[0] + logs.motion_time[-1])
     since = np.array([start.time for start in starts]) - middle
     sampling = np.array([start.sampling for start in starts])
@@ -197,14 +197,14 @@ def shift_from_starts(
         step = half / 20.0
         offsets = half * np.linspace(-1.0, 1.0, 41)
         for k, start in enumerate(starts):
-            moments, error = _one(logs, start, centre[k] + offsets)
-            # 0.58 of the half width where it tells nothing; at an end, it is cut off
+            moments, error = _shift_of_start(logs, start, centre[k] + offsets)
+            # an uninformative start gives 0.58 of the half width; a maximum at the end is cut off
             if error < 0.4 * half and abs(moments - centre[k]) < 0.7 * half:
                 seen[:, k] = moments, error
         told = np.isfinite(seen[1])
         if not told.any():
             return None
-        # nothing is seen between samples
+        # no resolution between samples
         errors = np.hypot(seen[1], sampling)
         fit = _combined(since[told], seen[0][told], errors[told], sampling.min())
         if step < sampling.min():
@@ -213,10 +213,10 @@ def shift_from_starts(
         half = 4.0 * step
 
 
-def _together(logs: Logs, starts: list[_Start], shifts: Array) -> float:
-    """Shift on a grid at which the starts' curves fit best, in windows that move with it."""
+def _best_common_shift(logs: Logs, starts: list[_Start], shifts: Array) -> float:
+    """Return the grid shift at which all starts fit best, in windows that move with it."""
     total = np.zeros(len(shifts))
-    half = np.sinh(np.linspace(0.0, 4.0, 49)) / np.sinh(4.0)  # finer towards the start
+    half = np.sinh(np.linspace(0.0, 4.0, 49)) / np.sinh(4.0)  # finer near the start
     for start in starts:
         edges = np.concatenate([-start.before * half[::-1], start.after * half[1:]])
         basis = np.linalg.qr(logs.shapes(start, 0.5 * (edges[1:] + edges[:-1])).T)[0]
@@ -224,7 +224,7 @@ def _together(logs: Logs, starts: list[_Start], shifts: Array) -> float:
         means = np.diff(impulse, axis=1) / np.diff(edges)
         means -= means.mean(axis=1, keepdims=True)
         residual = means - (means @ basis) @ basis.T
-        # relative to the variance there, or the quietest place would fit best
+        # relative to the local variance, as otherwise the quietest place would fit best
         variance = np.maximum((means**2).sum(axis=1), 1e-30)
         total += np.logaddexp(
             _likelihood(residual, variance, basis.shape[1]), -limits.MAX_LIKELIHOOD_OF_START.value
@@ -232,8 +232,8 @@ def _together(logs: Logs, starts: list[_Start], shifts: Array) -> float:
     return float(shifts[np.argmax(total)])
 
 
-def _one(logs: Logs, start: _Start, shifts: Array) -> tuple[float, float]:
-    """Shift that one start tells and its standard deviation, from the same samples for all."""
+def _shift_of_start(logs: Logs, start: _Start, shifts: Array) -> tuple[float, float]:
+    """Return shift and standard deviation from one start, with the same samples for all shifts."""
     window = start.time + np.array([shifts[0] - start.before, shifts[-1] + start.after])
     first, last = np.searchsorted(logs.force_time, window)
     part = slice(first, last, max(1, -(-(last - first) // _THINNED_SAMPLES)))
@@ -243,7 +243,7 @@ def _one(logs: Logs, start: _Start, shifts: Array) -> tuple[float, float]:
     if len(time) < shapes.shape[1] + 8:
         return float(shifts.mean()), np.inf
     normal = shapes @ np.swapaxes(shapes, 1, 2)
-    # the curves are much alike; nothing hangs on the single amplitudes
+    # the curves are similar; single amplitudes are not needed
     ridge = 1e-8 * np.trace(normal, axis1=1, axis2=2)
     normal += ridge[:, None, None] * np.eye(shapes.shape[1])
     amplitudes = np.linalg.solve(normal, (shapes @ force)[..., None])[..., 0]
@@ -255,7 +255,7 @@ def _one(logs: Logs, start: _Start, shifts: Array) -> tuple[float, float]:
 
 
 def _likelihood(residual: Array, variance: Array, parameters: int) -> Array:
-    """Log-likelihood of each row relative to the best, allowing for correlated residuals."""
+    """Return the log likelihood of each row relative to the best, for correlated residuals."""
     squares = np.maximum((residual**2).sum(axis=1), 1e-30)
     relative = squares / variance
     best = residual[np.argmin(relative)]
@@ -266,12 +266,12 @@ def _likelihood(residual: Array, variance: Array, parameters: int) -> Array:
 
 
 def _combined(since: Array, shifts: Array, errors: Array, common: float) -> ToldByStarts:
-    """Put the starts' shifts together, at times since the middle; `common` error is in all."""
+    """Combine the starts' shifts, at times since the middle; all share a `common` error."""
     design = np.stack([np.ones_like(since), since], axis=1)
     prior = np.diag([0.0, limits.CLOCK_RATE_ERROR.value**-2])
     order = np.argsort(shifts)
     half = np.cumsum(errors[order] ** -2.0)
-    # from the weighted median, so that a few that are wrong do not matter
+    # start at the weighted median, so that outliers do not matter
     middle = shifts[order][np.searchsorted(half, 0.5 * half[-1])]
     told = np.array([middle, 0.0])
     for _ in range(50):
@@ -286,8 +286,8 @@ def _combined(since: Array, shifts: Array, errors: Array, common: float) -> Told
     normal = design.T @ (weight[:, None] * design) / scatter + prior
     error = np.sqrt(np.diag(np.linalg.inv(normal)))
     if error[1] > limits.MAX_ERROR_OF_CLOCK_RATE.value * limits.CLOCK_RATE_ERROR.value:
-        # a rate that is hardly told only moves the shift away from where it is known
+        # a poorly determined rate would only move the shift away from the known time
         told = np.array([told @ (weight @ design) / weight.sum(), 0.0])
-    # the loggers see all starts in the same way, so this does not become less by their number
+    # both loggers see all starts alike, so this error does not average out
     error[0] = np.hypot(error[0], common)
     return ToldByStarts(float(told[0]), float(error[0]), float(told[1]), float(error[1]))
